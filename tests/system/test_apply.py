@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import httpx
 import pytest
 
 from arboleda.runtime.state import find_running
 
-from ..patience import PATIENCE_S
 from .page import until
 
 pytestmark = pytest.mark.system
 
 EXAMPLE = Path(__file__).parents[2] / "examples/own_tree"
 Typed = Callable[..., tuple[int, str]]
-VISE = ("cells", "cell", "targets", "vise", "loader")
 
 
 def test_what_changed_since_the_start_is_said_and_a_restart_at_rest_has_it(
@@ -43,32 +39,6 @@ def test_what_changed_since_the_start_is_said_and_a_restart_at_rest_has_it(
     assert "all its cells rest" in up.output
     assert at_work(typed, plant) == ["  2  "]
     assert up.interrupt() == 0
-
-
-def test_a_draft_over_http_is_checked_and_kept_and_the_next_start_has_it(
-    arboleda: Callable[..., Any], typed: Typed, tmp_path: Path
-) -> None:
-    plant = copied(tmp_path)
-    up = arboleda("up", "--no-ros", "--plant", str(plant))
-    up.wait_for("HTTP API")
-    with draft(tmp_path) as step:
-        step("take", name="Ana")
-        step("set", place=[*VISE, "deg", 0], value=500)
-        refused = step("keep")
-        assert refused["version"] is None and refused["problems"][0].startswith(f"{plant}:")
-        step("undo")
-        step("set", place=[*VISE, "deg", 0], value=-75.5)
-        assert step("check")["problems"] == []
-        assert plant.read_bytes() == (EXAMPLE / "plant.yaml").read_bytes()
-        assert step("keep", note="vise moved")["version"] == 2
-    assert plant.read_text("utf-8") == (EXAMPLE / "plant.yaml").read_text("utf-8").replace("-75.52", "-75.5")
-    assert up.interrupt() == 0
-    again = arboleda("up", "--no-ros", "--plant", str(plant))
-    again.wait_for("HTTP API")
-    with draft(tmp_path) as step:
-        assert step("take", name="Ana")["waiting"] == []
-    assert at_work(typed, plant) == ["  2  "]
-    assert again.interrupt() == 0
 
 
 def test_a_plant_that_runs_takes_a_change_when_its_task_has_ended_and_its_record_is_replayed(
@@ -138,22 +108,6 @@ def copied(folder: Path) -> Path:
     for name in ("plant.yaml", "tend.xml"):
         (folder / name).write_bytes((EXAMPLE / name).read_bytes())
     return folder / "plant.yaml"
-
-
-@contextmanager
-def draft(folder: Path) -> Iterator[Callable[..., Any]]:
-    """`step("take", name="Ana")`: a step of the draft of the plant that runs, which has to succeed."""
-    running = find_running(folder / "state")
-    assert running is not None
-    with httpx.Client(base_url=running.url, trust_env=False, timeout=PATIENCE_S) as client:
-
-        def step(word: str, /, **body: Any) -> Any:
-            told = {} if word == "check" else {"editor": "ana-12345", **body}
-            answer = client.post(f"/api/draft/{word}", json=told)
-            assert answer.status_code == 200, answer.text
-            return answer.json()
-
-        yield step
 
 
 def at_work(typed: Typed, plant: Path) -> list[str]:

@@ -14,7 +14,6 @@ import yaml
 from arboleda.model.messages import ENDED, Fact, Remember, TaskState
 from arboleda.store.sqlite import Store
 
-from ..lengths import sample
 from ..patience import PATIENCE_MS
 from .conftest import SHIPPED
 from .page import PARTS, connected, ended, lead_out, running, show, until
@@ -23,7 +22,6 @@ pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")
 
 LAPTOP = {"viewport": {"width": 1366, "height": 768}, "locale": "en"}
 PHONE = {"viewport": {"width": 360, "height": 740}, "has_touch": True}
-WALL = {"viewport": {"width": 1920, "height": 1080}, "locale": "en"}
 EVERY_CELL = (
     "state => [...document.querySelectorAll('.scopes .pill')].every(pill => pill.dataset.s === state)"
 )
@@ -185,17 +183,6 @@ def test_a_task_is_sent_by_clicking_moves_the_tree_and_ends_done(open_page: Open
     wait_for_task(page, task, "done")
 
 
-def test_a_waiting_task_is_cancelled_and_sent_again(open_page: Open) -> None:
-    page = open_page("tasks")
-    first, second = send(page, "sis_b 0A 1"), send(page, "sis_b 2C 1")
-    page.click(f'[data-row="{second}"] button[data-act=cancel]')
-    wait_for_task(page, second, "cancelled")
-    wait_for_answer(page, "Done", "good")
-    wait_for_task(page, first, "done")
-    page.click(f'[data-row="{second}"] button[data-act=submit]')
-    wait_for_task(page, taken(page, "sis_b 2C 1"), "done")
-
-
 @pytest.mark.smoke
 def test_stop_is_confirmed_by_the_robots_and_cleared_and_reset(open_page: Open) -> None:
     page = open_page("tasks")
@@ -209,8 +196,13 @@ def test_stop_is_confirmed_by_the_robots_and_cleared_and_reset(open_page: Open) 
     get_ready(page)
 
 
-def test_a_stop_needs_no_socket(open_page: Open) -> None:
-    page = open_page()
+def test_a_stop_needs_neither_socket_nor_http_and_is_one_act_where_both_are_there(open_page: Open) -> None:
+    page = open_page("events")
+    before = page.evaluate(STOPS)
+    page.click("#stop")
+    wait_for_stop(page, "stopped")
+    get_ready(page)
+    assert page.evaluate(STOPS) == before + 1
     page.evaluate("window.socket.disconnect()")
     page.click("#stop")
     wait_for_answer(page, "The plant took the stop", "good")
@@ -218,32 +210,10 @@ def test_a_stop_needs_no_socket(open_page: Open) -> None:
     connected(page)
     wait_for_stop(page, "stopped")
     by_panel(page)
-
-
-def test_a_stop_needs_no_http(open_page: Open) -> None:
-    page = open_page()
     page.route("**/api/**", lambda route: route.abort())
     page.click("#stop")
     wait_for_stop(page, "stopped")
     get_ready(page)
-
-
-def test_a_stop_is_one_act_though_there_are_two_ways(open_page: Open) -> None:
-    page = open_page("events")
-    before = page.evaluate(STOPS)
-    page.click("#stop")
-    wait_for_stop(page, "stopped")
-    get_ready(page)
-    assert page.evaluate(STOPS) == before + 1
-
-
-def test_what_is_refused_says_why(open_page: Open) -> None:
-    page = open_page("panel")
-    page.click("[data-scope=sis_a]")
-    page.wait_for_selector(".verb[data-verb=reset] button:disabled")
-    said = page.inner_text(".verb[data-verb=reset] p")
-    assert said == "sis_a is idle; a cell is reset after a stop, once it has been cleared"
-    assert page.inner_text(".verb[data-verb=hold] p") == "sis_a is idle; only a cell at work can be held"
 
 
 def test_the_advice_on_the_card_leads_out_and_the_tab_shows_trouble(open_page: Open) -> None:
@@ -261,10 +231,18 @@ def test_the_advice_on_the_card_leads_out_and_the_tab_shows_trouble(open_page: O
     assert page.get_attribute("link[rel~=icon]", "href").endswith("/tree.svg")
 
 
-def test_what_moves_a_robot_is_asked_once_and_says_what_will_happen(open_page: Open, slow: str) -> None:
+def test_a_button_stays_while_its_row_changes_and_what_moves_a_robot_is_asked_once(
+    open_page: Open, slow: str
+) -> None:
     page = open_page("tasks", at=slow)
     task = send(page, "sis_b 0B 7")
     wait_for_task(page, task, "running")
+    button = page.query_selector(f"[data-row='{task}'] button[data-act=cancel]")
+    button.focus()
+    time = f"""document.querySelector("[data-row='{task}'] .column-4").innerText"""
+    for _ in range(2):
+        page.wait_for_function(f"before => {time} !== before", arg=page.evaluate(time))
+    assert button.evaluate("button => document.activeElement === button")
     show(page, "panel")
     page.click("[data-scope=sis_b]")
     page.click(".verb[data-verb=hold] button")
@@ -277,38 +255,27 @@ def test_what_moves_a_robot_is_asked_once_and_says_what_will_happen(open_page: O
     wait_for_task(page, task, "done")
 
 
-def test_a_wrong_task_shows_the_plants_sentence(open_page: Open) -> None:
+def test_what_is_wrong_is_said_as_text_and_what_cannot_be_sent_is_not_kept(open_page: Open) -> None:
     page = open_page("tasks")
     page.fill("#task-text", "sis_a 0D 7")
     page.press("#task-text", "Enter")
     wait_for_answer(page, "'0D' is not a path of sis_a", "bad")
-
-
-def test_what_people_write_is_never_html(open_page: Open) -> None:
-    page = open_page("tasks")
     page.fill("#task-text", "<img/src=x/onerror=window.broken=1> 0B 7")
     page.click("#task-send")
     wait_for_answer(page, "'<img/src=x/onerror=window.broken=1>' is not a cell", "bad")
     assert page.evaluate("[window.broken, document.images.length]") == [None, 0]
-
-
-def test_a_request_without_a_connection_is_not_kept_for_later(open_page: Open) -> None:
-    page = open_page("tasks")
     page.evaluate("window.socket.disconnect()")
     page.fill("#task-text", "sis_a 0B 7")
     page.click("#task-send")
     wait_for_answer(page, "Not sent", "bad")
-
-
-def test_news_that_no_longer_come_are_told(open_page: Open) -> None:
-    page = open_page()
-    page.evaluate("window.socket.disconnect()")
     page.wait_for_selector("#connection:not([hidden])")
     assert "what you see is old" in page.inner_text("#connection")
 
 
-def test_a_plant_where_nothing_happens_is_not_called_silent(open_page: Open, silent: str) -> None:
-    page = open_page(at=silent)
+def test_a_plant_whose_boards_never_come_is_not_called_silent_and_an_override_is_asked_twice(
+    open_page: Open, silent: str
+) -> None:
+    page = open_page("panel", at=silent, locale="en")
     page.evaluate("""() => {
         const live = arboleda.live;
         window.empty = 0;
@@ -319,52 +286,45 @@ def test_a_plant_where_nothing_happens_is_not_called_silent(open_page: Open, sil
     }""")
     page.wait_for_function("empty > 5")
     assert page.is_hidden("#connection") and page.locator(".silent").count() == 0
+    row = '[data-row=table][data-s="quarantined"]'
+    page.click(f"{row} [data-act=override]")
+    page.click("dialog button:has-text('No')")
+    page.click(f"{row} [data-act=override]")
+    page.click("dialog:has-text('with your own eyes') .primary")
+    assert page.is_visible(row)
+    page.click("dialog:has-text('journal') .primary")
+    page.wait_for_selector('[data-row=table][data-s="free"]')
+    show(page, "events")
+    page.wait_for_selector("[data-rows=events] .row:has-text('override table')")
 
 
-def test_a_button_stays_while_its_row_changes(open_page: Open, slow: str) -> None:
-    page = open_page("tasks", at=slow)
-    task = send(page, "sis_a 0B 7")
-    wait_for_task(page, task, "running")
-    button = page.query_selector(f"[data-row='{task}'] button[data-act=cancel]")
-    button.focus()
-    time = f"""document.querySelector("[data-row='{task}'] .column-4").innerText"""
-    for _ in range(2):
-        page.wait_for_function(f"before => {time} !== before", arg=page.evaluate(time))
-    assert button.evaluate("button => document.activeElement === button")
-    wait_for_task(page, task, "done")
-
-
-def test_the_language_is_switched_and_remembered(open_page: Open) -> None:
-    page = open_page("tasks", locale="en")
-    page.click("[data-language=es]")
-    page.wait_for_selector("text=Tarea nueva")
-    page.reload()
-    connected(page)
-    assert "Paro (software)" in page.inner_text("#stop")
+def test_language_part_and_cell_are_in_the_address_and_going_back_leads_through_them(open_page: Open) -> None:
+    page = open_page("tasks&cell=sis_b&lang=es", locale="en")
+    assert page.is_visible("[data-maps=sis_b]") and "Tarea nueva" in page.inner_text("#task-form")
+    assert page.get_attribute("html", "lang") == "es" and "Paro (software)" in page.inner_text("#stop")
     page.fill("#task-text", "sis_a 0D 7")
     page.click("#task-send")
     wait_for_answer(page, "'0D' no es un camino de sis_a", "bad")
-    assert page.get_attribute("html", "lang") == "es"
-
-
-def test_a_browser_that_speaks_spanish_is_answered_in_spanish(open_page: Open) -> None:
-    assert "Paro (software)" in open_page(locale="es-MX").inner_text("#stop")
-
-
-def test_a_reload_in_the_middle_shows_where_the_plant_is(open_page: Open) -> None:
-    page = open_page("cells")
-    page.click("[data-choose=sis_b]")
-    task = send(page, "sis_b 1B 0")
+    show(page, "panel")
+    page.wait_for_selector("[data-scope=sis_b][aria-pressed=true]")
+    page.click("[data-language=en]")
+    page.wait_for_selector("[aria-label='What to act on']")
+    assert "cell=sis_b" in page.url and "lang=en" in page.url
     page.reload()
     connected(page)
-    assert page.is_visible("#part-tasks")
-    wait_for_task(page, task, "done")
-    show(page, "cells")
-    page.wait_for_selector(".cell.chosen[data-cell=sis_b] g.node.is-success[data-path=root]")
+    page.wait_for_selector("html[lang=en]")
+    with page.context.expect_page() as opened:
+        page.click("[data-tab=links]", modifiers=["ControlOrMeta"])
+    other = opened.value
+    connected(other)
+    assert other.is_visible("#part-links") and "cell=sis_b" in other.url
+    assert page.is_visible("#part-panel")
+    other.close()
+    assert "Paro (software)" in open_page(locale="es-MX").inner_text("#stop")
+    page = open_page("cells&cell=%3Cimg src=x%3E")
+    wait_for_answer(page, "There is no cell <img src=x> in this plant", "bad")
+    assert "cell=" not in page.url
 
-
-def test_back_leads_through_the_parts_and_cells_that_were_shown(open_page: Open) -> None:
-    page = open_page("cells")
     page.click("[data-choose=sis_c]")
     show(page, "tasks")
     page.wait_for_selector("#part-tasks:not([hidden])")
@@ -383,20 +343,18 @@ def test_back_leads_through_the_parts_and_cells_that_were_shown(open_page: Open)
     page.wait_for_selector(".cell.chosen[data-cell=sis_c]", state="attached")
 
 
-def test_a_link_leads_to_part_cell_and_language(open_page: Open) -> None:
-    page = open_page("tasks&cell=sis_b&lang=es", locale="en")
-    assert page.is_visible("[data-maps=sis_b]") and "Tarea nueva" in page.inner_text("#task-form")
-    show(page, "panel")
-    page.wait_for_selector("[data-scope=sis_b][aria-pressed=true]")
-    page.click("[data-language=en]")
-    page.wait_for_selector("[aria-label='What to act on']")
-    assert "cell=sis_b" in page.url and "lang=en" in page.url
-    page.go_back()
-    page.wait_for_selector("html[lang=es]")
-
-
-def test_an_idle_page_offers_to_send_a_task(open_page: Open, half_idle: str) -> None:
-    page = open_page(at=half_idle, locale="en")
+def test_a_link_to_a_task_shows_the_leaf_that_failed_and_an_idle_cell_offers_to_send_one(
+    open_page: Open, half_idle: str
+) -> None:
+    page = open_page("tasks", at=half_idle, locale="en")
+    wait_for_task(page, "lot42", "failed")
+    page.goto(f"{half_idle}/?task=lot42")
+    page.wait_for_selector("#task g.node.is-failure:has-text('at start')")
+    assert 'Failed in step "at start": rm_sis_c stands on node 0' in page.inner_text("#task .trouble")
+    page.goto(f"{half_idle}/?task=lot43")
+    page.wait_for_selector("#task:has-text('knows no such task')")
+    page.goto(half_idle)
+    connected(page)
     page.click("[data-choose=sis_b]")
     page.click(".cell.chosen a:has-text('Send a task to sis_b'):visible")
     page.wait_for_selector("[data-maps=sis_b]:visible")
@@ -405,103 +363,23 @@ def test_an_idle_page_offers_to_send_a_task(open_page: Open, half_idle: str) -> 
     page.click("#task-send")
     task = taken(page, "sis_b 2A 4")
     wait_for_task(page, task, "done")
-    page.go_back()
-    page.wait_for_selector(".tree-tools a:has-text('Send a task to sis_b'):visible")
-
-
-def test_an_ended_task_is_looked_at_again(open_page: Open, slow: str) -> None:
-    page = open_page("tasks", at=slow, locale="en")
-    page.fill("#task-text", "sis_a 0B 7 #lot1")
-    page.click("#task-send")
-    wait_for_task(page, "lot1", "running")
-    page.click('[data-row="lot1"] a')
-    page.wait_for_selector("#task:has-text('It runs now')")
-    page.click("#stop")
-    page.wait_for_selector('#task [data-live="task.state"][data-s=failed]')
-    assert "stopped by the operator" in page.inner_text("#task .trouble")
-    assert "task=lot1" in page.url
-    page.click("#task g.node.is-failure[data-path=root]")
-    page.wait_for_selector("#node-name:visible")
-    assert page.inner_text("#node-name") == "sis_a 0B 7 #lot1 · storage"
+    show(page, "cells")
+    page.click("[data-choose=sis_b]")
+    page.focus(".cell.chosen g.node[data-path=root]")
+    page.keyboard.press("Enter")
+    assert page.inner_text("#node-name") == "sis_b · storage"
+    page.click(".cell.chosen g.node:has-text('move to station 4')")
+    given = page.inner_text("#node-given")
+    assert "ra2" in given and "joints" in given
     page.keyboard.press("Escape")
-    page.click("#task a:has-text('Close')")
-    page.wait_for_selector("#task", state="hidden")
-    page.go_back()
-    page.wait_for_selector("#task:visible")
-    wait_for_stop(page, "stopped")
-    get_ready(page)
+    assert not page.is_visible("#node")
 
 
-def test_a_link_to_a_task_shows_the_leaf_that_failed(open_page: Open, half_idle: str) -> None:
-    page = open_page("tasks", at=half_idle, locale="en")
-    wait_for_task(page, "lot42", "failed")
-    page.goto(f"{half_idle}/?task=lot42")
-    page.wait_for_selector("#task g.node.is-failure:has-text('at start')")
-    assert 'Failed in step "at start": rm_sis_c stands on node 0' in page.inner_text("#task .trouble")
-    page.goto(f"{half_idle}/?task=lot43")
-    page.wait_for_selector("#task:has-text('knows no such task')")
-
-
-def test_the_tree_stands_beside_the_twin(open_page: Open) -> None:
-    page = open_page("twin", locale="en")
-    page.click("[data-twin-cell=sis_b]")
-    task = send(page, "sis_b 1B 2")
-    wait_for_task(page, task, "done")
-    show(page, "twin")
-    page.wait_for_selector(".beside.chosen[data-cell=sis_b] g.node.is-success[data-path=root]")
-    beside, twin = (page.locator(of).bounding_box() for of in (".beside.chosen", ".twin"))
-    assert beside["x"] >= twin["x"] + twin["width"] and beside["y"] == twin["y"]
-
-
-PLAN = """() => {
-  const at = (path) => document.querySelector(`.cell.chosen g.node[data-path="${path}"]`).getCTM();
-  const [root, work, recovery] = ["root", "0", "1"].map(at);
-  return [root.e === work.e, root.f === work.f, work.e === recovery.e, work.f === recovery.f];
-}"""
-
-
-@pytest.mark.parametrize("width", sample([1280, 1366, 1700, 1920], every=2))
-def test_a_tree_is_drawn_the_same_way_in_every_language(width: int, open_page: Open) -> None:
-    sender = open_page("tasks", locale="en")
-    wait_for_task(sender, send(sender, "sis_a 0B 1"), "done")
-    size = {"width": width, "height": 800}
-    pages = [open_page(f"cells&lang={language}", viewport=size) for language in ("en", "es")]
-    for page in pages:
-        page.wait_for_selector(".cell.chosen g.node[data-path=root]")
-    # Each page plans its trees anew when what stands beside them has come.
-    until(lambda: pages[0].evaluate(PLAN) == pages[1].evaluate(PLAN))
-
-
-def test_a_tab_is_a_link_to_be_opened_elsewhere(open_page: Open) -> None:
-    page = open_page("cells&cell=sis_c")
-    with page.context.expect_page() as opened:
-        page.click("[data-tab=links]", modifiers=["ControlOrMeta"])
-    other = opened.value
-    connected(other)
-    assert other.is_visible("#part-links") and "cell=sis_c" in other.url
-    assert page.is_visible("#part-cells")
-    other.close()
-
-
-def test_a_link_to_a_cell_that_is_not_there_says_so(open_page: Open) -> None:
-    page = open_page("cells&cell=%3Cimg src=x%3E")
-    wait_for_answer(page, "There is no cell <img src=x> in this plant", "bad")
-    assert "cell=" not in page.url
-
-
-def test_a_second_browser_sees_the_same(open_page: Open) -> None:
-    one, other = open_page("tasks"), open_page("tasks", **PHONE)
-    task = send(one, "sis_a 1A 3")
-    for page in (one, other):
-        wait_for_task(page, task, "done")
-    rows = "[...document.querySelectorAll('[data-rows=tasks] .row')].map(row => row.textContent)"
-    assert one.evaluate(rows) == other.evaluate(rows)
-
-
-def test_dark_is_chosen_and_remembered(open_page: Open) -> None:
-    page = open_page(color_scheme="light")
+def test_the_systems_dark_is_followed_until_something_is_chosen_which_is_remembered(open_page: Open) -> None:
     background = "getComputedStyle(document.body).backgroundColor"
+    page = open_page(color_scheme="light")
     light = page.evaluate(background)
+    assert open_page(color_scheme="dark").evaluate(background) != light
     while page.get_attribute("html", "data-look") != "dark":
         page.click(".look")
     assert page.evaluate(background) != light
@@ -510,20 +388,22 @@ def test_dark_is_chosen_and_remembered(open_page: Open) -> None:
     assert page.get_attribute("html", "data-look") == "dark"
 
 
-def test_the_systems_dark_is_followed_until_something_is_chosen(open_page: Open) -> None:
-    background = "getComputedStyle(document.body).backgroundColor"
-    assert open_page(color_scheme="dark").evaluate(background) != open_page().evaluate(background)
-
-
-def test_a_phone_needs_no_sideways_scroll(open_page: Open) -> None:
-    page = open_page(**PHONE)
-    for part in PARTS:
-        show(page, part)
-        there, room = page.evaluate(
-            "[document.documentElement.scrollWidth, document.documentElement.clientWidth]"
-        )
-        assert (part, there) == (part, room)
-        assert page.is_visible("#stop")
+def test_a_phone_sees_the_same_needs_no_sideways_scroll_and_does_not_read_of_a_key(open_page: Open) -> None:
+    laptop, page = open_page("tasks", viewport={"width": 1280, "height": 800}), open_page("tasks", **PHONE)
+    task = send(laptop, "sis_a 1A 3")
+    for each in (laptop, page):
+        wait_for_task(each, task, "done")
+    rows = "[...document.querySelectorAll('[data-rows=tasks] .row')].map(row => row.textContent)"
+    assert laptop.evaluate(rows) == page.evaluate(rows)
+    assert laptop.is_visible(".stop-key") and not page.is_visible(".stop-key")
+    for screen, shown in (("laptop", laptop), ("phone", page)):
+        for part in PARTS:
+            show(shown, part)
+            there, room = shown.evaluate(
+                "[document.documentElement.scrollWidth, document.documentElement.clientWidth]"
+            )
+            assert (screen, part, there) == (screen, part, room)
+            assert shown.is_visible("#stop")
 
 
 def focus(page: Any, selector: str) -> None:
@@ -549,23 +429,12 @@ def test_the_keyboard_is_enough(open_page: Open) -> None:
     focus(page, "[data-act=submit]")
 
 
-def test_a_node_says_what_it_was_given(open_page: Open) -> None:
-    page = open_page("cells")
-    wait_for_task(page, send(page, "sis_a 0A 4"), "done")
-    show(page, "cells")
-    page.click("[data-choose=sis_a]")
-    page.focus(".cell.chosen g.node[data-path=root]")
-    page.keyboard.press("Enter")
-    assert page.inner_text("#node-name") == "sis_a · storage"
-    page.click(".cell.chosen g.node:has-text('move to station 4')")
-    given = page.inner_text("#node-given")
-    assert "ra1" in given and "joints" in given
-    page.keyboard.press("Escape")
-    assert not page.is_visible("#node")
-
-
-def test_the_time_line_is_filtered_and_downloaded(open_page: Open) -> None:
-    page = open_page("tasks")
+def test_the_links_say_who_is_heard_and_the_time_line_is_filtered_and_downloaded(open_page: Open) -> None:
+    page = open_page("links")
+    page.wait_for_selector('[data-row=ra1][data-s="online"]:has-text("ready")')
+    page.wait_for_function(r"/\d+\.\d Hz/.test(document.querySelector('[data-row=ra1]').textContent)")
+    assert "connected" in page.inner_text("[data-live=broker]")
+    show(page, "tasks")
     wait_for_task(page, send(page, "sis_b 0B 8"), "done")
     show(page, "events")
     page.click("[data-filter=events][data-value=sis_b]")
@@ -578,13 +447,6 @@ def test_the_time_line_is_filtered_and_downloaded(open_page: Open) -> None:
     events = json.loads(Path(download.value.path()).read_text())
     assert {"at", "cell", "kind", "what", "sentence"} <= events[-1].keys()
     assert any(event["sentence"].startswith("sis_b 0B 8") for event in events)
-
-
-def test_the_links_say_who_is_heard(open_page: Open) -> None:
-    page = open_page("links")
-    page.wait_for_selector('[data-row=ra1][data-s="online"]:has-text("ready")')
-    page.wait_for_function(r"/\d+\.\d Hz/.test(document.querySelector('[data-row=ra1]').textContent)")
-    assert "connected" in page.inner_text("[data-live=broker]")
 
 
 def test_a_viewer_may_stop_and_nothing_else(open_page: Open, tmp_path: Path) -> None:
@@ -607,10 +469,6 @@ def test_a_viewer_may_stop_and_nothing_else(open_page: Open, tmp_path: Path) -> 
         wait_for_stop(page, "stopped")
 
 
-def by_mouse(page: Any) -> None:
-    page.click("#stop")
-
-
 def by_touch(page: Any) -> None:
     page.tap("#stop")
 
@@ -626,64 +484,23 @@ def by_held_key(page: Any) -> None:
     page.keyboard.up("Escape")
 
 
-QUESTIONS = (("sis_a", "release"), ("sis_a", "home"), ("ra1", "home"))
-
-
-@pytest.mark.parametrize(
-    ("press", "screen", "questions"),
-    [
-        (by_mouse, LAPTOP, QUESTIONS),
-        (by_touch, PHONE, QUESTIONS[:1]),
-        (by_keyboard, LAPTOP, QUESTIONS[:1]),
-        (by_held_key, WALL, QUESTIONS[:1]),
-    ],
-    ids=["mouse", "touch", "keyboard", "held key"],
-)
-def test_stop_works_over_every_open_question(
-    press: Callable[[Any], None],
-    screen: dict[str, Any],
-    questions: tuple[tuple[str, str], ...],
-    open_page: Open,
-) -> None:
-    page = open_page("panel", **screen)
-    for scope, verb in questions:
-        cell = "sis_a" if scope == "ra1" else scope
-        page.click(f"[data-scope={cell}]")
+def test_stop_works_over_every_open_question(open_page: Open) -> None:
+    page = open_page("panel", **PHONE)
+    ways = ((by_touch, "sis_a", "release"), (by_keyboard, "sis_a", "home"), (by_held_key, "ra1", "home"))
+    for press, scope, verb in ways:
+        page.click("[data-scope=sis_a]")
         page.click(f"[data-scope={scope}]")
         page.click(f".verb[data-verb={verb}] button")
         page.wait_for_selector("dialog button:focus")
         press(page)
         wait_for_stop(page, "stopped")
-        assert page.locator("dialog").count() == 0, "the question is still open"
+        assert page.locator("dialog").count() == 0, f"{verb} {scope} is still asked after {press.__name__}"
         get_ready(page)
 
 
-def test_escape_says_no_and_gives_the_page_back(open_page: Open) -> None:
-    page = open_page("panel")
-    page.click("[data-scope=sis_a]")
-    page.click(".verb[data-verb=home] button")
-    page.wait_for_selector("dialog button:focus")
-    page.keyboard.press("Escape")
-    page.wait_for_selector("dialog", state="detached")
-    assert page.evaluate("document.activeElement.closest('.verb').dataset.verb") == "home"
-    show(page, "tasks")
-    assert page.inner_text(".stop-state") == "Stops every robot of the plant"
-
-
-def test_going_back_says_no(open_page: Open) -> None:
+def test_beside_a_question_only_the_stop_is_reached_and_escape_or_going_back_say_no(open_page: Open) -> None:
     page = open_page("tasks")
     show(page, "panel")
-    page.click("[data-scope=sis_a]")
-    page.click(".verb[data-verb=home] button")
-    page.wait_for_selector("dialog button:focus")
-    page.go_back()
-    page.wait_for_selector("dialog", state="detached")
-    page.wait_for_selector("[data-scope=''][aria-pressed=true]")
-    show(page, "tasks")
-
-
-def test_only_the_stop_can_be_reached_beside_a_question(open_page: Open) -> None:
-    page = open_page("panel")
     page.click("[data-scope=sis_a]")
     page.click(".verb[data-verb=home] button")
     page.wait_for_selector("dialog button:focus")
@@ -693,17 +510,12 @@ def test_only_the_stop_can_be_reached_beside_a_question(open_page: Open) -> None
         reached.add(page.evaluate("document.activeElement.closest('#stop, dialog, body')?.localName"))
     assert reached <= {"button", "dialog", "body"} and "button" in reached
     page.keyboard.press("Escape")
-
-
-def test_an_override_is_asked_twice(open_page: Open, silent: str) -> None:
-    page = open_page("panel", at=silent, locale="en")
-    row = '[data-row=table][data-s="quarantined"]'
-    page.click(f"{row} [data-act=override]")
-    page.click("dialog button:has-text('No')")
-    page.click(f"{row} [data-act=override]")
-    page.click("dialog:has-text('with your own eyes') .primary")
-    assert page.is_visible(row)
-    page.click("dialog:has-text('journal') .primary")
-    page.wait_for_selector('[data-row=table][data-s="free"]')
-    show(page, "events")
-    page.wait_for_selector("[data-rows=events] .row:has-text('override table')")
+    page.wait_for_selector("dialog", state="detached")
+    assert page.evaluate("document.activeElement.closest('.verb').dataset.verb") == "home"
+    page.click(".verb[data-verb=home] button")
+    page.wait_for_selector("dialog button:focus")
+    page.go_back()
+    page.wait_for_selector("dialog", state="detached")
+    page.wait_for_selector("[data-scope=''][aria-pressed=true]")
+    show(page, "tasks")
+    assert page.inner_text(".stop-state") == "Stops every robot of the plant"

@@ -1,4 +1,4 @@
-"""Devices of declared kinds in the parts that `arboleda up` starts: a real broker, and ROS 2 where it is."""
+"""Devices of declared kinds in the parts that `arboleda up` starts: a real broker, and ROS 2."""
 
 from __future__ import annotations
 
@@ -30,11 +30,6 @@ def outcome(app: App, text: str) -> TaskChanged:
         return ends.get(timeout=PATIENCE_S)
     finally:
         app.stop()
-
-
-def test_a_bench_of_declared_devices_works_over_mqtt(tmp_path: Path) -> None:
-    app = build(model(), PARTS, Options(state_dir=tmp_path, rate=RATE))
-    assert outcome(app, "bench bake 10").state is TaskState.DONE
 
 
 def test_a_bench_of_declared_devices_works_over_ros_and_mqtt(tmp_path: Path, ros_domain: int) -> None:

@@ -1,4 +1,4 @@
-"""The playground in a Firefox: it starts, has the digests of here, and lessons and exercises work in it."""
+"""The playground in a Firefox: it starts, has the digests of here, and exercises work in it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,9 @@ def page(playground: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
         assert [each for each in asked if not each.startswith(playground)] == []
 
 
-def test_seeds_have_the_digests_that_they_have_here(page: Page, playground: str) -> None:
+def test_seeds_have_the_digests_of_here_and_a_person_gives_a_task_and_has_a_board_reboot(
+    page: Page, playground: str
+) -> None:
     page.goto(f"{playground}?plant=own_board&lang=en")
     page.wait_for("window.arboledaPlay?.ready()")
     here = Tab()
@@ -42,8 +44,6 @@ def test_seeds_have_the_digests_that_they_have_here(page: Page, playground: str)
         wanted = json.loads(here.hear(json.dumps({"do": "simulate", **asked})))
         assert page.evaluate("asked => arboledaPlay.ask('simulate', asked)", asked) == wanted
 
-
-def test_a_person_gives_a_task_and_has_a_board_reboot(page: Page, playground: str) -> None:
     page.goto(f"{playground}?lang=en")
     page.wait_for("window.arboledaPlay?.ready()")
     page.evaluate("arboledaPlay.pause()")
@@ -62,14 +62,6 @@ def test_a_person_gives_a_task_and_has_a_board_reboot(page: Page, playground: st
     page.wait_for("document.querySelector('#twin-robots li')?.textContent.startsWith('ra1')")
     page.view(*PHONE)
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-
-
-def test_a_lesson_is_edited_and_run(page: Page, playground: str) -> None:
-    page.goto(f"{playground}workbook.html?lesson=01_paths&lang=es")
-    page.wait_for("window.arboledaWork?.shown()")
-    page.evaluate("text => arboledaWork.write(text)", "print('mío')\n")
-    page.click("[data-does=run]")
-    page.wait_for("document.getElementById('book-output').textContent.includes('mío')")
 
 
 def test_an_exercise_is_judged_wrong_and_then_right(page: Page, playground: str) -> None:

@@ -90,17 +90,6 @@ def foreigner(bridge: Any, observer: Any) -> Foreigner:
     return made
 
 
-def test_plain_goals_drive_an_arm_and_a_mobile(foreigner: Foreigner, observer: Any) -> None:
-    foreigner.say("/rm_sis_a/path_cmd", [0.0, 3.0, 4.0])
-    foreigner.wait_for_place("rm_sis_a", 0.1, 0.1)
-    foreigner.wait_for_state("rm_sis_a", 0)
-    foreigner.say("/ra1/joint_goals_q", [0.5, -0.25, 0.05])
-    foreigner.wait_for_place("r1", 0.5, -0.25, 0.05)
-    foreigner.wait_for_state("ra1", 0)
-    assert 1 in foreigner.states("ra1") and 1 in foreigner.states("rm_sis_a")
-    assert observer.heard["/r1/joint_states"][-1].name == JOINTS
-
-
 def stopped_on_its_way(foreigner: Foreigner) -> list[float]:
     """Joints of the arm, stopped in a move; on a busy machine a move may have ended before the stop came."""
     for goal in ([2.0, 2.0, 0.05], [-2.0, -2.0, 0.05]) * 3:
@@ -115,18 +104,26 @@ def stopped_on_its_way(foreigner: Foreigner) -> list[float]:
     pytest.fail("the stop came after the end of each move")
 
 
-def test_a_plain_stop_latches_and_a_clear_lets_go(foreigner: Foreigner) -> None:
+def test_plain_goals_drive_a_stop_latches_and_a_bridge_that_ends_halts_what_moves(
+    foreigner: Foreigner, observer: Any, bridge: Any, broker: Any
+) -> None:
+    foreigner.say("/rm_sis_a/path_cmd", [0.0, 3.0, 4.0])
+    foreigner.wait_for_place("rm_sis_a", 0.1, 0.1)
+    foreigner.say("/ra1/joint_goals_q", [0.5, -0.25, 0.05])
+    foreigner.wait_for_place("r1", 0.5, -0.25, 0.05)
+    foreigner.wait_for_state("ra1", 0)
+    assert 1 in foreigner.states("ra1") and 1 in foreigner.states("rm_sis_a")
+    assert observer.heard["/r1/joint_states"][-1].name == JOINTS
+
     stopped = stopped_on_its_way(foreigner)
     foreigner.say("/ra1/joint_goals_q", [0.0, 0.0, 0.0])
     foreigner.say("/ra1/stop_cmd", 0)
     foreigner.wait_for_state("ra1", 0)
     assert foreigner.still("r1") == stopped, "a goal was obeyed under the latch"
     foreigner.say("/ra1/home_cmd", 1)
-    foreigner.wait_for_state("ra1", 1)
     foreigner.wait_for_place("r1", 0.0, 0.0, 0.0)
+    foreigner.wait_for_state("ra1", 0)
 
-
-def test_a_bridge_that_is_ended_halts_what_moves(foreigner: Foreigner, bridge: Any, broker: Any) -> None:
     foreigner.drive("ra1", [2.0, 2.0, 0.05])
     bridge.interrupt()
     broker.wait_for("'ra_1/paro'")
@@ -148,9 +145,14 @@ def test_what_is_refused_is_told_with_its_reason(foreigner: Foreigner, observer:
     goal, path = refused("ra1", "joint_goals_q", [9.0, 0.0, 0.0]), refused("rm_sis_a", "path_cmd", [7.0, 8.0])
     assert (goal["command"], goal["id"], goal["reason"]) == ("joint_goals_q", "", "limite")
     assert (path["command"], path["reason"]) == ("path_cmd", "limite")
-    observer.wait(lambda: len(told("ra1")) > 1, "the refusal of what was said again was not told")
+
+    def is_told_again() -> bool:
+        foreigner.say("/ra1/joint_goals_q", [9.0, 0.0, 0.0])
+        return len(told("ra1")) > 1
+
+    observer.wait(is_told_again, "the refusal of what was said again was not told")
     counts = [each["count"] for each in told("ra1")]
-    assert counts == [*range(counts[0], counts[0] + len(counts))]
+    assert counts == sorted(set(counts)), "ROS 2 may lose a message, and a refusal is counted once"
     bridge.wait_for("a path begins at the robot's node or next to it")
     bridge.wait_for("number 1 is 9; allowed: -2.618 to 2.618 rad")
 

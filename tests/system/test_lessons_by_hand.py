@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import re
 import shlex
-import socket
 import subprocess
 import sys
 import time
@@ -148,33 +147,6 @@ def test_a_board_is_spoken_to_by_hand(
         hand.wait("ra_1/sensores", lambda said, number=number: said.get("ack") == number)
     hand.wait("ra_1/sensores", lambda said: said.get("hecho") == 5 and said["estado"] == 0)
     assert shell.interrupt() == 0, shell.output
-
-
-def test_a_board_joins_a_broker_of_another_kind(
-    first: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int
-) -> None:
-    mosquitto(free_port)
-    shell = first(f".venv/bin/python examples/09_mqtt_board.py --broker 127.0.0.1:{free_port}")
-    shell.wait_for("One beat, then silence")
-    assert shell.wait() == 0, shell.output
-
-
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        ("--port {0}", "the port is taken"),
-        ("--broker 127.0.0.1:1", "does not answer"),
-        ("--broker x:y", "HOST:PORT"),
-    ],
-)
-def test_a_broker_that_cannot_be_had_is_one_sentence(
-    words: str, sentence: str, first: Callable[..., Any]
-) -> None:
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
-        shell = first(f".venv/bin/python examples/09_mqtt_board.py {words.format(port)}")
-        assert shell.wait() == 1
-    assert sentence in shell.output and "Traceback" not in shell.output
 
 
 @pytest.mark.requires("rclpy")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -28,25 +26,6 @@ def program(node: str, library: str, *parameters: str) -> tuple[str, ...]:
     """The executable on a machine that has no such library."""
     words = [word for parameter in parameters for word in ("-p", parameter)]
     return (sys.executable, "-c", START.format(library=library, node=node, parameters=words))
-
-
-@pytest.mark.parametrize(
-    ("node", "library", "cure"),
-    [
-        ("mqtt_bridge", "paho", "pip install 'paho-mqtt>=2'"),
-        ("mqtt_bridge", "paho.mqtt.enums", "pip install 'paho-mqtt>=2'"),
-        ("mqtt_bridge", "yaml", "pip install 'PyYAML'"),
-        ("virtual_devices", "pydantic", "pip install 'pydantic>=2'"),
-        ("orchestrator", "py_trees", "pip install 'py_trees'"),
-        ("orchestrator", "diagnostic_msgs", "source a ROS 2 installation"),
-    ],
-)
-def test_a_node_names_what_to_install(node: str, library: str, cure: str) -> None:
-    env = {**os.environ, "PYTHONPATH": paths()}
-    ended = subprocess.run(program(node, library), env=env, capture_output=True, text=True, check=False)
-    assert ended.returncode == 1
-    assert ended.stderr.startswith(f"{node}: the Python library ") and cure in ended.stderr
-    assert ended.stderr.count("\n") == 1, ended.stderr
 
 
 @pytest.mark.usefixtures("ros_domain")

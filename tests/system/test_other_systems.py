@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from ..lengths import sample
 from .conftest import Process, paths
 
 pytestmark = pytest.mark.system
@@ -20,7 +21,7 @@ main()
 """
 
 
-@pytest.mark.parametrize("platform", ["win32", "darwin"])
+@pytest.mark.parametrize("platform", sample(["win32", "darwin"], every=2))
 def test_a_plant_does_a_task_and_keeps_a_second_one_out(
     start: Callable[..., Process], tmp_path: Path, free_port: int, platform: str
 ) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import urllib.request
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -16,7 +15,6 @@ from arboleda.web.languages import contents
 from ..chromium import FEW_FRAMES, leave
 from ..lengths import length, sample
 from ..patience import LONG_MS
-from .conftest import ROOT
 from .page import show
 from .test_accessible import SCREENS, VIEWS, Eye
 
@@ -89,7 +87,9 @@ def test_seeds_and_a_session_have_the_digests_that_they_have_here(opened: Open) 
     assert both("digest")["digest"] == digest
 
 
-def test_a_person_gives_a_task_has_a_board_reboot_goes_back_and_stops(opened: Open) -> None:
+def test_a_person_gives_a_task_has_a_board_reboot_goes_back_stops_and_opens_another_plant(
+    opened: Open,
+) -> None:
     page = opened()
     show(page, "tasks")
     page.fill("#task-text", "sis_a 0A 8")
@@ -114,11 +114,6 @@ def test_a_person_gives_a_task_has_a_board_reboot_goes_back_and_stops(opened: Op
     assert page.inner_text("#twin-robots li:first-child").startswith("ra1")
     page.click("#stop")
     page.wait_for_selector(".stop-state[data-s=stopped]")
-
-
-def test_an_address_opens_a_plant_whose_time_runs_and_a_choice_opens_another(opened: Open) -> None:
-    page = opened("plant=lab_bench")
-    assert page.inner_text("h1") == "lab_bench"
     page.select_option("#play-speed", "16")
     pressed(page, "[data-play=play]")
     page.wait_for_function("arboledaPlay.clock().tick > 160")
@@ -128,15 +123,6 @@ def test_an_address_opens_a_plant_whose_time_runs_and_a_choice_opens_another(ope
     page.wait_for_function("document.querySelector('#play-slider') && document.title.includes('agv')")
     show(page, "links")
     assert "plant=agv" in page.url and "tab=links" in page.url
-
-
-def test_a_plant_that_is_not_there_is_refused_in_a_sentence(playground: str, browser: Any) -> None:
-    context = browser.new_context()
-    page = context.new_page()
-    page.set_default_timeout(LONG_MS)
-    page.goto(f"{playground}?plant=nowhere")
-    page.wait_for_function("document.getElementById('play-loading').textContent.includes('kitting')")
-    leave(context)
 
 
 @pytest.mark.requires("axe_playwright_python")
@@ -157,10 +143,3 @@ def test_axe_finds_nothing_and_nobody_scrolls_sideways(opened: Open, language: s
     page.wait_for_selector("[data-rows=hands] button")
     eyes.look("a board without power")
     assert not eyes.violations, "\n".join(eyes.violations)
-
-
-def test_the_scripts_of_the_page_are_served_as_they_are(playground: str) -> None:
-    assets = ROOT / "src/arboleda/arboleda/dashboard/assets"
-    for file in ("tree.js", "twin.js", "live.js", "page.css"):
-        with urllib.request.urlopen(f"{playground}assets/{file}") as served:
-            assert served.read() == (assets / file).read_bytes()

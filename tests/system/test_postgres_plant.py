@@ -72,23 +72,3 @@ def test_a_plant_that_loses_its_database_ends_and_has_lost_nothing(
         postgres.start()
     found = kept(arboleda, *store)
     assert set(found) == {"one", "two"} and found["two"] == "queued"
-
-
-def test_a_backup_of_files_says_what_to_use_instead(
-    arboleda: Callable[..., Any], store: tuple[str, str], tmp_path: Path
-) -> None:
-    plant = arboleda(*UP, *store)
-    plant.wait_for("HTTP API")
-    backup = arboleda("backup", str(tmp_path / "copy"))
-    assert backup.wait() == 1 and "pg_dump" in backup.output
-
-
-def test_an_idle_plant_whose_tables_are_dropped_ends_by_itself(
-    arboleda: Callable[..., Any], store: tuple[str, str], postgres: Server
-) -> None:
-    plant = arboleda(*UP, *store)
-    plant.wait_for("HTTP API")
-    with postgres.connection() as db:
-        db.execute(f"DROP SCHEMA plant_{PLANT} CASCADE")
-    assert plant.wait() == 1
-    assert plant.lines[-1].startswith("arboleda: The plant's memory") and "Traceback" not in plant.output

@@ -7,16 +7,14 @@ from collections.abc import Callable
 import pytest
 
 from arboleda.model.plant_model import Evidence
-from arboleda.wire.status import ERROR, OK, STALE
+from arboleda.wire.status import OK, STALE
 
 from .conftest import Chain
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("rclpy", "mosquitto")]
 
-LEVELS = pytest.mark.parametrize("evidence", list(Evidence))
 
-
-@LEVELS
+@pytest.mark.parametrize("evidence", list(Evidence))
 @pytest.mark.smoke
 def test_a_task_is_done_across_three_processes(chain: Callable[..., Chain], evidence: Evidence) -> None:
     parts = chain(evidence)
@@ -26,25 +24,6 @@ def test_a_task_is_done_across_three_processes(chain: Callable[..., Chain], evid
     for process in (parts.plant, parts.bridge, parts.devices):
         assert process.interrupt() == 0, process.output
         assert "Traceback" not in process.output
-
-
-@LEVELS
-def test_a_bridge_killed_and_restarted_in_a_move_fails_it(
-    chain: Callable[..., Chain], evidence: Evidence
-) -> None:
-    parts = chain(evidence)
-    parts.submit("sis_a 0B 4")
-    parts.wait_for_step("sis_a", "move to pick-up")
-    before = parts.robot("rm_sis_b")["bridge_epoch"]
-    parts.bridge.kill()
-    parts.start("mqtt_bridge")
-    change = parts.outcome("sis_a 0B 4")
-    assert (change["state"], change["reason"]) == ("failed", "link_lost")
-    parts.wait_for_robot("rm_sis_b", lambda robot: robot["bridge_epoch"] != before)
-    parts.wait_until_ready("ra2", "rm_sis_b")
-    parts.submit("sis_b 0A 4")
-    change = parts.outcome("sis_b 0A 4")
-    assert change["state"] == "done", change["sentence"]
 
 
 def diagnosed(parts: Chain, name: str) -> Callable[[], tuple[int, str] | None]:
@@ -117,33 +96,3 @@ def test_a_bridge_back_too_late_leaves_the_cell_held_until_it_is_retried(
     assert verb(parts, "retry") == (True, "")
     parts.wait_for_cell("sis_a", lambda cell: cell["state"] == "idle")
     assert parts.robot("ra1")["effector"] is False, "the part was not brought back"
-
-
-def test_a_broker_that_is_gone_is_an_error_of_the_link(chain: Callable[..., Chain]) -> None:
-    parts = chain(Evidence.IDS)
-    mqtt = diagnosed(parts, "mqtt_bridge on MQTT")
-    parts.observer.wait(lambda: mqtt() and mqtt()[0] == OK, "the bridge does not reach its broker")
-    parts.broker.kill()
-    gone = (ERROR, f"not connected to the MQTT broker at {parts.address}")
-    parts.observer.wait(lambda: mqtt() == gone, "the loss is not told")
-
-
-@LEVELS
-def test_boards_killed_and_restarted_in_a_move_fail_it(
-    chain: Callable[..., Chain], evidence: Evidence
-) -> None:
-    parts = chain(evidence)
-    parts.submit("sis_a 0B 4")
-    parts.wait_for_step("sis_a", "move to pick-up")
-    parts.devices.kill()
-    parts.wait_for_robot("rm_sis_b", lambda robot: not robot["online"])
-    parts.start("virtual_devices")
-    change = parts.outcome("sis_a 0B 4")
-    assert (change["state"], change["reason"]) == ("failed", "link_lost")
-    if evidence is Evidence.JOINTS:  # a board that was away may have rebooted, and cannot say where it is
-        parts.wait_for_robot("rm_sis_b", lambda robot: robot["obstacle"] == "rm_sis_b is not homed")
-        return
-    parts.wait_until_ready("ra2", "rm_sis_b")
-    parts.submit("sis_b 0A 4")
-    change = parts.outcome("sis_b 0A 4")
-    assert change["state"] == "done", change["sentence"]

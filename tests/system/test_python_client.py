@@ -1,50 +1,20 @@
-"""`arboleda.client` and plants that really run: an example, a restart in the middle, two hosts."""
+"""`arboleda.client` and plants that really run: the examples."""
 
 from __future__ import annotations
 
 import sys
-import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from arboleda.client import Plant
-
 from .conftest import ROOT, paths
-from .test_walk_back import Site
-from .two_hosts import PATIENCE_S, Hosts
 
 pytestmark = pytest.mark.system
 PROPOSAL = ROOT / "examples/client/proposal_to_task.py"
 PROPOSES = "\nassistants: submit\nassistant_limits: {cells: [cell]}\n"
 EXAMPLE = ROOT / "examples/client/task_to_report.py"
-
-
-class Waiting:
-    """Client in a thread that waits for a task, and notes each of its states."""
-
-    def __init__(self, task: str, *addresses: str) -> None:
-        self.states: list[str] = []
-        self._plant = Plant(*addresses, patience_s=PATIENCE_S)
-        self._thread = threading.Thread(target=self._follow, args=(task,))
-        self._thread.start()
-
-    def _follow(self, task: str) -> None:
-        self.states += [each.state for each in self._plant.follow(task)]
-        self._plant.close()
-
-    def ended(self) -> list[str]:
-        self._thread.join(PATIENCE_S)
-        return self.states
-
-
-@pytest.fixture
-def site(tmp_path: Path, free_port: int) -> Iterator[Site]:
-    made = Site(tmp_path, "--port", str(free_port))
-    yield made
-    made.end()
 
 
 @pytest.mark.smoke
@@ -83,34 +53,3 @@ def test_a_proposal_is_written_tried_approved_and_its_task_done(
     assert "+      <press_close/>" in shown and "simulated: held" in shown
     assert "approved by Ana - version 2" in shown and "the recipe was approved by Ana" in shown
     assert up.interrupt() == 0, up.output
-
-
-def test_who_waits_for_a_task_goes_on_after_the_plant_was_killed(site: Site, free_port: int) -> None:
-    site.until(lambda cell: cell["not_ready"] is None)
-    address = f"http://127.0.0.1:{free_port}"
-    with Plant(address, patience_s=PATIENCE_S) as plant:
-        assert plant.submit("sis_a 0B 7 #lot-1").id == "lot-1"
-        waiting = Waiting("lot-1", address)
-        site.until(lambda cell: cell["step"] == "drive path 0B")
-        site.kill()
-        site.until(lambda cell: cell["state"] == "held" and "resume" not in cell["refused"])
-        assert plant.submit("sis_a 0B 7 #lot-1").state == "running"
-        plant.operate("resume", "sis_a")
-        assert waiting.ended()[-1] == "done"
-        assert [row.state for row in plant.history(words="lot-1")] == ["done"]
-
-
-def test_who_waits_for_a_task_follows_the_next_leader(hosts: Hosts, page_ports: tuple[int, int]) -> None:
-    hosts.led_by_a(page_ports)
-    at_a, at_b = (f"http://127.0.0.1:{port}" for port in page_ports)
-    with Plant(at_b, patience_s=PATIENCE_S) as plant:  # which stands by, and names the leader
-        assert plant.submit("sis_a 0B 7 #lot-1").state in ("queued", "running")
-        waiting = Waiting("lot-1", at_a, at_b)
-        hosts.until(lambda: hosts.cell("a").get("step") == "drive path 0B")
-        hosts.plants["a"].kill()
-        hosts.until(
-            lambda: hosts.cell("b").get("state") == "held" and "resume" not in hosts.cell("b")["refused"]
-        )
-        plant.operate("resume", "sis_a")
-        assert waiting.ended()[-1] == "done"
-    hosts.done_with("b")

@@ -30,6 +30,8 @@ pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")
 
 MAIN = "from arboleda.cli.main import main; main()"
 AT = "[data-live='record.at']"
+WRONG_EVENTS = [[], ["go", "x"], ["go", 1e99], ["step", 7], ["task", {"a": 1}], ["__class__"], [["go"], 1]]
+"""What no button of the page sends."""
 FAILED = "article.cell.chosen g.node.is-failure"
 
 
@@ -111,7 +113,9 @@ def noted(tab: Any) -> str:
     return str(tab.url)
 
 
-def test_it_opens_at_the_last_failure_with_the_tree_as_it_was(tab: Any, replay: str) -> None:
+def test_it_opens_at_the_last_failure_with_the_tree_as_it_was_and_nothing_can_be_done(
+    tab: Any, replay: str
+) -> None:
     look(tab, f"{replay}&cell=sis_c")
     tab.wait_for_selector(FAILED)
     assert "sis_c" in tab.text_content("[data-live='record.event']")
@@ -124,8 +128,18 @@ def test_it_opens_at_the_last_failure_with_the_tree_as_it_was(tab: Any, replay: 
     tab.keyboard.press("PageDown")
     tab.wait_for_selector("#answer:has-text('no failure after that')")
 
+    look(tab, re.sub("at=[^&]*", "at=task&tab=tasks&task=failed", replay))
+    tab.wait_for_selector("#task g.node.is-failure")
+    assert tab.locator("#stop, form, [data-act], [data-choice]").count() == 0
+    origin = replay.partition("/?")[0]
+    with httpx.Client(base_url=origin, trust_env=False, timeout=PATIENCE_S) as client:
+        assert client.get("/api/plant").status_code == 404
+        assert client.get("/", headers={"host": "evil.example"}).status_code == 403
 
-def test_an_address_leads_a_colleague_to_the_same_moment(tab: Any, browser: Any, replay: str) -> None:
+
+def test_a_moment_is_reached_by_slider_keys_time_line_and_address(
+    tab: Any, browser: Any, replay: str
+) -> None:
     look(tab, replay)
     before = noted(tab)
     moment = moved(tab, lambda: tab.keyboard.press("ArrowLeft"))
@@ -135,10 +149,6 @@ def test_an_address_leads_a_colleague_to_the_same_moment(tab: Any, browser: Any,
     assert colleague.text_content(AT) == moment
     colleague.close()
 
-
-def test_the_slider_leads_anywhere_and_it_runs_on_from_there(tab: Any, replay: str) -> None:
-    look(tab, replay)
-    noted(tab)
     tab.wait_for_selector("#record-marks i")
     first = moved(tab, lambda: tab.fill("#record-slider", "0"))
     assert tab.text_content("article.cell.chosen .pill").startswith("idle")
@@ -147,11 +157,11 @@ def test_the_slider_leads_anywhere_and_it_runs_on_from_there(tab: Any, replay: s
     tab.wait_for_selector("g.node.current")
     tab.click("#record-play")
     assert tab.text_content(AT) > first
+    for event in WRONG_EVENTS:
+        tab.evaluate("event => window.emitEvent('arboleda-past', ...event)", event)
+    moved(tab, lambda: tab.click("[data-past=event_before]"))
 
-
-def test_the_time_line_and_the_twin_are_of_the_moment(tab: Any, replay: str) -> None:
-    look(tab, replay)
-    noted(tab)
+    moved(tab, lambda: tab.fill("#record-slider", tab.get_attribute("#record-slider", "max")))
     show(tab, "events")
     rows = tab.locator("[data-rows=events] .row")
     tab.wait_for_selector("[data-rows=events] .row")
@@ -164,27 +174,6 @@ def test_the_time_line_and_the_twin_are_of_the_moment(tab: Any, replay: str) -> 
         drawn = tab.evaluate("JSON.stringify(arboledaTwin.drawn())")
         moved(tab, lambda value=value: tab.fill("#record-slider", value))
         tab.wait_for_function("drawn => JSON.stringify(arboledaTwin.drawn()) !== drawn", arg=drawn)
-
-
-def test_a_task_shows_its_end_and_nothing_can_be_done(tab: Any, replay: str) -> None:
-    look(tab, re.sub("at=[^&]*", "at=task&tab=tasks&task=failed", replay))
-    tab.wait_for_selector("#task g.node.is-failure")
-    assert tab.locator("#stop, form, [data-act], [data-choice]").count() == 0
-    origin = replay.partition("/?")[0]
-    with httpx.Client(base_url=origin, trust_env=False, timeout=PATIENCE_S) as client:
-        assert client.get("/api/plant").status_code == 404
-        assert client.get("/", headers={"host": "evil.example"}).status_code == 403
-
-
-@pytest.mark.parametrize(
-    "event",
-    [[], ["go", "x"], ["go", 1e99], ["step", 7], ["task", {"a": 1}], ["__class__"], [["go"], 1]],
-    ids=str,
-)
-def test_events_that_no_button_sends_change_nothing(tab: Any, replay: str, event: list[Any]) -> None:
-    look(tab, replay)
-    tab.evaluate("event => window.emitEvent('arboleda-past', ...event)", event)
-    moved(tab, lambda: tab.click("[data-past=event_before]"))
 
 
 @pytest.mark.requires("axe_playwright_python")
@@ -205,8 +194,19 @@ def test_axe_finds_nothing_on_a_record(replay: str, eye: Callable[[str], Eye]) -
     assert not eyes.violations, "\n".join(eyes.violations)
 
 
-def test_a_running_plant_leads_into_its_record_and_back(tab: Any, plant: tuple[str, Path]) -> None:
-    look(tab, f"{plant[0]}/?task=failed")
+@pytest.fixture(scope="module")
+def reported(plant: tuple[str, Path]) -> str:
+    """The same plant, with a report of its failure."""
+    folder = plant[1] / "reports"
+    folder.mkdir()
+    command = (MAIN, "report", "failed", "--state", str(plant[1]), "--output", str(folder / "failed.html"))
+    process = Process(sys.executable, "-c", *command, env={"PYTHONPATH": paths()})
+    process.wait_for("failed.html has ")
+    return plant[0]
+
+
+def test_a_running_plant_leads_into_its_record_and_back_and_to_its_report(tab: Any, reported: str) -> None:
+    look(tab, f"{reported}/?task=failed")
     tab.click("#task .to-record")
     tab.wait_for_selector("#record")
     connected(tab)
@@ -221,20 +221,7 @@ def test_a_running_plant_leads_into_its_record_and_back(tab: Any, plant: tuple[s
     connected(tab)
     tab.wait_for_selector(FAILED)
 
-
-@pytest.fixture(scope="module")
-def reported(plant: tuple[str, Path]) -> str:
-    """The same plant, with a report of its failure."""
-    folder = plant[1] / "reports"
-    folder.mkdir()
-    command = (MAIN, "report", "failed", "--state", str(plant[1]), "--output", str(folder / "failed.html"))
-    process = Process(sys.executable, "-c", *command, env={"PYTHONPATH": paths()})
-    process.wait_for("failed.html has ")
-    return plant[0]
-
-
-@pytest.mark.parametrize("width", [1280, 390])
-def test_the_report_of_a_failure_is_a_click_away(tab: Any, reported: str, width: int) -> None:
+    width = 390
     tab.set_viewport_size({"width": width, "height": 800})
     look(tab, f"{reported}/?cell=sis_c")
     with tab.expect_popup() as opened:

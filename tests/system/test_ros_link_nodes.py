@@ -57,40 +57,28 @@ def appeared(name: str) -> bool:
         link.close()
 
 
-@pytest.mark.parametrize("name", ["mqtt_bridge", "virtual_devices", "orchestrator"])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
-def test_a_node_ends_cleanly_on_a_signal(start: Start, name: str, number: signal.Signals) -> None:
-    node = start(name, "rate:=10")
-    assert appeared(name), node.poll()
-    node.send_signal(number)
-    said, _ = node.communicate(timeout=PATIENCE_S)
-    assert node.returncode == 0, said
-    assert "Traceback" not in said
-
-
-@pytest.mark.parametrize(
-    ("parameter", "word"),
-    [
-        ("plant:=/not/there.yaml", "/not/there.yaml"),
-        ("rate:=fast", "a number is needed"),
-        ("rate:=true", "a number is needed"),
-        ("broker:=nowhere:x", "nowhere"),
-        ("broker:=embedded", "only virtual_devices"),
-    ],
-    ids=["plant", "rate", "truth as a rate", "broker", "embedded"],
-)
-def test_a_bad_parameter_is_one_sentence(start: Start, parameter: str, word: str) -> None:
-    node = start("mqtt_bridge", parameter)
-    said, _ = node.communicate(timeout=PATIENCE_S)
-    assert node.returncode == 1, said
-    assert word in said and "Traceback" not in said
-
-
-def test_the_dashboard_is_in_the_process_of_the_orchestrator(start: Start, tmp_path: Path) -> None:
-    start("orchestrator", "dashboard:=true")
+def test_every_node_ends_cleanly_when_it_is_told_to_the_dashboard_with_the_orchestrator(
+    start: Start, tmp_path: Path
+) -> None:
+    """A terminal's Ctrl-C, which is another signal, ends them in test_processes.py."""
+    nodes = {name: start(name, "rate:=10") for name in ("mqtt_bridge", "virtual_devices")}
+    nodes["orchestrator"] = start("orchestrator", "dashboard:=true")
     until = time.monotonic() + PATIENCE_S
     while (running := find_running(tmp_path)) is None or running.port is None:
         assert time.monotonic() < until, "no HTTP API was announced"
         time.sleep(0.05)
     plant = httpx.get(f"http://127.0.0.1:{running.port}/api/plant", timeout=PATIENCE_S).json()
     assert [cell["name"] for cell in plant["cells"]] == ["sis_a", "sis_b", "sis_c"]
+    for name, node in nodes.items():
+        assert appeared(name), (name, node.poll())
+    for name, node in nodes.items():
+        node.send_signal(signal.SIGTERM)
+        said, _ = node.communicate(timeout=PATIENCE_S)
+        assert (name, node.returncode, "Traceback" in said) == (name, 0, False), said
+
+
+def test_a_bad_parameter_is_one_sentence(start: Start) -> None:
+    node = start("mqtt_bridge", "rate:=fast")
+    said, _ = node.communicate(timeout=PATIENCE_S)
+    assert node.returncode == 1, said
+    assert "a number is needed" in said and "Traceback" not in said

@@ -54,7 +54,9 @@ def said(rosout: list[Any]) -> list[tuple[int, str, str]]:
     return [(line.level, line.name, line.msg) for line in rosout if not line.name.startswith("observer")]
 
 
-def test_each_line_is_said_by_its_node_with_its_level(link: Any, rosout: list[Any], observer: Any) -> None:
+def test_each_line_is_said_by_its_node_with_its_level_and_nothing_by_one_that_is_gone(
+    link: Any, rosout: list[Any], observer: Any, capfd: pytest.CaptureFixture[str]
+) -> None:
     link.orchestrator(shipped("sis_a"), print, time.monotonic)
     port = link.bridge(shipped("sis_a"), print, time.monotonic)
     link.start()
@@ -74,11 +76,7 @@ def test_each_line_is_said_by_its_node_with_its_level(link: Any, rosout: list[An
     assert [line for line in heard if line in wanted] == wanted
     assert [line for line in heard if line in of_bridge] == of_bridge
     assert not [line for line in said(rosout) if line[0] == 10], "the default level is INFO"
-
-
-def test_nothing_is_said_by_a_node_that_is_gone(link: Any, capfd: pytest.CaptureFixture[str]) -> None:
-    link.orchestrator(shipped("sis_a"), print, time.monotonic)
-    link.start()
+    capfd.readouterr()
     with log_to(link.log):
         link.close()
         logging.getLogger("arboleda.tasks").warning("too late for ROS 2")

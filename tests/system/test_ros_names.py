@@ -58,7 +58,9 @@ def names(observer: Any) -> set[str]:
     return {name for name, _ in known if not name.startswith(mine)}
 
 
-def test_a_plant_in_a_namespace_of_its_own_works_there(plant: Callable[..., Any], observer: Any) -> None:
+def test_a_plant_in_a_namespace_of_its_own_works_there_and_another_beside_it(
+    plant: Callable[..., Any], start: Callable[..., Any], observer: Any, tmp_path: Path
+) -> None:
     from rclpy.qos import DurabilityPolicy, QoSProfile
     from std_msgs.msg import String
 
@@ -80,33 +82,12 @@ def test_a_plant_in_a_namespace_of_its_own_works_there(plant: Callable[..., Any]
         ("my_virtual_devices", "/plant2"),
     }
     assert {name for name in names(observer) if not name.startswith("/plant2/")} == {"/diagnostics"}
+    words = ("-r", "__ns:=/north", "-p", f"state_dir:={tmp_path / 'north'}")
+    command = (sys.executable, "-m", "arboleda_ros.nodes", "orchestrator", "--ros-args", *words)
+    nodes.append(start(*command, env={"PYTHONPATH": paths()}))
+    nodes[-1].wait_for("MQTT broker: ")
+    both = {"/plant2/ra1/joint_goals_q", "/north/ra1/joint_goals_q"}
+    observer.wait(lambda: both <= names(observer), "one of the plants does not speak")
     for process in nodes:
         assert process.interrupt() == 0, process.output
         assert "Traceback" not in process.output
-
-
-def test_two_plants_share_a_domain_in_two_namespaces(
-    start: Callable[..., Any], observer: Any, tmp_path: Path
-) -> None:
-    def orchestrator(space: str) -> Any:
-        words = ("-r", f"__ns:=/{space}", "-p", f"state_dir:={tmp_path / space}")
-        command = (sys.executable, "-m", "arboleda_ros.nodes", "orchestrator", "--ros-args", *words)
-        return start(*command, env={"PYTHONPATH": paths()})
-
-    for process in (orchestrator("north"), orchestrator("south")):
-        process.wait_for("MQTT broker: ")
-    both = {"/north/ra1/joint_goals_q", "/south/ra1/joint_goals_q"}
-    observer.wait(lambda: both <= names(observer), "one of the plants does not speak")
-
-
-def test_the_embedded_broker_does_not_move_to_another_port(
-    start: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int, ros_domain: int
-) -> None:
-    mosquitto(free_port)
-    words = ("--ros-args", "-p", "broker:=embedded")
-    devices = start(
-        sys.executable, "-c", EMBEDDED.format(port=free_port), *words, env={"PYTHONPATH": paths()}
-    )
-    assert devices.wait() == 1
-    assert f"127.0.0.1:{free_port}: the port is taken" in devices.output
-    assert "Traceback" not in devices.output

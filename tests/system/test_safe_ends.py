@@ -55,15 +55,6 @@ def test_a_plant_killed_in_a_move_leaves_the_boards_to_stop_by_themselves(moving
     )
 
 
-def test_a_plant_killed_with_a_part_in_the_gripper_starts_held(moving: Chain) -> None:
-    moving.wait_for_step("sis_a", "move to station 4")
-    moving.plant.kill()
-    del moving.observer.heard["/plant/view"][:]
-    moving.start("orchestrator", state_dir=moving.state)
-    moving.wait_for_cell("sis_a", lambda cell: cell["state"] == "held")
-    assert 'it stands at "move to station 4"' in moving.cell("sis_a")["held_by"]
-
-
 def test_the_boards_of_one_cell_killed_in_a_move_fail_its_task_and_no_other(
     chain: Callable[..., Chain], tmp_path: Path
 ) -> None:

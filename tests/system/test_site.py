@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +15,9 @@ from ..chromium import leave
 from ..patience import PATIENCE_MS
 from .conftest import Process, paths
 from .page import connected, running, until
-from .test_accessible import Eye, eye, views_from
+from .test_accessible import Eye
 
-__all__ = ["eye"]  # a fixture
-
-pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
+pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright", "axe_playwright_python")]
 MAIN = "from arboleda.cli.main import main; main()"
 NOBODY = "http://127.0.0.1:9"  # a port on which nothing listens
 
@@ -63,26 +61,24 @@ def row(name: str, words: str) -> str:
     return f"[data-rows=plants] [data-row='{name}']:has-text('{words}')"
 
 
-def test_each_plant_is_shown_trouble_first_and_nothing_is_wider_than_a_phone(page: Any) -> None:
+def test_plants_are_shown_lead_to_their_pages_take_tasks_and_are_stopped(page: Any, state: Path) -> None:
     page.wait_for_selector(row(NOBODY, "no responde"))
     page.wait_for_selector(row("arboleda", "inactiva"))
     rows = page.eval_on_selector_all("[data-rows=plants] > .row", "all => all.map(each => each.dataset.row)")
-    assert rows == [NOBODY, "arboleda"]
+    assert rows == [NOBODY, "arboleda"], "trouble comes first"
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
     assert "plantas: 2" in page.inner_text("[data-live=sum]")
+    eye = Eye(page)
+    eye.look("plants")
+    assert eye.violations == []
 
-
-def test_a_plants_name_leads_to_its_own_page(page: Any) -> None:
-    page.wait_for_selector(row("arboleda", "inactiva"))
     with page.context.expect_page() as opened:
         page.click("[data-row=arboleda] a")
     opened.value.set_default_timeout(PATIENCE_MS)
     connected(opened.value)
     assert opened.value.inner_text("h1") == "arboleda"
+    opened.value.close()
 
-
-def test_a_task_is_given_to_a_plant_and_a_wrong_one_says_why(page: Any, state: Path) -> None:
-    page.wait_for_selector(row("arboleda", "inactiva"))
     page.select_option("#site-plant", "arboleda")
     page.fill("#site-text", "sis_a palletizing #site1")
     page.click("#site-send")
@@ -92,19 +88,6 @@ def test_a_task_is_given_to_a_plant_and_a_wrong_one_says_why(page: Any, state: P
     page.click("#site-send")
     page.wait_for_selector("#answer[data-s=bad]:has-text('sis_z')")
 
-
-@views_from(0)
-def test_axe_finds_nothing(eye: Callable[[str], Eye], site: str) -> None:
-    eyes = eye(site)
-    eyes.page.wait_for_selector("[data-rows=plants] [data-row=arboleda]")
-    eyes.look("plants")
-    assert eyes.violations == []
-
-
-def test_the_stop_of_all_names_who_did_not_hear_it_and_that_of_one_is_confirmed(
-    page: Any, state: Path
-) -> None:
-    page.wait_for_selector(row("arboleda", "inactiva"))
     page.click("#stop")
     page.wait_for_selector(f"#answer[data-s=bad]:has-text('SIN PARAR'):has-text('{NOBODY}')")
     page.wait_for_selector(row("arboleda", "parada (abortada)"))

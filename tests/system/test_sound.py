@@ -74,7 +74,7 @@ def well(page: Any) -> None:
     page.wait_for_selector("html[data-stands=well]")
 
 
-def test_nobody_hears_anything_who_has_not_turned_it_on(
+def test_who_has_turned_it_on_hears_it_once_for_a_cell_that_needs_somebody_also_the_next_time(
     plant: tuple[str, PlantClient], visit: Callable[[str], Any]
 ) -> None:
     address, client = plant
@@ -83,19 +83,6 @@ def test_nobody_hears_anything_who_has_not_turned_it_on(
     button = page.get_by_role("button", name="Sound when a cell needs somebody")
     assert button.get_attribute("aria-pressed") == "false"
     assert button.get_attribute("title").startswith("The sound is off")
-    page.click("h1")
-    client.operate(Verb.STOP, "")
-    in_trouble(page)
-    assert page.evaluate("tones") == 0
-
-
-def test_who_has_turned_it_on_hears_it_once_for_a_cell_that_needs_somebody_also_the_next_time(
-    plant: tuple[str, PlantClient], visit: Callable[[str], Any]
-) -> None:
-    address, client = plant
-    page = visit(address)
-    well(page)
-    button = page.get_by_role("button", name="Sound when a cell needs somebody")
     button.focus()
     page.keyboard.press("Enter")
     page.wait_for_selector(".sound[data-sound=on][aria-pressed=true]")

@@ -74,13 +74,6 @@ def test_a_planned_handover_fails_no_task_and_needs_nobody_to_resume(
     assert alone.wait() == 1 and "start `arboleda up --standby` on another host" in alone.output
 
 
-def test_a_standby_needs_a_database(arboleda: Callable[..., Any]) -> None:
-    refused = arboleda("up", "--no-ros", "--standby")
-    assert refused.wait() == 1 and "--standby needs a memory that both hosts reach" in refused.output
-    asked = arboleda("handover")
-    assert asked.wait() == 1 and "give it a database" in asked.output
-
-
 def test_a_standby_waits_for_a_database_that_is_away(
     hosts: Hosts, postgres: Server, arboleda: Callable[..., Any], tmp_path: Path
 ) -> None:

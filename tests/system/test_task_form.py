@@ -18,18 +18,6 @@ BENCH = Path(__file__).parents[2] / "examples" / "lab_bench" / "plant.yaml"
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 
 
-@pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    with running(tmp_path_factory.mktemp("state")) as found:
-        yield found
-
-
-@pytest.fixture
-def page(browser: Any, address: str) -> Iterator[Any]:
-    with opened(browser, address) as made:
-        yield made
-
-
 @contextmanager
 def opened(browser: Any, address: str) -> Iterator[Any]:
     """The form of tasks; a script that fails fails the test."""
@@ -61,42 +49,27 @@ def sent(page: Any) -> str:
     return found[1]
 
 
-def test_a_person_gives_a_task_by_the_form_of_its_recipe(page: Any) -> None:
-    page.click("#task-form [data-value=sis_b]")
-    assert page.inner_text("legend:has-text('Estación')") == "Estación del almacén"
-    page.click("[data-fields=sis_b] [data-parameter=station] [data-station='4']")
-    page.click("[data-fields=sis_b] [data-parameter=path] [data-path='2A']")
-    assert page.input_value("#task-text") == "sis_b 2A 4"
-    assert pressed(page) == ["sis_b", "Almacenar una pieza", "2", "6 A", "4", "2A"]
-    task = sent(page)
-    page.wait_for_selector(f'[data-rows=tasks] [data-row="{task}"][data-s=done]', state="attached")
-
-
-def test_another_recipe_asks_for_what_it_needs_and_no_more(page: Any) -> None:
-    page.click("#task-form [data-value=sis_c]")
-    page.click("#task-form [data-value=palletizing]")
-    assert page.input_value("#task-text") == "sis_c palletizing"
-    assert not page.is_visible("[data-fields=sis_c] [data-parameter]")
-    task = sent(page)
-    page.wait_for_selector(f'[data-rows=tasks] [data-row="{task}"][data-s=done]', state="attached")
-
-
-def test_a_task_for_any_cell_says_where_it_went_and_why(page: Any) -> None:
-    page.click("#task-form :text('la que la termine antes')")
-    page.click("#task-form [data-value=palletizing]")
-    assert page.input_value("#task-text") == "sis_a,sis_b,sis_c palletizing"
-    assert "cell=sis_a" not in page.url
-    task = sent(page)
-    page.goto(f"{page.url.partition('?')[0]}?tab=tasks&task={task}")
-    page.wait_for_selector("#task :text('Por qué allí: ')")
-
-
-def test_another_cell_forgets_what_was_chosen(page: Any) -> None:
-    page.click("#task-form [data-value=sis_a]")
-    page.click("[data-fields=sis_a] [data-path='0B']")
-    page.click("#task-form [data-value=sis_b]")
-    assert page.input_value("#task-text") == "sis_b"
-    assert "0B" not in pressed(page)
+def test_a_person_gives_tasks_by_the_forms_of_their_recipes(browser: Any, tmp_path: Path) -> None:
+    with running(tmp_path) as address, opened(browser, address) as page:
+        page.click("#task-form [data-value=sis_a]")
+        page.click("[data-fields=sis_a] [data-path='0B']")
+        page.click("#task-form [data-value=sis_b]")
+        assert page.input_value("#task-text") == "sis_b", "another cell forgets what was chosen"
+        assert "0B" not in pressed(page)
+        assert page.inner_text("legend:has-text('Estación')") == "Estación del almacén"
+        page.click("[data-fields=sis_b] [data-parameter=station] [data-station='4']")
+        page.click("[data-fields=sis_b] [data-parameter=path] [data-path='2A']")
+        assert page.input_value("#task-text") == "sis_b 2A 4"
+        assert pressed(page) == ["sis_b", "Almacenar una pieza", "2", "6 A", "4", "2A"]
+        task = sent(page)
+        page.wait_for_selector(f'[data-rows=tasks] [data-row="{task}"][data-s=done]', state="attached")
+        page.click("#task-form :text('la que la termine antes')")
+        page.click("#task-form [data-value=palletizing]")
+        assert page.input_value("#task-text") == "sis_a,sis_b,sis_c palletizing"
+        assert not page.is_visible("[data-fields=sis_b] [data-parameter]")
+        task = sent(page)
+        page.goto(f"{page.url.partition('?')[0]}?tab=tasks&task={task}")
+        page.wait_for_selector("#task :text('Por qué allí: ')")
 
 
 def test_a_bench_of_declared_devices_is_worked_by_its_form(browser: Any, tmp_path: Path) -> None:

@@ -138,51 +138,35 @@ def rests(address: str) -> bool:
     return all(turned(address) == there for _ in range(20))
 
 
-def test_a_button_moves_an_axis_as_long_as_it_is_held(screen: Open, address: str) -> None:
+def test_a_button_and_a_key_move_an_axis_as_long_as_they_are_held_on_a_page_that_is_there(
+    screen: Open, address: str
+) -> None:
     page = screen("cells")
     page.click(".to-teach:visible")
+    page.wait_for_selector(PLUS)
+    page.fill("#teach-name", "")
+    page.click("#teach-begin")
+    assert re.match("Write your name", page.text_content(NOTE))
     begin(page)
     before = turned(address)
     hold(page, address, PLUS, lambda: turned(address) > before + 2)
     page.mouse.up()
     stands(address)
-
-
-def test_keys_do_the_same(screen: Open, address: str) -> None:
-    page = screen()
-    begin(page)
     before = turned(address)
     hold(page, address, PLUS, lambda: turned(address) > before + 1, key=" ")
     page.keyboard.up(" ")
     stands(address)
-
-
-def cut_short(page: Any) -> bool:
-    """A machine so busy that the plant did not hear of the button for too long."""
-    return "not held any more" in (page.text_content(NOTE) or "")
-
-
-def test_a_step_is_as_far_as_it_says(screen: Open, address: str) -> None:
-    page = screen()
-    begin(page)
-    before = turned(address)
-    page.click("[data-step='1']")
-    until(lambda: pressed(lambda: page.click(PLUS), address, lambda: turned(address) > before))
-    until(lambda: abs(turned(address) - before - 1) < 0.05 or cut_short(page))
-    stands(address)
-    assert before < turned(address) < before + 1.05
-
-
-@pytest.mark.parametrize("lost", ["page", "network"])
-def test_whoever_is_gone_holds_nothing_any_more(screen: Open, address: str, lost: str) -> None:
-    page = screen()
-    begin(page)
+    page.click("[aria-label='Grip']")
+    until(lambda: device(address)["facts"]["effector"] is True)
+    page.click("[aria-label='Let go']")
+    until(lambda: device(address)["facts"]["effector"] is False)
+    page.hover(".teach-verbs[aria-label='press'] button")
+    page.mouse.down()
+    page.wait_for_function("document.querySelector('#teach-note').textContent.includes('needs door')")
+    page.mouse.up()
     before = turned(address)
     hold(page, address, PLUS, lambda: turned(address) > before + 1)
-    if lost == "page":
-        page.close()
-    else:
-        page.context.set_offline(True)
+    page.context.set_offline(True)
     stands(address)
 
 
@@ -217,38 +201,7 @@ def test_a_target_is_made_here_and_gone_to(screen: Open, address: str, folder: P
     page.wait_for_selector("#teach-cell", state="visible")
 
 
-def test_verbs_of_devices_and_what_cannot_be(screen: Open, address: str) -> None:
-    page = screen()
-    begin(page)
-    page.click("[aria-label='Grip']")
-    until(lambda: device(address)["facts"]["effector"] is True)
-    page.click("[aria-label='Let go']")
-    until(lambda: device(address)["facts"]["effector"] is False)
-    page.hover(".teach-verbs[aria-label='press'] button")
-    page.mouse.down()
-    page.wait_for_function("document.querySelector('#teach-note').textContent.includes('needs door')")
-    page.mouse.up()
-
-
-def test_what_cannot_be_is_said_in_the_language_of_the_page(screen: Open) -> None:
-    page = screen(language="es")
-    begin(page)
-    page.hover(".teach-verbs[aria-label='press'] button")
-    page.mouse.down()
-    page.wait_for_function("document.querySelector('#teach-note').textContent.includes('necesita')")
-    page.mouse.up()
-
-
-def test_who_holds_a_button_that_moves_nothing_is_told_that_it_was_let_go_of(screen: Open) -> None:
-    page = screen()
-    begin(page)
-    page.route("**/jog", lambda route: route.fulfill(json={"teaching": {"number": None, "trouble": None}}))
-    page.hover(PLUS)
-    page.mouse.down()
-    page.wait_for_function("document.querySelector('#teach-note').textContent.includes('let go of')")
-    page.mouse.up()
-
-
+@pytest.mark.requires("axe_playwright_python")
 def test_another_person_sees_who_teaches_and_cannot_move_anything(screen: Open, address: str) -> None:
     mine = screen()
     begin(mine)
@@ -256,25 +209,11 @@ def test_another_person_sees_who_teaches_and_cannot_move_anything(screen: Open, 
     other.wait_for_selector(PLUS)
     other.wait_for_function("document.body.textContent.includes('Ana teaches this cell')")
     assert other.is_disabled(PLUS) and other.is_disabled("#teach-begin")
+    eye = Eye(mine)
+    eye.look("teach")
+    assert eye.violations == []
     other.click("[data-tab=cells]")
     other.wait_for_selector(".pill[data-s=manual]")
     other.click(".to-teach:visible")
     other.click("#teach-end")
     mine.wait_for_selector(f"{PLUS}[disabled]")
-
-
-@pytest.mark.requires("axe_playwright_python")
-def test_axe_finds_nothing_while_a_cell_is_taught(screen: Open) -> None:
-    page = screen()
-    begin(page)
-    eye = Eye(page)
-    eye.look("teach")
-    assert eye.violations == []
-
-
-def test_who_gives_no_name_is_asked_for_one(screen: Open) -> None:
-    page = screen()
-    page.wait_for_selector(PLUS)
-    page.fill("#teach-name", "")
-    page.click("#teach-begin")
-    assert re.match("Write your name", page.text_content(NOTE))

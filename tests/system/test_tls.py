@@ -82,32 +82,3 @@ def test_page_boards_and_commands_speak_tls(
         page.close()
     assert up.interrupt() == 0, up.output
     assert "Traceback" not in up.output
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (("--tls-key", "x"), "--tls-key needs a certificate: --tls-cert FILE"),
-        (("--broker-tls",), "--broker-tls needs a certificate: --tls-cert FILE"),
-        (("--broker-ca", "x"), "--broker-ca is for boards that speak TLS: it needs --broker-tls"),
-        (("--broker-tls", "--shown"), "--broker-tls is for boards of other machines: it needs --broker-host"),
-        (("--tls-cert", "none.crt"), "none.crt and its key in it are of no use (No such file or directory)"),
-    ],
-)
-def test_options_that_do_not_fit_are_refused(
-    typed: Typed, shown: tuple[str, ...], words: tuple[str, ...], said: str
-) -> None:
-    given = [each for word in words for each in (shown if word == "--shown" else (word,))]
-    status, output = typed("run", "sis_a 0B 7", "--no-ros", *given)
-    plain = " ".join(output.replace("│", " ").split())
-    assert status in (1, 2) and said in plain
-
-
-def test_the_firmwares_boards_are_refused_where_the_own_broker_speaks_tls(
-    typed: Typed, shown: tuple[str, ...], tmp_path: Path
-) -> None:
-    users = tmp_path / "users.txt"
-    users.write_text("ra_9:secret\n")
-    broker = ("--broker-host", "127.0.0.1", "--broker-users", str(users), "--broker-tls")
-    status, said = typed("run", "sis_a 0B 7", "--no-ros", "--boards", "linux", *broker, *shown)
-    assert status == 1 and "the firmware's boards speak no TLS" in said

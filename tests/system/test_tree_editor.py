@@ -12,7 +12,6 @@ import pytest
 from arboleda.bt_xml.editing.tree_text import TreeText, walk
 
 from ..chromium import leave
-from ..lengths import sample
 from ..patience import PATIENCE_MS, PATIENCE_S
 from .page import connected, running
 from .test_accessible import Eye
@@ -67,15 +66,6 @@ def forget_draft(address: str) -> None:
     httpx.post(f"{address}/api/draft/discard", json=editor, timeout=PATIENCE_S).raise_for_status()
 
 
-def drafted(address: str) -> str:
-    """The tree that the draft has."""
-    return str(
-        httpx.get(f"{address}/api/draft/trees", params={"file": "tend.xml"}, timeout=PATIENCE_S).json()[
-            "text"
-        ]
-    )
-
-
 def row(path: str) -> str:
     return f"#draw-rows [data-path='{path}']"
 
@@ -101,12 +91,9 @@ def middle(page: Any, selector: str, share: float = 0.5) -> tuple[float, float]:
     return box["x"] + 40, box["y"] + box["height"] * share
 
 
-def test_a_tree_that_nobody_changed_is_downloaded_byte_for_byte(editor: Open) -> None:
-    assert downloaded(editor()) == TEXT
-
-
 def test_by_mouse_a_node_is_put_in_given_a_value_dragged_and_undone(editor: Open) -> None:
     page = editor()
+    assert downloaded(page) == TEXT, "a tree that nobody changed stays as it is, byte for byte"
     page.click("[data-draw-tree=Carry]")
     page.click(row("1.0"))
     page.fill("#draw-search", "mill_run")
@@ -130,17 +117,63 @@ def test_by_mouse_a_node_is_put_in_given_a_value_dragged_and_undone(editor: Open
     assert downloaded(page) == TEXT
     page.click("[data-draw=redo]")
     labelled(page, "1.0.2", "mill_run")
-
-
-def test_a_kind_of_the_palette_is_dragged_to_its_place(editor: Open) -> None:
-    page = editor()
+    page.click("[data-draw-tree=Tend]")
     page.fill("#draw-search", "mill_close")
     page.mouse.move(*middle(page, "[data-kind=mill_close]"))
     page.mouse.down()
     page.mouse.move(*middle(page, row("0.0"), 0.9), steps=5)
     page.mouse.up()
     labelled(page, "0.1", "mill_close")
-    assert kinds(downloaded(page), "Tend")["0.1"] == "mill_close"
+
+
+def test_values_are_written_a_part_becomes_a_tree_and_somebody_else_is_not_overwritten(
+    editor: Open, address: str
+) -> None:
+    page = editor()
+    page.click("[data-draw-tree=Carry]")
+    page.click(row("0.0"))
+    page.focus("[data-port=width_mm]")
+    page.evaluate("document.activeElement.select()")
+    page.keyboard.type("31")
+    page.keyboard.press("Tab")
+    labelled(page, "0.0", "width_mm=31")
+    assert page.evaluate("document.activeElement.dataset.variable") == "width_mm"
+    page.keyboard.press("Tab")
+    page.evaluate("document.activeElement.select()")
+    page.keyboard.type("41")
+    page.keyboard.press("Tab")
+    labelled(page, "0.0", "width_mm=31 force_n=41")
+    assert page.get_attribute("[data-port=force_n]", "max") == "60"
+    page.fill("[data-port=force_n]", "99")
+    page.press("[data-port=force_n]", "Tab")
+    page.wait_for_selector("[data-port=force_n][aria-invalid]")
+    page.wait_for_selector("#draw-marks:has-text('must be from 0 to 60')")
+    page.click("[data-variable=force_n]")
+    page.fill("[data-port=force_n]", "to")
+    page.press("[data-port=force_n]", "Tab")
+    labelled(page, "0.0", "force_n={to}")
+
+    page.click("[data-draw-tree=Tend]")
+    page.click(row("3"))
+    page.fill("#draw-name", "Milling")
+    page.click("[data-draw=extract]")
+    page.click("[data-draw-tree=Milling]")
+    page.wait_for_selector("[data-draw-tree=Milling][aria-pressed=true]")
+    page.fill("#draw-name", "program")
+    page.click("[data-draw=add_parameter]")
+    page.wait_for_selector("[data-draw-parameter=program]")
+    there = TreeText(downloaded(page))
+    assert there.node("Tend", "3").value("ID") == "Milling"
+    assert there.node("Milling", "root").name == "RetryUntilSuccessful"
+    ben = {"editor": "test-of-ben", "name": "Ben"}
+    httpx.post(f"{address}/api/draft/take", json=ben, timeout=PATIENCE_S).raise_for_status()
+    page.click("[data-draw-tree=Tend]")
+    page.click(row("0"))
+    page.click("[data-draw=remove]")
+    page.wait_for_function(
+        "document.getElementById('draw-note').textContent.includes('Ben edits this draft')"
+    )
+    labelled(page, "0", "have the door open")
 
 
 def test_by_keys_alone_a_tree_is_drawn(editor: Open) -> None:
@@ -176,92 +209,6 @@ def test_by_keys_alone_a_tree_is_drawn(editor: Open) -> None:
     ]  # fmt: skip
 
 
-def test_a_value_beyond_its_limits_is_marked_where_it_stands(editor: Open) -> None:
-    page = editor()
-    page.click("[data-draw-tree=Carry]")
-    page.click(row("0.0"))
-    assert page.get_attribute("[data-port=force_n]", "max") == "60"
-    page.fill("[data-port=force_n]", "99")
-    page.press("[data-port=force_n]", "Tab")
-    page.wait_for_selector("[data-port=force_n][aria-invalid]")
-    page.wait_for_selector("#draw-marks:has-text('must be from 0 to 60')")
-    page.click("[data-variable=force_n]")
-    page.fill("[data-port=force_n]", "to")
-    page.press("[data-port=force_n]", "Tab")
-    labelled(page, "0.0", "force_n={to}")
-
-
-def test_who_writes_on_keeps_the_place_while_the_value_before_is_taken(editor: Open) -> None:
-    page = editor()
-    page.click("[data-draw-tree=Carry]")
-    page.click(row("0.0"))
-    page.focus("[data-port=width_mm]")
-    page.evaluate("document.activeElement.select()")
-    page.keyboard.type("31")
-    page.keyboard.press("Tab")
-    labelled(page, "0.0", "width_mm=31")
-    assert page.evaluate("document.activeElement.dataset.variable") == "width_mm"
-    page.keyboard.press("Tab")
-    page.evaluate("document.activeElement.select()")
-    page.keyboard.type("41")
-    page.keyboard.press("Tab")
-    labelled(page, "0.0", "width_mm=31 force_n=41")
-
-
-def test_what_was_drawn_for_no_plant_file_is_not_left_unasked(browser: Any, tmp_path: Path) -> None:
-    with running(tmp_path / "state") as address:
-        context = browser.new_context(**LAPTOP)
-        page = context.new_page()
-        page.goto(f"{address}/?tab=draw")
-        page.wait_for_selector(f"{row('root')}[data-mark=mistake]", timeout=PATIENCE_MS)
-        page.fill("#draw-search", "Sleep")
-        page.click("[data-kind=Sleep]:visible")
-        page.wait_for_selector(row("0"), timeout=PATIENCE_MS)
-        with page.expect_event("dialog") as asked:
-            page.evaluate("setTimeout(() => location.reload())")
-        assert asked.value.type == "beforeunload"
-        # Of a page that is closed amid its reload chromium may never say that it is gone.
-        with page.expect_event("load", timeout=PATIENCE_MS):
-            asked.value.accept()
-        page.wait_for_selector(f"{row('root')}[data-mark=mistake]", timeout=PATIENCE_MS)
-        assert page.query_selector(row("0")) is None
-        leave(context)
-
-
-def test_each_edit_is_a_step_of_the_draft_and_somebody_else_is_not_overwritten(
-    editor: Open, address: str
-) -> None:
-    page = editor()
-    page.click(row("2"))
-    page.click("[data-draw=remove]")
-    labelled(page, "2", "RetryUntilSuccessful")
-    page.wait_for_selector("[data-draw=undo]:not([disabled])")
-    assert "<mill_close/>" not in drafted(address)
-    ben = {"editor": "test-of-ben", "name": "Ben"}
-    httpx.post(f"{address}/api/draft/take", json=ben, timeout=PATIENCE_S).raise_for_status()
-    page.click(row("0"))
-    page.click("[data-draw=remove]")
-    page.wait_for_function(
-        "document.getElementById('draw-note').textContent.includes('Ben edits this draft')"
-    )
-    labelled(page, "0", "have the door open")
-
-
-def test_a_part_becomes_a_tree_with_a_parameter(editor: Open) -> None:
-    page = editor()
-    page.click(row("3"))
-    page.fill("#draw-name", "Milling")
-    page.click("[data-draw=extract]")
-    page.click("[data-draw-tree=Milling]")
-    page.wait_for_selector("[data-draw-tree=Milling][aria-pressed=true]")
-    page.fill("#draw-name", "program")
-    page.click("[data-draw=add_parameter]")
-    page.wait_for_selector("[data-draw-parameter=program]")
-    there = TreeText(downloaded(page))
-    assert there.node("Tend", "3").value("ID") == "Milling"
-    assert there.node("Milling", "root").name == "RetryUntilSuccessful"
-
-
 def test_by_touch_a_node_is_dragged_at_its_grip(editor: Open) -> None:
     page = editor(**PHONE)
     assert page.inner_text("[data-draw=undo]") == "Deshacer"
@@ -285,31 +232,6 @@ def test_by_touch_a_node_is_dragged_at_its_grip(editor: Open) -> None:
     finger("touchEnd")
     labelled(page, "4", "mill_close")
     assert kinds(downloaded(page), "Tend")["4"] == "mill_close"
-
-
-@pytest.mark.requires("axe_playwright_python")
-@pytest.mark.parametrize("screen", sample([LAPTOP, PHONE], every=2), ids=lambda each: each["locale"])
-def test_axe_finds_nothing_on_the_editor(editor: Open, screen: dict[str, Any]) -> None:
-    page = editor(**screen)
-    eye = Eye(page)
-    page.click(row("3"))
-    page.click("[data-draw=copy]")
-    page.click(row("4"))
-    page.select_option("[data-more]", "_skipIf")
-    page.fill("[data-port=_skipIf]", "seen ==")
-    page.press("[data-port=_skipIf]", "Tab")
-    page.wait_for_selector("[data-port=_skipIf][aria-invalid]")
-    eye.look("a node with a mistake")
-    page.click("[data-draw=remove]")
-    page.click("[data-draw-tree=Carry]")
-    page.fill("#draw-search", "go")
-    eye.look("another tree, and a kind that is looked for")
-    page.click("[data-draw-tree=TakeOut]")
-    page.click(row("0"))
-    page.click("[data-from-twin=target]")
-    page.wait_for_selector("[data-point=vise]:focus")
-    eye.look("targets in the twin")
-    assert not eye.violations, "\n".join(eye.violations)
 
 
 def test_a_recipe_in_python_is_copied_as_a_tree_of_the_draft_and_opens(browser: Any, tmp_path: Path) -> None:
@@ -336,13 +258,25 @@ def test_a_recipe_in_python_is_copied_as_a_tree_of_the_draft_and_opens(browser: 
         leave(context)
 
 
-def test_a_target_is_chosen_in_the_twin_by_a_click_and_by_keys(editor: Open) -> None:
+@pytest.mark.requires("axe_playwright_python")
+def test_a_target_is_chosen_in_the_twin_by_a_click_and_by_keys_and_axe_finds_nothing(editor: Open) -> None:
     page = editor()
+    eye = Eye(page)
+    page.click(row("4"))
+    page.select_option("[data-more]", "_skipIf")
+    page.fill("[data-port=_skipIf]", "seen ==")
+    page.press("[data-port=_skipIf]", "Tab")
+    page.wait_for_selector("[data-port=_skipIf][aria-invalid]")
+    eye.look("a node with a mistake")
+    page.fill("#draw-search", "go")
+    eye.look("a kind that is looked for")
     page.click("[data-draw-tree=TakeOut]")
     page.click(row("0"))
     value = page.input_value("[data-port=target]")
     page.click("[data-from-twin=target]")
     page.wait_for_selector(f"#draw-twin [data-point='{value}'][aria-pressed=true]:focus")
+    eye.look("targets in the twin")
+    assert not eye.violations, "\n".join(eye.violations)
     listed = page.eval_on_selector_all(
         "[data-port=target] option", "all => all.map(({ value }) => value).filter(Boolean)"
     )

@@ -73,7 +73,9 @@ def receive(controller: tuple[str, str]) -> Iterator[Any]:
     client.disconnect()
 
 
-def test_power_brakes_and_modes_are_as_a_foreign_client_reads_them(dashboard: Any, receive: Any) -> None:
+def test_a_foreign_client_reads_power_speed_and_a_protective_stop_and_unlocks_it(
+    controller: tuple[str, str], dashboard: Any, receive: Any
+) -> None:
     assert dashboard.robotmode() == "Robotmode: POWER_OFF"
     dashboard.powerOn()
     until(lambda: receive.getRobotMode() == 5)
@@ -82,13 +84,9 @@ def test_power_brakes_and_modes_are_as_a_foreign_client_reads_them(dashboard: An
     assert dashboard.safetystatus() == "Safetystatus: NORMAL"
     assert dashboard.isInRemoteControl() is True
     assert receive.getActualQ() == [0.0] * 6
-
-
-def test_a_protective_stop_is_seen_and_unlocked_by_a_foreign_client(
-    controller: tuple[str, str], dashboard: Any, receive: Any
-) -> None:
-    dashboard.brakeRelease()
-    until(lambda: receive.getRobotMode() == 7)
+    switch(controller[1], "slider", "PUT")
+    until(lambda: receive.getTargetSpeedFraction() == pytest.approx(0.03))
+    assert receive.getSpeedScaling() == pytest.approx(0.03)
     switch(controller[1], "safeguard", "PUT")
     until(lambda: receive.getSafetyMode() == 5)
     switch(controller[1], "safeguard", "DELETE")
@@ -96,9 +94,3 @@ def test_a_protective_stop_is_seen_and_unlocked_by_a_foreign_client(
     assert not receive.isProtectiveStopped()
     dashboard.closeSafetyPopup()
     dashboard.unlockProtectiveStop()
-
-
-def test_the_speed_slider_is_read_by_a_foreign_client(controller: tuple[str, str], receive: Any) -> None:
-    switch(controller[1], "slider", "PUT")
-    until(lambda: receive.getTargetSpeedFraction() == pytest.approx(0.03))
-    assert receive.getSpeedScaling() == pytest.approx(0.03)

@@ -62,15 +62,3 @@ def test_a_part_is_stored_by_a_dobot_and_a_collision_fails_the_next(
     assert switch(faults, "collision", "DELETE")["collision"]["on"] is False
     assert up.interrupt() == 0, up.output
     assert process.interrupt() == 0 and "Traceback" not in up.output + process.output
-
-
-def test_a_port_that_is_taken_is_named(controller: tuple[Any, str, str], start: Callable[..., Any]) -> None:
-    port = controller[1].split("port: ")[1].split(",")[0]
-    second = start(sys.executable, "-c", COMMAND, "virtual", "dobot", "--port", port)
-    assert second.wait() == 1
-    assert f"127.0.0.1:{port} cannot be listened on" in second.output and "Traceback" not in second.output
-
-
-def test_an_unknown_fault_is_refused_with_those_that_there_are(start: Callable[..., Any]) -> None:
-    wrong = start(sys.executable, "-c", COMMAND, "virtual", "dobot", "--fault", "mut")
-    assert wrong.wait() == 2 and "no fault 'mut'" in wrong.output

@@ -58,29 +58,5 @@ def test_a_part_is_carried_then_the_belt_jams_then_the_plc_is_gone(
     assert "Traceback" not in up.output + process.output
 
 
-def test_a_plc_that_is_not_there_is_said_to_be(
-    plc: tuple[Any, str, str], arboleda: Callable[..., Any]
-) -> None:
-    process, plant, _ = plc
-    process.kill()
-    up = arboleda("up", "--plant", plant, "--boards", "real", "--no-ros")
-    up.wait_for("HTTP API: ")
-    said = ""
-    for _ in range(20):  # it is told as soon as the first try has failed
-        if "is not there" not in said:
-            status = arboleda("status", "--plant", plant)
-            status.wait()
-            said = status.output
-    assert "is not there" in said, said
-    assert up.interrupt() == 0, up.output
-
-
-def test_a_port_that_is_taken_is_named(plc: tuple[Any, str, str], start: Callable[..., Any]) -> None:
-    protocol, port = re.findall(r"speaks (\w+) on 127.0.0.1:(\d+)", plc[0].output)[0]
-    second = start(sys.executable, "-c", COMMAND, "virtual", protocol.lower(), "--port", port)
-    assert second.wait() == 1
-    assert f"127.0.0.1:{port}" in second.output and "Traceback" not in second.output
-
-
 def switch(fault: str, method: str) -> None:
     urllib.request.urlopen(urllib.request.Request(fault, method=method), timeout=PATIENCE_S).close()

@@ -63,7 +63,7 @@ def tracked(package: str) -> set[str]:
     return {str(Path(file).relative_to(Path(package).parent)) for file in listed}
 
 
-def test_it_holds_the_packages_and_nothing_else(wheel: Path) -> None:
+def test_it_holds_the_packages_and_nothing_else_and_what_it_says_of_itself_is_valid(wheel: Path) -> None:
     wanted = set().union(*(tracked(each) for each in (*PACKAGES, DESCRIPTION)))
     wanted.remove("arboleda/examples")  # leads to the folder of the examples
     # The lessons and their notebooks stay in the checkout, beside their pages.
@@ -71,13 +71,9 @@ def test_it_holds_the_packages_and_nothing_else(wheel: Path) -> None:
     examples = {file for file in here if file.count("/") > 1 and not file.startswith("examples/notebooks/")}
     with ZipFile(wheel) as opened:
         held = {name for name in opened.namelist() if ".dist-info/" not in name}
-    assert held == wanted | {f"arboleda/{file}" for file in examples}
-
-
-def test_what_it_says_of_itself_is_valid_and_its_version_is_that_of_the_package(wheel: Path) -> None:
-    with ZipFile(wheel) as opened:
         (name,) = (each for each in opened.namelist() if each.endswith(".dist-info/METADATA"))
         said = Metadata.from_email(opened.read(name))
+    assert held == wanted | {f"arboleda/{file}" for file in examples}
     assert str(said.version) == __version__
     assert said.description_content_type == "text/markdown" and "ros" in (said.provides_extra or ())
 
@@ -87,12 +83,3 @@ def test_what_it_says_of_itself_is_valid_and_its_version_is_that_of_the_package(
 def test_it_runs_a_plant_where_nothing_else_is(installed: Command) -> None:
     ran = installed("run", "sis_a 0B 7", "--no-ros", "--rate", "10")
     assert ran.returncode == 0, ran.stderr
-
-
-@pytest.mark.parametrize(
-    "words", [("new", "my_plant"), ("examples", "machine_tending"), ("examples", "own_driver")]
-)
-def test_what_it_writes_is_a_good_plant(installed: Command, words: tuple[str, ...]) -> None:
-    assert installed(*words).returncode == 0
-    checked = installed("check", f"{words[-1]}/plant.yaml")
-    assert checked.returncode == 0, checked.stdout + checked.stderr

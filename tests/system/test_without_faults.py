@@ -40,14 +40,6 @@ def must_be_done(arboleda: Start, plant: str, *options: str) -> None:
     assert run.wait() == 0, run.output
 
 
-@pytest.mark.parametrize("evidence", ["ids", "joints", "state"])
-def test_our_own_boards_over_mqtt_alone(
-    arboleda: Start, tmp_path: Path, free_port: int, evidence: str
-) -> None:
-    plant = equal_neighbours(tmp_path, evidence=evidence)
-    must_be_done(arboleda, plant, "--no-ros", "--rate", "3", "--port", str(free_port))
-
-
 @pytest.mark.requires("mosquitto")
 def test_foreign_boards_over_mqtt(
     arboleda: Start, start: Start, mosquitto: Callable[[int], Any], tmp_path: Path, free_port: int

@@ -1,9 +1,8 @@
-"""What a person types in the tutorial is run as it stands there, and must print what stands below it."""
+"""What a person types in the tutorial prints what stands below it, where it needs a shell or a real clock."""
 
 from __future__ import annotations
 
 import os
-import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -13,36 +12,17 @@ import pytest
 from PIL import Image
 
 from ..patience import PATIENCE_S
-
-ROOT = Path(__file__).parents[2]
-FOLDER = ROOT / "docs" / "tutorial"
-CONSOLE = re.compile(r"^```console\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-LEFT_OUT = "..."
-REAL = (
-    "07_ros2_cell",
-    "09_mqtt_board",
-    "10_plant",
-    "14_break_it",
-    "15_read_a_record",
-)  # real time, sockets, processes
-
-
-def commands(page: Path) -> Iterator[tuple[str, list[str]]]:
-    """Each command of a page with the lines that it prints; LEFT_OUT stands for any lines, or any words."""
-    for box in CONSOLE.findall(page.read_text("utf-8")):
-        for part in re.split(r"^\$ ", box, flags=re.MULTILINE)[1:]:
-            command, *expected = part.splitlines()
-            yield command, expected
+from ..tutorial_pages import REAL, ROOT, commands, differs, is_plain, pages
 
 
 def cases() -> Iterator[pytest.param]:
-    for page in sorted(FOLDER.glob("[0-9]*[a-z].md")):
-        if page.name.endswith(".es.md"):
-            continue
-        marks = [pytest.mark.system] if page.stem in REAL else []
-        marks += [pytest.mark.requires("rclpy")] if page.stem == "07_ros2_cell" else []
-        for number, (command, expected) in enumerate(commands(page), start=1):
-            yield pytest.param(command, expected, id=f"{page.stem}-{number}", marks=marks)
+    """The commands of a page that are left, in their order."""
+    for page in pages():
+        left = [each for each in commands(page) if not is_plain(page, each[0])]
+        if left:
+            marks = [pytest.mark.system] if page.stem in (*REAL, "10_plant") else []
+            marks += [pytest.mark.requires("rclpy")] if page.stem == "07_ros2_cell" else []
+            yield pytest.param(left, id=page.stem, marks=marks)
 
 
 @pytest.fixture
@@ -65,9 +45,9 @@ def write_program(file: Path, words: str) -> None:
     file.chmod(0o755)
 
 
-def type_in(command: str, folder: Path) -> list[str]:
-    """What a command prints, on both channels, without empty lines."""
-    ran = subprocess.run(
+def type_in(command: str, folder: Path) -> str:
+    """What a command prints, on both channels."""
+    return subprocess.run(
         command,
         shell=True,
         cwd=folder,
@@ -77,42 +57,17 @@ def type_in(command: str, folder: Path) -> list[str]:
         text=True,
         timeout=PATIENCE_S,
         check=False,
-    )
-    return [line.rstrip() for line in ran.stdout.splitlines() if line.strip()]
+    ).stdout
 
 
-def pattern(expected: list[str]) -> str:
-    """A regular expression for the output of a page."""
-    lines = [line.rstrip() for line in expected if line.strip()]
-    parts = [
-        r"(?:.*\n)*?" if line == LEFT_OUT else re.escape(line).replace(re.escape(LEFT_OUT), ".*") + r"\n"
-        for line in lines
-    ]
-    return "".join(parts)
-
-
-@pytest.mark.parametrize(("command", "expected"), list(cases()))
-def test_a_command_prints_what_the_page_says(
-    command: str, expected: list[str], checkout: Path, ros_domain: int
+@pytest.mark.parametrize("typed", list(cases()))
+def test_the_commands_of_a_page_print_what_it_says(
+    typed: list[tuple[str, list[str]]], checkout: Path, ros_domain: int
 ) -> None:
-    printed = type_in(command, checkout)
-    assert not any("Traceback" in line for line in printed), "\n".join(printed)
-    assert re.fullmatch(pattern(expected), "".join(f"{line}\n" for line in printed)), "\n".join(printed)
-
-
-@pytest.mark.parametrize("picture", ["first_tree", "storage"])
-def test_the_pictures_of_the_page_are_there(picture: str, checkout: Path) -> None:
-    for command, _ in commands(FOLDER / "02_first_tree.md"):
-        if picture in command:
-            type_in(command, checkout)
-    assert (checkout / f"{picture}.svg").read_text().startswith("<svg")
-    with Image.open(checkout / f"{picture}.png") as image:
-        assert min(image.size) > 200
-
-
-def test_left_out_lines_may_be_any_and_others_may_not() -> None:
-    page = ["one", LEFT_OUT, "port 127.0.0.1:...", "two"]
-    assert re.fullmatch(pattern(page), "one\nsomething\nelse\nport 127.0.0.1:1883\ntwo\n")
-    assert re.fullmatch(pattern(page), "one\nport 127.0.0.1:1\ntwo\n")
-    assert not re.fullmatch(pattern(page), "one\nport 127.0.0.1:1\ntwo\nthree\n")
-    assert not re.fullmatch(pattern(page), "port 127.0.0.1:1\ntwo\n")
+    for command, expected in typed:
+        assert not (printed := differs(expected, type_in(command, checkout))), f"$ {command}\n{printed}"
+    for picture in checkout.glob("*.svg"):
+        assert picture.read_text().lstrip().startswith("<svg"), picture.name
+    for picture in checkout.glob("*.png"):
+        with Image.open(picture) as image:
+            assert min(image.size) > 200, picture.name

@@ -186,3 +186,16 @@ def test_nothing_is_restored_under_a_plant_that_runs(state: Path, tmp_path: Path
         CliRunner().invoke(
             cli, ["restore", str(tmp_path / "x"), "--state", str(state)], catch_exceptions=False
         )
+
+
+@pytest.mark.parametrize("verb", ["backup", "restore"])
+def test_of_a_memory_in_a_database_no_file_is_made_and_what_does_it_is_said(
+    verb: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("arboleda.cli.backup.store_of", lambda _plant: "postgresql://db/plants")
+    command = [verb, str(tmp_path / "copy"), "--state", str(tmp_path)]
+    with pytest.raises(
+        StartError, match=r"is in postgresql://db/plants: `pg_dump .* pg_restore puts it back"
+    ):
+        CliRunner().invoke(cli, command, catch_exceptions=False)
+    assert not (tmp_path / "copy").exists()

@@ -31,13 +31,13 @@ NUMBERED = replace(MOVING, number=41)
 REPORTS = [MOVING, FURTHER, NUMBERED, REFUSED, GONE]
 
 
-@pytest.mark.parametrize("reports", list(permutations(REPORTS)))
-def test_a_status_holds_nothing_of_the_reports_before(reports):
+@pytest.mark.parametrize(("before", "report"), list(permutations(REPORTS, 2)))
+def test_a_status_holds_nothing_of_the_report_before(before, report):
     status = StatusMessage(ARM)
-    for report in reports:
-        message = status.of(report)
-        assert message == StatusMessage(ARM).of(report)
-        assert statuses.report_of(0.0, ARM, message) == report
+    for each in (before, report, before):
+        message = status.of(each)
+        assert message == StatusMessage(ARM).of(each)
+        assert statuses.report_of(0.0, ARM, message) == each
 
 
 def test_a_report_that_repeats_the_last_has_the_same_status():

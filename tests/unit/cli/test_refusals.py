@@ -1,0 +1,179 @@
+"""What a command refuses, with a sentence, before anything starts."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.cli import fault
+from arboleda.cli.main import main
+from arboleda.model.errors import ArboledaError
+
+Typed = Callable[..., tuple[int, str]]
+DONE: dict[str, Any] = {"robot": "ra1", "kind": "no_grip", "about": "Grip beside the part", "left_s": 600.0}
+
+
+@pytest.fixture
+def typed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Typed:
+    """Exit status of a command, and all that it says, as one line."""
+    monkeypatch.setenv("COLUMNS", "200")
+
+    def run(*words: str) -> tuple[int, str]:
+        monkeypatch.setattr(sys, "argv", ["arboleda", *words])
+        monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+        with pytest.raises(SystemExit) as ended:
+            main()
+        said = " ".join(" ".join(capsys.readouterr()).replace("│", " ").split())
+        assert "Traceback" not in said and "broker: " not in said
+        return int(ended.value.code or 0), said
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("args", "sentence"),
+    [
+        (("sis_z 0B 7", "sis_a 0B 9"), "'sis_z' is not a cell"),
+        (("sis_a 0B 9",), "'9' is not a station"),
+        (("sis_a 0B 7", "--plant", "nowhere.yaml"), "nowhere.yaml: there is no such file"),
+        (("sis_a 0B 7", "--rate", "0"), "0 is not a rate; allowed: 0.1 to 100"),
+        (("sis_a 0B 7", "--broker", "host:port"), "is not a broker address"),
+        ((), "Missing argument"),
+    ],
+    ids=["cell", "station", "plant", "rate", "broker", "no task"],
+)
+def test_run_refuses_bad_input(typed: Typed, args: tuple[str, ...], sentence: str) -> None:
+    status, said = typed("run", *args)
+    assert status == 2 and sentence in said
+
+
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, ...]:
+    """The options that show a certificate of the command's own."""
+    pytest.importorskip("cryptography", reason="cryptography is not installed")
+    folder = tmp_path_factory.mktemp("tls") / "certs"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("arboleda.web.access.names.interface_addresses", list)  # they are asked of a socket
+        patch.setattr(sys, "argv", ["arboleda", "certs", str(folder)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+    assert not ended.value.code
+    return "--tls-cert", str(folder / "plant.crt"), "--tls-key", str(folder / "plant.key")
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--tls-key", "x"), "--tls-key needs a certificate: --tls-cert FILE"),
+        (("--broker-tls",), "--broker-tls needs a certificate: --tls-cert FILE"),
+        (("--broker-ca", "x"), "--broker-ca is for boards that speak TLS: it needs --broker-tls"),
+        (("--broker-tls", "--shown"), "--broker-tls is for boards of other machines: it needs --broker-host"),
+        (("--tls-cert", "none.crt"), "none.crt and its key in it are of no use (No such file or directory)"),
+    ],
+)
+def test_options_of_tls_that_do_not_fit_are_refused(
+    typed: Typed, shown: tuple[str, ...], words: tuple[str, ...], sentence: str
+) -> None:
+    given = [each for word in words for each in (shown if word == "--shown" else (word,))]
+    status, said = typed("run", "sis_a 0B 7", "--no-ros", *given)
+    assert status in (1, 2) and sentence in said
+
+
+def test_the_firmwares_boards_are_refused_where_the_own_broker_speaks_tls(
+    typed: Typed, shown: tuple[str, ...], tmp_path: Path
+) -> None:
+    users = tmp_path / "users.txt"
+    users.write_text("ra_9:secret\n")
+    broker = ("--broker-host", "127.0.0.1", "--broker-users", str(users), "--broker-tls")
+    status, said = typed("run", "sis_a 0B 7", "--no-ros", "--boards", "linux", *broker, *shown)
+    assert status == 1 and "the firmware's boards speak no TLS" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "sentence"),
+    [
+        (("up", "--no-ros", "--standby"), 1, "--standby needs a memory that both hosts reach"),
+        (("handover",), 1, "give it a database"),
+        (
+            ("up", "--no-ros", "--demo", "--boards", "real"),
+            2,
+            "--demo has boards fail, so it is for virtual ones alone",
+        ),
+        (("conformance", "--robot", "rm_sis_a", "--yes"), 2, "there are ra1, ra2, ra3, ra_1, ra_2, ra_3"),
+        (("simulate", "--worker"), 2, "--worker needs --store"),
+        (("virtual", "dobot", "--fault", "mut"), 2, "no fault 'mut'"),
+    ],
+    ids=["standby", "handover", "demo", "conformance", "worker", "virtual"],
+)
+def test_what_cannot_be_is_refused_with_what_would_be_needed(
+    typed: Typed, words: tuple[str, ...], status: int, sentence: str
+) -> None:
+    ended, said = typed(*words)
+    assert ended == status and sentence in said
+
+
+class Plant:
+    """A plant that provokes what it is asked for, but at no device that it does not have."""
+
+    def provoke(self, kind: str, device: str, lasting_s: float | None) -> dict[str, Any]:
+        if device != "ra1":
+            raise ArboledaError(f"there is no device {device}; virtual ones are ra1")
+        return {**DONE, "kind": kind, "left_s": lasting_s}
+
+    def end_faults(self, device: str) -> list[dict[str, Any]]:
+        return [DONE] if device == "ra1" else []
+
+    def faults(self) -> dict[str, Any]:
+        return {"begun": [], "offers": [{**DONE, "lasts": True}]}
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "sentence"),
+    [
+        (("no_grip", "ra1", "--for", "10m"), 0, "ra1: no_grip (Grip beside the part), for 600 s"),
+        (("end", "ra1"), 0, "ra1: no_grip (Grip beside the part): ended"),
+        ((), 0, "no fault goes on"),
+        (("--list",), 0, "no_grip Grip beside the part: ra1"),
+        (("no_grip",), 2, "which device?"),
+        (("no_grip", "ra1", "--for", "soon"), 2, "'soon' is no time"),
+        (("end", "--for", "5s"), 2, "--for is of a fault that begins"),
+    ],
+    ids=lambda value: " ".join(value) or "nothing" if isinstance(value, tuple) else "",
+)
+def test_a_fault_by_hand_is_said_or_refused(
+    typed: Typed,
+    monkeypatch: pytest.MonkeyPatch,
+    words: tuple[str, ...],
+    status: int,
+    sentence: str,
+) -> None:
+    monkeypatch.setattr(fault, "client", lambda *_: Plant())
+    ended, said = typed("fault", *words)
+    assert (ended, sentence in said) == (status, True), said
+
+
+def test_a_png_is_not_poured_into_a_terminal(typed: Typed, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    status, said = typed("tree", "storage", "--format", "png")
+    assert status == 2 and "add > storage.png" in said
+
+
+@pytest.mark.parametrize(
+    ("shell", "typed_so_far"),
+    [
+        ("bash", {"COMP_WORDS": "arboleda sub", "COMP_CWORD": "1"}),
+        ("zsh", {"_TYPER_COMPLETE_ARGS": "arboleda sub"}),
+        ("fish", {"_TYPER_COMPLETE_ARGS": "arboleda sub", "_TYPER_COMPLETE_FISH_ACTION": "get-args"}),
+    ],
+)
+def test_shells_complete_the_command(
+    typed: Typed, monkeypatch: pytest.MonkeyPatch, shell: str, typed_so_far: dict[str, str]
+) -> None:
+    for name, value in {"_ARBOLEDA_COMPLETE": f"complete_{shell}", **typed_so_far}.items():
+        monkeypatch.setenv(name, value)
+    status, said = typed()
+    assert status == 0 and "submit" in said
