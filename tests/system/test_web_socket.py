@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import selectors
 import socket
 import threading
 import time
 from collections.abc import Iterator
 
 import pytest
+from websockets.http11 import Request
+from websockets.server import ServerProtocol
 from websockets.sync.server import ServerConnection, serve
 
 from arboleda.adapters import stream
@@ -81,6 +84,34 @@ def test_every_line_is_a_message_the_last_client_has_the_line_and_an_unplugged_o
     second.close()
     with pytest.raises(OSError, match=r"closed the connection|reset"):
         connected(line.port)
+
+
+def test_a_message_right_behind_the_answer_is_seen_by_a_selector() -> None:
+    clients: list[socket.socket] = []
+
+    with socket.create_server((HOST, 0)) as server:
+
+        def answer() -> None:
+            client, _ = server.accept()
+            clients.append(client)
+            protocol = ServerProtocol()
+            while not (requests := protocol.events_received()):
+                protocol.receive_data(client.recv(4096))
+            assert isinstance(requests[0], Request)
+            protocol.send_response(protocol.accept(requests[0]))
+            protocol.send_text(b"first")
+            client.sendall(b"".join(protocol.data_to_send()))  # both at once
+
+        thread = threading.Thread(target=answer)
+        thread.start()
+        there = connected(server.getsockname()[1])
+        thread.join()
+        with selectors.DefaultSelector() as selector:
+            selector.register(there, selectors.EVENT_READ)
+            assert selector.select(PATIENCE_S)
+        assert there.read() == b"first\n"
+        there.close()
+        clients[0].close()
 
 
 def test_a_message_in_parts_is_one_line_a_ping_is_none_and_a_server_that_is_no_websocket_is_named() -> None:
