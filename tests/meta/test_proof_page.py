@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from arboleda.plant_file import loader
+
+from ..scripts import printed
 
 ROOT = Path(__file__).parents[2]
 ROWS = [
@@ -32,7 +32,8 @@ def test_the_shipped_plant_is_there_and_nothing_breaks() -> None:
 
 
 def test_the_rows_of_a_plant_are_what_its_runs_say() -> None:
-    command = [sys.executable, str(ROOT / "scripts/proof-table"), AGAIN]
-    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    found = [[cell.strip() for cell in line.strip("|").split("|")] for line in said.splitlines()]
+    found = [
+        [cell.strip() for cell in line.strip("|").split("|")]
+        for line in printed("proof-table", AGAIN).splitlines()
+    ]
     assert found == [row for row in ROWS if row[0] == AGAIN]

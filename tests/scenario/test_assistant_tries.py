@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterator
-from contextlib import suppress
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -294,34 +292,6 @@ def test_whatever_the_order_only_what_was_approved_is_at_work(
         except DraftRefused:
             continue
         assert (site.folder / "rest.xml").read_text() in approved
-
-
-@pytest.mark.parametrize("number", range(length(4, whole=8)))
-def test_an_approval_beside_a_change_is_of_its_own_content_or_refused(site: Site, number: int) -> None:
-    first = proposed(site)
-    other = TREE.format(name="Rest", steps="<Sequence><lamp_dark/></Sequence>")
-    start = threading.Barrier(2)
-    told: list[Any] = []
-
-    def change() -> None:
-        start.wait()
-        if number % 2:
-            with suppress(DraftRefused):  # where the files are being written
-                proposed(site, trees={"rest.xml": other})  # in the place of the first
-        else:
-            (site.folder / "shine.xml").write_text(other.replace("Rest", "Shine"))
-
-    thread = threading.Thread(target=change)
-    thread.start()
-    start.wait()
-    with suppress(DraftRefused):
-        told = [site.desk.approve(first, "Ana")]
-    thread.join()
-    content = (site.folder / "rest.xml").read_text()
-    if told and told[0]["stage"] == "approved":
-        assert content == site.desk.shown(first)["trees"]["rest.xml"]
-    else:
-        assert content == REST and site.revisions == []
 
 
 def test_a_task_that_waits_for_what_was_approved_ends_with_that_version(site: Site) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -22,14 +21,13 @@ from arboleda.campaigns.proof.between_steps import gaps, other_facts
 from arboleda.campaigns.proof.calm import Calm, calm_run, calm_runs
 from arboleda.campaigns.proof.changed_recipe import noticed_with, with_check
 from arboleda.campaigns.proof.course import course_of
-from arboleda.campaigns.proof.forks import CAN_FORK, run_all, run_one
+from arboleda.campaigns.proof.forks import run_all, run_one
 from arboleda.campaigns.proof.instants import Instant, Side
 from arboleda.campaigns.proof.outcome import End
 from arboleda.campaigns.proof.proof import Proof, Proved
 from arboleda.campaigns.proof.scenario import scenarios
 from arboleda.campaigns.proof.single_faults import single_faults
 from arboleda.cli.main import main
-from arboleda.host import abilities
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
@@ -222,32 +220,17 @@ def test_each_answer_that_leads_elsewhere_is_a_scenario(plant: Path) -> None:
     assert all(each.is_sound for each in found)
 
 
-@pytest.mark.skipif(not CAN_FORK, reason="this system cannot fork")
-def test_forks_do_the_same_as_runs_from_the_beginning(plant: Path) -> None:
-    model = Plant(declared=loader.load(plant)).model
-    calm = calm_run(model, next(scenarios(model)))
-    proof = Proof(model=model, calm=(calm,), kinds=("brown_out", "partition", "crash_in_step"))
-    faults = proof.faults(proof.portions[3])
-    forked = run_all(proof.model, calm, faults, lambda: None, forks=True)
-    assert faults and forked == run_all(proof.model, calm, faults, lambda: None, forks=False)
-
-
-def test_what_took_less_than_a_fork_takes_is_done_anew_in_this_process(
+def test_what_takes_less_than_a_fork_is_done_anew_in_this_process(
     plant: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     model = Plant(declared=loader.load(plant)).model
     calm = calm_run(model, next(scenarios(model)))
     parts = single_faults(model, model.cells[0], calm.instants[-1], only=("refuses",))
     faults = [each for part in parts for each in part]
-    forked, told = Mock(wraps=os.fork), Mock()
+    told = Mock()
     monkeypatch.setattr(forks, "CAN_FORK", True)
-    monkeypatch.setattr("os.fork", forked)
     monkeypatch.setattr(forks, "FORK_TAKES_S", 3600.0)
-    cheap = run_all(model, calm, faults, told)
-    assert not forked.called and told.call_count == len(faults) > 1
-    monkeypatch.setattr(forks, "FORK_TAKES_S", 0.0)
-    if abilities.FORKS:
-        assert run_all(model, calm, faults, told) == cheap and forked.call_count == len(faults)
+    assert len(run_all(model, calm, faults, told)) == told.call_count == len(faults) > 1
 
 
 @pytest.mark.parametrize(
@@ -370,16 +353,6 @@ def test_ctrl_c_says_what_was_done_and_the_next_run_goes_on_there(
     monkeypatch.setattr(Proof, "run", run)
     assert prove("--fault", "reboot") == 0
     assert "10 runs, 2 of them kept from before" in capsys.readouterr().out
-
-
-def test_any_number_of_processes_gives_the_same(plant: Path, prove: Prove) -> None:
-    out = str(plant.parent / "out.json")
-    digests = []
-    for jobs in ("1", "2"):
-        prove("--fault", "reboot", "--anew", "--jobs", jobs, "--json", out)
-        digests.append(summary(plant)["digests"])
-    assert digests[0] == digests[1]
-    assert len(digests[0]) == 10
 
 
 def test_a_hold_in_the_very_step_in_which_a_command_ends_breaks_nothing(plant: Path) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from arboleda.plant_file.loader import load
 from arboleda.simulator.faults.kind import Fault
 from arboleda.simulator.invariants.part_places import PLACES
