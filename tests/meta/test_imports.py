@@ -20,6 +20,7 @@ def third_party(path: Path) -> set[str]:
     return {name.partition(".")[0] for name in names} - sys.stdlib_module_names - {"arboleda"}
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("layer", "allowed"),
     [

@@ -19,6 +19,7 @@ ROWS = [
 AGAIN = "press_board"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("plant", sorted({row[0] for row in ROWS}))
 def test_the_page_has_each_recipe_of_each_cell(plant: str) -> None:
     model = loader.load(None if plant == "shipped" else ROOT / "examples" / plant / "plant.yaml")
@@ -31,6 +32,7 @@ def test_the_shipped_plant_is_there_and_nothing_breaks() -> None:
     assert {row[8] for row in ROWS if len(row) > 8} <= {"0", ""}
 
 
+@pytest.mark.long
 def test_the_rows_of_a_plant_are_what_its_runs_say() -> None:
     found = [
         [cell.strip() for cell in line.strip("|").split("|")]

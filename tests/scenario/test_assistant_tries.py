@@ -144,6 +144,7 @@ def strangers() -> tuple[dict[str, str], ...]:
     )
 
 
+@pytest.mark.long
 def test_forged_approvals_and_replayed_hashes_move_nothing(site: Site) -> None:
     caller = Caller(site)
     rejected = proposed(site, name="first")
@@ -200,6 +201,7 @@ def injected(hash: str) -> Iterator[tuple[Any, ...]]:
         yield "POST", "/api/tasks", {"text": text}, assistant
 
 
+@pytest.mark.long
 def test_text_of_outside_stays_text_wherever_it_stands(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("arboleda.runtime.proposals.desk.MOST_OPEN", 10_000)
     found = unmoved(site, Caller(site), injected(proposed(site)))
@@ -224,6 +226,7 @@ def verbs() -> Iterator[tuple[Any, ...]]:
             yield "POST", path, {"name": "Ana", "editor": "bot-12345"}, headers
 
 
+@pytest.mark.long
 def test_what_operators_do_is_for_operators(site: Site) -> None:
     found = unmoved(site, Caller(site), verbs())
     assert len(found) > 500 and not {200, 202} & set(found)
@@ -249,6 +252,7 @@ ACTS = st.lists(
 )
 
 
+@pytest.mark.long
 @settings(
     max_examples=length(8, whole=25),
     deadline=None,

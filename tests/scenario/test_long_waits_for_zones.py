@@ -36,6 +36,7 @@ def shuts(cell):
 """
 
 
+@pytest.mark.long
 def test_a_task_that_waits_as_long_as_it_may_comes_to_its_end() -> None:
     watched = JudgedWorld(loaded(yaml.safe_load(FILE), {"recipes.py": RECIPES}).model)
     watched.world.advance(5.0)

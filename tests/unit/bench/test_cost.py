@@ -45,6 +45,7 @@ def test_a_slowdown_is_caught_and_its_function_named(monkeypatch: pytest.MonkeyP
     assert any("no_use" in line for line in row.grown())
 
 
+@pytest.mark.long
 def test_a_busy_machine_does_not_change_the_count(monkeypatch: pytest.MonkeyPatch) -> None:
     quiet, hours = Cost.of(command.cost_of(from_reports)), count(step=3600.0)
     monkeypatch.setattr(time, "clock_gettime", lambda _clock: next(hours))

@@ -59,6 +59,7 @@ def two(name: str) -> list[Sample]:
     return [next(each for each in known if each.right), [each for each in known if not each.right][1]]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("work", [each for name in QUICK for each in two(name)], ids=str)
 def test_a_work_is_judged_as_it_is(work: Sample) -> None:
     verdict = work.judged()

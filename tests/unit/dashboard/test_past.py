@@ -20,6 +20,8 @@ from arboleda.views import view
 
 from ..recorder.recorded import Site
 
+pytestmark = pytest.mark.long
+
 LINKS: dict[str, Any] = {"broker": None, "ros": None, "refused": {}, "standbys": []}
 
 

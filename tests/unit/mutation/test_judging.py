@@ -99,6 +99,7 @@ def test_totals_count_each_mutant_once(sources: Sources) -> None:
     assert found["by_simulator_alone_percent"] == 40.0
 
 
+@pytest.mark.long
 def test_every_argued_survivor_is_a_mutant_of_the_code_as_it_is() -> None:
     shipped = Sources(Path(__file__).parents[3])
     reasons = argued.reasons()

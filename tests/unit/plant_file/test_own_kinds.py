@@ -338,6 +338,7 @@ PACKAGES = {  # id: (entry point, what the package is, words of the only problem
 }
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("case", PACKAGES.values(), ids=PACKAGES)
 def test_a_package_that_brings_no_right_kind_is_one_sentence(
     tmp_path: Path, site: Path, case: tuple[str, str, str]

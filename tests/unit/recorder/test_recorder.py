@@ -98,6 +98,7 @@ def test_a_state_that_cannot_be_taken_stops_the_record_and_not_the_plant(
     assert warnings(caplog) == [STOPPED.format("KeyError: 'odd'")]
 
 
+@pytest.mark.long
 def test_files_follow_each_other_and_the_oldest_go(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(files, "PART_BYTES", (10_000, 10_000))
     monkeypatch.setattr(writing, "FLUSH_S", 0.0)
@@ -179,6 +180,7 @@ def test_what_a_killed_process_left_is_read_up_to_its_last_chunk(
     assert record.last is not None and not record.last.whole
 
 
+@pytest.mark.long
 def test_any_cut_of_a_file_gives_whole_steps_or_one_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -130,6 +130,7 @@ def test_a_plant_that_does_nothing_writes_nothing_but_whole_views(site: Site) ->
     assert [at for at in views_of(site).times() if at > began] == []
 
 
+@pytest.mark.long
 def test_files_that_follow_each_other_are_one_record_also_without_the_first(
     site: Site, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -152,6 +153,7 @@ def test_files_that_follow_each_other_are_one_record_also_without_the_first(
                 same(later.at(at), snapshot, "snapshot")
 
 
+@pytest.mark.long
 def test_a_file_that_is_being_written_is_read_up_to_where_it_is(
     site: Site, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -20,6 +20,8 @@ from arboleda.simulator.plants import devices
 from arboleda.simulator.plants.devices import DrawnDevices, Form, steps
 from arboleda.simulator.plants.devices.kinds import SPARE, Span
 
+pytestmark = pytest.mark.long
+
 SEEDS = range(150)
 ONLY_IN_XML = (
     *("AsyncFallback", "AsyncSequence", "Delay", "ForEach", "ForceSuccess", "IfThenElse", "LoopInt"),
