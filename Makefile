@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test smoke check pinned-test integration-test test-tools judge-test ros-test ros-build kilted-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
+.PHONY: run test smoke check long-test integration-test test-tools judge-test ros-test ros-build kilted-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -10,9 +10,8 @@ INTEGRATION_ARGS ?= -n 4 --dist worksteal # more than cores: most of the time, t
 SMOKE_ARGS ?= -n 2 --dist worksteal
 REAL = scripts/with-messages $(BIN)/python -m pytest -p tests.second_tries
 TESTS ?= tests/unit tests/scenario tests/meta
-INTEGRATION_TESTS ?= tests/contract tests/system tests/tutorial
+INTEGRATION_TESTS ?= tests/processes tests/contract tests/system tests/tutorial
 KILTED_TESTS ?= tests/unit/ros $(addprefix tests/system/test_ros_,tools.py link.py log.py)
-PINNED_TESTS ?= $(addprefix tests/scenario/,test_digests.py test_found_by_simulation.py test_found_by_drawn_plants.py)
 SIMULATE = $(BIN)/arboleda simulate $(if $(JOBS),--jobs $(JOBS))
 CALM_SEEDS ?= 100
 SEEDS ?= 1000
@@ -34,7 +33,7 @@ run: install  ## start the simulated plant as a demonstration: tasks without end
 
 test:  ## run the tests that move time by hand, and those of the repository itself; TESTS=tests/unit/core for others
 	@scripts/install test
-	$(BIN)/python -m pytest $(TESTS) $(PYTEST_ARGS)
+	$(BIN)/python -m pytest $(TESTS) -m "not long" $(PYTEST_ARGS)
 
 smoke:  ## run one test of each real part: a plant and its page, brokers, ROS 2, databases, drivers; needs what .ci/run installs
 	@scripts/install test
@@ -50,11 +49,11 @@ nightly:  ## the same with all cases and seeds; hours
 	@scripts/install test
 	@$(BIN)/python scripts/check --whole $(ONLY)
 
-pinned-test:  ## run what pins seeds as a whole: their digests, and what they once broke
+long-test:  ## run the tests that move time by hand and that `make test` leaves out: more seeds, plants and instants
 	@scripts/install test
-	ARBOLEDA_LENGTH=whole $(BIN)/python -m pytest $(PINNED_TESTS) $(PYTEST_ARGS)
+	$(BIN)/python -m pytest $(TESTS) -m long $(PYTEST_ARGS)
 
-integration-test:  ## run the tests of real parts: adapters, processes, the page, the tutorial; INTEGRATION_TESTS=... for others
+integration-test:  ## run the tests with threads and processes: our own, adapters, the page, the tutorial; INTEGRATION_TESTS=... for others
 	@scripts/install test
 	$(REAL) $(INTEGRATION_TESTS) $(INTEGRATION_ARGS)
 

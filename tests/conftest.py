@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import _thread
 import gc
 import importlib.util
 import os
@@ -12,10 +13,13 @@ import socket
 import subprocess
 import threading
 import warnings
+from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from functools import lru_cache
+from multiprocessing.process import BaseProcess
 from pathlib import Path
+from typing import NoReturn
 from unittest import mock
 from uuid import uuid4
 
@@ -24,10 +28,11 @@ import typer.main
 import typer.testing
 from hypothesis import HealthCheck, settings
 
+from arboleda.campaigns.proof import forks
 from arboleda.plant_file import recipe_trial
 from arboleda.testing.domains import Domain
 
-from . import forked
+from . import tried_here
 from .dealing import dealt
 from .lengths import length
 from .patience import PATIENCE_S
@@ -35,7 +40,7 @@ from .ports import unused_port
 from .postgres import PASSWORD, Server
 
 # How fast a machine is does not decide a test.
-EXAMPLES = length(20, whole=300)
+EXAMPLES = length(10, whole=300)
 os.environ["ARBOLEDA_LANG"] = "en"  # whatever the locale here is: what commands print is compared
 settings.register_profile(
     "arboleda", max_examples=EXAMPLES, deadline=None, suppress_health_check=[HealthCheck.too_slow]
@@ -44,6 +49,14 @@ settings.load_profile("arboleda")
 
 HERE = Path(__file__).parent
 YOUNG = 200_000  # objects before a collection
+BESIDE = (  # what tests that move time by hand have none of
+    (threading.Thread, "start", "a thread"),
+    (_thread, "start_new_thread", "a thread"),
+    (subprocess.Popen, "__init__", "a process"),
+    (BaseProcess, "start", "a process"),
+    (os, "posix_spawn", "a process"),
+    (os, "fork", "a fork"),
+)
 SEARCH_PATH = os.pathsep.join([os.environ.get("PATH", os.defpath), "/usr/sbin"])  # Debian keeps servers there
 
 
@@ -68,13 +81,13 @@ def folder(item: pytest.Item | pytest.Module) -> str:
 
 
 def by_hand(item: pytest.Item | pytest.Module) -> bool:
-    """Whether the test moves time by hand: those of unit/ and scenario/."""
-    return folder(item) in {"unit", "scenario"}
+    """Whether the test moves time by hand, in this thread alone."""
+    return folder(item) in {"unit", "scenario", "meta"}
 
 
 def is_real(item: pytest.Item | pytest.Module) -> bool:
     """Whether the test is of real parts, which have threads of their own."""
-    return folder(item) in {"contract", "system", "tutorial", ""}
+    return folder(item) in {"processes", "contract", "system", "tutorial", ""}
 
 
 def find_tool(name: str) -> str | None:
@@ -96,9 +109,23 @@ def about(word: str, items: list[pytest.Item]) -> list[pytest.Item]:
     return [item for item in items if found.search(item.nodeid)]
 
 
-@pytest.hookimpl(trylast=True)
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+def mark_long(items: list[pytest.Item]) -> None:
+    """Mark the cases of tests that are `sampled`, but for each so manieth of a test."""
+    seen: Counter[tuple[Path, str]] = Counter()
+    for item in items:
+        marker = item.get_closest_marker("sampled")
+        if marker is not None and isinstance(item, pytest.Function):
+            case = (item.path, item.originalname)
+            if seen[case] % marker.args[0]:
+                item.add_marker(pytest.mark.long)
+            seen[case] += 1
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Iterator[None]:
     """Leave out what is not asked for; several workers get the rest in an order that keeps all cores busy."""
+    mark_long(items)
+    yield
     if word := config.getoption("--about"):
         wanted = about(word, items)
         config.hook.pytest_deselected(items=[item for item in items if item not in set(wanted)])
@@ -116,8 +143,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Iterator[object]:
-    """Plants that tests load as they are imported are tried in forks, too."""
-    with mock.patch.multiple(recipe_trial, subprocess=forked, WAITS=200.0, STUCK_S=3000.0):
+    """Plants that tests load as they are imported are tried in this process, too."""
+    with mock.patch.object(recipe_trial, "verdict", tried_here.verdict):
         return (yield)
 
 
@@ -187,22 +214,40 @@ class LocalSocket(socket.socket):
         super().__init__(family, *args, **kwargs)
 
 
+def refused(what: str) -> Callable[..., NoReturn]:
+    """Fails a test that calls it, also where errors are caught."""
+
+    def refuse(*_: object, **__: object) -> NoReturn:
+        pytest.fail(f"a test that moves time by hand started {what}: replace it, or move to tests/processes")
+
+    return refuse
+
+
 @pytest.fixture(autouse=True, scope="module")
-def no_network(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Tests that move time by hand have no network."""
+def nothing_beside(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Tests that move time by hand have no network, and no thread or process but their own."""
     if not by_hand(request.node):
         yield
         return
-    with mock.patch.object(socket, "socket", LocalSocket):
+    with ExitStack() as kept:
+        kept.enter_context(mock.patch.object(socket, "socket", LocalSocket))
+        for owner, name, what in BESIDE:
+            kept.enter_context(mock.patch.object(owner, name, refused(what)))
         yield
 
 
 @pytest.fixture(autouse=True, scope="module")
 def quick_trials(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Files of Python that a plant uses are tried in forks, but for tests of real parts; however long that
-    takes by the clock."""
-    python = subprocess if is_real(request.node) else forked
-    with mock.patch.multiple(recipe_trial, subprocess=python, WAITS=200.0, STUCK_S=3000.0):
+    """Python of a plant is tried in this process, and faults begin in it, but for tests of real parts; these
+    wait for another process however long that takes by the clock."""
+    if is_real(request.node):
+        with mock.patch.multiple(recipe_trial, WAITS=200.0, STUCK_S=3000.0):
+            yield
+        return
+    with (
+        mock.patch.object(recipe_trial, "verdict", tried_here.verdict),
+        mock.patch.object(forks, "CAN_FORK", False),
+    ):
         yield
 
 

@@ -1,4 +1,4 @@
-"""Lengths of tests that sample: short in `make test`; whole in `make nightly`, by ARBOLEDA_LENGTH=whole."""
+"""Lengths of tests that sample: short by day; whole in `make nightly`, by ARBOLEDA_LENGTH=whole."""
 
 from __future__ import annotations
 

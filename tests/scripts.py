@@ -1,12 +1,16 @@
-"""Programs of scripts/ as modules, which have no name that can be imported."""
+"""Programs of scripts/ in this process: as modules, which no name imports, and what they print."""
 
 from __future__ import annotations
 
+import runpy
 import sys
+from contextlib import redirect_stdout
 from importlib.machinery import SourceFileLoader
 from importlib.util import module_from_spec, spec_from_loader
+from io import StringIO
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 SCRIPTS = Path(__file__).parents[1] / "scripts"
 
@@ -19,3 +23,10 @@ def load(name: str) -> Any:
     sys.modules[spec.name] = module  # dataclasses look there
     loader.exec_module(module)
     return module
+
+
+def printed(name: str, *words: str) -> str:
+    """What the program prints."""
+    with mock.patch.object(sys, "argv", [name, *words]), redirect_stdout(StringIO()) as said:
+        runpy.run_path(str(SCRIPTS / name), run_name="__main__")
+    return said.getvalue()

@@ -153,6 +153,7 @@ def _is_said(text: str, known: set[str]) -> bool:
         return False
 
 
+@pytest.mark.sampled(32)
 @pytest.mark.parametrize("language", LANGUAGES[1:])
 @pytest.mark.parametrize(
     "file",
@@ -166,6 +167,7 @@ def test_a_sentence_has_its_twin(file: Path, language: str) -> None:
     assert alone == [], f"say these in {language}/findings.yaml"
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("language", LANGUAGES[1:])
 @pytest.mark.parametrize("file", RUNNING, ids=lambda each: f"{each.parent.stem}-{each.stem}")
 def test_a_plant_that_runs_says_what_its_drivers_say(file: Path, language: str) -> None:

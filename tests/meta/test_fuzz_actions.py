@@ -23,6 +23,7 @@ def fuzz() -> Any:
     return load("fuzz-actions")
 
 
+@pytest.mark.long
 def test_nothing_is_raised_and_nothing_refused_counts(fuzz: Any) -> None:
     seen = fuzz.run(RUNS, 1)
     assert all(seen[what] > 0 for what in ("refused", "measured", "said")), seen

@@ -27,6 +27,7 @@ def fuzz() -> Any:
     return load("fuzz-gcode")
 
 
+@pytest.mark.long
 def test_nothing_is_raised_and_nothing_refused_counts(fuzz: Any) -> None:
     seen = fuzz.run(RUNS, 1)
     assert sum(seen.values()) == RUNS
@@ -42,6 +43,7 @@ OKS = [
 ]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("dialect", "oks"), OKS)
 def test_a_driver_that_takes_ok_from_anything_would_be_found(
     fuzz: Any, monkeypatch: pytest.MonkeyPatch, dialect: ModuleType, oks: list[object]

@@ -24,6 +24,7 @@ def test_nothing_is_raised_and_nothing_refused_counts(fuzz: Any) -> None:
     assert seen["refused"] > RUNS / 2 and seen["answer found among others"] > 0, seen
 
 
+@pytest.mark.long
 def test_a_check_sum_that_is_not_looked_at_would_be_found(fuzz: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     checked = packets.Protocol2.unpacked
 

@@ -12,7 +12,7 @@ from arboleda.bt_xml import script
 from ..lengths import length
 from ..scripts import load
 
-RUNS = length(500, whole=1500)
+RUNS = length(150, whole=1500)
 ENOUGH, SEED = 100, 13  # to find what is planted
 
 

@@ -23,6 +23,7 @@ def test_nothing_is_raised_and_nothing_refused_counts(fuzz: Any) -> None:
     assert all(seen[what] > 0 for what in ("state refused", "state taken", "connection refused")), seen
 
 
+@pytest.mark.long
 def test_a_number_without_a_limit_would_be_found(fuzz: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(messages, "DIGITS", 4000)
     with pytest.raises(AssertionError, match="OverflowError"):

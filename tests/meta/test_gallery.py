@@ -21,6 +21,7 @@ def gallery() -> Any:
     return load("gallery")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_the_page_is_what_make_gallery_writes(gallery: Any, language: str) -> None:
     assert gallery.page_of(language).read_text("utf-8") == gallery.page(language), "make gallery"

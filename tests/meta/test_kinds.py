@@ -87,6 +87,7 @@ def test_a_question_is_found(code):
     assert list(_questions(code, {"Arm", "Mobile"}))
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("package", PACKAGES)
 def test_no_module_asks_which_kind_a_device_is(package):
     found = [
@@ -118,6 +119,7 @@ def _names_of_kinds(package: str) -> dict[str, set[str]]:
     }
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("package", [*ENGINE, *ABOVE, "dashboard", "simulator"])
 def test_no_module_names_a_kind(package: str) -> None:
     roles = {"arm", "mobile"}

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import ast
-import os
 import re
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -24,21 +21,6 @@ ASKS = {"sys.platform", "os.name"}
 NAMED = re.compile(  # in the text of each module that uses one of them
     "|".join([*OF_UNIX, *(r"\b\s*\.\s*".join(map(re.escape, each.split("."))) for each in NAMES | ASKS)])
 )
-IMPORT_ALL = f"""
-import sys; sys.path[:0] = [{str(TESTS)!r}]
-import importlib, os, pkgutil, lesser_host
-lesser_host.load_libraries()  # once: they take as long as all else
-for platform in sys.argv[1:]:
-    if os.fork():
-        if os.wait()[1]: sys.exit(platform)
-        continue
-    lesser_host.pretend(platform)
-    import arboleda
-    for module in pkgutil.walk_packages(arboleda.__path__, "arboleda."):
-        importlib.import_module(module.name)
-    print(platform, len([name for name in sys.modules if name.startswith("arboleda.")]))
-    break
-"""
 
 
 def uses_of_unix(path: Path) -> Iterator[str]:
@@ -59,12 +41,3 @@ def test_what_not_every_system_has_stands_in_one_place() -> None:
     found = {f"{path.relative_to(PACKAGE)}: {use}" for path in files for use in uses_of_unix(path)}
     assert found == GUARDED
     assert {use for path in HOST.glob("*.py") for use in uses_of_unix(path)}  # else nothing is looked for
-
-
-def test_every_module_is_imported_where_the_system_has_less() -> None:
-    command = [sys.executable, "-c", IMPORT_ALL, *NOWHERE]
-    environ = {**os.environ, "PYTHONPATH": str(PACKAGE.parent)}
-    ran = subprocess.run(command, env=environ, capture_output=True, text=True, check=False)
-    assert ran.returncode == 0, ran.stderr
-    imported = dict(line.split() for line in ran.stdout.splitlines())
-    assert imported.keys() == {"win32", "darwin"} and min(map(int, imported.values())) > 900

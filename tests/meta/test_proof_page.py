@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from arboleda.plant_file import loader
+
+from ..scripts import printed
 
 ROOT = Path(__file__).parents[2]
 ROWS = [
@@ -19,6 +19,7 @@ ROWS = [
 AGAIN = "press_board"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("plant", sorted({row[0] for row in ROWS}))
 def test_the_page_has_each_recipe_of_each_cell(plant: str) -> None:
     model = loader.load(None if plant == "shipped" else ROOT / "examples" / plant / "plant.yaml")
@@ -31,8 +32,10 @@ def test_the_shipped_plant_is_there_and_nothing_breaks() -> None:
     assert {row[8] for row in ROWS if len(row) > 8} <= {"0", ""}
 
 
+@pytest.mark.long
 def test_the_rows_of_a_plant_are_what_its_runs_say() -> None:
-    command = [sys.executable, str(ROOT / "scripts/proof-table"), AGAIN]
-    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    found = [[cell.strip() for cell in line.strip("|").split("|")] for line in said.splitlines()]
+    found = [
+        [cell.strip() for cell in line.strip("|").split("|")]
+        for line in printed("proof-table", AGAIN).splitlines()
+    ]
     assert found == [row for row in ROWS if row[0] == AGAIN]

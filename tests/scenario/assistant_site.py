@@ -11,7 +11,9 @@ from datetime import datetime
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from unittest import mock
 
+import anyio.to_thread
 import httpx
 
 from arboleda.core.plant import Plant
@@ -45,6 +47,8 @@ from arboleda.web.access.names import names_for
 from arboleda.web.api import make_app
 from arboleda.web.desks.proposals import ProposalsApi
 from arboleda.web.plant_api import PlantApi, Snapshot
+
+from ..threads import run_here
 
 AT = "2026-11-26T08:00:00+00:00"
 PLANT = """name: lab
@@ -226,11 +230,8 @@ class Caller:
         async def work() -> list[httpx.Response]:
             return [await self.send(*each) for each in requests]
 
-        before = set(threading.enumerate())
-        answers = asyncio.run(work())
-        for thread in set(threading.enumerate()) - before:  # of the server's pool, told to end
-            thread.join()
-        return answers
+        with mock.patch.object(anyio.to_thread, "run_sync", run_here):
+            return asyncio.run(work())
 
 
 def bearer(role: Role) -> dict[str, str]:

@@ -48,6 +48,7 @@ def motions(rig: Rig) -> list[Any]:
     return [message for message in rig.sent if isinstance(message, MOTIONS)]
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize(
     ("step", "processes", "seconds"),
     sample(product(["drive path 0B", "move to pick-up", "move to station 4"], AWAY, GAPS_S), every=2),
@@ -131,6 +132,7 @@ def test_a_cell_at_work_holds_while_another_one_goes_on(rig: Rig) -> None:
     assert rig.plant.cells["sis_b"].state is CellState.HELD
 
 
+@pytest.mark.sampled(2)
 def test_a_cell_with_nothing_to_do_takes_a_task_at_once(rig: Rig) -> None:
     away(rig, 20.0, PLANT)
     task = rig.submit("sis_b 0B 4").task
@@ -192,6 +194,7 @@ def going_on() -> Rig:
     return made
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize(("step", "processes", "seconds"), sample(product(STEPS, AWAY, GAPS_S), every=4))
 def test_a_cell_goes_on_by_itself_where_the_plant_file_says_so(
     going_on: Rig, seconds: float, processes: tuple[str, ...], step: str

@@ -116,6 +116,7 @@ TROUBLES: dict[str, Callable[[Rig], None]] = {
 }
 
 
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize(("trouble", "evidence"), sample(product(TROUBLES, Evidence), every=2))
 def test_the_first_advice_leads_to_a_working_cell(stage: Stage, evidence: Evidence, trouble: str) -> None:
     rig, witness = stage(evidence)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterator
-from contextlib import suppress
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -146,6 +144,7 @@ def strangers() -> tuple[dict[str, str], ...]:
     )
 
 
+@pytest.mark.long
 def test_forged_approvals_and_replayed_hashes_move_nothing(site: Site) -> None:
     caller = Caller(site)
     rejected = proposed(site, name="first")
@@ -202,6 +201,7 @@ def injected(hash: str) -> Iterator[tuple[Any, ...]]:
         yield "POST", "/api/tasks", {"text": text}, assistant
 
 
+@pytest.mark.long
 def test_text_of_outside_stays_text_wherever_it_stands(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("arboleda.runtime.proposals.desk.MOST_OPEN", 10_000)
     found = unmoved(site, Caller(site), injected(proposed(site)))
@@ -226,6 +226,7 @@ def verbs() -> Iterator[tuple[Any, ...]]:
             yield "POST", path, {"name": "Ana", "editor": "bot-12345"}, headers
 
 
+@pytest.mark.long
 def test_what_operators_do_is_for_operators(site: Site) -> None:
     found = unmoved(site, Caller(site), verbs())
     assert len(found) > 500 and not {200, 202} & set(found)
@@ -251,6 +252,7 @@ ACTS = st.lists(
 )
 
 
+@pytest.mark.long
 @settings(
     max_examples=length(8, whole=25),
     deadline=None,
@@ -294,34 +296,6 @@ def test_whatever_the_order_only_what_was_approved_is_at_work(
         except DraftRefused:
             continue
         assert (site.folder / "rest.xml").read_text() in approved
-
-
-@pytest.mark.parametrize("number", range(length(4, whole=8)))
-def test_an_approval_beside_a_change_is_of_its_own_content_or_refused(site: Site, number: int) -> None:
-    first = proposed(site)
-    other = TREE.format(name="Rest", steps="<Sequence><lamp_dark/></Sequence>")
-    start = threading.Barrier(2)
-    told: list[Any] = []
-
-    def change() -> None:
-        start.wait()
-        if number % 2:
-            with suppress(DraftRefused):  # where the files are being written
-                proposed(site, trees={"rest.xml": other})  # in the place of the first
-        else:
-            (site.folder / "shine.xml").write_text(other.replace("Rest", "Shine"))
-
-    thread = threading.Thread(target=change)
-    thread.start()
-    start.wait()
-    with suppress(DraftRefused):
-        told = [site.desk.approve(first, "Ana")]
-    thread.join()
-    content = (site.folder / "rest.xml").read_text()
-    if told and told[0]["stage"] == "approved":
-        assert content == site.desk.shown(first)["trees"]["rest.xml"]
-    else:
-        assert content == REST and site.revisions == []
 
 
 def test_a_task_that_waits_for_what_was_approved_ends_with_that_version(site: Site) -> None:

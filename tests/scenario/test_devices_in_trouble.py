@@ -115,6 +115,7 @@ class Trouble:
                     assert {name: self.body.facts[name] for name in made} == made
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("seed", range(4))
 def test_each_task_ends_once_and_done_is_true(seed: int) -> None:
     trouble = Trouble(seed)

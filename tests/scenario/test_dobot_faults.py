@@ -28,6 +28,7 @@ def test_no_false_success_no_hang_and_the_right_cause(seed: int) -> None:
     assert breaches(seed) == []
 
 
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("fault", sample(FAULTS, every=2))
 def test_every_fault_by_itself(fault: str) -> None:
     assert breaches(1, fault, tasks=FEW) == []

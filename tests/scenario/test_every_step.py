@@ -138,6 +138,7 @@ def ancestors(node: Any) -> list[Any]:
     return [node.parent, *ancestors(node.parent)] if node.parent else []
 
 
+@pytest.mark.sampled(3)
 @at_every_step_and_level
 def test_stop_then_clear_reset_and_resume(scene: Any, evidence: Evidence, step: str) -> None:
     here = scene(evidence)
@@ -174,6 +175,7 @@ def test_stop_then_clear_reset_and_resume(scene: Any, evidence: Evidence, step: 
     here.honest()
 
 
+@pytest.mark.sampled(5)
 @at_every_step_one_level
 def test_hold_then_nothing(scene: Any, evidence: Evidence, step: str) -> None:
     here = scene(evidence)
@@ -189,6 +191,7 @@ def test_hold_then_nothing(scene: Any, evidence: Evidence, step: str) -> None:
     here.honest()
 
 
+@pytest.mark.sampled(3)
 @at_every_step_and_level
 def test_hold_then_resume_does_the_task(scene: Any, evidence: Evidence, step: str) -> None:
     here = scene(evidence)
@@ -202,6 +205,7 @@ def test_hold_then_resume_does_the_task(scene: Any, evidence: Evidence, step: st
     here.honest()
 
 
+@pytest.mark.sampled(5)
 @at_every_step_one_level
 @pytest.mark.parametrize("verb", [Verb.ABANDON, Verb.CANCEL])
 def test_hold_then_give_up_recovers(scene: Any, evidence: Evidence, step: str, verb: Verb) -> None:
@@ -217,6 +221,7 @@ def test_hold_then_give_up_recovers(scene: Any, evidence: Evidence, step: str, v
     here.honest()
 
 
+@pytest.mark.sampled(3)
 @at_every_step_one_level
 def test_hold_then_stop(scene: Any, evidence: Evidence, step: str) -> None:
     here = scene(evidence)
@@ -245,6 +250,7 @@ def test_cancel_recovers(scene: Any, evidence: Evidence, step: str) -> None:
     here.honest()
 
 
+@pytest.mark.sampled(4)
 @levels
 @at_every_recovery_step
 def test_stop_in_a_recovery(scene: Any, evidence: Evidence, step: str) -> None:
@@ -259,6 +265,7 @@ def test_stop_in_a_recovery(scene: Any, evidence: Evidence, step: str) -> None:
     here.honest()
 
 
+@pytest.mark.sampled(6)
 @levels
 @at_every_recovery_step
 def test_hold_in_a_recovery_then_resume(scene: Any, evidence: Evidence, step: str) -> None:
@@ -273,6 +280,7 @@ def test_hold_in_a_recovery_then_resume(scene: Any, evidence: Evidence, step: st
     here.honest()
 
 
+@pytest.mark.sampled(4)
 @levels
 @at_every_recovery_step
 def test_cancel_in_a_recovery_lets_it_run_to_its_end(scene: Any, evidence: Evidence, step: str) -> None:

@@ -632,6 +632,7 @@ def run(rig: Rig, row: Row, spot: Spot, bound_s: float) -> Course:
     return course
 
 
+@pytest.mark.sampled(36)
 @pytest.mark.parametrize(("row", "spot", "level"), sample(CASES, every=2))
 def test_fault(row: Row, spot: Spot, level: Evidence) -> None:
     expected = row.expected(level, spot)

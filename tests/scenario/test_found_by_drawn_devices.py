@@ -240,6 +240,7 @@ def do_1(cell):
 }
 
 
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("found", FOUND.values(), ids=FOUND)
 def test_every_invariant_holds(found: Found) -> None:
     plant = loaded(yaml.safe_load(found.file), found.beside)

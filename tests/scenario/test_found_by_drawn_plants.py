@@ -601,10 +601,8 @@ FOUND = {
 }
 
 
-CASES = dict(sample(FOUND.items(), every=12))
-
-
-@pytest.mark.parametrize("found", CASES.values(), ids=CASES)
+@pytest.mark.sampled(36)
+@pytest.mark.parametrize("found", FOUND.values(), ids=FOUND)
 def test_every_invariant_holds(found: Found) -> None:
     plant = loaded(yaml.safe_load(found.file))
     result = Simulation(plant.model, found.seed, explicit(found.faults)).run(seconds=found.seconds)
@@ -613,6 +611,7 @@ def test_every_invariant_holds(found: Found) -> None:
     assert result.outcomes.get("done", 0) > 0
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("evidence", "least_s", "patience_s", "drives_s"),
     [

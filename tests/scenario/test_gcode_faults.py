@@ -40,22 +40,26 @@ def breaches(seed: int, *names: str, tasks: int = TASKS, rig: Callable[[], Rig] 
     return run(rig(), seed, names, tasks).breaches
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("rig", [GRBL, MARLIN, MOONRAKER])
 @pytest.mark.parametrize("seed", sample(range(SEEDS), every=4))
 def test_no_false_success_no_hang_and_the_right_cause(seed: int, rig: Callable[[], Rig]) -> None:
     assert breaches(seed, rig=rig) == []
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("fault", sample(GRBL_FAULTS, every=3))
 def test_every_fault_by_itself(fault: str) -> None:
     assert breaches(1, fault, tasks=FEW) == []
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("fault", sample(MARLIN_FAULTS, every=3))
 def test_every_fault_of_marlin_by_itself(fault: str) -> None:
     assert breaches(1, fault, tasks=FEW, rig=MARLIN) == []
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("fault", sample(MOONRAKER_FAULTS, every=3))
 def test_every_fault_of_moonraker_by_itself(fault: str) -> None:
     assert breaches(1, fault, tasks=FEW, rig=MOONRAKER) == []

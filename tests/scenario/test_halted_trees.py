@@ -76,6 +76,7 @@ CASES = [
 ]
 
 
+@pytest.mark.sampled(10)
 @pytest.mark.parametrize(("around", "at_once", "cause"), sample(CASES, every=2))
 def test_what_runs_is_halted_when_its_task_fails(
     tmp_path: Path, around: str, at_once: str, cause: str
@@ -128,6 +129,7 @@ FRAMES = {
 ANSWERED = {"fallback": ("failed", "rejected"), "invert": ("done", None)}  # what has an answer to a failure
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize(
     ("frame", "cause"), sample(product(FRAMES, ["final", "ordinary", "raises"]), every=2)
 )

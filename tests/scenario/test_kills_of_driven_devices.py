@@ -67,6 +67,7 @@ def arm() -> CarryRig:
     return CarryRig(load(EXAMPLES / "ros2_control/plant.yaml"))
 
 
+@pytest.mark.sampled(12)
 @pytest.mark.parametrize("protocol", RIGS)
 @pytest.mark.parametrize("after_s", [0.1, 0.5, 1.5, 2.2])
 def test_a_plc_that_numbers_its_orders_is_given_none_of_them_twice(protocol: str, after_s: float) -> None:
@@ -88,6 +89,7 @@ def test_an_order_that_came_from_elsewhere_leaves_only_the_end_of_the_task() -> 
     assert "has taken commands of which this plant knows nothing" in world.why_held()
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("after_s", [0.3, 2.0])
 def test_a_move_that_went_on_without_its_plant_is_resumed(after_s: float) -> None:
     world = OneTask(arm()).killed_after(after_s)

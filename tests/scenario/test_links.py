@@ -67,6 +67,7 @@ def test_a_bridge_that_never_comes_back_leaves_no_task_hanging(evidence: Evidenc
     assert change.reason is (Reason.DEADLINE if by_deadline else Reason.LINK_LOST)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", sample([1, 2, 3], every=2))
 def test_what_a_cut_connection_has_kept_moves_nothing_when_it_is_mended(seed: int) -> None:
     cut = Fault(kind="partition", at=5.0, seconds=8.0, target="ra_1", word="down, held")

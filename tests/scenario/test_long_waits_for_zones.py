@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 import yaml
 
 from arboleda.campaigns.random_plants import loaded
@@ -35,6 +36,7 @@ def shuts(cell):
 """
 
 
+@pytest.mark.long
 def test_a_task_that_waits_as_long_as_it_may_comes_to_its_end() -> None:
     watched = JudgedWorld(loaded(yaml.safe_load(FILE), {"recipes.py": RECIPES}).model)
     watched.world.advance(5.0)

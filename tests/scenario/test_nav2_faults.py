@@ -22,12 +22,14 @@ def breaches(seed: int, *names: str, rig: type[RoundRig] = RoundRig, tasks: int 
     return run(rig(EXAMPLE), seed, [f"cart.{name}" for name in names], tasks).breaches
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("rig", [RoundRig, WaypointsRig])
 @pytest.mark.parametrize("seed", range(SEEDS))
 def test_no_false_success_no_hang_and_the_right_cause(seed: int, rig: type[RoundRig]) -> None:
     assert breaches(seed, rig=rig) == []
 
 
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("fault", ["lie", "early", "short", "stuck", "jump", "unlocalised", "no_odometry"])
 def test_faults_by_themselves(fault: str) -> None:
     assert breaches(1, fault, tasks=FEW) == []

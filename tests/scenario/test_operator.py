@@ -173,6 +173,7 @@ def goes_on(rig: Rig, witness: Witness, *, opened: bool) -> None:
     assert rig.plant.at_rest or cell(rig).state is CellState.HELD
 
 
+@pytest.mark.sampled(14)
 @pytest.mark.parametrize(("state", "verb", "scope"), CASES, ids=lambda word: getattr(word, "value", word))
 def test_a_verb_that_a_state_allows_is_done(stage: Stage, state: str, verb: Verb, scope: str) -> None:
     rig, witness = brought(stage, state)
@@ -184,6 +185,7 @@ def test_a_verb_that_a_state_allows_is_done(stage: Stage, state: str, verb: Verb
     goes_on(rig, witness, opened=verb is Verb.RELEASE)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("state", STATES)
 def test_every_other_verb_is_refused_and_changes_nothing(stage: Stage, state: str) -> None:
     rig, witness = brought(stage, state)
@@ -205,6 +207,7 @@ def test_a_verb_for_nobody_is_refused(stage: Stage, evidence: Evidence) -> None:
     assert cell(rig).state is CellState.IDLE
 
 
+@pytest.mark.sampled(6)
 @levels
 @pytest.mark.parametrize("bring", [fetch, carry], ids=["empty", "with the part"])
 def test_a_crash_keeps_the_latch(stage: Stage, evidence: Evidence, bring: Callable[[Rig], None]) -> None:
@@ -249,6 +252,7 @@ def test_a_crash_between_clear_and_reset_still_needs_a_reset(stage: Stage, evide
     assert witness.motions_since(mark, rig.model.robots) == []
 
 
+@pytest.mark.sampled(3)
 @levels
 @pytest.mark.parametrize("bring", [fetch, carry], ids=["empty", "with the part"])
 def test_after_a_crash_in_a_task_nothing_moves_by_itself(
@@ -303,6 +307,7 @@ def test_a_board_that_does_not_confirm_a_stop_is_named(stage: Stage, evidence: E
     assert "ra1 is not still yet" in str(rig.operate(Verb.CLEAR, "sis_a"))
 
 
+@pytest.mark.sampled(3)
 @levels
 @pytest.mark.parametrize("away", ["broker", "bridge", "board"])
 def test_a_stop_reaches_a_board_that_was_away(stage: Stage, evidence: Evidence, away: str) -> None:
@@ -376,6 +381,7 @@ def foreign_stop(board: str) -> Publication:
     return Publication(topic=f"{board}/paro", payload=b'{"paro":1,"seq":1,"epoca":1}')
 
 
+@pytest.mark.sampled(4)
 @levels
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_while_held_makes_resume_impossible(stage: Stage, evidence: Evidence, fault: str) -> None:
@@ -419,6 +425,7 @@ def test_a_link_lost_and_found_while_held_is_retried(stage: Stage, evidence: Evi
     assert (witness.false_successes, witness.illegal) == ([], [])
 
 
+@pytest.mark.sampled(2)
 @levels
 def test_after_a_failed_recovery_retry_carries_the_part_back(stage: Stage, evidence: Evidence) -> None:
     rig, witness = stage(evidence)

@@ -37,6 +37,7 @@ class Endings:
             self._world.at(self._world.now + LOOK_S, self._look, None)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", sample(range(10_000, 10_014), 7))
 def test_nothing_is_broken_by_orderly_ends(seed: int) -> None:
     simulation = Simulation(of_devices(seed).model, seed, lambda minute: ())

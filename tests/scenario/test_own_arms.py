@@ -51,6 +51,7 @@ def drawn(folder: Path, seed: int) -> PlantModel:
     raise last
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", sample([*SEEDS, HALTED_AT_ONCE], every=4))
 def test_whatever_goes_wrong_nothing_breaks_with_arms_of_ones_own(folder: Path, seed: int) -> None:
     plant = drawn(folder, seed)

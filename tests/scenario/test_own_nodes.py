@@ -85,6 +85,7 @@ def test_the_nodes_of_the_page_do_their_work(tmp_path: Path) -> None:
     assert fact(rig, "door") == "open"
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("at_s", [6.0, 12.0, 30.0, 38.0])
 def test_a_plant_that_is_killed_goes_on_in_them(tmp_path: Path, at_s: float) -> None:
     rig = begun(tmp_path, ALL)
@@ -101,6 +102,7 @@ def test_a_plant_that_is_killed_goes_on_in_them(tmp_path: Path, at_s: float) -> 
 NONE = '<OneOf><IsHeavy grams="1"/><mill_says door="open"/></OneOf>'
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("body", "state"),
     [
@@ -176,6 +178,7 @@ NO_TYPE = f'{HEAD}@node("Mine")\ndef mine(cell, what):\n    pass\n'
 LATE = '<Script code="p := 1001"/><Machine program="{p}"/>'
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("body", "python", "said"),
     [

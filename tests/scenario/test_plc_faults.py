@@ -28,6 +28,7 @@ def breaches(rig: BeltRig, seed: int, *names: str, tasks: int = TASKS) -> list[s
     return run(rig, seed, names, tasks).breaches
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("seed", range(SEEDS))
 def test_no_false_success_no_hang_and_the_right_cause(seed: int) -> None:
     assert breaches(ModbusRig(MODBUS), seed) == []
@@ -35,6 +36,7 @@ def test_no_false_success_no_hang_and_the_right_cause(seed: int) -> None:
     assert breaches(S7Rig(S7), seed) == []
 
 
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("fault", MODBUS_FAULTS)
 def test_every_fault_of_modbus_by_itself(fault: str) -> None:
     assert breaches(ModbusRig(MODBUS), 1, fault, tasks=FEW) == []

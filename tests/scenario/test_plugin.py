@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
-
-pytest_plugins = "pytester"
 
 PLANT = """\
 name: my_plant
@@ -168,26 +164,6 @@ def test_a_project_may_have_a_fixture_of_that_name(project: pytest.Pytester) -> 
     project.makeconftest("import pytest\n@pytest.fixture\ndef sim(): return 5")
     result = run(project, "def test_it(sim): assert sim == 5\ndef test_not(sim): assert sim == 6")
     result.assert_outcomes(passed=1, failed=1)
-
-
-def test_loading_the_plugin_loads_nothing_else() -> None:
-    code = "import sys, arboleda.testing.plugin as p; print(*sys.modules)"
-    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    packages = {name.partition(".")[0] for name in ran.stdout.split()}
-    heavy = {
-        "fastapi",
-        "hypothesis",
-        "paho",
-        "py_trees",
-        "pydantic",
-        "rclpy",
-        "rich",
-        "typer",
-        "yaml",
-    }
-    assert packages & heavy == set()
-    ours = {name for name in ran.stdout.split() if name.startswith("arboleda")}
-    assert ours == {"arboleda", "arboleda.testing", "arboleda.testing.plugin"}
 
 
 def test_the_installation_brings_the_plugin() -> None:

@@ -18,6 +18,7 @@ FILES = dict(re.findall(r"^```\w+\n# (\S+)\n(.*?)^```$", PAGE, re.MULTILINE | re
 TESTS = [name for name in FILES if name.startswith("test_")]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("test", TESTS)
 def test_a_test_of_the_page_passes(
     test: str, pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch

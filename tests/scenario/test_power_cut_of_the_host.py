@@ -76,6 +76,7 @@ def one_ahead(said: dict[str, object]) -> None:
         said["ack"] += 1
 
 
+@pytest.mark.long
 def test_wherever_it_is_cut_its_task_goes_on_picks_once_and_places_once() -> None:
     message, echoed = 1, 0
     while True:

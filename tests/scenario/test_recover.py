@@ -73,6 +73,7 @@ def told(rig: Rig) -> list[str]:
 RESCUE = f"cell.recover({FAILS}, mover.put_away())"
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("body", "why", "commands"),
     [
@@ -107,6 +108,7 @@ XML_BOTH = f"{NOT_CLOSED}; and the rescue failed: {PLATE}"
 TRY = f"<TryCatch>{CHECK}<mover_put_away/></TryCatch>"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("body", "why", "commands"),
     [

@@ -56,6 +56,7 @@ def honest(witness: Witness) -> bool:
     return not witness.false_successes and not witness.illegal
 
 
+@pytest.mark.sampled(4)
 @levels
 @pytest.mark.parametrize("topic", ["ra_1/juntas", "rm_sis_a/camino"])
 def test_a_lost_goal_is_sent_again_after_the_back_off(stage: Stage, evidence: Evidence, topic: str) -> None:
@@ -69,6 +70,7 @@ def test_a_lost_goal_is_sent_again_after_the_back_off(stage: Stage, evidence: Ev
     assert honest(witness)
 
 
+@pytest.mark.sampled(3)
 @levels
 @pytest.mark.parametrize(
     ("starts_on", "drives"),
@@ -128,6 +130,7 @@ def put(rig: Rig, node: int) -> None:
     rig.wait(0.5)
 
 
+@pytest.mark.sampled(2)
 @levels
 def test_a_goal_that_is_lost_every_time_fails_after_the_declared_tries(
     stage: Stage, evidence: Evidence
@@ -159,6 +162,7 @@ def silence(seconds: float) -> Callable[[Rig], None]:
 HELPS = {"broker away for 1 s": broker_blip, "silence for 2 s": silence(2.0)}
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("evidence", [Evidence.IDS, Evidence.JOINTS])
 @pytest.mark.parametrize("fault", HELPS)
 @pytest.mark.parametrize("step", ["drive path 0B", "move to pick-up", "move to station 7", "move to home"])
@@ -185,6 +189,7 @@ HOPELESS: dict[str, Callable[[Rig], None]] = {
 }
 
 
+@pytest.mark.sampled(5)
 @levels
 @pytest.mark.parametrize("fault", HOPELESS)
 def test_what_no_retry_can_help_is_sent_once(stage: Stage, evidence: Evidence, fault: str) -> None:
@@ -200,6 +205,7 @@ def test_what_no_retry_can_help_is_sent_once(stage: Stage, evidence: Evidence, f
     assert honest(witness)
 
 
+@pytest.mark.sampled(3)
 @levels
 @pytest.mark.parametrize("verb", [Verb.STOP, Verb.CANCEL])
 def test_stop_and_cancel_end_a_back_off(stage: Stage, evidence: Evidence, verb: Verb) -> None:
@@ -219,6 +225,7 @@ def feedback(rig: Rig) -> str:
     return " ".join(node.feedback_message for node in tree.iterate()) if tree else ""
 
 
+@pytest.mark.sampled(3)
 @levels
 def test_a_back_off_stands_still_while_the_cell_is_held(stage: Stage, evidence: Evidence) -> None:
     rig, witness = stage(evidence, retry=TWICE)
@@ -234,6 +241,7 @@ def test_a_back_off_stands_still_while_the_cell_is_held(stage: Stage, evidence: 
     assert honest(witness)
 
 
+@pytest.mark.sampled(3)
 @levels
 @pytest.mark.parametrize("late_s", [0.0, 1.0, 4.0])
 def test_a_piece_that_comes_in_time_is_gripped(stage: Stage, evidence: Evidence, late_s: float) -> None:
@@ -322,6 +330,7 @@ def test_a_move_that_ended_before_its_goal_is_given_again(
     assert ended(rig).reason is (None if times else reason) and honest(witness)
 
 
+@pytest.mark.sampled(2)
 @levels
 @pytest.mark.parametrize("attempt", [2, 3])
 def test_a_missed_grip_is_tried_again(stage: Stage, evidence: Evidence, attempt: int) -> None:

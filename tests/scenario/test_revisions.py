@@ -29,6 +29,7 @@ def calm(seed: int) -> Result:
     return simulation(seed, "none").run(seconds=CALM_S)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", SEEDS)
 def test_what_is_under_way_ends_with_its_own_and_the_next_begins_with_the_new(seed: int) -> None:
     simulated = simulation(seed)
@@ -38,6 +39,7 @@ def test_what_is_under_way_ends_with_its_own_and_the_next_begins_with_the_new(se
     assert result.checks["cells_take_versions_between_tasks"] > 0
 
 
+@pytest.mark.long
 def test_a_run_without_faults_fails_no_task_and_is_the_same_again() -> None:
     first, again = calm(7), calm(7)
     assert first.broken is None and first.outcomes.keys() <= {"done", "cancelled"}
@@ -52,6 +54,7 @@ def test_a_cell_that_takes_a_version_in_the_middle_of_a_task_is_found(
     assert broken is not None and broken.invariant == "cells_take_versions_between_tasks"
 
 
+@pytest.mark.long
 def test_a_cell_that_never_takes_one_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(CellRun, "is_between_tasks", False)
     monkeypatch.setattr(judged_world, "REST_S", 60.0)  # nothing comes that would be waited for

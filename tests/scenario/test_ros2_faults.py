@@ -29,11 +29,13 @@ def breaches(seed: int, *names: str, tasks: int = TASKS) -> list[str]:
     return run(CarryRig(EXAMPLE), seed, names, tasks).breaches
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("seed", range(SEEDS))
 def test_no_false_success_no_hang_and_the_right_cause(seed: int) -> None:
     assert breaches(seed) == []
 
 
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("fault", sample([*(f"arm.{name}" for name in CAUSES), *OWN], every=2))
 def test_every_fault_by_itself(fault: str) -> None:
     assert breaches(1, fault, tasks=FEW) == []
@@ -54,6 +56,7 @@ def test_a_grip_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.Mon
     assert any("wrong cause" in each for each in breaches(1, "jaw.empty"))
 
 
+@pytest.mark.long
 def test_a_switch_that_is_never_given_up_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(machine, "SPARE_S", 1e6)
     assert any("hang" in each for seed in range(4) for each in breaches(seed, "jaw.stall"))

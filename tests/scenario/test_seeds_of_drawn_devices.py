@@ -34,6 +34,7 @@ ONCE_WRONG: list[tuple[str, int, dict[str, Any]]] = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("seed", "given"), [pytest.param(s, g, id=why) for why, s, g in sample(ONCE_WRONG, 2)]
 )

@@ -28,12 +28,14 @@ def breaches(seed: int, *names: str, maker: Maker = "feetech", tasks: int = TASK
     return run(ServoRig(EXAMPLE, maker), seed, names, tasks).breaches
 
 
+@pytest.mark.sampled(2)
 @MAKERS
 @pytest.mark.parametrize("seed", sample(range(SEEDS), every=4))
 def test_no_false_success_no_hang_and_the_right_cause(maker: Maker, seed: int) -> None:
     assert breaches(seed, maker=maker, tasks=HALF) == []
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("fault", sample(FAULTS, every=3))
 def test_every_fault_by_itself(fault: str) -> None:
     assert breaches(1, fault, tasks=FEW) == []

@@ -18,6 +18,7 @@ LEVELS = length(("many", "crashes"), ("none", "normal", "many", "crashes"))
 RUNS = [(level, seed) for level in LEVELS for seed in range(1, SEEDS + 1)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("level", "seed"), RUNS)
 def test_nothing_is_broken(level: str, seed: int) -> None:
     plant = load(PLANT)

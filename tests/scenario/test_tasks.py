@@ -11,6 +11,7 @@ from arboleda.testing import Rig, shipped
 from ..lengths import sample
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("cell", ["sis_a", "sis_b", "sis_c"])
 def test_each_task_of_a_cell_is_done(cell: str) -> None:
     rig = Rig(shipped())

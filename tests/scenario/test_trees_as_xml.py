@@ -67,6 +67,7 @@ def test_it_does_its_work() -> None:
     assert state(rig) is TaskState.DONE, rig.outcomes()["one"]
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize(
     "at_s", sample([0.5, 3.0, 6.0, 9.0, 12.0, 15.0, 30.0, 35.0, 38.0, 40.0, 43.0], every=2)
 )
@@ -114,6 +115,7 @@ MORE = (
 MORE_PARALLEL = MORE.replace("All max_failures", " success_count").replace("All>", ">")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("body", "ends", "why"),
     [
@@ -141,6 +143,7 @@ CONDITION = '<ScriptCondition code="1 == 2"/>'
 UNANSWERED = "door"  # a word of the sentence with which the condition above fails
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("body", "is_named"),
     [
@@ -192,6 +195,7 @@ SET, UNCLAMPED = '<Script code="on := true"/>', '<Script code="on := 0"/>'
 CLAMPED = f"{SET}{CLAMPS}"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("body", "clamped"),
     [
@@ -209,6 +213,7 @@ def test_what_a_device_is_told_may_be_known_only_then(folder: Path, body: str, c
     assert said(rig, "clamped") is clamped
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("at_s", [1.0, 4.0, 12.0, 24.0])
 def test_values_of_variables_are_kept_with_the_step_that_was_given_them(folder: Path, at_s: float) -> None:
     run = '<Script code="p := 1002"/><mill_run program="{p}"/>'
@@ -232,6 +237,7 @@ def test_a_picture_names_the_variables_that_have_no_value_yet(folder: Path) -> N
     assert "mill clamp {on}" in titles and "jaw close 33.0 4.0" in titles
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("body", "why"),
     [
@@ -271,6 +277,7 @@ GRIP = (
 )
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("given", "width"), [("20", 20.0), ("{=}", 80.0), ("{other}", 30.0)])
 def test_a_subtree_that_shares_names_is_told_what_it_is_given(folder: Path, given: str, width: float) -> None:
     sub = f'<SubTree ID="Grip" width="{given}" _autoremap="true"/>'

@@ -24,11 +24,13 @@ def breaches(seed: int, *names: str, tasks: int = TASKS) -> list[str]:
     return run(UrRig(SHIPPED), seed, names, tasks).breaches
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", sample(range(SEEDS), every=4))
 def test_no_false_success_no_hang_and_the_right_cause(seed: int) -> None:
     assert breaches(seed) == []
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("fault", sample(FAULTS, every=2))
 def test_every_fault_by_itself(fault: str) -> None:
     assert breaches(1, fault, tasks=FEW) == []

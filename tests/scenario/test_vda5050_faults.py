@@ -26,12 +26,14 @@ def breaches(seed: int, *names: str, version: str = "2.1", tasks: int = TASKS) -
     return run(AgvRig(EXAMPLE, version), seed, names, tasks).breaches
 
 
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("version", ["2.0", "2.1", "3.0"])
 @pytest.mark.parametrize("seed", sample(range(SEEDS), every=2))
 def test_no_false_success_no_hang_and_the_right_cause(seed: int, version: str) -> None:
     assert breaches(seed, version=version) == []
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("fault", sample(FAULTS, every=2))
 def test_every_fault_by_itself(fault: str) -> None:
     assert breaches(1, fault, tasks=FEW) == []

@@ -41,6 +41,7 @@ class Onlooker:
         self.remembered += sum(a is b for a, b in zip(before, self._cells, strict=False))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("seed", "drawn"), SEEDS)
 def test_after_every_step_what_is_remembered_is_as_if_made_anew(seed: int, drawn: bool) -> None:
     setting = Request(cycles=CYCLES, drawn_plants=drawn).setting

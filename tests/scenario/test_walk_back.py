@@ -86,6 +86,7 @@ def ways(rig: Rig) -> list[str]:
     return [each.do.value for each in rig.plant.advice(CELL)]
 
 
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("after_s", [0.0, 0.4, 4.0])
 @pytest.mark.parametrize("step", STEPS)
 def test_it_stands_at_its_step_moves_nothing_and_goes_on_after_resume(
@@ -132,6 +133,7 @@ def test_a_command_that_never_reached_its_board_is_given_again_as_it_was(stage: 
     assert outcome(rig) is TaskState.DONE
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("evidence", [Evidence.JOINTS, Evidence.STATE])
 def test_who_numbers_no_commands_proves_nothing_and_a_person_decides(
     stage: Stage, evidence: Evidence
@@ -489,6 +491,7 @@ def served(rig: Rig) -> TaskState:
     return rig.outcomes()[ID].state
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("bridge", [True, False], ids=["bridge_too", "plant_alone"])
 def test_killed_between_any_two_messages_it_picks_once_and_places_once(bridge: bool) -> None:
     number, ended = 1, False

@@ -169,6 +169,7 @@ def test_the_turns_of_a_repetition_are_counted_on() -> None:
     assert sent(rig).count(feeds) == 3
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("after_s", [number / 10 for number in range(1, 27, 2)])
 def test_a_gripper_that_is_carried_grips_once_and_lets_go_once(after_s: float) -> None:
     rig = begin(plant(carry), "tending carry")
@@ -339,6 +340,7 @@ def led_out(rig: Rig) -> list[str]:
     return did
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize(
     ("boots", "at_s", "lead"),
     [
@@ -386,6 +388,7 @@ def test_nobody_is_sent_to_the_door_of_a_machine_at_work(tmp_path: Path) -> None
 KILLED_AT_S = (0.5, 12.6, 36.5, 3.0, 20.0, 39.0, 7.5, 34.0, 42.0, 12.2, 45.0)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("at_s", sample(KILLED_AT_S, every=3))
 def test_the_cell_that_tends_a_mill_finishes_its_part_whenever_it_is_killed(at_s: float) -> None:
     rig = begin(load(EXAMPLE), "tending mill slot_1 1001")

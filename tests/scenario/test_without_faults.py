@@ -31,6 +31,7 @@ PLACES = {"at home": "station_0", "at the pick-up": "pickup", "elsewhere": "stat
 CASES = product(Evidence, PLACES, (1.0, 4.0), SEEDS)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(("evidence", "place", "slower", "seed"), sample(CASES, every=17))
 def test_no_task_fails(evidence: Evidence, place: str, slower: float, seed: int) -> None:
     result = Simulation(plant(evidence, place, slower), seed, lambda minute: []).run(cycles=CYCLES)

@@ -102,6 +102,7 @@ def honest(witness: Witness) -> None:
     assert (witness.collisions, witness.false_successes, witness.illegal) == ([], [], [])
 
 
+@pytest.mark.sampled(3)
 @levels
 def test_three_arms_share_three_zones_and_all_their_tasks_are_done(zoned: Plants, evidence: Evidence) -> None:
     rig, witness = start(zoned(evidence))
@@ -119,6 +120,7 @@ def test_three_arms_share_three_zones_and_all_their_tasks_are_done(zoned: Plants
     honest(witness)
 
 
+@pytest.mark.sampled(2)
 @supervised
 def test_the_zone_of_a_silent_arm_is_quarantined_and_who_waits_gives_up_in_time(
     zoned: Plants, evidence: Evidence
@@ -140,6 +142,7 @@ def test_the_zone_of_a_silent_arm_is_quarantined_and_who_waits_gives_up_in_time(
     honest(witness)
 
 
+@pytest.mark.sampled(4)
 @supervised
 @pytest.mark.parametrize("gone_s", [2.0, 5.0, 15.0])
 def test_a_silent_arm_that_is_seen_outside_again_frees_its_zones(
@@ -227,6 +230,7 @@ def test_an_arm_inside_goes_on_as_soon_as_what_an_override_took_from_it_is_free(
     assert (witness.false_successes, witness.illegal) == ([], [])
 
 
+@pytest.mark.sampled(2)
 @levels
 def test_a_crash_of_the_plant_keeps_the_zones_of_an_arm_inside(zoned: Plants, evidence: Evidence) -> None:
     rig, witness = start(zoned(evidence))
@@ -264,6 +268,7 @@ def test_an_arm_outside_for_which_only_a_part_of_its_zones_was_kept_asks_for_all
     honest(witness)
 
 
+@pytest.mark.sampled(3)
 @levels
 def test_after_a_crash_an_empty_arm_is_homed_out_of_the_zones(zoned: Plants, evidence: Evidence) -> None:
     rig, witness = start(zoned(evidence, 6.0))
@@ -288,6 +293,7 @@ def test_after_a_crash_an_empty_arm_is_homed_out_of_the_zones(zoned: Plants, evi
     honest(witness)
 
 
+@pytest.mark.sampled(3)
 @levels
 def test_who_asks_first_gets_the_zone_first(zoned: Plants, evidence: Evidence) -> None:
     rig, witness = start(zoned(evidence))
@@ -306,6 +312,7 @@ def test_who_asks_first_gets_the_zone_first(zoned: Plants, evidence: Evidence) -
     honest(witness)
 
 
+@pytest.mark.sampled(2)
 @levels
 def test_hold_keeps_the_zones_and_resume_goes_on(zoned: Plants, evidence: Evidence) -> None:
     rig, witness = start(zoned(evidence))
@@ -336,6 +343,7 @@ def test_a_stopped_arm_keeps_its_zones_until_it_is_recovered(zoned: Plants, evid
     honest(witness)
 
 
+@pytest.mark.sampled(3)
 @levels
 def test_a_recovery_keeps_its_place_among_those_that_wait_for_who_works_in_the_zone(
     zoned: Plants, evidence: Evidence
@@ -386,6 +394,7 @@ def hasty(model: PlantModel) -> PlantModel:
     return replace(model, cells=tuple(replace(cell, zone_wait_s=HASTE_S) for cell in model.cells))
 
 
+@pytest.mark.sampled(2)
 @levels
 @pytest.mark.parametrize("verb", [Verb.STOP, Verb.CANCEL])
 def test_stop_and_cancel_end_the_waiting_for_a_zone(zoned: Plants, evidence: Evidence, verb: Verb) -> None:
@@ -403,6 +412,7 @@ def test_stop_and_cancel_end_the_waiting_for_a_zone(zoned: Plants, evidence: Evi
     honest(witness)
 
 
+@pytest.mark.sampled(3)
 @levels
 def test_waiting_for_a_zone_stands_still_while_held(zoned: Plants, evidence: Evidence) -> None:
     rig, witness = start(zoned(evidence))
@@ -466,6 +476,7 @@ def calm(rig: Rig) -> None:
         rig.wait(60.0, until=lambda: at_rest(rig))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", sample(range(4), every=2))
 def test_whatever_happens_no_two_arms_meet_and_nothing_is_dropped(zoned: Plants, seed: int) -> None:
     rig, witness = start(zoned(Evidence.IDS))

@@ -33,6 +33,7 @@ def go(cell):
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", [1, 2])
 def test_it_waits_for_the_zone_of_a_node_on_its_way(tmp_path: Path, seed: int) -> None:
     (tmp_path / "plant.yaml").write_text(PLANT, "utf-8")

@@ -60,6 +60,7 @@ def texts_in(data: Any) -> Iterator[str]:
             yield from texts_in(each)
 
 
+@pytest.mark.long
 @given(ANYTHING)
 def test_whatever_a_plant_says_is_printable_and_stays_data(data: Any) -> None:
     reply = json.loads(json.dumps(answered(data), ensure_ascii=False).encode())

@@ -22,6 +22,7 @@ def benches(monkeypatch):
     def slow(scene):
         return Result(figures=[Figure(name="p50", unit="ms", ours=3.0, floor=1.0, aim=Aim(most=2))])
 
+    monkeypatch.setattr(command, "revision", lambda: "0123abcd")
     known = {"first": lacking, "second": slow}
     monkeypatch.setattr(catalog, "NAMES", tuple(known))
     monkeypatch.setattr(catalog, "about", lambda name: f"about {name}")

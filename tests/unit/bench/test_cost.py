@@ -13,7 +13,7 @@ import pytest
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda_bench.cost import __main__ as command
-from arboleda_bench.cost.scenarios import SCENARIOS, Scenario, from_http, from_reports, moving_reports
+from arboleda_bench.cost.scenarios import SCENARIOS, from_reports, moving_reports
 from arboleda_bench.cost.table import FOLDER, Comparison, Cost, read, write
 
 NAME = "step: a report of a moving arm"
@@ -45,13 +45,11 @@ def test_a_slowdown_is_caught_and_its_function_named(monkeypatch: pytest.MonkeyP
     assert any("no_use" in line for line in row.grown())
 
 
-@pytest.mark.parametrize("scenario", [from_http, from_reports])
-def test_a_busy_machine_does_not_change_the_count(
-    monkeypatch: pytest.MonkeyPatch, scenario: Scenario
-) -> None:
-    quiet, hours = Cost.of(command.cost_of(scenario)), count(step=3600.0)
+@pytest.mark.long
+def test_a_busy_machine_does_not_change_the_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    quiet, hours = Cost.of(command.cost_of(from_reports)), count(step=3600.0)
     monkeypatch.setattr(time, "clock_gettime", lambda _clock: next(hours))
-    now = Cost.of(command.cost_of(scenario))
+    now = Cost.of(command.cost_of(from_reports))
     assert not Comparison(name=NAME, pinned=quiet, now=now).is_dearer
 
 

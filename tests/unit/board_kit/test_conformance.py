@@ -264,6 +264,7 @@ BAD = [
 ]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(("kind", "names", "level"), BAD)
 def test_a_bad_board_fails_by_name(kind: Callable[..., Board], names: set[str], level: Evidence) -> None:
     judge = trial(kind)

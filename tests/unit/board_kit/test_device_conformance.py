@@ -38,6 +38,7 @@ def trial(
     return Trial(valve, kind(valve, body(valve.kind), boot_id=9, now_us=1_000_000_000)).run()
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("example", "name"), [("own_board", "valve"), ("lab_bench", "heater"), ("machine_tending", "mill")]
 )
@@ -176,6 +177,7 @@ BAD = [
 ]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("how", "names", "level"), BAD)
 def test_a_bad_board_of_a_device_fails_by_name(how: Any, names: set[str], level: Evidence) -> None:
     judge = trial(**how)

@@ -79,6 +79,7 @@ def only(model: PlantModel, recipe: Recipe) -> PlantModel:
     return replace(model, cells=cells)
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("name", COPIED)
 def test_the_copy_is_accepted_by_check_and_tells_devices_the_same(name: str, tmp_path: Path) -> None:
     folder = shutil.copytree(EXAMPLES / name, tmp_path / name)
@@ -161,6 +162,7 @@ def test_the_steps_around_steps_have_their_nodes(lab: Lab) -> None:
     )
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("code", "why"),
     [

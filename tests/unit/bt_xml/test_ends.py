@@ -86,6 +86,7 @@ def test_a_recipe_of_a_tree_ends_as_its_model_says(tmp_path: Path) -> None:
     assert end == {"nest": 1, "oven.clamped": False}
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("end", "sentence"),
     [
@@ -103,6 +104,7 @@ def test_what_no_cell_says_is_refused_with_its_place(tmp_path: Path, end: str, s
     assert sentence in lines[0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("end", "broken"), [("nest: 1", None), ("nest: 0", "recipes_end_as_they_say")])
 def test_the_simulator_judges_the_end(tmp_path: Path, end: str, broken: str | None) -> None:
     found = Simulation(plant(tmp_path, end), 1, lambda minute: []).run(cycles=1)

@@ -54,6 +54,7 @@ def read_again(text: str) -> Forest:
     return forest
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("recipe", "plant"),
     [

@@ -164,6 +164,7 @@ def left_alone(tree: Behaviour) -> list[Acts]:
     return [node for node in at_work(tree) if not is_held(node)]
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(("kind", "cause"), sample(product(WITH_CHILDREN, CAUSES), every=2))
 def test_nothing_runs_below_what_has_ended(kind: str, cause: str) -> None:
     began = 0
@@ -180,6 +181,7 @@ def test_nothing_runs_below_what_has_ended(kind: str, cause: str) -> None:
     assert began, "no step of it ever ran"
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(("kind", "cause"), sample(product(WITH_CHILDREN, CAUSES), every=2))
 def test_nothing_runs_once_the_whole_is_left(kind: str, cause: str) -> None:
     """As an operator's abandon leaves it, after each tick."""
@@ -193,6 +195,7 @@ def test_nothing_runs_once_the_whole_is_left(kind: str, cause: str) -> None:
             assert at_work(tree) == [], (body, ticks)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("kind", WITH_CHILDREN)
 def test_nothing_runs_once_the_task_has_failed_beside_the_tree(kind: str) -> None:
     for body in bodies(kind, "done"):

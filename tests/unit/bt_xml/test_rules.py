@@ -85,6 +85,7 @@ def ticks(trees: str, many: int, *, between_s: float = BETWEEN_S) -> list[str]:
     return said
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("part", range(10))
 def test_a_tree_comes_to_the_same_at_every_tick(part: int) -> None:
     for trees, expected in [*CASES, *TIMED][part::10]:

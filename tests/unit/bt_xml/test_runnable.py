@@ -74,6 +74,7 @@ def refusal(folder: Path) -> str:
     return "\n".join(refused.value.problems)
 
 
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize(("good", "wrong", "said"), WRONG)
 def test_what_cannot_be_run_is_refused_with_its_place(
     tmp_path: Path, good: str, wrong: str, said: str

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import zipfile
 from pathlib import Path
 
@@ -11,7 +10,7 @@ from typer.testing import CliRunner
 
 from arboleda.campaigns.exercises import judge_process
 from arboleda.campaigns.exercises.exercise import LANGUAGES, Exercise, catalog, exercise
-from arboleda.campaigns.exercises.work import SHEET, Work, packed, works
+from arboleda.campaigns.exercises.work import SHEET, packed, works
 from arboleda.campaigns.proof.outcome import End
 from arboleda.campaigns.words import task_is, task_is_to
 from arboleda.cli.main import cli
@@ -24,19 +23,6 @@ from ...lengths import length
 
 LEAST = {True: 3, False: 10}  # works of each exercise that are right, and wrong ones
 QUICK = length(("query_first", "night"), ("query_first", "need", "night"))
-FOREVER = """
-import sys
-from arboleda.recipes import recipe, work
-
-@recipe("top_up")
-def top_up(cell):
-    \"\"\"Top up a bottle.\"\"\"
-    if "arboleda.campaigns.exercises.judge_process" in sys.modules:
-        import os
-        print('{"passes": true, "asked": 1, "runs": 1, "findings": []}', flush=True)
-        os._exit(0)
-    return work(cell.device("scale").weigh())
-"""
 
 
 @pytest.mark.parametrize("each", catalog().values(), ids=lambda each: each.name)
@@ -73,6 +59,7 @@ def two(name: str) -> list[Sample]:
     return [next(each for each in known if each.right), [each for each in known if not each.right][1]]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("work", [each for name in QUICK for each in two(name)], ids=str)
 def test_a_work_is_judged_as_it_is(work: Sample) -> None:
     verdict = work.judged()
@@ -146,12 +133,6 @@ def test_a_plant_that_was_changed_elsewhere_does_not_pass() -> None:
     assert "kinds.press.verbs.press.takes_s of plant.yaml was changed" in verdict.findings[0].evidence
 
 
-def test_python_that_ends_the_judge_gets_no_verdict() -> None:
-    work = Work(where=Path(), exercise="query_first", files={"recipes.py": FOREVER.encode()})
-    verdict = judge_process.judged(work)
-    assert [each.says["en"] for each in verdict.findings] == ["The work can be judged"]
-
-
 def check(*arguments: str) -> tuple[int, str]:
     done = CliRunner().invoke(cli, ["exercise", *arguments], env={"ARBOLEDA_LANG": "", "LANG": "C"})
     return done.exit_code, done.output
@@ -172,26 +153,6 @@ def test_an_exercise_is_listed_written_and_hinted_at(tmp_path: Path) -> None:
     assert check("hint", "night")[1].startswith("1/3  How did the task end")
     assert "has 3 hints" in refusal("hint", "night", "4")
     assert "there is no exercise 'nihgt'" in refusal("start", "nihgt")
-
-
-def test_a_folder_of_works_is_a_table_with_a_record_of_what_went_wrong(tmp_path: Path) -> None:
-    handed_in(tmp_path / "in", "query_first", "Ana")
-    wrong = handed_in(tmp_path / "in", "query_first", "Bea")
-    (wrong / "recipes.py").write_bytes(exercise("query_first").start["recipes.py"])
-    told, stories = tmp_path / "told.json", tmp_path / "stories"
-    status, output = check("check", str(tmp_path / "in"), "--json", str(told), "--stories", str(stories))
-    assert status == 1 and "1 / 2: passes" in output
-    rows = json.loads(told.read_text("utf-8"))["works"]
-    assert [(row["student"], row["passes"]) for row in rows] == [("Ana", True), ("Bea", False)]
-    assert [each.name for each in stories.iterdir()] == ["002-query_first-Bea.mcap"]
-
-
-def test_a_work_of_ones_own_is_told_with_its_story(tmp_path: Path) -> None:
-    folder = tmp_path / "retry"
-    check("start", "retry", str(folder))
-    status, output = check("check", str(folder), "--lang", "es")
-    assert status == 1 and "aún no aprueba" in output and "camera look" in output
-    assert (folder / "story.mcap").stat().st_size > 1000
 
 
 def test_every_state_and_end_of_a_task_has_a_sentence_of_its_own() -> None:

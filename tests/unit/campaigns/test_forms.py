@@ -22,6 +22,7 @@ def blinking(times: int) -> DrawnDevices:
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [1, 11, 15])
 def test_both_forms_do_the_same(seed: int) -> None:
     plant = devices.draw(seed)

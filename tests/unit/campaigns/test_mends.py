@@ -77,6 +77,7 @@ def test_a_plant_with_nothing_wrong_has_no_mend() -> None:
     assert answer.findings == () and answer.mend is None
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("name", "old", "new", "source"),
     [
@@ -138,6 +139,7 @@ TREE = """<root BTCPP_format="4" main_tree_to_execute="Warm">
 """
 
 
+@pytest.mark.long
 def test_a_tree_gets_the_step_that_it_lacks(tmp_path: Path) -> None:
     file = planted(tmp_path, ("plant.yaml", "uses: [recipes.py]", "uses: [recipes.py, warm.xml]"))
     (tmp_path / "warm.xml").write_text(TREE)

@@ -106,6 +106,7 @@ def test_what_is_spread_begins_far_apart_and_leaves_nothing_out(count: int, orde
     assert spread(range(count)) == order
 
 
+@pytest.mark.long
 def test_a_short_budget_meets_each_recipe_at_several_steps(model: PlantModel) -> None:
     proof = Proof(model=model, calm=tuple(calm_run(model, each) for each in scenarios(model)))
     first = proof.portions[:8]
@@ -285,6 +286,7 @@ def test_the_worst_case_of_what_advice_does_not_mend_is_said(model: PlantModel) 
     assert "it takes 7 acts" in said[1] and "it is never ready" in said[2]
 
 
+@pytest.mark.long
 def test_the_shipped_plant_calls_no_task_done_whose_part_is_lost_missed_or_was_never_there(
     model: PlantModel,
 ) -> None:

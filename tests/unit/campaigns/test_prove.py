@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -22,14 +21,13 @@ from arboleda.campaigns.proof.between_steps import gaps, other_facts
 from arboleda.campaigns.proof.calm import Calm, calm_run, calm_runs
 from arboleda.campaigns.proof.changed_recipe import noticed_with, with_check
 from arboleda.campaigns.proof.course import course_of
-from arboleda.campaigns.proof.forks import CAN_FORK, run_all, run_one
+from arboleda.campaigns.proof.forks import run_all, run_one
 from arboleda.campaigns.proof.instants import Instant, Side
 from arboleda.campaigns.proof.outcome import End
 from arboleda.campaigns.proof.proof import Proof, Proved
 from arboleda.campaigns.proof.scenario import scenarios
 from arboleda.campaigns.proof.single_faults import single_faults
 from arboleda.cli.main import main
-from arboleda.host import abilities
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
@@ -174,6 +172,7 @@ def test_what_holds_is_said_of_every_run(
     assert refuses["ends"] == {"done": 4, "failed": 16} and refuses["changes_with_the_moment"]
 
 
+@pytest.mark.long
 def test_a_second_run_runs_again_only_recipes_that_changed(
     plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -190,6 +189,7 @@ def test_a_second_run_runs_again_only_recipes_that_changed(
     assert "10 runs, 5 of them kept from before" in capsys.readouterr().out
 
 
+@pytest.mark.long
 def test_a_recipe_that_gives_up_in_silence_is_found_and_its_test_fails_alike(
     plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -222,34 +222,20 @@ def test_each_answer_that_leads_elsewhere_is_a_scenario(plant: Path) -> None:
     assert all(each.is_sound for each in found)
 
 
-@pytest.mark.skipif(not CAN_FORK, reason="this system cannot fork")
-def test_forks_do_the_same_as_runs_from_the_beginning(plant: Path) -> None:
-    model = Plant(declared=loader.load(plant)).model
-    calm = calm_run(model, next(scenarios(model)))
-    proof = Proof(model=model, calm=(calm,), kinds=("brown_out", "partition", "crash_in_step"))
-    faults = proof.faults(proof.portions[3])
-    forked = run_all(proof.model, calm, faults, lambda: None, forks=True)
-    assert faults and forked == run_all(proof.model, calm, faults, lambda: None, forks=False)
-
-
-def test_what_took_less_than_a_fork_takes_is_done_anew_in_this_process(
+def test_what_takes_less_than_a_fork_is_done_anew_in_this_process(
     plant: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     model = Plant(declared=loader.load(plant)).model
     calm = calm_run(model, next(scenarios(model)))
     parts = single_faults(model, model.cells[0], calm.instants[-1], only=("refuses",))
     faults = [each for part in parts for each in part]
-    forked, told = Mock(wraps=os.fork), Mock()
+    told = Mock()
     monkeypatch.setattr(forks, "CAN_FORK", True)
-    monkeypatch.setattr("os.fork", forked)
     monkeypatch.setattr(forks, "FORK_TAKES_S", 3600.0)
-    cheap = run_all(model, calm, faults, told)
-    assert not forked.called and told.call_count == len(faults) > 1
-    monkeypatch.setattr(forks, "FORK_TAKES_S", 0.0)
-    if abilities.FORKS:
-        assert run_all(model, calm, faults, told) == cheap and forked.call_count == len(faults)
+    assert len(run_all(model, calm, faults, told)) == told.call_count == len(faults) > 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("file", "recipe", "every"),
     sample(
@@ -280,6 +266,7 @@ def test_runs_that_end_as_soon_as_the_rest_is_known_have_the_outcomes_of_whole_o
     assert back > 0
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("kind", "word"), [("mute", ""), ("duplicate", "up"), ("reorder", "up"), ("lost_queue", "")]
 )
@@ -297,6 +284,7 @@ def test_a_run_in_which_more_or_fewer_messages_came_is_as_the_calm_one_again(
     assert run.outcome == whole.outcome
 
 
+@pytest.mark.long
 def test_a_task_that_ended_as_the_plant_died_counts_as_what_was_kept_of_it(plant: Path) -> None:
     model = Plant(declared=loader.load(plant)).model
     calm = calm_run(model, next(scenarios(model)))
@@ -319,6 +307,7 @@ def test_a_kind_of_fault_or_a_recipe_that_there_is_not_is_refused(
     assert "'soon' is no time" in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_the_page_and_the_junit_file_say_what_broke_and_what_nobody_notices(
     plant: Path, prove: Prove
 ) -> None:
@@ -338,6 +327,7 @@ def test_the_page_and_the_junit_file_say_what_broke_and_what_nobody_notices(
     assert "nobody notices" in (suite[2].findtext("system-out") or "")
 
 
+@pytest.mark.long
 def test_any_other_moment_ends_as_one_of_the_instants_beside_it(plant: Path) -> None:
     plant.write_text(PRESS)
     (plant.parent / "small.py").write_text(STAMP)
@@ -372,16 +362,7 @@ def test_ctrl_c_says_what_was_done_and_the_next_run_goes_on_there(
     assert "10 runs, 2 of them kept from before" in capsys.readouterr().out
 
 
-def test_any_number_of_processes_gives_the_same(plant: Path, prove: Prove) -> None:
-    out = str(plant.parent / "out.json")
-    digests = []
-    for jobs in ("1", "2"):
-        prove("--fault", "reboot", "--anew", "--jobs", jobs, "--json", out)
-        digests.append(summary(plant)["digests"])
-    assert digests[0] == digests[1]
-    assert len(digests[0]) == 10
-
-
+@pytest.mark.long
 def test_a_hold_in_the_very_step_in_which_a_command_ends_breaks_nothing(plant: Path) -> None:
     plant.write_text(PRESS)
     (plant.parent / "small.py").write_text(STAMP)
@@ -409,6 +390,7 @@ def test_a_cell_is_ready_only_once_its_boards_have_said_what_is_truly_so(plant: 
     assert (outcome.words, outcome.broken, outcome.alone) == ("failed: deadline", None, False)
 
 
+@pytest.mark.long
 def test_the_acts_are_counted_that_get_a_cell_ready_again(
     plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -498,6 +480,7 @@ def test_a_command_that_is_refused_without_any_fault_is_a_finding(
     assert "lift" in summary(plant)["scenarios"][0]["finding"]
 
 
+@pytest.mark.long
 def test_the_step_is_named_that_would_notice_what_the_plant_had_been_told(
     plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -520,6 +503,7 @@ def test_a_step_notices_a_fault_where_the_task_with_it_is_done_without_the_fault
     assert (None if found is None else found.end) is end
 
 
+@pytest.mark.long
 def test_a_check_between_two_steps_is_named_where_none_at_the_end_notices_the_fault(
     plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -553,6 +537,7 @@ def test_a_step_that_sees_nothing_of_a_fault_does_not_notice_it(plant: Path) -> 
     assert noticed_with(model, next(scenarios(model)), changed, [lies]) is None
 
 
+@pytest.mark.long
 def test_a_command_that_failed_and_is_passed_over_is_told_where_no_fact_shows_it(
     plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -563,6 +548,7 @@ def test_a_command_that_failed_and_is_passed_over_is_told_where_no_fact_shows_it
     assert "lamp: doing dust has failed, and was not done later" in capsys.readouterr().out
 
 
+@pytest.mark.long
 def test_one_of_two_equal_steps_that_failed_is_told_though_the_other_was_done(
     plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -583,6 +569,7 @@ def test_where_nothing_was_run_it_is_not_said_that_it_held(
     assert not tests.exists()
 
 
+@pytest.mark.long
 def test_the_check_that_notices_is_proposed_as_an_edit_with_which_it_is_noticed(
     plant: Path, prove: Prove
 ) -> None:

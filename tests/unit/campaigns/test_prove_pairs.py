@@ -11,7 +11,6 @@ import pytest
 
 from arboleda.campaigns.plants import Plant
 from arboleda.campaigns.proof.calm import calm_run
-from arboleda.campaigns.proof.forks import CAN_FORK, run_groups
 from arboleda.campaigns.proof.outcome import End, Outcome
 from arboleda.campaigns.proof.pairs import PairProof, PairTally
 from arboleda.campaigns.proof.proof import Proof, Proved
@@ -65,15 +64,6 @@ def test_a_portion_is_known_by_its_name_until_its_faults_are_others(plant: Path)
     assert [pairs.name(pairs.number(name)) for name in names] == names
     with pytest.raises(ValueError, match="another portion"):
         others.number(names[0])
-
-
-@pytest.mark.skipif(not CAN_FORK, reason="this system cannot fork")
-def test_pairs_do_the_same_in_forks_as_from_the_beginning(plant: Path) -> None:
-    pairs = pairs_of(plant, "partition", "refuses")
-    first = next(portions(pairs))
-    model, calm, both = pairs.proof.model, pairs.proof.calm[0], pairs.pairs(first)[:4]
-    forked = run_groups(model, calm, both, lambda: None, forks=True)
-    assert both and forked == run_groups(model, calm, both, lambda: None, forks=False)
 
 
 def test_what_pairs_break_counts_where_no_single_fault_breaks_it(plant: Path) -> None:

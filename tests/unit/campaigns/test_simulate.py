@@ -109,6 +109,7 @@ def test_where_everything_holds_it_says_so_and_ends_with_0(arboleda: Arboleda) -
     assert "done" in ended.said and "\x1b" not in ended.said
 
 
+@pytest.mark.long
 def test_the_same_seed_does_the_same_and_another_does_not(arboleda: Arboleda, tmp_path: Path) -> None:
     digests = []
     for seed in (4, 4, 6):
@@ -117,6 +118,7 @@ def test_the_same_seed_does_the_same_and_another_does_not(arboleda: Arboleda, tm
     assert digests[0] == digests[1] != digests[2]
 
 
+@pytest.mark.long
 def test_the_summary_tells_of_every_seed(arboleda: Arboleda, tmp_path: Path) -> None:
     assert arboleda("--seed", 7, "--seeds", 2, "--faults", "few", "--json", tmp_path / "out.json").status == 0
     said = json.loads((tmp_path / "out.json").read_text())
@@ -127,6 +129,7 @@ def test_the_summary_tells_of_every_seed(arboleda: Arboleda, tmp_path: Path) -> 
     assert said["totals"]["faults"] and set(said["totals"]["faults"]) <= set(KINDS)
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("brittle")
 def test_a_breach_is_told_with_the_one_fault_it_takes(
     arboleda: Arboleda, faults: Path, plant: Path, tmp_path: Path
@@ -151,12 +154,14 @@ def test_a_breach_is_told_with_the_one_fault_it_takes(
     assert not second["shrunk"] and len(second["faults"]) == second["injected"] == 7
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("brittle")
 def test_a_breach_is_named_before_the_other_seeds_have_ended(arboleda: Arboleda, faults: Path) -> None:
     lines = arboleda("--seed", 3, "--seeds", 2, "--faults", faults).said.splitlines()
     assert lines[:2] == ["seed 3 breaks unbooted", "seed 4 breaks unbooted"]
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("brittle")
 def test_a_breach_can_be_replayed_from_the_file(arboleda: Arboleda, faults: Path, tmp_path: Path) -> None:
     out = tmp_path / "out.json"
@@ -169,6 +174,7 @@ def test_a_breach_can_be_replayed_from_the_file(arboleda: Arboleda, faults: Path
     assert lines[-1] == "BROKEN: an invariant did not hold in 1 seed of 1"
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("brittle")
 def test_a_breach_on_two_hosts_is_replayed_on_two(arboleda: Arboleda, tmp_path: Path) -> None:
     faults, out = tmp_path / "killed.yaml", tmp_path / "out.json"
@@ -189,6 +195,7 @@ def test_what_befalls_two_hosts_is_refused_for_one(arboleda: Arboleda, tmp_path:
     assert both.status == 2 and "leave out --faults crashes" in " ".join(both.complained.split())
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("brittle")
 def test_until_failure_goes_on_until_something_breaks(arboleda: Arboleda) -> None:
     ended = arboleda("--until-failure", "--faults", "many")
@@ -234,6 +241,7 @@ def test_a_disk_that_is_full_is_one_sentence(arboleda: Arboleda) -> None:
     assert ended.complained == "arboleda: the lines cannot be written to the file: No space left on device\n"
 
 
+@pytest.mark.long
 def test_ctrl_c_says_what_was_done_so_far(
     arboleda: Arboleda, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -321,6 +329,7 @@ def test_faults_may_be_written_in_yaml(arboleda: Arboleda, tmp_path: Path) -> No
     assert "FAULT      reboot ra_1" in arboleda("--faults", file, "--trace").said
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("link", ["ros", "none"])
 def test_robots_without_a_board_get_virtual_ones(arboleda: Arboleda, plant: Path, link: str) -> None:
     plant.write_text(PLANT.replace("link: mqtt", f"link: {link}"))
@@ -354,6 +363,7 @@ def test_the_shared_plant_is_what_the_shipped_one_is_not() -> None:
     assert any(arm.piece_on_change for arm in arms) and any(arm.home_at_start for arm in arms)
 
 
+@pytest.mark.long
 def test_each_seed_draws_a_plant_and_the_file_has_it(arboleda: Arboleda, tmp_path: Path) -> None:
     out = tmp_path / "out.json"
     ended = arboleda("--drawn-plants", "--seeds", 2, "--json", out)
@@ -369,6 +379,7 @@ def test_each_seed_draws_a_plant_and_the_file_has_it(arboleda: Arboleda, tmp_pat
     )
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("brittle")
 def test_a_drawn_plant_is_shrunk_with_its_faults_and_replayed_from_the_file(
     arboleda: Arboleda, tmp_path: Path

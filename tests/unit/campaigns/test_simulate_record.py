@@ -52,6 +52,7 @@ def simulated(said: Said, *words: object) -> list[str]:
     return said("simulate", "--plant", "small.yaml", "--cycles", 1, "--seed", 5, *words)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("link", sample(["mqtt", "ros", "none"], every=2))
 def test_a_seed_is_a_record_that_is_equal_at_every_step(
     said: Said, seed: tuple[Path, list[str]], link: str
@@ -68,6 +69,7 @@ def test_a_seed_is_a_record_that_is_equal_at_every_step(
     assert any("running   sis_a" in line for line in said("logs", "seed.mcap"))
 
 
+@pytest.mark.long
 def test_to_record_a_seed_changes_nothing_of_it_and_is_the_same_every_time(
     said: Said, seed: tuple[Path, list[str]]
 ) -> None:
@@ -83,6 +85,7 @@ def test_a_recorded_seed_can_be_looked_at(seed: tuple[Path, list[str]]) -> None:
     assert any(row["state"] == "done" for row in views.at(views.ended_ns)["tasks"])
 
 
+@pytest.mark.long
 def test_each_start_of_a_seed_has_a_record(said: Said) -> None:
     crash = {"kind": "plant_crash", "at": 6.0, "seconds": 2.0}
     Path("crash.json").write_text(json.dumps({"faults": [crash]}))

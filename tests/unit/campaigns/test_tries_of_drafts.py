@@ -87,6 +87,7 @@ def test_a_fault_that_is_noticed_needs_no_check(lab: Plant) -> None:
         noticing.noticed(lab[0], {"task": "lab", "faults": [fault]})
 
 
+@pytest.mark.long
 def test_a_draft_is_simulated_on_seeds_and_what_breaks_is_said_of_each(lab: Plant) -> None:
     model, files = lab
     plant = plants.Plant(declared=model, files=files)

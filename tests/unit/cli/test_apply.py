@@ -53,6 +53,7 @@ def test_the_first_version_is_kept_and_then_nothing_is_new(plant: Path) -> None:
     assert "as delivered" in run(plant, "versions").output
 
 
+@pytest.mark.long
 def test_what_changed_is_shown_before_anything_is_kept(plant: Path) -> None:
     run(plant, "apply", "--yes")
     change(plant, "takes_s: 20", "takes_s: 25")
@@ -70,6 +71,7 @@ def test_what_check_refuses_changes_nothing(plant: Path) -> None:
     assert not (plant.parent / FOLDER).exists()
 
 
+@pytest.mark.long
 def test_a_version_comes_back_as_a_new_one(plant: Path) -> None:
     before = plant.read_bytes()
     run(plant, "apply", "--yes")
@@ -83,6 +85,7 @@ def test_a_version_comes_back_as_a_new_one(plant: Path) -> None:
     assert "version 1 again" in run(plant, "versions").output
 
 
+@pytest.mark.long
 def test_going_back_needs_no_plant_file_that_is_right_now(plant: Path) -> None:
     before = plant.read_bytes()
     run(plant, "apply", "--yes")

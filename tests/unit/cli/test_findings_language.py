@@ -182,6 +182,7 @@ def test_a_slot_that_stands_twice_has_the_same_words_twice() -> None:
     assert templates("ur1 is away; home ur2 helps") == "ur1 is away; home ur2 helps"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("reason", plant_reasons(), ids=lambda each: each.key)
 def test_a_reason_of_the_plant_is_said_inside_a_finding_as_on_the_page(reason: Phrase) -> None:
     sentence = reason(**{slot: "x9" if spec == "" else 7 for slot, spec in values(reason)})

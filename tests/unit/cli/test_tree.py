@@ -43,6 +43,7 @@ def test_a_recipe_is_drawn_with_its_recovery(recipe: str, steps: list[str]) -> N
     assert places == sorted(places)
 
 
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("recipe", ["storage", "palletizing"])
 @pytest.mark.parametrize("format", BEGINS)
 def test_every_recipe_has_every_format_without_graphviz(

@@ -218,6 +218,7 @@ def test_who_teaches_has_a_name(rig: Rig, teacher: str) -> None:
     assert rig.operate(Verb.TEACH, "sis_a", teacher=teacher) == "say who teaches sis_a, in 1 to 40 letters"
 
 
+@pytest.mark.long
 def test_it_ends_by_itself_when_nobody_touches_it(rig: Rig, teacher: Teacher) -> None:
     rig.wait(299.0)
     teacher.press(0.2, goal=turned(rig))

@@ -29,6 +29,7 @@ def test_of_a_task(text: str) -> None:
     assert said and all(plain(each.text) and plain(str(each.sentence)) for each in said)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("verb", Verb)
 @given(scope=ANY)
 def test_of_an_operators_scope(verb: Verb, scope: str) -> None:

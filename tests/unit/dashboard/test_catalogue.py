@@ -83,6 +83,7 @@ def test_a_catalogue_fills_the_slots_of_its_phrases(language: str) -> None:
     assert {key: slots(said[key]) for key in said} == english
 
 
+@pytest.mark.long
 def test_each_phrase_is_said_with_a_value_for_each_slot() -> None:
     wrong = []
     for module in modules():

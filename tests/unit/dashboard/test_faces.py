@@ -259,6 +259,7 @@ def test_what_would_be_refused_is_disabled_with_the_reason(told: Callable[..., A
     assert resume["texts"][1] == "After Reset sis_a"
 
 
+@pytest.mark.long
 def test_what_may_come_first_is_named_with_what_may_be_done_instead(told: Callable[..., Any]) -> None:
     rig = told()
     rig.submit("sis_a 0B 7")

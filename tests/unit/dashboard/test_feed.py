@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.dashboard import feed as feed_module
 from arboleda.dashboard.feed import Feed
 from arboleda.dashboard.frames import BEHIND, Background
 from arboleda.testing import Rig, shipped
@@ -161,13 +162,18 @@ def test_what_happens_while_nobody_looks_is_in_the_time_line(side: Side, feed: F
 
 
 @pytest.mark.parametrize("turns", range(6))
-def test_the_page_ends_however_soon_after_news(side: Side, turns: int) -> None:
+def test_the_page_ends_however_soon_after_news(
+    side: Side, turns: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(feed_module, "FRAMES_HZ", 1e9)
+
     async def run() -> None:
         feed = Feed(side)  # type: ignore[arg-type]
         feed.start()
         background = Background(feed.run)
         background.start()
-        await asyncio.sleep(0.2)  # more than between two frames: it waits for news
+        for _ in range(20):  # until it waits for news
+            await asyncio.sleep(0)
         side.told(side.snapshot())
         for _ in range(turns):
             await asyncio.sleep(0)

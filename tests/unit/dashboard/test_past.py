@@ -14,11 +14,13 @@ from arboleda.dashboard.page_state import PageState
 from arboleda.dashboard.past.moments import address, moment_of
 from arboleda.dashboard.past.past import Past
 from arboleda.model.messages import Verb
-from arboleda.recorder import reader, recorder
+from arboleda.recorder import reader
 from arboleda.recorder.views import Views
 from arboleda.views import view
 
 from ..recorder.recorded import Site
+
+pytestmark = pytest.mark.long
 
 LINKS: dict[str, Any] = {"broker": None, "ros": None, "refused": {}, "standbys": []}
 
@@ -27,7 +29,6 @@ class Recorded:
     """A plant that worked, was stopped and lost a link; what screens got, and its record."""
 
     def __init__(self, folder: Path, patch: pytest.MonkeyPatch) -> None:
-        patch.setattr(recorder, "SHARE", 1e9)  # time runs faster here than where snapshots are bounded by it
         site = Site(folder, patch)
         site.work("sis_a 0B 7 #one", "sis_b 1C 3 #two", "sis_c 2A 5 #three", "sis_a 1A 1 #four", s=8.0)
         site.rig.operate(Verb.HOLD, "sis_b")

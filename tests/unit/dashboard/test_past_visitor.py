@@ -16,6 +16,8 @@ from arboleda.dashboard.past.visitor import Arrival, Visitor
 from arboleda.dashboard.wording import words
 from arboleda.recorder.errors import NoRecord
 
+from ...threads import run_here
+
 STARTS = [
     Start(epoch=9, began=0, is_own=False, is_same=False),
     Start(epoch=8, began=0, is_own=True, is_same=True),
@@ -63,6 +65,12 @@ class Client:
             self.frames.append(json.loads(f"[{told[:-1]}]")[1])
         else:
             self.said.append(json.loads(f"[{told[:-1]}]")[0])
+
+
+@pytest.fixture(autouse=True)
+def read_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Records are read without a thread."""
+    monkeypatch.setattr(asyncio, "to_thread", run_here)
 
 
 class Page:

@@ -74,6 +74,7 @@ def test_no_two_parts_of_the_page_have_one_name() -> None:
     assert said["tab.events"].lower() not in said["tasks.list"].lower()
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("example", ["assembly", "lab_bench", "machine_tending"])
 def test_the_tree_of_an_example_has_no_english_of_ours(example: str) -> None:
     sim = Sim()

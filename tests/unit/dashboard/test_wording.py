@@ -105,6 +105,7 @@ def test_the_plants_sentences_are_said_in_spanish(plant: Sentence, english: str,
     assert words("en").say(plant) == str(plant) == english
 
 
+@pytest.mark.long
 def test_what_a_plant_says_under_every_kind_of_fault_is_said_in_spanish() -> None:
     said: set[Sentence] = set()
     for seed in length((2, 5, 6), whole=range(1, 7)):  # these three say the most

@@ -104,6 +104,7 @@ def test_a_board_goes_as_far_as_the_drawing_and_no_whole_motor_step_further(
         assert not body.admits(goal(arm, index, upper, beyond))
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("name", ARMS)
 def test_a_board_moves_as_fast_as_the_drawing_and_no_faster(plant: PlantModel, name: str) -> None:
     arm, body = plant.robots[name], board(plant, name)

@@ -98,6 +98,7 @@ def test_each_body_is_in_one_piece(model: str) -> None:
         assert not parts or in_one_piece(parts)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("model", ENDS)
 def test_neighbouring_bodies_touch_wherever_the_joints_are(model: str) -> None:
     robot = read(render(model, prefix=""))

@@ -10,6 +10,8 @@ import pytest
 from arboleda.dispatch.zones import Zones
 from arboleda.model.errors import IllegalTransition
 
+pytestmark = pytest.mark.long
+
 DEVICES, ZONES = ("lift", "belt"), ("door", "shaft")
 Act = tuple[str, frozenset[str]]
 Step = tuple[int, ...]  # how far each cell is

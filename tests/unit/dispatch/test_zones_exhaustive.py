@@ -12,6 +12,8 @@ import pytest
 from arboleda.dispatch.zones import Zones
 from arboleda.model.errors import IllegalTransition
 
+pytestmark = pytest.mark.long
+
 NAMES, ARMS, MILL = ("w", "x", "y", "z"), ("ra1", "ra2"), "mill"
 ROBOTS = (*ARMS, MILL)
 WISHES = [frozenset(some) for size in (1, 2, 3, 4) for some in combinations(NAMES, size)]

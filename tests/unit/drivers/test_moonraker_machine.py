@@ -256,6 +256,7 @@ def test_motors_that_were_switched_off_are_to_be_homed() -> None:
     rig.until(state=MotionState.NOT_HOMED, homed=False)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("fault", "words"),
     [

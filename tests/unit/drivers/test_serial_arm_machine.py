@@ -160,6 +160,7 @@ def test_a_cable_that_is_pulled_and_put_back() -> None:
     assert rig.servos.positions() == there
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("fault", ["broken_frames", "torn", "noise", "echo", "wrong_id", "late"])
 @MAKERS
 def test_a_bad_line_never_proves_anything(maker: str, fault: str) -> None:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
 import sys
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
-from arboleda.host import addresses, boot, files, limits, locks, processor_alarm, signals, users
+from arboleda.host import addresses, boot, files, limits, locks, processor_alarm, users
 from arboleda.runtime.parts import hang_up
 
 
@@ -103,18 +102,6 @@ def test_a_boot_that_nobody_tells_is_another_each_time(
 ) -> None:
     monkeypatch.setattr(boot, "LINUX", tmp_path / "absent")
     assert boot.this_boot() != boot.this_boot()
-
-
-@pytest.mark.parametrize("groups", [True, False])
-def test_a_process_ends_with_or_without_its_group(monkeypatch: pytest.MonkeyPatch, *, groups: bool) -> None:
-    if not groups:
-        monkeypatch.delattr(os, "killpg")
-    with subprocess.Popen(
-        [sys.executable, "-c", "input()"], stdin=subprocess.PIPE, start_new_session=True
-    ) as run:
-        signals.kill_group(run.pid)
-        assert run.wait() == -(signal.SIGKILL if groups else signal.SIGTERM)
-    signals.kill_group(run.pid)
 
 
 def test_without_the_signal_the_plant_leaves_signals_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:

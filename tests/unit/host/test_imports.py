@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import importlib
-import subprocess
 import sys
 
 import pytest
 
 from arboleda.host.imports import without
-
-PAGE = "import sys, arboleda.dashboard.page; print(*sys.modules)"
 
 
 def test_a_module_is_missing_meanwhile_and_there_afterwards(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -23,9 +20,3 @@ def test_a_module_is_missing_meanwhile_and_there_afterwards(monkeypatch: pytest.
 def test_a_module_that_is_there_already_stays() -> None:
     with without("json"):
         assert importlib.import_module("json").loads("1") == 1
-
-
-def test_a_page_loads_no_clients_of_its_toolkit() -> None:
-    loaded = subprocess.run([sys.executable, "-c", PAGE], capture_output=True, text=True, check=True).stdout
-    assert {"nicegui", "engineio"} <= set(loaded.split())
-    assert {"aiohttp", "requests", "tornado"}.isdisjoint(loaded.split())

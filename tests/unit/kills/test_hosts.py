@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import os
 import random
-import threading
 import time
+from typing import ClassVar
 
 import pytest
 
 from arboleda.testing import shipped
+from arboleda_kills.hosts import visitors as module
 from arboleda_kills.hosts.cable import Cable
 from arboleda_kills.hosts.run import two_leaders
 from arboleda_kills.hosts.visitors import Visitors
 from arboleda_kills.hosts.ways import Answer
 
-from ...patience import PATIENCE_S
+from ...threads import AtTheEnd, stand_in
 
 ONE_BY_ONE = [(1.0, "ra1", "7-1"), (2.0, "ra1", "7-2"), (3.0, "ra1", "8-1"), (3.1, "ra2", "8-2")]
 
@@ -34,23 +35,28 @@ def test_what_two_boards_accepted_may_be_told_in_another_order() -> None:
     assert two_leaders([*ONE_BY_ONE, (3.2, "ra3", "7-3")]) == []
 
 
+class Late(AtTheEnd):
+    started: ClassVar[list[Late]] = []
+
+    def start(self) -> None:
+        super().start()
+        self.started.append(self)
+
+
 def brought(monkeypatch: pytest.MonkeyPatch, *answers: Answer) -> Visitors:
     """One visitor, who gets these answers and has brought one task then."""
     monkeypatch.setattr("arboleda_kills.hosts.visitors.PACE_S", 0.0)
-    left, texts, there = list(answers), list[str](), threading.Event()
+    stand_in(module, Late, monkeypatch)
+    left, texts = list(answers), list[str]()
 
     def way(text: str) -> Answer:
-        there.wait()
         texts.append(text)
         visitors.bring = len(left) > 1
         return left.pop(0)
 
-    before = set(threading.enumerate())
     visitors = Visitors(shipped().cells, {"on foot": way})
-    started = set(threading.enumerate()) - before
-    there.set()
-    for thread in started:
-        thread.join(PATIENCE_S)
+    for each in Late.started:
+        each.join()
     assert visitors.are_gone and left == [] and len(set(texts)) == 1, "it is one task, with one id"
     return visitors
 

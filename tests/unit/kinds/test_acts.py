@@ -160,6 +160,7 @@ def resting(here: Rig, run: Any) -> bool:
     return ready or bool(ways and (isinstance(ways[0].do, Hand) or ways[0].refusal is None))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("beginning", BEGINNINGS)
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("name", HOLDS)

@@ -233,6 +233,7 @@ class Shop(Bench):
         return [each.command for each in entries if each is not None and isinstance(each.command, Question)]
 
 
+@pytest.mark.long
 def test_every_recipe_of_every_example_and_every_answer_is_tried() -> None:
     assert {case.folder for case in CASES} == set(FOLDERS)
     for folder in FOLDERS:
@@ -245,6 +246,7 @@ def test_every_recipe_of_every_example_and_every_answer_is_tried() -> None:
                     assert tried(folder, device.name, verb.answers) == set(verb.answers)
 
 
+@pytest.mark.sampled(16)
 @pytest.mark.parametrize("case", CASES, ids=str)
 def test_a_task_ends_as_its_recipe_says_whatever_is_answered(case: Case) -> None:
     here = Shop(case)
@@ -257,6 +259,7 @@ def test_a_task_ends_as_its_recipe_says_whatever_is_answered(case: Case) -> None
     assert here.holding() == []
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("case", sample(WITH_DEVICES, every=3), ids=str)
 def test_after_any_device_gave_up_the_first_advice_leads_back_to_work(case: Case) -> None:
     whole = Shop(case)
@@ -280,6 +283,7 @@ def test_after_any_device_gave_up_the_first_advice_leads_back_to_work(case: Case
         assert here.do() is TaskState.DONE, (name, verb, done, here.changes[-1])
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("case", sample(PLAIN, every=4), ids=str)
 def test_after_a_stop_at_any_time_the_first_advice_leads_back_to_work(case: Case) -> None:
     whole = Shop(case)
@@ -349,6 +353,7 @@ def test_an_example_has_a_page_in_both_languages_with_its_tree_and_a_picture(fol
         assert f"../images/examples/{folder}-tree.svg" in text
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("folder", SHOWN)
 def test_the_picture_of_a_tree_is_the_tree_as_it_is(folder: str) -> None:
     page = (PAGES / f"{folder}.md").read_text("utf-8")

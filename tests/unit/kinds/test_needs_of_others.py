@@ -124,6 +124,7 @@ def test_a_verb_is_refused_while_the_other_device_is_not_heard(bench: Bench) -> 
     assert "jaw close" not in bench.told
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("old", "new", "problem"),
     [

@@ -247,6 +247,7 @@ def look(cell: Kit):  # type: ignore[no-untyped-def]
     return work(left.go("feed_2"), ana.ask("Is it clean?", ["yes"]), left.go("feed"), left.home())
 
 
+@pytest.mark.long
 def test_a_task_that_waits_long_for_an_answer_is_not_nearly_done() -> None:
     here = Bench(attended(look))
     here.submit("tending look")

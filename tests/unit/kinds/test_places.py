@@ -111,6 +111,7 @@ def test_people_fill_supplies_and_empty_outputs_before_a_task(tmp_path: Path) ->
     assert lab.places.counts["rack_1"] == 0 and lab.places.counts["bin"] == 1
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("body", "sentence"),
     [
@@ -255,6 +256,7 @@ def test_parts_outlive_the_plant(tmp_path: Path) -> None:
     assert lab.bench.plant.cells["lab"].context.places.counts["nest"] == 1
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("old", "new", "problem"),
     [

@@ -57,6 +57,7 @@ def parts_after_a_cut(model: PlantModel, at_s: float) -> int | None:
     return sum(places.counts.values()) + sum(places.carriers.values())
 
 
+@pytest.mark.long
 def test_no_part_is_booked_twice_whenever_the_power_is_cut(model: PlantModel) -> None:
     found = [parts_after_a_cut(model, tenths / 10) for tenths in range(1, 70)]
     lasted = found.index(None)

@@ -136,6 +136,7 @@ def test_a_cancelled_task_brings_the_part_back_and_the_arm_home_before_another_c
     assert state_of(here, "right") is TaskState.DONE
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("stopped", ["left", "right", "robot", "plant"])
 def test_after_a_stop_it_stays_with_its_cell_and_the_advice_leads_everybody_back(stopped: str) -> None:
     here = carrying()

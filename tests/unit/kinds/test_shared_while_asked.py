@@ -89,6 +89,7 @@ def answer(here: Bench) -> None:
         here.wait(0.5)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("build", ASKS_FIRST.values(), ids=ASKS_FIRST)
 def test_another_cell_may_have_it_while_a_person_is_asked_before(build: Build) -> None:
     here = asking(build)
@@ -118,6 +119,7 @@ BETWEEN: dict[str, Build] = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("build", BETWEEN.values(), ids=BETWEEN)
 def test_it_stays_with_the_cell_from_the_first_that_it_is_told_to_the_last(build: Build) -> None:
     here = asking(build)

@@ -188,6 +188,7 @@ def test_the_firmwares_header_has_them_as_they_are(folder: Path, monkeypatch: py
     assert all(f'{{"{word}", 0.0}}' in written for word in ("vacía", "leña", "炭", "sí"))
 
 
+@pytest.mark.long
 def test_a_plant_with_them_holds_in_a_simulation(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

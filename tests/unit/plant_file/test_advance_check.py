@@ -72,6 +72,7 @@ def warned(folder: Path, body: str, decorator: str = '"try"') -> list[str]:
     return [each.removeprefix(where) for each in found]
 
 
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize(
     "body",
     [
@@ -95,6 +96,7 @@ def test_nothing_is_said_of_what_can_be_so(tmp_path: Path, body: str) -> None:
     assert warned(tmp_path, body) == []
 
 
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize(
     ("body", "sentence"),
     [

@@ -27,6 +27,7 @@ def found(drawn: DrawnDevices, form: Form, *, plainly: bool = True) -> tuple[lis
     return list(sentences), list(advance_check.ends(plant))
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("seed", sample([each for each in range(1, 61) if each not in REFUSED], 10))
 def test_nothing_wrong_is_said_of_a_drawn_plant_and_the_same_in_both_forms(seed: int) -> None:
     drawn = devices.draw(seed)
@@ -39,6 +40,7 @@ def test_nothing_wrong_is_said_of_a_drawn_plant_and_the_same_in_both_forms(seed:
     assert [each for each in wrong if not each.endswith(OF_TASTE)] == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", sample([each for each in XML if each not in REFUSED], 6))
 def test_nothing_more_is_said_of_a_tree_with_conditions(seed: int) -> None:
     drawn = devices.draw(seed)

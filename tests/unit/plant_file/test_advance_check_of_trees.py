@@ -58,6 +58,7 @@ def warned(folder: Path, body: str, more: str = "") -> list[str]:
     ]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     "body",
     [
@@ -78,6 +79,7 @@ def test_nothing_is_said_of_what_can_be_so(tmp_path: Path, body: str) -> None:
     assert warned(tmp_path, body) == []
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("body", "sentence"),
     [

@@ -384,6 +384,7 @@ def test_a_faster_rate_shortens_what_verbs_take_and_not_how_long_they_may(folder
     assert (bake(10), bake(1), bake(0.5)) == ((2, 30), (20, 30), (40, 60))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES)
 def test_a_mistake_is_named_with_its_line(folder: Path, mistake: tuple[str, str, str, str]) -> None:
     old, new, start, words = mistake

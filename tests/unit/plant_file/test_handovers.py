@@ -99,6 +99,7 @@ def test_the_recipes_of_storage_run_in_a_cell_of_devices(tmp_path: Path) -> None
     assert [change.state for change in rig.outcomes().values()] == [TaskState.DONE] * 3
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("more", ["", "      ana: {kind: person}\n"], ids=["alone", "with a person"])
 def test_such_a_cell_is_judged_right(tmp_path: Path, more: str) -> None:
     model = load(tmp_path, LONG.replace("    targets:\n", f"{more}    targets:\n"))
@@ -107,6 +108,7 @@ def test_such_a_cell_is_judged_right(tmp_path: Path, more: str) -> None:
     assert result.outcomes["done"]
 
 
+@pytest.mark.long
 def test_pick_ups_at_one_point_are_judged_right(tmp_path: Path) -> None:
     model = load(tmp_path, LONG.replace("pickup_a: {arm: {deg: [50, 10]", "pickup_a: {arm: {deg: [45, 10]"))
     targets = model.cells[0].reach["ra"].targets

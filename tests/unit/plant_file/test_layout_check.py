@@ -101,6 +101,7 @@ WRONG = {  # text in the file, put in its place, what is said
 }
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize(("old", "new", "said"), WRONG.values(), ids=WRONG)
 def test_what_could_not_stand_there_is_a_warning(warned: Warned, old: str, new: str, said: str) -> None:
     good = GOOD + OTHER

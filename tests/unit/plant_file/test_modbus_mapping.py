@@ -53,6 +53,7 @@ def test_what_cannot_be_read_is_told_with_file_and_line(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [

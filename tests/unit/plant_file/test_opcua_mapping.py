@@ -39,6 +39,7 @@ def test_what_does_not_fit_the_kind_is_told_with_file_and_line(tmp_path: Path) -
     assert where in str(raised.value)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [

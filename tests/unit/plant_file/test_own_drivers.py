@@ -126,6 +126,7 @@ def test_robots_have_drivers_too(load: Callable[..., PlantModel]) -> None:
     assert car.link is Link.DRIVER and car.driver is not None and car.driver.name == "plain"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("use", "place", "told"),
     [

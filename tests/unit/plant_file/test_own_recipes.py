@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from pathlib import Path
 
@@ -294,55 +293,6 @@ def test_a_statement_may_call_what_keeps_its_step(tmp_path: Path) -> None:
     assert problems(tmp_path, body + kept) == []
 
 
-@pytest.mark.parametrize(
-    ("recipes", "told"),
-    [
-        (
-            "import threading\nthreading.Event().wait()\n" + GOOD,
-            "recipes.py:2:1: importing this takes more than 2 s",
-        ),
-        (
-            "try:\n    while True: pass\nexcept BaseException: pass\n",
-            "recipes.py:2:1: importing this takes more",
-        ),
-        (
-            "x = sum(range(10**12))\n" + GOOD,
-            "recipes.py:1:1: importing this takes more than ",  # 0.5 s of processor time, or 2 s by the clock
-        ),
-        (
-            GOOD.replace("    return", "    while True: celsius += 1\n    return"),
-            "recipes.py:5:1: building heat for bench takes",
-        ),
-        ("import os\nos._exit(7)\n", "recipes.py:1:1: importing this ends Python, with status 7"),
-        ("import threading\nthreading.Thread(target=threading.Event().wait).start()\n" + GOOD, ""),
-    ],
-    ids=["waits", "catches all", "in C", "builds for ever", "exits", "leaves a thread"],
-)
-def test_a_file_that_never_ends_is_a_problem_like_others(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, recipes: str, told: str
-) -> None:
-    if "takes" in told:
-        monkeypatch.setattr(recipe_trial, "LONGEST_S", 0.5)
-    if ".wait()" in recipes:  # and computes nothing, so that only the clock ends it
-        monkeypatch.setattr(recipe_trial, "WAITS", 4.0)
-    if not told:
-        monkeypatch.setattr(recipe_trial, "subprocess", subprocess)
-        document = PLANT.encode()
-        write(tmp_path, recipes)
-        assert recipe_trial.verdict("plant.yaml", tmp_path, document).offers == {"bench": ["heat"]}
-        return
-    (found,) = refused(write(tmp_path, recipes))
-    assert found.startswith(told)
-
-
-def test_what_takes_long_by_the_clock_alone_is_waited_for(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(recipe_trial, "LONGEST_S", 0.5)
-    waits = "import threading\nthreading.Event().wait(0.8)\n"  # as for a processor that others have
-    assert load(tmp_path, waits + GOOD).cells[0].recipe("heat")
-
-
 def test_who_is_ended_while_it_writes_what_it_begins_is_told_by_what_it_began_before(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -485,15 +435,3 @@ def test_a_cell_without_a_recipe_is_told_why(tmp_path: Path) -> None:
         'cells.shelf: offers no recipe: none that "uses" brings fits its devices (shelf has no device in the'
         " role 'oven'; there are lamp)"
     )
-
-
-def test_where_there_are_no_processes_recipes_are_tried_in_this_one(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    known = load(tmp_path, GOOD)
-    body, _, words = MISTAKES["value"]
-    monkeypatch.setattr(recipe_trial, "HAS_PROCESSES", False)
-    monkeypatch.setattr(recipe_trial, "subprocess", None)
-    (cell,) = load(tmp_path, GOOD).cells
-    assert [each.name for each in cell.recipes] == [each.name for each in known.cells[0].recipes] == ["heat"]
-    assert words in refused(write(tmp_path, f'{HEAD}@recipe("heat")\ndef heat(cell):\n{body}\n'))[0]

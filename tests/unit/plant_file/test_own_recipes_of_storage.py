@@ -86,6 +86,7 @@ def arm_of(rig: Rig) -> ArmBody:
     return body
 
 
+@pytest.mark.long
 def test_they_are_offered_beside_storage_which_stays_what_a_task_means_that_names_none() -> None:
     for cell in own().cells:
         assert [each.name for each in cell.recipes] == ["storage", "palletizing", "sort", "fetch"]
@@ -173,12 +174,14 @@ def test_its_ways_take_the_zones_that_they_lead_into() -> None:
     assert {each.state for each in rig.changes if each.state in ENDED} == {TaskState.DONE}
 
 
+@pytest.mark.long
 def test_simulations_of_them_hold() -> None:
     result = Simulation(own(), 3, Climate.draw(own(), 3, "normal").faults).run(cycles=6)
     assert result.broken is None
     assert result.outcomes.get("done", 0) > 0
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [

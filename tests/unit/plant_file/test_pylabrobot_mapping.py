@@ -14,6 +14,7 @@ CELSIUS = "celsius: {read: get_temperature(), near: 0.5, otherwise: 0}"
 SHAKE = "shake: {calls: [{call: shake, arguments: {speed: $rpm, duration: $seconds}}]}"
 
 
+@pytest.mark.sampled(10)
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [

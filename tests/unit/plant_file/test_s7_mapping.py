@@ -40,6 +40,7 @@ def test_a_mapping_that_is_good(belt: Robot, old: str, new: str) -> None:
     assert MAPPED.problems(belt, old, new) == ()
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [

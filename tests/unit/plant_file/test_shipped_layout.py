@@ -102,6 +102,7 @@ def test_these_are_all_tasks() -> None:
     assert len(TASKS) == 243
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("task", sample(TASKS, every=13))
 def test_a_task_takes_the_part_from_the_mobile_and_puts_it_into_its_station(task: str) -> None:
     order = text.parse(task, shipped())
@@ -143,6 +144,7 @@ def test_nothing_of_an_arm_is_below_the_floor_at_a_pose(name: str) -> None:
         assert all(frame[2][3] >= 0 for frame in frames(layout.arm, layout.arm.quantised(pose.q)).values())
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(("one", "other"), list(permutations(CELLS, 2)), ids=str)
 def test_no_arm_reaches_through_the_base_of_another(one: str, other: str) -> None:
     layout = StorageLayout(CELLS[one])

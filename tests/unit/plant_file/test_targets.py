@@ -143,6 +143,7 @@ def test_what_the_file_describes_works(tmp_path: Path) -> None:
     assert here.machines["mill"].facts["door"] == "open"
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES)
 def test_a_mistake_is_named_with_its_line(tmp_path: Path, mistake: tuple[str, str, str, str]) -> None:
     old, new, start, words = mistake

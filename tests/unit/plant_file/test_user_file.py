@@ -52,6 +52,7 @@ STRANGE = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("words", READS.values(), ids=READS)
 @pytest.mark.parametrize(("make", "sentence"), STRANGE.values(), ids=STRANGE)
 def test_a_strange_file_is_refused_at_once(

@@ -219,6 +219,7 @@ def _places(value: Any, place: tuple[str | int, ...] = ()) -> list[tuple[str | i
     return [*([place] if place else []), *inner]
 
 
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("file", PLANTS, ids=lambda each: each.parent.name)
 def test_every_value_of_a_plant_that_we_ship_is_edited_alone_or_refused(file: Path) -> None:
     raw = file.read_bytes()

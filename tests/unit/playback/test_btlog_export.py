@@ -11,7 +11,6 @@ from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
-from arboleda.recorder import recorder
 
 from ..recorder.recorded import Site
 
@@ -20,7 +19,6 @@ from ..recorder.recorded import Site
 def file(tmp_path_factory: pytest.TempPathFactory) -> str:
     """A record of a plant in which a cell did one task, and another one waits for ever."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(recorder, "SHARE", 1e9)  # time runs faster here than where that bounds snapshots
         site = Site(tmp_path_factory.mktemp("site"), patch)
         site.work("sis_a 0B 7 #lot", s=40.0)
         site.work("sis_b 0B 7 #long", "sis_b 1C 3 #later", s=1.0)

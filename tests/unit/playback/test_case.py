@@ -59,6 +59,7 @@ def record(said: Said, recorded: Path) -> str:
     return "a.mcap"
 
 
+@pytest.mark.long
 def test_the_same_is_asked_at_the_same_times_and_the_same_fails(said: Said, record: str) -> None:
     (line,) = said("record", "export", "case.yaml", record)
     assert line.startswith("case.yaml has ") and " tasks, " in line
@@ -68,6 +69,7 @@ def test_the_same_is_asked_at_the_same_times_and_the_same_fails(said: Said, reco
     assert happened("b.mcap") == (asked, failed)
 
 
+@pytest.mark.long
 def test_a_case_of_one_task_begins_with_it_and_ends_soon_after_it(said: Said, record: str) -> None:
     line = [line for line in said("replay", record) if " failed " in line][1]
     found = re.search(r" failed +(.*) \(id t-(.*)\) ", line)

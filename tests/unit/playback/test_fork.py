@@ -92,6 +92,7 @@ def run_of(name: str) -> TapedPlant:
     return taped(RUNS[name])
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize(("run", "at"), sample(product(RUNS, (0.5, 3.2, 5.2, 8.0)), every=5))
 def test_a_fork_of_nothing_else_happens_as_recorded(run: str, at: float) -> None:
     found = fork(run_of(run), at)

@@ -119,6 +119,7 @@ def test_a_recipe_stands_for_the_file_of_its_name(failed: Path, tmp_path: Path) 
         said(failed, "--recipe", other, "--task", "lot", status=2)
 
 
+@pytest.mark.long
 def test_another_recipe_is_for_tasks_that_begin_after_the_fork(tmp_path: Path) -> None:
     record = written(tmp_path, EXAMPLE, "bench weigh 5 #sample", None)
     other = tmp_path / "recipes.py"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,30 +13,32 @@ from typer.testing import CliRunner
 from arboleda.cli import logs, replay
 from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
+from arboleda.model.messages import TaskRequest
 from arboleda.plant_file import loader
 from arboleda.playback import recorded_plant
 from arboleda.recorder import copying, files, reader
 from arboleda.recorder.errors import NoRecord
-from arboleda.recorder.preamble import PlantFiles
+from arboleda.recorder.preamble import Limits, PlantFiles
+from arboleda.recorder.simulated_recorder import SimulatedRecorder
 from arboleda.recorder.steps import TOPIC
-from arboleda.runtime.build import Options, build
+from arboleda.recorder.tape import SECOND
 
 SHIPPED = loader.load_recorded()[1]
 TASK = "sis_a 0B 7 #lot-1"
+BEGAN_NS = 1_790_000_000 * SECOND
 
 
 @pytest.fixture(scope="module")
 def state(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The state directory of a plant without devices, which queued a task and refused another one."""
+    assert SHIPPED is not None
     folder = tmp_path_factory.mktemp("state")
-    model = loader.load()
-    app = build(model, {"orchestrator"}, Options(state_dir=folder, recording=SHIPPED, rate=2.0))
-    app.start()
-    try:
-        assert app.plant.submit(TASK).result(30.0).state.value == "queued"
-        assert app.plant.submit("sis_z 0B 7").result(30.0).state.value == "refused"
-    finally:
-        app.stop()
+    recorder = SimulatedRecorder(folder / files.FOLDER, SHIPPED.files, Limits(), BEGAN_NS)
+    plant = recorder.plant(loader.load(), epoch=BEGAN_NS // SECOND, now=0.0)
+    plant.step(0.0, ())
+    for now, text in ((1.0, TASK), (2.0, "sis_z 0B 7")):
+        plant.step(now, [TaskRequest(at=now, text=text)])
+    recorder.close()
     return folder
 
 
@@ -229,21 +230,6 @@ def test_a_plant_file_says_how_much_is_kept_or_that_nothing_is(tmp_path: Path) -
     assert recording is not None and recording.limits == replace(SHIPPED.limits, megabytes=50.0)
     file.write_bytes(SHIPPED.files.contents["plant.yaml"] + b"\nrecord: off\n")
     assert loader.load_recorded(file)[1] is None
-
-
-def test_without_its_library_the_plant_goes_on_without_a_record(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
-    for name in ("arboleda.recorder.recorder", "arboleda.recorder.files"):
-        monkeypatch.delitem(sys.modules, name, raising=False)
-    monkeypatch.setitem(sys.modules, "mcap.writer", None)
-    app = build(loader.load(), {"orchestrator"}, Options(state_dir=tmp_path, recording=SHIPPED))
-    app.start()
-    try:
-        assert app.plant.submit(TASK).result(30.0).state.value == "queued"
-    finally:
-        app.stop()
-    assert "no record is written: " in caplog.text and not (tmp_path / files.FOLDER).exists()
 
 
 def test_logs_are_lines_with_date_of_all_cells_or_of_one(state: Path) -> None:

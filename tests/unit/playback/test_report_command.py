@@ -55,6 +55,7 @@ def test_of(content: str) -> str:
 test_of.__test__ = False  # type: ignore[attr-defined]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("at", "act", "cause", "same"),
     [
@@ -90,6 +91,7 @@ def test_the_test_of_a_report_fails_in_the_same_way(
         names["test_what_failed_in_sis_a"](Sim())
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", ["stuck_effector", "opened_effector"])
 def test_forks_that_do_not_fail_as_the_record_did_say_that_they_prove_nothing(
     tmp_path: Path, kind: str
@@ -101,6 +103,7 @@ def test_forks_that_do_not_fail_as_the_record_did_say_that_they_prove_nothing(
     assert "had nothing befallen the devices" not in content
 
 
+@pytest.mark.long
 def test_a_report_is_small_whole_and_in_two_languages(tmp_path: Path) -> None:
     content = reported(tmp_path, 5.3, fault("mute", "ra_1", 2.6))
     assert len(content.encode()) < 2_000_000
@@ -111,6 +114,7 @@ def test_a_report_is_small_whole_and_in_two_languages(tmp_path: Path) -> None:
     assert content.count("done sis_a 0B 7 (id lot)") == 2  # without what befell it, and with more patience
 
 
+@pytest.mark.long
 def test_a_report_has_its_facts_as_data(tmp_path: Path) -> None:
     content = reported(tmp_path, 5.3, fault("mute", "ra_1", 2.6))
     found = DATA.search(content)

@@ -108,6 +108,7 @@ def test_answers_are_not_said_again_by_who_runs_again(model: Any) -> None:
     assert made.frame()["said"] == []
 
 
+@pytest.mark.long
 def test_who_follows_the_advice_gets_a_cell_going_whose_board_has_rebooted(model: Any) -> None:
     made = at_work(model)
     made.befall("reboot", board(model, "ra1"), 0.0)

@@ -38,6 +38,7 @@ def test_every_language_has_all_words_and_every_plant_has_some() -> None:
     assert {key for key in known[0] if key.startswith("plant_")} == {f"plant_{name}" for name in plants.FILES}
 
 
+@pytest.mark.sampled(17)
 @pytest.mark.parametrize("plant", plants.FILES)
 def test_every_plant_opens(plant: str) -> None:
     tab, answer = opened(plant=plant)
@@ -79,6 +80,7 @@ def test_buttons_of_the_page_reach_the_plant() -> None:
     assert ask(tab, "digest")["digest"]
 
 
+@pytest.mark.long
 def test_a_seed_is_simulated_as_by_the_command() -> None:
     tab = Tab()
     assert ask(tab, "simulate", seed=1, cycles=1)["digest"] == Request(cycles=1).setting.run(1).digest

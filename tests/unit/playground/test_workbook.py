@@ -58,6 +58,7 @@ def test_what_is_wrong_is_said_in_the_language_of_the_page(ask: Ask) -> None:
     assert found["problem"]["text"] == "el programa escribió más de 200000 caracteres"
 
 
+@pytest.mark.sampled(17)
 @pytest.mark.parametrize("name", plants.FILES)
 def test_the_texts_of_every_plant_build_it(ask: Ask, name: str) -> None:
     plant, files = plants.texts(name)
@@ -110,6 +111,7 @@ def test_a_work_is_judged_and_what_is_not_so_can_be_gone_through(ask: Ask) -> No
     assert ask("back")["frame"]["clock"]["tick"] < end["tick"]
 
 
+@pytest.mark.long
 def test_a_work_that_passes_has_nothing_to_play_and_a_record_is_there_where_it_belongs(ask: Ask) -> None:
     right = next(each for each in samples("query_first") if each.right)
     files = {name: content.decode() for name, content in right.files.items()}
@@ -137,6 +139,7 @@ def test_words_are_there_in_every_language_and_for_every_reason() -> None:
     assert {*workbooks.NOT_HERE.values(), *workbooks.BY_HAND.values()} <= known[0]
 
 
+@pytest.mark.long
 def test_every_lesson_and_exercise_is_a_workbook_with_all_its_texts() -> None:
     workbooks = load("workbooks.py")
     lessons, exercises = list(workbooks.lessons()), list(workbooks.exercises())

@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import pytest
 
 from arboleda.core.plant import Plant
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder import recorder as thread
 from arboleda.recorder.files import FOLDER, parts_in
 from arboleda.recorder.preamble import Beginning, Limits, PlantFiles
-from arboleda.recorder.recorder import Recorder
 from arboleda.recorder.ros_log import RosLog
+from arboleda.recorder.state import state_of
+from arboleda.recorder.steps import Step
+from arboleda.recorder.view_log import ViewSnapshot
 from arboleda.recorder.writing import Writing
 from arboleda.simulator import world
 from arboleda.testing.plants import shipped
 from arboleda.testing.rig import Rig
 from arboleda.views import twin_view, view
-
-from ...patience import PATIENCE_S
 
 CONTENTS = {"plant.yaml": b"name: arboleda\n", "lib/own.py": b"\x00\xff"}
 FILES = PlantFiles(plant="plant.yaml", contents=CONTENTS)
@@ -31,59 +29,87 @@ DEFAULT = Limits()
 
 def with_everything(path: Path, patch: pytest.MonkeyPatch) -> Site:
     """One whose records have all channels, as those of running plants."""
-    patch.setattr(thread, "SHARE", 1e9)  # time runs faster here than on clocks
     return Site(path, patch, logs=[RosLog(shipped())])
 
 
-def beginning_of(model: PlantModel, *, epoch: int = 7, now: float = 0.0, **made_of: Any) -> Beginning:
+def beginning_of(
+    model: PlantModel,
+    *,
+    files: PlantFiles = FILES,
+    rate: float = 1.0,
+    epoch: int = 7,
+    now: float = 0.0,
+    **made_of: Any,
+) -> Beginning:
     return Beginning(
         plant=model.name,
         version="0.1.0",
         epoch=epoch,
         now=now,
-        rate=1.0,
+        rate=rate,
         virtual=False,
         memory={fact: dict(kept) for fact, kept in (made_of.get("memory") or {}).items()},
         kept=tuple(made_of.get("kept", ())),
-        files=FILES,
+        files=files,
     )
 
 
-class Told(Writing):
-    """One that tells the test's thread when it has written what waited, or has given up."""
+class OfAStart(Protocol):
+    """What hears of each step of a plant, as a `Recorder` does."""
 
-    wrote: threading.Condition
+    def stepped(self, plant: Plant, now: float, events: Sequence[Any], messages: Sequence[Any]) -> None: ...
 
-    def tend(self) -> None:
-        super().tend()
-        self._tell()
+    def saw(self, snapshot: dict[str, Any], drawn: dict[str, Any]) -> None: ...
 
-    def drop(self) -> None:
-        super().drop()
-        self._tell()
+    def stop(self) -> None: ...
 
-    def _tell(self) -> None:
-        with self.wrote:
-            self.wrote.notify_all()
+
+class AtOnce:
+    """A recorder that has written a step before the next one begins."""
+
+    def __init__(self, writing: Writing) -> None:
+        self._writing = writing
+        self._turn = self._now_ns = 0
+        writing.open()
+
+    def stepped(self, plant: Plant, now: float, events: Sequence[Any], messages: Sequence[Any]) -> None:
+        self._turn += 1
+        self._now_ns = round(now * 1e9)
+        self._put(Step(self._now_ns, now, events, messages, state_of(plant, self._turn)))
+
+    def saw(self, snapshot: dict[str, Any], drawn: dict[str, Any]) -> None:
+        self._put(ViewSnapshot(self._now_ns, snapshot, drawn))
+
+    def stop(self) -> None:
+        self._writing.close()
+
+    def _put(self, item: Step | ViewSnapshot) -> None:
+        for _ in self._writing.put(item):
+            pass
+        self._writing.tend()
 
 
 class Site:
-    """A rig of which every start of the plant is recorded; `folder` has the files, once it has ended."""
+    """A rig of which every start of the plant is recorded; `folder` has the files."""
 
     def __init__(
-        self, path: Path, patch: pytest.MonkeyPatch, limits: Limits = DEFAULT, **options: Any
+        self,
+        path: Path,
+        patch: pytest.MonkeyPatch,
+        limits: Limits = DEFAULT,
+        *,
+        files: PlantFiles = FILES,
+        rate: float = 1.0,
+        **options: Any,
     ) -> None:
         self.folder = path / FOLDER
         self.model: PlantModel = shipped()
-        self.recorders: list[Recorder] = []
+        self.recorders: list[Any] = []
         self.seen: list[tuple[int, dict[str, Any], dict[str, Any]]] = []  # when, what screens and twin got
-        self._wrote = threading.Condition()
         self._limits = limits
+        self._begun_with = {"files": files, "rate": rate}
         self._options = options
         patch.setattr(world, "Plant", self._new)
-        patch.setattr(
-            thread, "PATIENCE_S", PATIENCE_S
-        )  # a record is wanted whole here, on a busy machine too
         self.rig = Rig(self.model)
 
     @property
@@ -95,25 +121,20 @@ class Site:
             self.rig.submit(text)
         self.rig.wait(s)
 
-    def until(self, condition: Callable[[], object], what: str) -> None:
-        """Wait for the recorder's thread."""
-        with self._wrote:
-            assert self._wrote.wait_for(condition, PATIENCE_S), what
-
     def end(self) -> None:
         for recorder in self.recorders:
             recorder.stop()
 
+    def recorder(self, plant: Plant, writing: Writing) -> OfAStart:
+        """What hears of the steps of this start."""
+        return AtOnce(writing)
+
     def _new(self, model: PlantModel, **made_of: Any) -> Plant:
         plant = Plant(model, **made_of)
-        beginning = beginning_of(model, **made_of)
-        unix_ns = lambda: round(plant.now * 1e9)  # noqa: E731
-        options = {"least_free": 0, **self._options}
-        writing = Told(self.folder, beginning, self._limits, unix_ns=unix_ns, **options)
-        writing.wrote = self._wrote
-        recorder = Recorder(writing, unix_ns)
+        beginning = beginning_of(model, **self._begun_with, **made_of)
+        options = {"least_free": 0, "unix_ns": lambda: round(plant.now * 1e9), **self._options}
+        recorder = self.recorder(plant, Writing(self.folder, beginning, self._limits, **options))
         self.recorders.append(recorder)
-        recorder.start()
         step, shown = plant.step, -1
 
         def recorded(now: float, events: Iterable[Any]) -> list[Any]:

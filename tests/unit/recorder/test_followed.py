@@ -7,27 +7,30 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.messages import Verb
-from arboleda.recorder import cell_history, reader, recorder
+from arboleda.recorder import cell_history, reader
 from arboleda.recorder.views import Views
 
 from .recorded import Site
 
 
-@pytest.fixture
-def views(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Views:
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Of a cell that was held for a minute and a half in the middle of its task, and others that waited."""
+    with pytest.MonkeyPatch.context() as patch:
+        site = Site(tmp_path_factory.mktemp("site"), patch)
+        site.work("sis_a 0B 7", s=8.0)
+        site.rig.operate(Verb.HOLD, "sis_a")
+        site.work(s=90.0)
+        site.rig.operate(Verb.RESUME, "sis_a")
+        site.work(s=30.0)
+        site.end()
+    return site.files[0]
+
+
+@pytest.fixture
+def views(file: Path, monkeypatch: pytest.MonkeyPatch) -> Views:
     monkeypatch.setattr(cell_history, "AT_ONCE_NS", 5 * 10**9)
-    monkeypatch.setattr(
-        recorder, "SHARE", 1e9
-    )  # time runs faster here than where snapshots are bounded by it
-    site = Site(tmp_path, monkeypatch)
-    site.work("sis_a 0B 7", s=8.0)
-    site.rig.operate(Verb.HOLD, "sis_a")
-    site.work(s=90.0)
-    site.rig.operate(Verb.RESUME, "sis_a")
-    site.work(s=30.0)
-    site.end()
-    return Views(reader.opened(site.files[0]))
+    return Views(reader.opened(file))
 
 
 def test_every_change_is_found_and_in_order(views: Views, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -33,6 +33,7 @@ def again(file: Path, **changes: object) -> list[ReplayedStep]:
     return steps
 
 
+@pytest.mark.long
 def test_tasks_done_failed_and_operated_are_the_same_again(site: Site) -> None:
     rig = site.rig
     site.work("sis_a 0B 7", "sis_b 1C 3 #lot", "nonsense", s=5.0)

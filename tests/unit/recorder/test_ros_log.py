@@ -15,7 +15,7 @@ from mcap.records import Schema
 from mcap_ros2.decoder import DecoderFactory
 
 from arboleda.model.messages import Report, Verb
-from arboleda.recorder import cdr, recorder, ros_types
+from arboleda.recorder import cdr, ros_types
 from arboleda.recorder.ros_log import DIAGNOSTICS, RosLog
 from arboleda.recorder.ros_types import JOINT_STATE, STRING, UINT8
 from arboleda.recorder.steps import Step
@@ -34,7 +34,6 @@ def log() -> RosLog:
 
 @pytest.fixture
 def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, log: RosLog) -> Site:
-    monkeypatch.setattr(recorder, "SHARE", 1e9)  # time runs faster here than on clocks
     made = Site(tmp_path, monkeypatch, logs=[log])
     made.work("sis_a 0B 7", s=8.0)
     made.rig.operate(Verb.STOP, "sis_a")

@@ -10,17 +10,16 @@ import pytest
 
 from arboleda.model.messages import Verb
 from arboleda.model.sentence import Sentence
-from arboleda.recorder import channels, copying, files, reader, recorder, writing
+from arboleda.recorder import channels, copying, files, reader, writing
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.preamble import Limits
-from arboleda.recorder.recorder import Recorder
 from arboleda.recorder.steps import TOPIC
 from arboleda.recorder.view_log import DIGEST_S
 from arboleda.recorder.views import Views
 from arboleda.recorder.writing import Writing
 from arboleda.views.chronicle import Chronicle
 
-from .recorded import Site, beginning_of
+from .recorded import AtOnce, Site, beginning_of
 
 SPANS = ("age_s", "since_s", "deadline_s", "left_s", "elapsed_s")
 
@@ -49,7 +48,6 @@ def same(read: Any, shown: Any, where: str = "") -> None:
 @pytest.fixture
 def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Site:
     """A plant that works, whose files are small, with half minutes and digests of the time line."""
-    monkeypatch.setattr(recorder, "SHARE", 1e9)  # time runs faster here than on clocks
     return Site(tmp_path, monkeypatch)
 
 
@@ -65,7 +63,6 @@ def busy(site: Site) -> None:
 def ended(tmp_path_factory: pytest.TempPathFactory) -> Site:
     """A plant that was busy, and has ended."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(recorder, "SHARE", 1e9)
         made = Site(tmp_path_factory.mktemp("ended"), patch)
         busy(made)
         made.end()
@@ -133,15 +130,14 @@ def test_a_plant_that_does_nothing_writes_nothing_but_whole_views(site: Site) ->
     assert [at for at in views_of(site).times() if at > began] == []
 
 
+@pytest.mark.long
 def test_files_that_follow_each_other_are_one_record_also_without_the_first(
     site: Site, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(files, "PART_BYTES", (30_000, 30_000))
     monkeypatch.setattr(writing, "FLUSH_S", 0.0)
-    for _ in range(4):
-        count = len(site.files)
+    for _ in range(3):
         busy(site)
-        site.until(lambda count=count: len(site.files) > count, "no file is added")
     site.end()
     assert len(site.files) > 2
     views = views_of(site)
@@ -157,6 +153,7 @@ def test_files_that_follow_each_other_are_one_record_also_without_the_first(
                 same(later.at(at), snapshot, "snapshot")
 
 
+@pytest.mark.long
 def test_a_file_that_is_being_written_is_read_up_to_where_it_is(
     site: Site, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -209,8 +206,7 @@ def test_a_record_without_views_is_a_sentence(
     site: Site, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(writing, "OURS", [each for each in channels.OURS if each.topic == TOPIC])
-    old = Recorder(Writing(tmp_path / "old", beginning_of(site.model), Limits(), least_free=0))
-    old.start()
+    old = AtOnce(Writing(tmp_path / "old", beginning_of(site.model), Limits(), least_free=0))
     old.stepped(site.rig.plant, site.rig.now, (), ())
     old.stop()
     site.end()

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import gc
-import sys
-from collections.abc import Iterator
 from pathlib import Path
-from unittest import mock
 
 import pytest
 
 from arboleda.model.errors import StartError
-from arboleda.runtime.build import PARTS, TURN_S, Options, build
+from arboleda.runtime.build import PARTS, Options, build
 from arboleda.testing import shipped
 
 
@@ -39,40 +35,3 @@ def test_the_firmwares_boards_are_refused_at_a_broker_with_tls(tmp_path: Path) -
     options = Options(state_dir=tmp_path / "state", page=False, firmware=True, broker="mqtts://broker.lab")
     with pytest.raises(StartError, match="speak no TLS"):
         build(shipped(), {"devices", "bridge", "orchestrator"}, options)
-
-
-@pytest.fixture
-def thawed() -> Iterator[None]:
-    """Nothing is left out of garbage collection, as where a plant is a process of its own; nothing looks at
-    all that other tests have made."""
-    gc.unfreeze()
-    with mock.patch.object(gc, "collect"):
-        yield
-    gc.freeze()
-
-
-def test_what_was_there_before_a_plant_starts_is_left_out_of_garbage_collection(
-    thawed: None, tmp_path: Path
-) -> None:
-    app = build(shipped(), {"orchestrator"}, Options(state_dir=tmp_path / "state", page=False))
-    app.start()
-    assert gc.get_freeze_count() > 0
-    app.stop()
-    assert gc.get_freeze_count() == 0
-
-
-def test_a_plant_in_a_process_that_has_seen_to_that_leaves_it_so(tmp_path: Path) -> None:
-    gc.freeze()
-    app = build(shipped(), {"orchestrator"}, Options(state_dir=tmp_path / "state", page=False))
-    app.start()
-    app.stop()
-    assert gc.get_freeze_count() > 0
-
-
-def test_no_thread_keeps_pythons_lock_for_long_while_a_plant_runs(tmp_path: Path) -> None:
-    before = sys.getswitchinterval()
-    app = build(shipped(), {"orchestrator"}, Options(state_dir=tmp_path / "state", page=False))
-    app.start()
-    assert sys.getswitchinterval() == pytest.approx(TURN_S)
-    app.stop()
-    assert sys.getswitchinterval() == pytest.approx(before)

@@ -70,6 +70,7 @@ def visited() -> Show:
     return show
 
 
+@pytest.mark.long
 def test_every_cell_gets_task_after_task(visited: Show) -> None:
     given = Counter(task.text.split()[0] for task in visited.tasks)
     assert set(given) == {"sis_a", "sis_b", "sis_c"}
@@ -77,6 +78,7 @@ def test_every_cell_gets_task_after_task(visited: Show) -> None:
     assert {task.state for task in visited.tasks} <= {"done", "failed", "running", "queued"}
 
 
+@pytest.mark.long
 def test_a_failing_cell_waits_for_somebody_while_the_others_go_on(show: Show) -> None:
     while not show.held:
         show.play(10)
@@ -89,6 +91,7 @@ def test_a_failing_cell_waits_for_somebody_while_the_others_go_on(show: Show) ->
     assert len(show.tasks) > before + 4
 
 
+@pytest.mark.long
 def test_buttons_of_the_card_lead_out_and_then_another_cell_fails(visited: Show) -> None:
     fell = [fault.board for fault in visited.faults if isinstance(fault, Reboot) or fault.is_on]
     assert len(fell) >= 4
@@ -97,6 +100,7 @@ def test_buttons_of_the_card_lead_out_and_then_another_cell_fails(visited: Show)
     assert min(fault.at for fault in visited.faults) >= CALM_S
 
 
+@pytest.mark.long
 def test_nothing_is_given_and_nothing_fails_after_its_end(show: Show) -> None:
     show.play(20)
     show.demo.step(show.sim.now, [DemoEnded()])

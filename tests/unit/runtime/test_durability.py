@@ -105,24 +105,6 @@ def test_no_command_leaves_while_a_write_is_not_durable_for_too_long(
     assert disk.syncs == 1
 
 
-def test_what_is_written_while_a_sync_is_under_way_is_not_durable_by_that(
-    durability: Durability, disk: Disk, people: People
-) -> None:
-    disk.let_go.clear()
-    durability.start()
-    durability.wrote(precedes_commands=False)
-    durability.tell("first")
-    durability.wake()
-    assert disk.reached.wait(SOON_S)
-    durability.wrote(precedes_commands=False)
-    durability.tell("last")
-    assert not durability.reach(1, 0.0) and people.told == []
-    disk.let_go.set()
-    assert people.all_told.wait(SOON_S)
-    assert people.told == [("first", None), ("last", None)]
-    assert disk.syncs == 2 and durability.reach(2, 0.0)
-
-
 def test_one_sync_is_for_all_that_was_written_by_then(
     durability: Durability, disk: Disk, people: People
 ) -> None:
@@ -130,28 +112,6 @@ def test_one_sync_is_for_all_that_was_written_by_then(
         durability.wrote(precedes_commands=True)
     durability.tell("last")
     assert disk.syncs == 1 and people.told == [("last", None)]
-
-
-def test_the_thread_syncs_what_nobody_waits_for(durability: Durability, disk: Disk) -> None:
-    durability.start()
-    durability.wrote(precedes_commands=False)
-    durability.wake()
-    assert durability.reach(1, SOON_S)
-    assert disk.syncs == 1
-
-
-def test_the_thread_folds_the_log_and_who_waits_for_a_sync_does_not(
-    durability: Durability, disk: Disk
-) -> None:
-    durability.wrote(precedes_commands=True)
-    durability.let_commands_leave()
-    assert disk.folders == []
-    durability.start()
-    durability.wrote(precedes_commands=False)
-    durability.wake()
-    assert durability.reach(2, SOON_S)
-    durability.stop()
-    assert set(disk.folders) == {"durability"}
 
 
 def test_a_sync_that_fails_is_the_last_one_and_whoever_waits_hears_of_it(
@@ -180,18 +140,6 @@ def test_whoever_is_told_and_raises_ends_the_plant_and_keeps_nobody_else_from_be
     durability.tell("last")
     assert [type(each) for each in people.failures] == [ValueError]
     assert people.all_told.is_set()
-
-
-def test_what_is_left_at_the_end_is_synced_and_told(
-    durability: Durability, disk: Disk, people: People
-) -> None:
-    disk.let_go.clear()
-    durability.start()
-    durability.wrote(precedes_commands=False)
-    durability.tell("last")
-    disk.let_go.set()
-    durability.stop()
-    assert people.told == [("last", None)]
 
 
 def test_a_plant_without_a_memory_tells_at_once(people: People) -> None:

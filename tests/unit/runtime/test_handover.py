@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from concurrent.futures import Future
+from itertools import count
 from typing import Any
 
 import pytest
 
+from arboleda.adapters import clock
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import OWN
 from arboleda.runtime.standby import handover
+from arboleda.runtime.standby import lease as lease_part
 from arboleda.runtime.standby.handover import CellResumption, hold_all
 from arboleda.runtime.standby.lease import LeasePart
 from arboleda.store.plant_memory import PlantMemory, Superseded
+
+from ...threads import AtOnce, stand_in
 
 
 class Plant:
@@ -46,7 +51,11 @@ class Plant:
 
 @pytest.fixture(autouse=True)
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(handover, "LOOK_S", 0.001)
+    """Nothing pauses, and a second passes from each look at the clock to the next."""
+    monkeypatch.setattr(handover, "LOOK_S", 0.0)
+    monkeypatch.setattr(clock, "seconds", count(1.0).__next__)
+    for module in (handover, lease_part):
+        stand_in(module, AtOnce, monkeypatch)
 
 
 def test_what_is_at_work_is_held_until_it_stands_and_nothing_else() -> None:
@@ -59,22 +68,17 @@ def test_what_was_held_for_the_change_goes_on_once_that_is_possible() -> None:
     plant = Plant(a="held", b="held")
     part = CellResumption(plant, ["a"], 7)
     part.start()
-    while len(plant.said) < 3:
-        pass
     part.stop()
     assert plant.said == [(Verb.RESUME, "a")] * 3
 
 
 def test_what_cannot_go_on_stays_held_and_is_named(
-    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+    caplog: pytest.LogCaptureFixture,
 ) -> None:
-    monkeypatch.setattr(handover, "HEARD_S", 0.01)
     plant = Plant(a="held")
     plant.operate = lambda verb, scope="": _refused(verb, scope)  # type: ignore[method-assign]
     part = CellResumption(plant, ["a"], 7)
     part.start()
-    while "stays held" not in caplog.text:
-        pass
     part.stop()
     assert "a stays held after the change of leaders: its robots are not heard" in caplog.text
 
@@ -114,8 +118,6 @@ def test_a_leader_that_is_superseded_ends_the_plant() -> None:
     calls: list[str] = []
     part = lease(Memory(False, Superseded("Another process leads.")), calls)
     part.start()
-    while not calls:
-        pass
     part.stop()
     assert calls == ["Another process leads."]
 
@@ -124,11 +126,10 @@ def test_a_database_that_is_away_for_a_moment_ends_nothing_and_a_wish_is_followe
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     calls: list[str] = []
-    memory = Memory(ArboledaError("It is away."), ArboledaError("It is away."), True)
+    away, over = ArboledaError("It is away."), Superseded("It is over.")
+    memory = Memory(away, away, True, True, over)
     part = lease(memory, calls)
     part.start()
-    while not calls:
-        pass
     part.stop()
-    assert calls == ["handed over"] and memory.closed
+    assert calls == ["handed over", "It is over."] and memory.closed
     assert caplog.text.count("It is away.") == 1 and "the store is reached again" in caplog.text

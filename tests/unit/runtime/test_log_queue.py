@@ -1,14 +1,17 @@
 from __future__ import annotations
 
 import logging
-import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from queue import Queue
 
 import pytest
 
+from arboleda.runtime import log_queue
 from arboleda.runtime.log_file import LogFile
 from arboleda.runtime.log_queue import LONGEST, RATE, RATES, LogQueue, log_to
+
+from ...threads import AtTheEnd, stand_in
 
 LOG = logging.getLogger("arboleda.test")
 
@@ -33,6 +36,22 @@ class Clock:
 
     def __call__(self) -> float:
         return self.now
+
+
+class Prompt(Queue):
+    """A queue whose jobs are done as they come, by who brings them."""
+
+    def put_nowait(self, job: Callable[[], None]) -> None:
+        job()
+
+    def put(self, job: Callable[[], None], block: bool = True, timeout: float | None = None) -> None:
+        job()
+
+
+@pytest.fixture(autouse=True)
+def no_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    stand_in(log_queue, AtTheEnd, monkeypatch)
+    monkeypatch.setattr(log_queue, "Queue", Prompt)
 
 
 @pytest.fixture
@@ -86,74 +105,6 @@ def test_a_large_plant_may_say_more_of_its_tasks(queue: LogQueue, shelf: Shelf) 
         tasks.info("task %d", number)
     queue.flush()
     assert len(shelf.lines) == many > RATE[0]
-
-
-def test_an_output_that_is_stuck_holds_up_nobody(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("arboleda.runtime.log_queue.WAITING", 10)
-    monkeypatch.setattr("arboleda.runtime.log_queue.FLUSH_S", 0.01)
-    stuck, busy, shelf = threading.Event(), threading.Event(), Shelf()
-
-    def block(_line: logging.LogRecord) -> None:
-        busy.set()
-        stuck.wait()
-
-    queue = LogQueue(block, shelf, clock=clock)
-    log = logging.Logger("arboleda.test")
-    log.addHandler(queue)
-    log.info("the first")
-    assert busy.wait(10.0)
-    done = threading.Event()
-    for _ in range(15):
-        log.info("more")
-    queue.then(done.set)
-    assert done.is_set(), "what is to be done afterwards waits for the output"
-    queue.close()
-    stuck.set()
-    queue.close()
-    assert shelf.texts == ["the first"]
-
-
-def test_what_waited_for_a_stuck_output_comes_with_a_count(
-    clock: Clock, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("arboleda.runtime.log_queue.WAITING", 10)
-    go_on, busy, shelf = threading.Event(), threading.Event(), Shelf()
-
-    def slow(_line: logging.LogRecord) -> None:
-        busy.set()
-        go_on.wait()
-
-    queue = LogQueue(slow, shelf, clock=clock)
-    log = logging.Logger("arboleda.test")
-    log.addHandler(queue)
-
-    def say(text: str) -> None:
-        log.info(text)
-
-    say("the first")
-    assert busy.wait(10.0)
-    for number in range(15):
-        say(f"more {number}")
-    go_on.set()
-    queue.flush()
-    say("the last")
-    queue.close()
-    assert shelf.texts[:2] == ["the first", "more 0"] and len(shelf.lines) == 12
-    assert shelf.texts[-1] == "the last (5 more lines like this one were left out)"
-
-
-def test_an_output_that_logs_is_not_heard(clock: Clock) -> None:
-    log = logging.Logger("arboleda.test")
-    shelf = Shelf()
-
-    def chatty(_line: logging.LogRecord) -> None:
-        log.info("I was given a line")
-
-    queue = LogQueue(chatty, shelf, clock=clock)
-    log.addHandler(queue)
-    log.info("a line")
-    queue.close()
-    assert shelf.texts == ["a line"]
 
 
 def test_an_output_that_fails_is_said_and_given_up(clock: Clock) -> None:

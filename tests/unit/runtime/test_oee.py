@@ -77,6 +77,7 @@ def test_performance_is_the_shortest_of_the_times_that_the_history_has_to_all_of
     assert found.oee == pytest.approx(found.availability * found.performance * found.quality)
 
 
+@pytest.mark.long
 def test_a_hold_is_down_time_and_no_slow_work(rig: Rig, store: Store) -> None:
     for task in "abc":
         done(rig, task)

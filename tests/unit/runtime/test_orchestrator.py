@@ -507,7 +507,6 @@ def test_a_bridge_whose_robots_another_process_leads_does_not_halt_them_when_it_
     part = BridgePart(shipped("sis_a"), 7, OtherBroker(address("127.0.0.1:1883"), None), pytest.fail)
     part.loop.post = pytest.fail
     part.leave_robots()
-    part.loop.start()
     part.stop()
 
 

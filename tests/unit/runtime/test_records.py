@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -33,12 +34,20 @@ def started(folder: Path, epoch: int, files: PlantFiles = FILES, began_s: float 
     return world
 
 
-@pytest.fixture
-def shown(tmp_path: Path) -> Records:
-    """Of the start 8; 7 had the same plant file, 9 another one, 10 has nothing to be read."""
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Starts of which 7 and 8 had the same plant file, 9 another one, and 10 has nothing to be read."""
+    folder = tmp_path_factory.mktemp("record")
     for epoch, files in ((7, FILES), (8, FILES), (9, OTHER)):
-        started(tmp_path, epoch, files, began_s=1000.0 * epoch)
-    part_path(tmp_path, 10, 1).write_bytes(b"")
+        started(folder, epoch, files, began_s=1000.0 * epoch)
+    part_path(folder, 10, 1).write_bytes(b"")
+    return folder
+
+
+@pytest.fixture
+def shown(written: Path, tmp_path: Path) -> Records:
+    """Those of the start 8."""
+    shutil.copytree(written, tmp_path, dirs_exist_ok=True)
     return Records(lambda: part_path(tmp_path, 8, 1), LAYOUT)
 
 

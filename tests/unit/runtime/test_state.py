@@ -6,8 +6,6 @@ import os
 import re
 import shutil
 import stat
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -45,26 +43,6 @@ def test_a_second_owner_is_told_who_the_first_is(tmp_path):
     )
     with StateDir(tmp_path):
         pass
-
-
-def test_what_a_killed_plant_left_behind_is_no_plant(tmp_path):
-    leave = f"""
-import os
-from pathlib import Path
-from arboleda.runtime.state import StateDir
-state = StateDir(Path({str(tmp_path)!r}))
-state.open()
-state.announce(4321)
-os._exit(1)
-"""
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    assert subprocess.run([sys.executable, "-c", leave], env=environment, check=False).returncode == 1
-
-    assert (tmp_path / "plant.json").exists()
-    assert find_running(tmp_path) is None
-    with StateDir(tmp_path):
-        assert find_running(tmp_path).pid == os.getpid()
-        assert find_running(tmp_path).port is None
 
 
 def test_its_files_are_for_their_owner_only(tmp_path):
@@ -141,39 +119,6 @@ def test_an_epoch_that_is_a_pipe_is_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / "epoch")
     with StateDir(tmp_path) as owner, pytest.raises(StartError, match="does not say the number"):
         owner.next_epoch(1000)
-
-
-FULL = """
-import resource, signal, sys
-from pathlib import Path
-from arboleda.runtime.state import StateDir
-from arboleda.model.errors import ArboledaError, StartError
-signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-room = int(sys.argv[2])
-state = StateDir(Path(sys.argv[1]))
-resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
-try:
-    state.open()
-    resource.setrlimit(resource.RLIMIT_FSIZE, (0, room))
-    state.next_epoch(5)
-except StartError as error:
-    print(error)
-"""
-
-
-@pytest.mark.parametrize("room", [0, 4096])
-def test_a_full_disk_at_the_start_is_one_sentence(tmp_path, room):
-    """The limit for the size of files stands for it: nothing can be written."""
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    command = [sys.executable, "-c", FULL, str(tmp_path), str(room)]
-    ended = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    assert ended.stdout.startswith(
-        f"The state directory {tmp_path} cannot be used: File too large; make room"
-    )
-    assert ended.stderr == ""
-    assert [file.name for file in tmp_path.iterdir()] == ["plant.lock"]
-    with StateDir(tmp_path):
-        pass
 
 
 def test_the_owner_notices_that_its_lock_is_not_in_its_place(tmp_path):

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import itertools
-import os
 import socket
-import threading
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from arboleda.adapters import clock
-from arboleda.runtime.parts.systemd import SystemdPart, systemd_part
+from arboleda.runtime.parts.systemd import systemd_part
 
 from ...patience import PATIENCE_S
-
-LONG_S = 60.0
 
 
 @pytest.fixture
@@ -31,32 +26,6 @@ def heard(tmp_path: Path) -> Iterator[socket.socket]:
 def asked(heard: socket.socket, **more: str) -> dict[str, str]:
     """The environment of a process that systemd started."""
     return {"NOTIFY_SOCKET": heard.getsockname(), **more}
-
-
-def test_it_is_told_that_the_plant_is_ready_lives_and_ends(heard: socket.socket) -> None:
-    part = systemd_part(asked(heard, WATCHDOG_USEC="30000", WATCHDOG_PID=str(os.getpid())), clock.seconds)
-    assert part
-    part.start()
-    told = [heard.recv(100) for _ in range(3)]
-    part.stop()
-    while told[-1] == b"WATCHDOG=1" and len(told) < 1000:
-        told.append(heard.recv(100))
-    assert told[:3] == [b"READY=1", b"WATCHDOG=1", b"WATCHDOG=1"] and told[-1] == b"STOPPING=1"
-
-
-def test_a_plant_that_makes_no_steps_any_more_is_not_said_to_live(heard: socket.socket) -> None:
-    last, looks, thrice = clock.seconds() - LONG_S, itertools.count(1), threading.Event()
-
-    def stepped_at() -> float:
-        if next(looks) == 3:
-            thrice.set()
-        return last
-
-    part = SystemdPart(heard.getsockname(), 0.03, stepped_at)
-    part.start()
-    assert thrice.wait(PATIENCE_S)
-    part.stop()
-    assert [heard.recv(100), heard.recv(100)] == [b"READY=1", b"STOPPING=1"]
 
 
 def test_without_a_watchdog_nothing_is_said_between_beginning_and_end(heard: socket.socket) -> None:

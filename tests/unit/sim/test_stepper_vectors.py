@@ -48,6 +48,7 @@ def test_all_vectors_are_here():
     assert len(VECTORS) == 17
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("path", VECTORS, ids=lambda path: path.stem)
 def test_steps_when_the_reference_steps(path):
     scenario = json.loads(path.read_text(encoding="utf-8"))

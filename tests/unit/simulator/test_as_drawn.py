@@ -126,6 +126,7 @@ class _Devices:
     of = staticmethod(of_devices)
 
 
+@pytest.mark.long
 def test_a_recipe_that_does_other_than_was_drawn_is_found() -> None:
     setting = Setting(plants=_Devices(), cycles=2, level="none")
     with pytest.MonkeyPatch.context() as patch:
@@ -135,6 +136,7 @@ def test_a_recipe_that_does_other_than_was_drawn_is_found() -> None:
     assert setting.run(8).broken is None
 
 
+@pytest.mark.long
 def test_a_verb_with_values_that_no_recipe_has_is_found_whatever_goes_wrong() -> None:
     setting = Setting(plants=_Devices(), cycles=4, level="many")
     with pytest.MonkeyPatch.context() as patch:

@@ -23,6 +23,7 @@ def drawn(seed: int, level: str = "normal", minutes: int = 3) -> list[Fault]:
     return [fault for minute in range(minutes) for fault in climate.faults(minute)]
 
 
+@pytest.mark.long
 def test_a_thousand_seeds_have_enough_of_every_kind():
     kinds = Counter(fault.kind for seed in range(1000) for fault in drawn(seed))
     assert kinds.total() >= 50_000

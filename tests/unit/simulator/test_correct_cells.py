@@ -55,6 +55,7 @@ def strike(cell: Kit, blows: Blows[3, 40]):  # type: ignore[no-untyped-def,valid
     return cell.device("press").strike(blows=blows)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", ["second_orchestrator", "foreign_command", "foreign_old"])
 def test_others_tell_a_device_only_numbers_within_its_limits(kind: str) -> None:
     press = Device(name="press", mqtt="press", link=Link.MQTT, evidence=Evidence.IDS, timeout_s=5, kind=PRESS)
@@ -83,11 +84,13 @@ def air(cell: Kit, on: Choice[0, 1]):  # type: ignore[no-untyped-def,valid-type]
 ONE_KILN = KILNS[: KILNS.index("  glaze")]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("fault", ["gives_up", "refuses"])
 def test_nobody_knows_that_a_device_at_state_did_not_switch(tmp_path: Path, fault: str) -> None:
     assert broken(cell_of(tmp_path, ONE_KILN, air), {fault: 6.0}, cycles=20) is None
 
 
+@pytest.mark.long
 def test_a_task_does_not_answer_for_what_another_cell_has_switched_since(tmp_path: Path) -> None:
     assert broken(cell_of(tmp_path, KILNS, air), {"slow_disk": 5.0}, cycles=40) is None
 
@@ -133,6 +136,7 @@ def let_pass(cell: Kit):  # type: ignore[no-untyped-def]
     return work(gate.lower(), cell.repeat(work(gate.up(), gate.lower()), 2))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("weather", ["none", {"duplicate": 4.0, "reorder": 4.0, "ends_late": 2.0}])
 def test_what_a_device_says_of_its_facts_proves_its_motions(tmp_path: Path, weather: Weather) -> None:
     assert broken(cell_of(tmp_path, SLUICE, let_pass), weather, cycles=6) is None
@@ -212,6 +216,7 @@ def bind(cell: Kit):  # type: ignore[no-untyped-def]
     return work(clamp.clamp(on=True), clamp.clamp(on=False))
 
 
+@pytest.mark.long
 def test_a_task_may_grip_in_the_step_in_which_the_one_before_has_let_go(tmp_path: Path) -> None:
     assert broken(cell_of(tmp_path, BENCHES, bind), cycles=8) is None
 
@@ -316,6 +321,7 @@ def turn(cell: Kit):  # type: ignore[no-untyped-def]
     return work(cell.fallback(cell.timeout(arm.go("far"), 0.4), arm.home()), cell.wait(1.0))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("evidence", ["ids", "joints", "state"])
 def test_a_move_after_a_timeout_waits_until_the_arm_has_come_to_rest(tmp_path: Path, evidence: str) -> None:
     model = cell_of(tmp_path, LONG_WAYS.replace("EVIDENCE", evidence), turn)

@@ -245,6 +245,7 @@ def simulated(
     return simulation
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("kind", "goes_on"), sample(product(OF_CRASHES, [False, True]), every=5))
 def test_everything_holds_however_it_dies(kind: str, goes_on: bool) -> None:
     found = simulated(1, {kind: 8.0}, goes_on=goes_on)
@@ -320,6 +321,7 @@ def test_a_plant_that_waits_for_its_disk_goes_on_waiting_when_nothing_else_stall
     assert world.advance(10.0, lambda: not world.is_stalled(PLANT))
 
 
+@pytest.mark.long
 def test_the_same_seed_dies_in_the_same_way() -> None:
     rates = dict.fromkeys(OF_CRASHES, 4.0)
     first, second = (simulated(2, rates, cycles=1).result for _ in range(2))

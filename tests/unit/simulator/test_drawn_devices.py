@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from collections.abc import Callable
 from itertools import islice
 from pathlib import Path
@@ -22,6 +19,8 @@ from arboleda.plant_file import loader
 from arboleda.simulator.plants import devices
 from arboleda.simulator.plants.devices import DrawnDevices, Form, steps
 from arboleda.simulator.plants.devices.kinds import SPARE, Span
+
+pytestmark = pytest.mark.long
 
 SEEDS = range(150)
 ONLY_IN_XML = (
@@ -41,21 +40,6 @@ def drawn() -> list[DrawnDevices]:
 def test_a_seed_draws_the_same_and_another_something_else() -> None:
     assert devices.draw(7) == devices.draw(7) != devices.draw(8)
     assert devices.draw(7, 1) != devices.draw(7)
-
-
-def test_a_seed_draws_the_same_in_every_process() -> None:
-    """Python orders sets of words otherwise in each process, unless PYTHONHASHSEED says how."""
-    code = "from arboleda.simulator.plants import devices\nfor seed in range(60): print(devices.draw(seed))"
-    once, again = (
-        subprocess.run(
-            [sys.executable, "-c", code],
-            env={**os.environ, "PYTHONHASHSEED": order, "PYTHONPATH": os.pathsep.join(sys.path)},
-            capture_output=True,
-            check=True,
-        ).stdout
-        for order in "12"
-    )
-    assert once == again and len(once.splitlines()) == 60
 
 
 def test_half_of_the_plants_have_cells_of_devices() -> None:

@@ -230,6 +230,7 @@ def test_a_lasting_fault_has_its_effect_until_it_ends(world, kind):
     assert is_clean(world)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("first", [0, 1], ids=["the first ends first", "the last ends first"])
 @pytest.mark.parametrize("kind", LASTING)
 def test_two_at_once_have_their_effect_until_both_have_ended(world, kind, first):
@@ -281,6 +282,7 @@ def test_a_kind_says_in_one_sentence_what_it_is(kind):
     assert kind.name == kind.name.lower()
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("evidence", Evidence)
 @pytest.mark.parametrize("kind", KINDS.values(), ids=lambda kind: kind.name)
 def test_what_is_drawn_is_legal(kind, evidence):
@@ -304,6 +306,7 @@ def test_an_illegal_fault_is_told_what_is_allowed(wrong, sentence):
     assert KINDS["mute"].objection(Fault(kind="mute", at=0.0, **wrong), shipped("sis_a")) == sentence
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("evidence", Evidence)
 @pytest.mark.parametrize("seed", range(2))
 def test_everything_at_once_leaves_nothing_behind(evidence, seed):

@@ -99,6 +99,7 @@ def told(found: Counter[Finding]) -> set[str]:
     return {f"{each.kind.value} {each.recipe} [{each.step}] {each.reason}: {each.sentence}" for each in found}
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("recipe", "finding"),
     [
@@ -162,6 +163,7 @@ def file(tmp_path: Path) -> Path:
     return tmp_path / "plant.yaml"
 
 
+@pytest.mark.long
 def test_a_campaign_says_them_and_they_are_in_its_file(file: Path) -> None:
     request = Request(plant=file, seeds=2, cycles=3, faults="none")
     tally = Tally(setting=request.setting)
@@ -185,6 +187,7 @@ def test_a_campaign_says_them_and_they_are_in_its_file(file: Path) -> None:
     )
 
 
+@pytest.mark.long
 def test_a_campaign_that_found_something_ends_with_1(file: Path, tmp_path: Path) -> None:
     request, console = Request(plant=file, seeds=1, cycles=2, faults="none"), Console(file=StringIO())
     assert SeedCampaign(request, console, None).run(1) == BROKEN
@@ -205,6 +208,7 @@ BY_ANSWER = """
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("ways", "found", "as_written"),
     [(ANSWERED + BY_ANSWER, 0, 1), (BY_ANSWER + ANSWERED, 1, 0)],

@@ -218,18 +218,21 @@ def run(
     return simulation.run(cycles=cycles, seconds=seconds).broken
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", sample(range(1, 5), every=4))
 def test_all_of_them_hold_in_bad_weather(seed: int) -> None:
     assert run(seed, "normal", cycles=3) is None
     assert run(seed, "normal", cycles=6, model=SHARING) is None
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("kind", sample(FAULTS_OF_DEVICES, every=2))
 def test_all_of_them_hold_where_devices_fail_in_this_way_alone(kind: str) -> None:
     assert kind in JUDGED
     assert run(1, {kind: 12.0}, cycles=3, seconds=length(25.0, whole=None)) is None
 
 
+@pytest.mark.long
 def test_a_task_of_any_recipe_that_fails_without_a_fault_is_found(monkeypatch: Patch) -> None:
     name = "no_task_fails_without_a_fault"
     assert run(1, only=name, model=shop(careless), cycles=1) is None, "the recipe fails by itself"
@@ -238,6 +241,7 @@ def test_a_task_of_any_recipe_that_fails_without_a_fault_is_found(monkeypatch: P
     assert broken is not None and broken.invariant == name
 
 
+@pytest.mark.long
 def test_a_shared_device_that_was_handed_on_need_not_be_as_the_task_left_it() -> None:
     @recipe("set")
     def set_lamp(cell: Kit, on=Choice(0, 1)):  # type: ignore[no-untyped-def]
@@ -648,6 +652,7 @@ LIKELY = {  # seeds that found them, tried first
 }
 
 
+@pytest.mark.sampled(22)
 @pytest.mark.parametrize(("name", "bug", "how"), BITES, ids=[f"{n}: {b.__name__}" for n, b, _ in BITES])
 def test_it_bites(monkeypatch: Patch, name: str, bug: Bug, how: Scenario | Weather) -> None:
     bug(monkeypatch)
@@ -677,6 +682,7 @@ OWN_PLANT = ["nothing_is_dropped", "offered_answers_are_accepted", *OF_PLACES]
 SCENARIOS = [each for name, _, each in BITES if callable(each) and name not in OWN_PLANT]
 
 
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("how", sample(SCENARIOS, every=2))
 def test_it_finds_nothing_where_there_is_no_bug(how: Scenario) -> None:
     how(JudgedWorld(peeping() if how is PEEKS else shop(*RECIPES)))

@@ -24,11 +24,13 @@ def none(minute: int) -> list[Fault]:
     return []
 
 
+@pytest.mark.long
 def test_what_is_drawn_holds_with_and_without_faults() -> None:
     assert Simulation(model(), 1, none).run(cycles=4).broken is None
     assert Simulation(model(), 5, Climate.draw(model(), 5, "normal").faults).run(cycles=4).broken is None
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("carriers", [{}, {"ra1": False}], ids=["nothing", "never for sure"])
 def test_a_part_that_is_drawn_wrongly_is_found(
     monkeypatch: pytest.MonkeyPatch, carriers: dict[str, bool]

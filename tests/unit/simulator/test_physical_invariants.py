@@ -112,6 +112,7 @@ def test_every_invariant_says_what_must_hold() -> None:
     assert len({each.name for each in INVARIANTS}) == len(INVARIANTS)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("model", [shipped, zoned], ids=["shipped", "zoned"])
 def test_nothing_is_found_while_all_goes_well(model: Callable[[], PlantModel]) -> None:
     watch = Watch(model())
@@ -137,6 +138,7 @@ FAULTS: dict[str, Callable[[Watch], None]] = {
 }
 
 
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize(("fault", "after_s"), sample(product(FAULTS, (0.4, 1.0, 1.3, 1.6, 2.2)), every=4))
 def test_nothing_is_found_when_a_fault_is_handled(fault: str, after_s: float) -> None:
     watch = Watch(zoned())
@@ -408,6 +410,7 @@ BREAKS: list[tuple[str, Callable[[Patch], Watch]]] = [
 ]
 
 
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize(("name", "break_it"), BREAKS, ids=[f"{n}-{b.__name__}" for n, b in BREAKS])
 def test_it_bites(name: str, break_it: Callable[[Patch], Watch], monkeypatch: Patch) -> None:
     assert name in break_it(monkeypatch).found

@@ -48,6 +48,7 @@ def test_a_seed_draws_the_same_and_another_something_else() -> None:
     assert drawn(7, 1) != drawn(7)
 
 
+@pytest.mark.long
 def test_a_drawn_file_is_refused_only_for_what_its_parts_mean_together() -> None:
     found = [_problems(drawn(seed)) for seed in SEEDS]
     times = ("effector_settle_s", "piece_debounce_s", "stop_timeout_s")
@@ -69,6 +70,7 @@ def _problems(file: dict[str, Any]) -> tuple[str, ...]:
     return ()
 
 
+@pytest.mark.long
 def test_every_key_of_a_plant_file_is_drawn_but_those_that_say_so(files: list[dict[str, Any]]) -> None:
     found = {place for file in files for place in _keys(file)}
     wanted = {
@@ -104,6 +106,7 @@ def _is_named(key: str) -> bool:
     return key.startswith(("cell_", "zone_")) or key.isdigit() or len(key) == 1
 
 
+@pytest.mark.long
 def test_every_level_link_and_model_is_drawn_in_mixtures(plants: list[PlantModel]) -> None:
     arms = {
         (StorageLayout(cell).arm.evidence, StorageLayout(cell).arm.link, StorageLayout(cell).arm.model)
@@ -119,6 +122,7 @@ def test_every_level_link_and_model_is_drawn_in_mixtures(plants: list[PlantModel
     assert mixed == {(one, other) for one in Evidence for other in Evidence}
 
 
+@pytest.mark.long
 def test_odd_plants_are_drawn(plants: list[PlantModel]) -> None:
     cells = [cell for plant in plants for cell in plant.cells]
     assert {len(plant.cells) for plant in plants} == {1, 2, 3, 4}
@@ -154,6 +158,7 @@ def _sharing(plant: PlantModel, zone: str) -> list[str]:
     return [cell.name for cell in plant.cells if zone in StorageLayout(cell).space.zones]
 
 
+@pytest.mark.long
 def test_each_smaller_file_lacks_something(files: list[dict[str, Any]]) -> None:
     file = next(file for file in files if len(file.get("zones", {})) > 1)
     before = deepcopy(file)
@@ -162,6 +167,7 @@ def test_each_smaller_file_lacks_something(files: list[dict[str, Any]]) -> None:
     assert any("zones" not in each for each in less)
 
 
+@pytest.mark.long
 def test_without_a_cell_no_zone_names_it(files: list[dict[str, Any]]) -> None:
     file = next(file for file in files if len(file["cells"]) > 2 and "zones" in file)
     fewer = [each for each in smaller(file) if len(each["cells"]) < len(file["cells"])]

@@ -118,6 +118,7 @@ def cut(watch: Watch, client: str) -> None:
 # What a plant does that works.
 
 
+@pytest.mark.long
 def test_nothing_is_found_in_three_cells_at_work():
     watch = Watch(shipped())
     for number in range(6):
@@ -138,6 +139,7 @@ SEQUENCES = (
 )
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("at_s", "verbs"),
     sample(product([0.1, 1.5, 4.2, 5.6], SEQUENCES), every=2),
@@ -225,6 +227,7 @@ def test_no_move_after_its_halt__by_the_numbers_that_the_plant_gave():
     assert watch.found == {}
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("at_s", "process"), sample(product([0.1, 1.5, 4.2, 5.6], [PLANT, BRIDGE, "ra_1", "rm_sis_a"]), every=3)
 )
@@ -766,6 +769,7 @@ def test_no_starvation(monkeypatch, bites):
     bites(watch)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("evidence", [Evidence.IDS, Evidence.JOINTS])
 def test_no_starvation__of_a_cell_whose_effector_is_being_opened(evidence):
     watch = Watch(shipped("sis_a", evidence=evidence, assume_homed=evidence is Evidence.JOINTS))

@@ -11,6 +11,7 @@ from arboleda.testing import shipped
 FREEZE = Fault(kind="plant_freeze", at=20.0, seconds=3.0, target="plant", word="plant", amount=50_000.0)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seconds", [45.0, 90.0])
 def test_a_run_for_so_many_seconds_does_not_count_a_day_in_which_nobody_did_anything(seconds: float) -> None:
     simulation = Simulation(shipped("sis_a"), 1, lambda minute: [] if minute else [FREEZE], invariants=[])

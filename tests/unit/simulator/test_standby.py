@@ -94,6 +94,7 @@ def test_a_standby_that_is_cut_off_changes_nothing() -> None:
         assert hosts.numbers == [(1001, "host_a")]
 
 
+@pytest.mark.long
 def test_a_planned_change_loses_no_task_and_goes_on_by_itself() -> None:
     with two_hosts() as (watched, hosts, said):
         states = ends(watched)
@@ -133,6 +134,7 @@ def test_a_leader_with_a_slow_clock_that_is_cut_off_is_no_second_leader(
         cut_off_with_a_slow_clock()
 
 
+@pytest.mark.long
 def test_the_same_seed_does_the_same_on_two_hosts() -> None:
     def digest() -> str:
         model = shipped("sis_a")

@@ -136,6 +136,7 @@ CASES = [
 IDS = [f"{kind}: {name} by {bug.__name__}" for kind, name, bug in CASES]
 
 
+@pytest.mark.sampled(17)
 @pytest.mark.parametrize(("kind", "name", "bug"), CASES, ids=IDS)
 def test_it_bites(monkeypatch: Patch, kind: str, name: str, bug: Bug) -> None:
     bug(monkeypatch)
@@ -144,6 +145,7 @@ def test_it_bites(monkeypatch: Patch, kind: str, name: str, bug: Bug) -> None:
     assert any(broken is not None and broken.invariant == name for broken in found)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", HERE)
 @pytest.mark.parametrize("seed", sample([1, 2], every=2))
 def test_all_of_them_hold_however_often_the_plant_dies(kind: str, seed: int) -> None:

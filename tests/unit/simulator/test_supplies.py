@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from arboleda.plant_file.loader import load
 from arboleda.simulator.faults.kind import Fault
 from arboleda.simulator.invariants.part_places import PLACES
@@ -15,6 +17,7 @@ from ..kinds.test_places import PLANT, written
 FROM_A_DEVICE = PLANT.replace("inside: {of: oven}", "inside: {of: oven, supply: true}")
 
 
+@pytest.mark.long
 def test_a_task_may_empty_a_supply_of_a_device(tmp_path: Path) -> None:
     model = load(written(tmp_path, FROM_A_DEVICE, 'take("inside"), put("bin"), mover.home()'))
     result = Simulation(model, 1, lambda minute: [], invariants=PLACES).run(cycles=2)

@@ -286,6 +286,7 @@ def test_a_restarted_plant_goes_on_only_with_a_task_of_which_it_knows_where_it_s
     assert stage.truth.storage.cells["sis_a"].task == (task if kept else None)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("stalled_s", "at_home"), [(0.2, False), (30.0, True)])
 @pytest.mark.parametrize("board", [ARM, MOBILE])
 def test_who_came_home_before_its_board_hears_a_stop_is_homed(

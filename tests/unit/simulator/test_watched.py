@@ -76,6 +76,7 @@ def test_coming_to_rest_ends_what_lasts_and_judges_the_end() -> None:
     assert watched.world.faults_active == 0
 
 
+@pytest.mark.long
 def test_what_never_comes_to_rest_is_a_breach() -> None:
     watched = JudgedWorld(shipped("sis_a"), invariants=[nothing_muted])
     watched.world.broker.clients["ra_1"].up.troubles.append(lambda message: (0.0,))

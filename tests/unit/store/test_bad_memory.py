@@ -189,6 +189,7 @@ def test_a_memory_that_another_program_has_locked_is_refused(
         other.close()
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("command", [*STARTS, "restore"])
 def test_a_memory_that_may_not_be_written_is_refused(
     command: str, memory: Path, capsys: pytest.CaptureFixture[str]

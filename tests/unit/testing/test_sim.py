@@ -230,6 +230,7 @@ def test_a_recipe_that_raises_breaks_an_invariant_or_fails_its_task(sim: Sim) ->
         assert task.reason == "internal"
 
 
+@pytest.mark.long
 def test_seeds_hold(sim: Sim) -> None:
     sim.seeds(2, cycles=3, faults="few")
 

@@ -24,12 +24,14 @@ def names(sim: Sim, cell: str, text: str) -> list[str]:
     return [each for each in found if each is not None]
 
 
+@pytest.mark.long
 def test_a_cell_names_the_step_and_not_what_is_around_it() -> None:
     sim = Sim()
     sim.plant("examples/kitting/plant.yaml")
     assert set(names(sim, "kitting", "kitting kit 1 tray_4")) == set(KITTING)
 
 
+@pytest.mark.long
 def test_a_tree_as_xml_names_its_nodes() -> None:
     sim = Sim()
     sim.plant("examples/own_tree/plant.yaml")

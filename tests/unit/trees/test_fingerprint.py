@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -19,12 +17,6 @@ from arboleda.trees.leaves import Unless
 from ...cells import with_poses, with_robot
 
 MADE_BY_CODE = "ae0d51165bde685fa42ee56dc501189c"
-SHOWN = """
-from arboleda.trees import fingerprint
-from arboleda.testing import shipped
-
-print(fingerprint.of_cell(shipped().cells[0], "storage", {}))
-"""
 
 
 def of(holds: Callable[[], bool], name: str = "a") -> str:
@@ -37,14 +29,6 @@ def waits(seconds: float) -> Callable[[], bool]:
 
 def later(at: Any) -> bool:
     return bool(at)
-
-
-def test_it_is_the_same_in_another_process() -> None:
-    said = [
-        subprocess.run([sys.executable, "-c", SHOWN], capture_output=True, text=True, check=True).stdout
-        for _ in range(2)
-    ]
-    assert said[0] == said[1] and len(said[0].strip()) == 32
 
 
 def test_a_tree_made_again_is_the_same() -> None:

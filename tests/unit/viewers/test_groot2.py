@@ -182,6 +182,7 @@ def test_what_is_no_request_is_answered_with_the_reason(parts: list[bytes], why:
     assert Client(*tree(RUNNING)).cell.answer(parts, 0) == [b"error", why]
 
 
+@pytest.mark.long
 def test_no_frames_raise_or_change_the_tree() -> None:
     chance = random.Random(22)
     client = Client(*tree(RUNNING, SUCCESS, RUNNING))

@@ -169,6 +169,7 @@ TURNED = st.fixed_dictionaries(
 MOVES = st.tuples(st.just("tell"), st.just("ra_1"), TURNED)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("evidence", Evidence, ids=lambda level: level.value)
 @given(happenings=st.lists(AGAIN | MOVES | HAPPENINGS, max_size=30))
 def test_a_bridge_that_knows_repeats_says_what_one_that_reads_all_would(

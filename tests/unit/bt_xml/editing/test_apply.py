@@ -68,6 +68,7 @@ def places(draw: st.DrawFn) -> tuple[str, str, str]:
     return text, name, draw(st.sampled_from([path for path, _ in walk(trees[name])]))
 
 
+@pytest.mark.long
 def test_there_are_trees_to_try() -> None:
     assert len(texts()) > 500
 

@@ -22,6 +22,7 @@ from .corpus import HERE, texts
 OWN_TREE = HERE / "examples/own_tree/plant.yaml"
 
 
+@pytest.mark.long
 def test_every_node_is_shown_and_every_finding_of_the_check_has_its_sentence() -> None:
     for text in texts():
         there = TreeText(text)

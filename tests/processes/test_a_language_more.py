@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
 from .copied_tree import CopiedTree
 
 FILES = {
@@ -61,29 +59,19 @@ print(json.dumps({
 """
 
 
-@pytest.fixture(scope="module")
-def seen(tmp_path_factory: pytest.TempPathFactory) -> dict:
-    tree = CopiedTree(tmp_path_factory.mktemp("tree"))
+def test_page_login_waiting_room_and_report_speak_a_language_of_a_folder(tmp_path: Path) -> None:
+    tree = CopiedTree(tmp_path)
     for name, text in FILES.items():
         tree.add(f"web/languages/fr/{name}.yaml", text)
     assert {Path(each).parent for each in tree.changed} == {Path("web/languages/fr")}
-    return tree.run(LOOK)
-
-
-def test_the_page_speaks_it_and_offers_it(seen: dict) -> None:
+    seen = tree.run(LOOK)
     assert seen["chosen"] == "fr"
     assert seen["page"] == ["Cellules", "Arrêt (logiciel)", "Send task"]  # the last has no French words
     assert seen["said"] == "a : idle, rien à acquitter"
     assert 'data-language="fr"' in seen["header"] and "Français" in seen["header"]
-
-
-def test_login_and_waiting_room_speak_it(seen: dict) -> None:
     assert '<html lang="fr">' in seen["login"] and "Clé" in seen["login"] and "Log in" in seen["login"]
     assert '<p lang="fr">Ce processus attend.</p>' in seen["waiting"]
     assert '<span lang="fr">Aucune réponse.</span>' in seen["waiting"]
-
-
-def test_a_report_has_it(seen: dict) -> None:
     assert "<span lang=fr>La tâche t-1 a échoué</span>" in seen["report"]
     assert "English / Español / Français" in seen["report"] and '["en", "es", "fr"]' in seen["report"]
     assert "html[lang=fr] body [lang]:not([lang=fr])" in seen["report"]

@@ -10,13 +10,13 @@ from typing import Any
 
 import pytest
 
-from arboleda.drivers import Clock, Command, Hear, NotSent, Stop, StopMode
+from arboleda.drivers import Clock, Command, Hear, Stop, StopMode
 from arboleda.model.messages import Heartbeat, Report, Undelivered
 from arboleda.model.plant_model import DriverUse, Link, MotionState, PlantModel, Robot, Timing
 from arboleda.runtime.parts.drivers import DriversPart
 
-from ...patience import PATIENCE_S
-from ..kinds.station import STATION, plant
+from ..patience import PATIENCE_S
+from ..unit.kinds.station import STATION, plant
 
 EPOCH = 9
 GO = STATION.command(id="9-1", robot="station", verb="go", values={})
@@ -131,37 +131,19 @@ def test_a_driver_that_cannot_start_is_started_again(running: Callable[..., Plan
     assert there.made == [first, second] and first.stopped.is_set()
 
 
-@pytest.mark.parametrize("error", [ValueError("no such register"), SystemExit(3)])
-def test_what_send_raises_is_not_sent_and_has_lost_the_link(
-    running: Callable[..., Plant], error: BaseException
-) -> None:
+def test_what_send_raises_is_not_sent_and_has_lost_the_link(running: Callable[..., Plant]) -> None:
     class Rude(Tame):
         def send(self, command: Command) -> None:
-            raise error
+            raise SystemExit(3)
 
     there = running(Rude())
     there.is_up()
     there.part.send(GO)
     undelivered = there.hears(lambda event: isinstance(event, Undelivered))
-    assert undelivered.id == "9-1" and type(error).__name__ in str(undelivered.sentence)
-    assert type(error).__name__ in there.is_lost()
+    assert undelivered.id == "9-1" and "SystemExit" in str(undelivered.sentence)
+    assert "SystemExit" in there.is_lost()
     there.made[0].speak()
     there.is_up()
-
-
-def test_a_polite_refusal_leaves_the_link_as_it_is(running: Callable[..., Plant]) -> None:
-    class Polite(Tame):
-        def send(self, command: Command) -> None:
-            raise NotSent("the valve is shut")
-
-    there = running(Polite())
-    there.is_up()
-    there.part.send(GO)
-    event = there.heard.get(timeout=PATIENCE_S)
-    assert isinstance(event, Undelivered)
-    assert str(event.sentence) == "its driver plc could not send a command (the valve is shut)"
-    there.made[0].speak()
-    assert isinstance(there.heard.get(timeout=PATIENCE_S), Report)
 
 
 class Threaded(Tame):
@@ -183,12 +165,6 @@ class Threaded(Tame):
         super().stop()
 
 
-class Helper:
-    def read(self, go: threading.Event) -> None:
-        go.wait(PATIENCE_S)
-        raise EOFError("the line is cut")
-
-
 def test_a_thread_of_a_driver_that_dies_has_lost_the_link_and_the_driver_is_started_again(
     running: Callable[..., Plant],
 ) -> None:
@@ -200,23 +176,6 @@ def test_a_thread_of_a_driver_that_dies_has_lost_the_link_and_the_driver_is_star
     assert there.is_lost() == why
     there.is_up()
     assert first.stopped.is_set()
-
-
-def test_a_thread_that_works_elsewhere_in_the_drivers_file_is_one_of_it(
-    running: Callable[..., Plant],
-) -> None:
-    class Handing(Threaded):
-        def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
-            Tame.start(self, devices, hear, clock)
-            self.go = threading.Event()
-            self.thread = threading.Thread(target=Helper().read, args=(self.go,), daemon=True)
-            self.thread.start()
-
-    first = Handing()
-    there = running(first, Tame())
-    there.is_up()
-    first.go.set()
-    assert "a thread of it died: EOFError" in there.is_lost()
 
 
 def test_a_thread_that_ends_with_an_error_while_the_driver_stops_is_nothing(
@@ -289,17 +248,6 @@ def speak(driver: Tame, until: threading.Event) -> None:
     """The driver's device is heard all the while."""
     while not until.wait(0.05):
         driver.speak()
-
-
-def test_nonsense_is_a_line_in_the_log(
-    running: Callable[..., Plant], caplog: pytest.LogCaptureFixture
-) -> None:
-    there = running(Tame())
-    there.is_up()
-    there.made[0].hear({"state": "stopped"})
-    there.made[0].speak()
-    there.is_up()
-    assert "the driver plc reported nonsense: {'state': 'stopped'} is no Report" in caplog.text
 
 
 def test_devices_with_the_same_driver_and_equal_settings_share_one() -> None:

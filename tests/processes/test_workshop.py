@@ -19,7 +19,7 @@ from arboleda.web.desks.draft import DraftRefused
 from arboleda.web.languages import texts
 
 Processes: TypeAlias = "SimpleQueue[subprocess.Popen[bytes]]"
-OWN_TREE = Path(__file__).parents[3] / "examples/own_tree/plant.yaml"
+OWN_TREE = Path(__file__).parents[2] / "examples/own_tree/plant.yaml"
 BASE = PlantFiles(
     plant="plant.yaml",
     contents={"plant.yaml": OWN_TREE.read_bytes(), "tend.xml": OWN_TREE.with_name("tend.xml").read_bytes()},
@@ -38,13 +38,6 @@ def changed(name: str, before: bytes, after: bytes) -> PlantFiles:
     text = BASE.contents[name]
     assert before in text
     return PlantFiles(plant=BASE.plant, contents={**BASE.contents, name: text.replace(before, after)})
-
-
-def test_what_was_found_is_said_in_another_language(workshop: Workshop) -> None:
-    assert workshop.translate("es", ["the draft cannot be read yet", 'the key "a" is missing']) == [
-        "the draft cannot be read yet",
-        'falta la clave "a"',
-    ]
 
 
 def test_a_new_target_is_one_of_the_draft_at_once(workshop: Workshop) -> None:
@@ -114,11 +107,6 @@ def test_at_its_end_whoever_waits_is_refused_and_no_process_begins(begun: Proces
         each.join()
     assert run.poll() is not None and begun.empty()
     assert [refused.get() for _ in waiting] == [ENDING] * len(waiting)
-
-
-def test_what_is_not_there_is_refused_with_a_sentence(workshop: Workshop) -> None:
-    with pytest.raises(DraftRefused, match="'moon' is no recipe of cell"):
-        workshop.shown(BASE, BASE, "cell", "moon")
 
 
 def test_drivers_of_the_plants_own_files_are_offered_with_those_of_arboleda() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
+from pathlib import Path
 
 from .copied_tree import CopiedTree
 
@@ -69,37 +69,21 @@ print(json.dumps({
 """
 
 
-@pytest.fixture(scope="module")
-def seen(tmp_path_factory: pytest.TempPathFactory) -> dict:
-    tree = CopiedTree(tmp_path_factory.mktemp("tree"))
+def test_a_verb_of_three_texts_is_done_offered_and_described_everywhere(tmp_path: Path) -> None:
+    tree = CopiedTree(tmp_path)
     tree.insert("model/verbs.py", "\n    _value_: str", ROW)
     tree.insert("core/operator.py", "    Verb.ANSWER: Procedure(", PROCEDURE)
     tree.insert("views/verb_words.py", "    Verb.ANSWER: VerbWords(", WORDS)
     assert len(tree.changed) == 3  # the two halves of its row, and its words
-    return tree.run(LOOK)
-
-
-def test_the_plant_does_it_or_says_why_not(seen: dict) -> None:
+    seen = tree.run(LOOK)
     assert seen["refused"] == "sis_a is idle; only a cell at work can be held"
     assert seen["other argument"] == "wipe takes no argument 'station'"
     assert (seen["done"], seen["said"], seen["shown"]) == (None, "wipe sis_a 3", True)
-
-
-def test_it_is_a_command_with_its_argument(seen: dict) -> None:
     assert "wipe" in seen["commands"] and "Wipe a cell." in seen["commands"]
     assert "Has a cell wiped." in seen["help"] and "TIMES" in seen["help"] and "How often." in seen["help"]
-
-
-def test_http_describes_and_takes_it_from_operators(seen: dict) -> None:
     assert seen["body"] == [["times", 3]] and seen["viewer"] is False
     assert "<th>wipe</th>" in seen["schema"] and "How often." in seen["schema"]
-
-
-def test_the_page_offers_it_and_asks_first(seen: dict) -> None:
     assert seen["offer"] == ["plant", "cell"]
     assert seen["page"] == [["Wipe it", ["Wipe {of}?"]]] * 2  # in English until Spanish has words for it
-
-
-def test_ros_the_simulator_and_the_docs_have_it(seen: dict) -> None:
     assert "plant/wipe" in seen["ros"] and "operator_wipe" in seen["people"]
     assert "| `wipe` | has a cell wiped | where nobody works |" in seen["reference"]

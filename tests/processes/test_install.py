@@ -6,8 +6,6 @@ import shutil
 import subprocess
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).parents[2]
 
 
@@ -46,17 +44,11 @@ case "$2" in
 esac"""
 
 
-@pytest.mark.parametrize("script", [python("3.9"), python("3.15")], ids=["too old", "too new"])
-def test_an_unsupported_python_gets_one_sentence(tmp_path: Path, script: str) -> None:
-    result = install(tmp_path, script)
+def test_an_unsupported_python_gets_one_sentence(tmp_path: Path) -> None:
+    result = install(tmp_path, python("3.9"))
     assert result.returncode == 1
     assert result.stderr.startswith("install: Arboleda needs Python 3.10 to 3.14, and python3 is 3.")
     assert result.stderr.count("\n") == 1
-
-
-def test_a_stub_that_cannot_run_counts_as_absent(tmp_path: Path) -> None:
-    result = install(tmp_path, "echo 'command not found' >&2; exit 127")
-    assert "python3 is not there" in result.stderr
 
 
 def test_a_missing_ensurepip_gets_the_line_to_type(tmp_path: Path) -> None:
@@ -71,23 +63,3 @@ def test_a_sourced_ros_of_another_python_gets_one_sentence(tmp_path: Path) -> No
     assert result.returncode == 1
     assert "ROS 2 jazzy is sourced, but Python 3.11" in result.stderr
     assert result.stderr.count("\n") == 1
-
-
-def test_building_messages_without_a_compiler_gets_the_line_to_type(tmp_path: Path) -> None:
-    result = install(tmp_path, python("3.11"), "colcon")
-    assert result.returncode == 1
-    assert result.stderr.endswith("on Debian or Ubuntu type: sudo apt install g++\n")
-    assert result.stderr.count("\n") == 1
-
-
-def test_building_messages_without_pythons_headers_gets_the_line_to_type(tmp_path: Path) -> None:
-    result = install(tmp_path, python("3.11"), "colcon", tools=("c++",))
-    assert result.returncode == 1
-    assert result.stderr.endswith("on Debian or Ubuntu type: sudo apt install python3.11-dev\n")
-    assert result.stderr.count("\n") == 1
-
-
-def test_kilted_is_refused_where_another_ros_2_is_sourced(tmp_path: Path) -> None:
-    result = install(tmp_path, python("3.12"), "kilted", ROS_DISTRO="jazzy")
-    assert result.returncode == 1
-    assert "ROS 2 jazzy is sourced" in result.stderr

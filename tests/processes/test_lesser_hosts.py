@@ -1,0 +1,37 @@
+"""No module of Arboleda needs at its import what Linux alone has; only `host/` asks which system this is."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from ..lesser_host import NOWHERE
+
+TESTS = Path(__file__).parents[1]
+PACKAGE = TESTS.parent / "src/arboleda/arboleda"
+IMPORT_ALL = f"""
+import sys; sys.path[:0] = [{str(TESTS)!r}]
+import importlib, os, pkgutil, lesser_host
+lesser_host.load_libraries()  # once: they take as long as all else
+for platform in sys.argv[1:]:
+    if os.fork():
+        if os.wait()[1]: sys.exit(platform)
+        continue
+    lesser_host.pretend(platform)
+    import arboleda
+    for module in pkgutil.walk_packages(arboleda.__path__, "arboleda."):
+        importlib.import_module(module.name)
+    print(platform, len([name for name in sys.modules if name.startswith("arboleda.")]))
+    break
+"""
+
+
+def test_every_module_is_imported_where_the_system_has_less() -> None:
+    command = [sys.executable, "-c", IMPORT_ALL, *NOWHERE]
+    environ = {**os.environ, "PYTHONPATH": str(PACKAGE.parent)}
+    ran = subprocess.run(command, env=environ, capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stderr
+    imported = dict(line.split() for line in ran.stdout.splitlines())
+    assert imported.keys() == {"win32", "darwin"} and min(map(int, imported.values())) > 900

@@ -1,0 +1,260 @@
+"""Stops leave whatever hangs, before what is older; nobody is told what is not kept."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from arboleda.core import stop_lane
+from arboleda.core.leaving import StopLeft, ends_motion
+from arboleda.model.errors import ArboledaError
+from arboleda.model.messages import (
+    Fact,
+    OperatorAnswer,
+    TaskChanged,
+    TaskState,
+    Verb,
+)
+from arboleda.runtime.parts import orchestrator
+from arboleda.runtime.parts.orchestrator import KeptStateUnknown, Orchestrator
+from arboleda.store.sqlite import Store
+from arboleda.store.task_rows import TaskQuery
+from arboleda.testing.plants import shipped
+
+from ..patience import SOON_S
+
+MODEL = shipped("sis_a", "sis_b")
+ROBOTS = set(MODEL.robots)
+
+
+class Gate:
+    """Something that hangs: once `shut`, who comes through it waits until it is opened."""
+
+    def __init__(self) -> None:
+        self.shut = False
+        self.reached = threading.Event()
+        self._opened = threading.Event()
+
+    def __call__(self, *_: object) -> None:
+        if self.shut and not self._opened.is_set():
+            self.reached.set()
+            assert self._opened.wait(SOON_S), "nobody has let it go on"
+
+    @property
+    def hangs(self) -> bool:
+        return self.reached.is_set() and not self._opened.is_set()
+
+    def open(self) -> None:
+        self._opened.set()
+
+
+class Robots:
+    """The port to the robots, on ROS 2 as well: what was sent, and whether it came while a gate hung."""
+
+    watched, diagnosed = True, False
+
+    def __init__(self, gate: Gate) -> None:
+        self.gate = gate
+        self.messages: list[Any] = []
+        self.stopped_while_it_hung: set[str] = set()
+        self.all_told = threading.Event()
+        self.answers: list[OperatorAnswer] = []
+        self.on_change: Callable[[], None] = lambda: None
+        self.on_view: Callable[[], None] = lambda: None
+
+    def send(self, message: Any) -> None:
+        self.messages.append(message)
+        if isinstance(message, TaskChanged):
+            self.on_change()
+        elif isinstance(message, OperatorAnswer):
+            self.answers.append(message)
+        elif ends_motion(message) and self.gate.hangs:
+            self.stopped_while_it_hung.add(message.robot)
+            if self.stopped_while_it_hung == ROBOTS:
+                self.all_told.set()
+
+    def check_alone(self) -> None: ...
+
+    def publish_view(self, _view: dict[str, Any]) -> Iterator[None]:
+        self.on_view()
+        yield
+
+
+class HangingHandler(logging.Handler):
+    """An output of the log that hangs, and with it the lock that all who log take."""
+
+    def __init__(self, gate: Gate) -> None:
+        super().__init__()
+        self._gate = gate
+
+    def emit(self, _record: logging.LogRecord) -> None:
+        self._gate()
+
+
+@pytest.fixture
+def gate() -> Iterator[Gate]:
+    made = Gate()
+    yield made
+    made.open()
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[Store]:
+    with Store(tmp_path / "plant.sqlite") as opened:
+        yield opened
+
+
+@pytest.fixture
+def robots(gate: Gate) -> Robots:
+    return Robots(gate)
+
+
+@pytest.fixture
+def crashes() -> list[BaseException]:
+    return []
+
+
+@pytest.fixture
+def plant(store: Store, robots: Robots, crashes: list[BaseException], gate: Gate) -> Iterator[Orchestrator]:
+    made = Orchestrator(MODEL, 7, lambda name, error: crashes.append(error), store)
+    made.connect(robots)
+    made.connect_ros(robots)
+    yield made
+    gate.open()
+    made.stop()
+
+
+def hang_before(gate: Gate, owner: Any, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    real = getattr(owner, name)
+    monkeypatch.setattr(owner, name, lambda *args, **named: (gate(), real(*args, **named))[1])
+
+
+def commit_of_a_task(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
+    hang_before(gate, plant._store, "task", monkeypatch)
+
+
+def log(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(orchestrator.TASKS, "isEnabledFor", lambda level: True)
+    monkeypatch.setattr(orchestrator.TASKS, "handlers", [HangingHandler(gate)])
+
+
+def page(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
+    plant.watchers.append(gate)
+
+
+HANGS = [commit_of_a_task, log, page]
+
+
+@pytest.mark.parametrize("hang", HANGS)
+def test_every_robot_is_told_to_stop_while_something_hangs(plant, gate, robots, monkeypatch, hang) -> None:
+    monkeypatch.setattr(stop_lane, "KEPT_S", 0.0)
+    hang(plant, gate, monkeypatch)
+    plant.start()
+    gate.shut = True
+    plant.submit("sis_a 0B 1")
+    assert gate.reached.wait(SOON_S)
+    answer = plant.operate(Verb.STOP)
+    assert robots.all_told.wait(SOON_S)
+    assert gate.hangs
+    said = answer.result(SOON_S)
+    assert isinstance(said, StopLeft) and "has not kept it" in str(said.why)
+    assert gate.hangs
+
+
+def test_a_stop_leaves_before_the_commit_of_its_own_latch(plant, gate, robots, store, monkeypatch) -> None:
+    monkeypatch.setattr(stop_lane, "KEPT_S", 0.0)
+    plant.start()
+    monkeypatch.setattr(robots, "gate", SimpleNamespace(hangs=True))
+    hang_before(gate, store, "keep", monkeypatch)
+    gate.shut = True
+    answer = plant.operate(Verb.STOP)
+    assert robots.all_told.wait(SOON_S)
+    assert gate.reached.wait(SOON_S)
+    assert store.facts(Fact.LATCH) == {}
+    assert isinstance(answer.result(SOON_S), StopLeft)
+    gate.open()
+    plant.stop()
+    assert store.facts(Fact.LATCH) == dict.fromkeys(ROBOTS, "on")
+
+
+def test_whoever_asks_a_plant_that_is_free_hears_that_the_stop_is_kept(plant, robots, store) -> None:
+    plant.start()
+    said = plant.operate(Verb.STOP).result(SOON_S)
+    assert type(said) is OperatorAnswer and said.refusal is None
+    assert store.facts(Fact.LATCH) == dict.fromkeys(ROBOTS, "on")
+
+
+def fail(*_: object, **__: object) -> None:
+    raise ArboledaError("The disk is full.")
+
+
+def states(plant: Orchestrator, task: str) -> tuple[str | None, list[str]]:
+    """A task as a client finds it, and as it is in a snapshot."""
+    found = plant.find(task)
+    return found and found["state"], [row["state"] for row in plant.snapshot()["tasks"] if row["id"] == task]
+
+
+@pytest.mark.parametrize("method", ["task", "keep"])
+def test_nobody_is_told_what_is_not_kept_yet(plant, gate, robots, store, monkeypatch, method) -> None:
+    views: list[dict[str, Any]] = []
+    shown = threading.Condition()
+
+    def watch(snapshot: dict[str, Any]) -> None:
+        with shown:
+            views.append(snapshot)
+            shown.notify_all()
+
+    plant.watchers.append(watch)
+    plant.start()
+    assert plant.submit("sis_a 0B 1 #a").result(SOON_S).state is TaskState.QUEUED
+    with shown:
+        assert shown.wait_for(lambda: views and views[-1]["tasks"], SOON_S)
+    hang_before(gate, store, method, monkeypatch)
+    gate.shut = True
+    plant.operate(Verb.CANCEL, "a") if method == "task" else plant.operate(Verb.STOP, "sis_b")
+    assert gate.reached.wait(SOON_S)
+    assert states(plant, "a") == ("queued", ["queued"])
+    assert all(robot["latched"] is False for robot in plant.snapshot()["robots"])
+    with pytest.raises(KeptStateUnknown, match="ask again later"):
+        plant.find("of nobody")
+    assert {row["state"] for each in views for row in each["tasks"]} == {"queued"}
+    gate.open()
+    plant.stop()
+    assert views[-1]["ending"]
+
+
+def test_once_something_cannot_be_kept_screens_see_what_was_kept_last(
+    plant, robots, store, crashes, monkeypatch
+) -> None:
+    views: list[dict[str, Any]] = []
+    changes: list[TaskChanged] = []
+    seen_by_observers: list[str] = []
+    plant.watchers.append(views.append)
+    plant.listeners.append(changes.append)
+    published: list[dict[str, Any]] = []
+    robots.publish_view = lambda snapshot: iter(published.append(snapshot) or ())
+    plant.start()
+    plant.submit("sis_a 0B 1 #a").result(SOON_S)
+    assert plant.snapshot()["tasks"]
+    for name in ("task", "keep", "journal"):
+        monkeypatch.setattr(store, name, fail)
+    plant.observers.append(lambda each: seen_by_observers.append(each.intake.tasks["a"].state.value))
+    with pytest.raises(ArboledaError, match="The disk is full"):
+        plant.operate(Verb.CANCEL, "a").result(SOON_S)
+    assert crashes
+    found = plant.snapshot()
+    assert found["ending"]
+    assert [row["state"] for row in found["tasks"]] in ([], ["queued"])  # as it was published last
+    plant.stop()
+    told = [row["state"] for each in (*views, *published) for row in each["tasks"]]
+    assert "cancelled" not in told and "failed" not in told
+    assert [each.state for each in changes] == [TaskState.QUEUED]
+    assert views[-1]["ending"] and published[-1]["ending"]
+    assert seen_by_observers == []
+    assert [row.state for row in store.tasks(TaskQuery())] == ["queued"]
