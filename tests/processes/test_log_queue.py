@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Iterator
 
 import pytest
 
@@ -36,24 +35,8 @@ class Clock:
 
 
 @pytest.fixture
-def shelf() -> Shelf:
-    return Shelf()
-
-
-@pytest.fixture
 def clock() -> Clock:
     return Clock()
-
-
-@pytest.fixture
-def queue(shelf: Shelf, clock: Clock) -> Iterator[LogQueue]:
-    made = LogQueue(shelf, clock=clock)
-    root = logging.getLogger()
-    root.addHandler(made)
-    LOG.setLevel(logging.DEBUG)
-    yield made
-    root.removeHandler(made)
-    made.close()
 
 
 def test_an_output_that_is_stuck_holds_up_nobody(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
