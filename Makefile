@@ -43,11 +43,11 @@ smoke:  ## run one test of each real part: a plant and its page, brokers, ROS 2,
 
 check:  ## run every test there is, about an hour; goes on where it was interrupted; ONLY="kills ur" for jobs, or tests by a word in their names
 	@scripts/install test
-	@$(BIN)/python scripts/check $(ONLY)
+	@$(BIN)/python -S scripts/check $(ONLY) # -S: wheels of ROS 2 put the paths of their libraries into what is started
 
 nightly:  ## the same with all cases and seeds; hours
 	@scripts/install test
-	@$(BIN)/python scripts/check --whole $(ONLY)
+	@$(BIN)/python -S scripts/check --whole $(ONLY)
 
 long-test:  ## run the tests that move time by hand and that `make test` leaves out: more seeds, plants and instants
 	@scripts/install test
