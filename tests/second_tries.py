@@ -26,6 +26,7 @@ OURS = f"{ROOT}/"
 PRODUCT = tuple(f"{ROOT}/{folder}/" for folder in ("src", "bench", "kills"))
 LIBRARIES = "/site-packages/"
 INSTALLED = "/site-packages/arboleda"  # as colcon installs the product
+OWN_TESTS = "/test/"  # of a package of ROS 2, whose tests lie beside its product
 MOST = 3
 TRACEBACK = re.compile(r"Traceback \(most recent call last\):\n(?P<calls>(?:[ |]+.*\n)+)(?P<name>[\w.]+)")
 CALL = re.compile(r'File "(?P<path>[^"]+)", line')
@@ -74,7 +75,9 @@ def _shows_product(found: re.Match[str]) -> bool:
 def _ends_in_product(paths: list[str]) -> bool:
     """Whether the innermost of our own files is one of the product; what libraries do is their caller's."""
     own = [path for path in paths if INSTALLED in path or (path.startswith(OURS) and LIBRARIES not in path)]
-    return bool(own) and (own[-1].startswith(PRODUCT) or INSTALLED in own[-1])
+    if not own or OWN_TESTS in own[-1]:
+        return False
+    return own[-1].startswith(PRODUCT) or INSTALLED in own[-1]
 
 
 class SecondTries:

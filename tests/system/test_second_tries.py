@@ -132,3 +132,11 @@ def test_an_exception_in_the_output_of_a_process_is_the_products() -> None:
     )
     child = f"Traceback (most recent call last):\n{calls}KeyError: 'x'\n"
     assert second_tries.is_of_product(AssertionError(f"no word in:\n{child}"))
+
+
+def test_a_failed_test_of_a_ros_2_package_is_not_the_products() -> None:
+    child = (
+        "Traceback (most recent call last):\n"
+        f'  File "{ROOT}/src/arboleda_ros/test/test_x.py", line 1, in f\nAssertionError: nobody came\n'
+    )
+    assert not second_tries.is_of_product(AssertionError(f"no word in:\n{child}"))
