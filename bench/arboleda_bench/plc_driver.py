@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import queue
 import time
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from arboleda.drivers import Report, VerbCommand
+from arboleda.drivers import VerbCommand
 from arboleda.drivers.port import Driver
 from arboleda.kinds.declared import Device
 
+from .reports import Reports
 from .result import Aim, Figure, percentile
 from .scene import Scene
 
@@ -32,9 +32,9 @@ class Driven:
 
     def __init__(self, belt: Device, driver: Driver) -> None:
         self._belt, self._driver, self._number = belt, driver, 0
-        self._reports: queue.Queue[Report] = queue.Queue()
-        self._driver.start([belt], lambda report: self._reports.put(report), time.monotonic)
-        self._until(lambda report: report.fact("mm_s") is not None)
+        self._reports = Reports(PATIENCE_S)
+        self._driver.start([belt], self._reports.hear, time.monotonic)
+        self._reports.until(lambda report: report.fact("mm_s") is not None)
 
     def order(self) -> float:
         self._number += 1
@@ -43,18 +43,14 @@ class Driven:
         assert isinstance(command, VerbCommand)
         began = time.perf_counter()
         self._driver.send(command)
-        self._until(lambda report: report.done == id)
+        self._reports.until(lambda report: report.done == id)
         return time.perf_counter() - began
 
     def until_speed(self, speed: int) -> None:
-        self._until(lambda report: report.fact("mm_s") == speed)
+        self._reports.until(lambda report: report.fact("mm_s") == speed)
 
     def close(self) -> None:
         self._driver.stop()
-
-    def _until(self, fits: Callable[[Report], bool]) -> None:
-        while not fits(self._reports.get(timeout=PATIENCE_S)):
-            pass
 
 
 def figures(scene: Scene, times: int, clients: Sequence[Client], change: Callable[[], int]) -> list[Figure]:

@@ -9,19 +9,18 @@ came later and is at the goal: it proves as much. In turns, over one server.
 from __future__ import annotations
 
 import math
-import queue
 import threading
 import time
-from collections.abc import Callable
 from typing import Any
 
-from arboleda.drivers import MotionState, MoveJoints, Report
+from arboleda.drivers import MotionState, MoveJoints
 from arboleda.drivers.joint_trajectory.settings import Settings
 from arboleda.kinds.arm import Arm
 from arboleda.model.errors import ArboledaError
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
 
+from .reports import Reports
 from .result import Aim, Figure, Result, percentile
 from .scene import Scene
 
@@ -70,25 +69,21 @@ class Driven:
         from arboleda_ros.joint_trajectory import FollowJointTrajectory
 
         self._arm, self._number = arm, 0
-        self._reports: queue.Queue[Report] = queue.Queue()
+        self._reports = Reports(PATIENCE_S)
         self._driver = FollowJointTrajectory(Settings(joints=NAMES))
-        self._driver.start([arm], lambda report: self._reports.put(report), time.monotonic)
-        self._until(lambda report: report.state is MotionState.STOPPED)
+        self._driver.start([arm], self._reports.hear, time.monotonic)
+        self._reports.until(lambda report: report.state is MotionState.STOPPED)
 
     def go(self, q: tuple[float, ...]) -> float:
         self._number += 1
         id = f"c{self._number}"
         began = time.perf_counter()
         self._driver.send(MoveJoints(id=id, robot=self._arm.name, q=q))
-        self._until(lambda report: report.done == id)
+        self._reports.until(lambda report: report.done == id)
         return time.perf_counter() - began
 
     def close(self) -> None:
         self._driver.stop()
-
-    def _until(self, fits: Callable[[Report], bool]) -> None:
-        while not fits(self._reports.get(timeout=PATIENCE_S)):
-            pass
 
 
 class Bare:
