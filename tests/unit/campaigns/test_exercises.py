@@ -53,7 +53,7 @@ def test_works_of_an_exercise_are_many_and_differ(name: str) -> None:
         assert len({str(each.files) for each in of_kind}) == len(of_kind) >= least
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long
 @pytest.mark.parametrize("work", [each for name in QUICK for each in two(name)], ids=str)
 def test_a_work_is_judged_as_it_is(work: Sample) -> None:
     verdict = work.judged()
