@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -76,3 +77,11 @@ class Machine(httpx.BaseTransport, httpx.AsyncBaseTransport):
     def _replace(self, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
         usual = getattr(httpx, name)
         monkeypatch.setattr(httpx, name, lambda **options: usual(**options, transport=self))
+
+
+@pytest.fixture
+def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
+    """The ports of this machine, for clients that sleep no time and applications without threads."""
+    without_threads(monkeypatch)
+    monkeypatch.setattr(time, "sleep", lambda seconds: None)
+    return Machine(monkeypatch)

@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from typing import Any
 
+import pytest
+
 from arboleda.core.leaving import stop_left
 from arboleda.core.text import alternatives, spelled
 from arboleda.model.messages import OperatorAnswer, Verb
@@ -148,3 +150,26 @@ class Plant:
         self.view = {**self.view, "at": self.view["at"] + 1, **keys}
         for watcher in self.watchers:
             watcher(self.view)
+
+
+@pytest.fixture
+def plant() -> Plant:
+    return Plant()
+
+
+@pytest.fixture
+def local(serve: Callable[..., Any]) -> Any:
+    """The plant on one's own machine, as the fixture `serve` of a folder serves it."""
+    return serve()
+
+
+@pytest.fixture
+def open_to_all(serve: Callable[..., Any]) -> Any:
+    """The plant on a network."""
+    return serve(dict(TOKENS))
+
+
+@pytest.fixture
+def web(local: Any) -> Any:
+    """Somebody at that machine."""
+    return local.client()

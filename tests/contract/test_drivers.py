@@ -124,8 +124,8 @@ def test_late_answer(shop: Shop) -> None:
 
 
 @of(LINKS, all_of=LINKS)
-def test_a_stop_under_way_and_a_reconnect(shop: Shop) -> None:
-    """What is stopped is never done, and a device that comes back is told nothing twice."""
+def test_what_was_stopped_or_lost_under_way_is_never_done(shop: Shop) -> None:
+    """A device that comes back is told nothing twice."""
     shop.submit(WORK, "first")
     shop.device.accepts(shop.told(WORK))
     shop.cancel()

@@ -20,7 +20,6 @@ from arboleda.model.messages import (
     Reason,
     Remember,
     TaskAnswer,
-    TaskChanged,
     TaskState,
     Verb,
 )
@@ -32,7 +31,8 @@ from arboleda.store.postgres.memory import PostgresMemory
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import History, TaskHistory, TaskQuery
 
-ODD = "ñ 'x' \"y\" % ? %s {} \\ \n 日本"
+from ..unit.store.told import FOUND, ODD, ended, queued, tell_of_four
+
 Deed = Callable[[PlantMemory], object]
 
 
@@ -75,23 +75,20 @@ def places(tmp_path: Path, database: str, plant: str) -> Iterator[Places]:
         yield made
 
 
-def queued(id: str, text: str = "sis_a 0B 1") -> TaskChanged:
-    return TaskChanged(task=id, text=text, cell=text.split()[0], state=TaskState.QUEUED)
-
-
-def ended(id: str, state: TaskState = TaskState.DONE, **why: Any) -> TaskChanged:
-    return replace(queued(id), state=state, **why)
-
-
 def fact(name: str, value: str | None, kind: Fact = Fact.EFFECTOR) -> Remember:
     return Remember(fact=kind, name=name, value=value)
 
 
-def test_facts_and_the_journal(places: Places) -> None:
-    act = Journal(verb=Verb.STOP, scope="ra1", cell="sis_a", sentence=OWN(text=ODD))
+def test_facts(places: Places) -> None:
     places.hold_the_same(
         lambda memory: memory.keep(fact("ra1", "switching"), fact("ra2", "off"), fact("ra1", "on")),
         lambda memory: memory.keep(fact(ODD, ODD, Fact.STEP), fact("ra1", None), fact("nobody", None)),
+    )
+
+
+def test_the_journal(places: Places) -> None:
+    act = Journal(verb=Verb.STOP, scope="ra1", cell="sis_a", sentence=OWN(text=ODD))
+    places.hold_the_same(
         lambda memory: memory.journal(act, 1000.25),
         lambda memory: memory.journal(replace(act, verb=Verb.OVERRIDE, cell=None), 999.5),
     )
@@ -152,26 +149,9 @@ def test_tasks_are_forgotten_from_the_oldest_on(places: Places) -> None:
 
 
 def test_tasks_are_found_by_what_is_asked_for(database: str, plant: str) -> None:
-    queries = {
-        "the newest": (TaskQuery(limit=2), ["d", "c"]),
-        "the next page": (TaskQuery(limit=2, before=3), ["b", "a"]),
-        "a cell": (TaskQuery(cell="sis_b"), ["c"]),
-        "a state": (TaskQuery(state="done"), ["a"]),
-        "a recipe": (TaskQuery(recipe="palletizing"), ["d"]),
-        "open ones": (TaskQuery(is_open=True), ["d", "c", "b"]),
-        "those that have ended": (TaskQuery(is_open=False), ["a"]),
-        "words": (TaskQuery(words="0b 2"), ["b"]),
-        "words with a wildcard": (TaskQuery(words="0_ 2"), []),
-        "a task": (TaskQuery(id="c"), ["c"]),
-        "a time": (TaskQuery(since_s=2.0, until_s=4.0), ["c", "b"]),
-    }
-    texts = {"a": "sis_a 0B 1", "b": "sis_a 0B 2", "c": "sis_b 0B 1", "d": "sis_a palletizing"}
     with PostgresMemory(database, plant) as memory, closing(PostgresHistory(database, plant)) as history:
         memory.lead(1)
-        for at, (id, text) in enumerate(texts.items(), start=1):
-            memory.task(queued(id, text), "palletizing" if "pall" in text else "storage", float(at))
-        memory.task(ended("a"), "storage", 9.0)
-        right = {what: ids for what, (_, ids) in queries.items()}
+        tell_of_four(memory)
         for select in (memory.tasks, history.select):
-            found = {what: [row.id for row in select(query)] for what, (query, _) in queries.items()}
-            assert found == right
+            found = [(query, [row.id for row in select(query)]) for query, _ in FOUND]
+            assert found == FOUND

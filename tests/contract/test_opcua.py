@@ -142,15 +142,18 @@ def test_a_plain_server_is_called_and_believed(belt: Device, free_port: int, she
             assert heard.until(is_heard).done is None
 
 
-def test_what_is_refused_is_rejected_and_a_halt_that_is_refused_loses_the_link(
-    belt: Device, plain: Peer
-) -> None:
+def test_a_call_that_is_refused_is_rejected(belt: Device, plain: Peer) -> None:
     with driven(belt, settings(belt, plain.port)) as (driver, heard):
         heard.until(is_heard)
         driver.send(told(belt, "scan"))
         report = heard.until(lambda report: report.rejected is not None)
         assert (report.rejected, report.refusal) == ("c1", "BadInvalidState")
         assert heard.until(lambda report: is_heard(report) or is_lost(report)).lost is None
+
+
+def test_a_halt_that_is_refused_loses_the_link(belt: Device, plain: Peer) -> None:
+    with driven(belt, settings(belt, plain.port)) as (driver, heard):
+        heard.until(is_heard)
         driver.send(Stop(id="s", robot="belt", mode=StopMode.HALT))
         assert str(heard.until(is_lost).lost) == "ns=2;s=Halt was refused: BadUserAccessDenied"
         heard.until(is_heard)
@@ -184,7 +187,7 @@ def test_sessions_that_the_server_ends_are_made_anew(belt: Device, plain: Peer) 
         heard.until(is_heard)
 
 
-def test_a_user_and_certificates_are_used_and_a_server_that_is_not_believed_gets_no_word(
+def test_a_server_with_a_login_is_used_while_its_certificate_is_believed(
     belt: Device, shelf: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     server, ours = certificate(tmp_path, "server"), certificate(tmp_path, "cell")

@@ -204,17 +204,22 @@ def test_a_server_that_cannot_be_used_is_one_sentence_with_what_to_do(
     assert "a-wrong-one" not in sentence
 
 
-def test_tables_of_a_newer_arboleda_are_left_alone_and_older_ones_brought_up_with_what_they_have(
+def test_tables_of_a_newer_arboleda_are_left_alone(postgres: Server, database: str, plant: str) -> None:
+    with leading(database, plant):
+        pass
+    with postgres.connection() as db:
+        db.execute(f'UPDATE "plant_{plant}".leader SET format = 99')
+    assert "is of a newer Arboleda (format 99, known: " in refusal(database, plant)
+    newer = pytest.raises(ArboledaError, match="is of a newer Arboleda")
+    with closing(PostgresHistory(database, plant)) as history, newer:
+        history.select(TaskQuery())
+
+
+def test_tables_of_an_older_arboleda_are_brought_up_with_what_they_have(
     postgres: Server, database: str, plant: str
 ) -> None:
     with leading(database, plant) as memory:
         memory.keep(LATCH)
-    with postgres.connection() as db:
-        db.execute(f'UPDATE "plant_{plant}".leader SET format = 99')
-    assert "is of a newer Arboleda (format 99, known: " in refusal(database, plant)
-    history = PostgresHistory(database, plant)
-    with pytest.raises(ArboledaError, match="is of a newer Arboleda"):
-        history.select(TaskQuery())
     with postgres.connection() as db:
         db.execute(f'SET search_path TO "plant_{plant}"')
         db.execute("ALTER TABLE leader DROP COLUMN url, DROP COLUMN wanted, DROP COLUMN going")

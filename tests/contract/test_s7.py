@@ -97,7 +97,7 @@ def test_values_leave_before_their_number_and_a_bit_by_itself(belt: Device) -> N
     assert written == [(0, b"\2"), (2, b"\0\2"), (4, b"\0\0\1\x90"), (8, b"\0\1"), (12, b"\1")]
 
 
-def test_a_refused_write_rejects_the_command_and_a_refused_stop_loses_the_link(belt: Device) -> None:
+def test_a_refused_write_rejects_the_command(belt: Device) -> None:
     memory = Memory()
     with served(memory) as port, driven(belt, settings(belt, port=port)) as (driver, heard):
         heard.until(is_heard)
@@ -107,9 +107,19 @@ def test_a_refused_write_rejects_the_command_and_a_refused_stop_loses_the_link(b
         assert (report.rejected, report.refusal) == ("c1", "error_8404")
         heard.until(is_heard)  # the link stays
         assert memory.written.empty(), "its number never leaves"
+
+
+def test_a_refused_stop_loses_the_link(belt: Device) -> None:
+    memory = Memory()
+    with served(memory) as port, driven(belt, settings(belt, port=port)) as (driver, heard):
+        heard.until(is_heard)
         memory.refuses = 12
         with pytest.raises(ConnectionError, match=r"the PLC refuses to take DB2.DBX12.0.*; it was a stop"):
             driver.send(Stop(id="c1", robot="belt", mode=StopMode.HALT))
+
+
+def test_a_refused_write_behind_one_that_was_taken_loses_the_link(belt: Device) -> None:
+    memory = Memory()
     begins_twice = Verb(write=(Write(at="DB2.DBB0", value=1), Write(at="DB2.DBW2:INT", value=1)))
     unnumbered = settings(belt, sequence=None, verbs={"load": begins_twice})
     with served(memory) as port, driven(belt, replace(unnumbered, port=port)) as (driver, heard):

@@ -207,7 +207,7 @@ def test_what_it_does_not_know_or_cannot_do_now_is_rejected(hall: Hall) -> None:
     assert hall.hears("cart", done="1-6").node == 1
 
 
-def test_a_halt_ends_its_order_a_latch_holds_and_the_next_begins_where_it_stands(hall: Hall) -> None:
+def test_after_a_halt_and_after_a_latch_the_next_order_begins_where_it_stands(hall: Hall) -> None:
     hall.drive("1-1", 0, 1, 2)
     hall.hears("cart", accepted="1-1")
     hall.stop(StopMode.HALT)

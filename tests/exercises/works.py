@@ -16,6 +16,7 @@ import yaml
 
 from arboleda.campaigns.exercises.exercise import catalog, exercise
 from arboleda.campaigns.exercises.judge import Judge, Verdict
+from arboleda.campaigns.exercises.work import SHEET
 
 WORKS = Path(__file__).parent / "works"
 
@@ -51,6 +52,22 @@ def samples(*names: str) -> Iterator[Sample]:
                 for old, new in each.get("edits", ()):
                     files = _edited(files, old, new)
                 yield Sample(exercise=name, right=right, about=each["about"], files=files)
+
+
+def two(name: str) -> list[Sample]:
+    """The first right work of an exercise, and the first wrong one that is not its beginning."""
+    known = list(samples(name))
+    return [next(each for each in known if each.right), [each for each in known if not each.right][1]]
+
+
+def handed_in(folder: Path, name: str, student: str) -> Path:
+    """The first right work of an exercise as a folder of a student."""
+    made = folder / student / name
+    made.mkdir(parents=True)
+    (made / SHEET).write_text(f"exercise: {name}\nstudent: {student}\n", "utf-8")
+    for called, content in two(name)[0].files.items():
+        (made / called).write_bytes(content)
+    return made
 
 
 def _edited(files: dict[str, bytes], old: str, new: str) -> dict[str, bytes]:

@@ -27,6 +27,7 @@ def test_the_page_is_what_make_gallery_writes(gallery: Any, language: str) -> No
     assert gallery.page_of(language).read_text("utf-8") == gallery.page(language), "make gallery"
 
 
+@pytest.mark.long
 def test_every_plant_has_its_pictures_and_no_picture_is_left_over(gallery: Any) -> None:
     wanted = {f"{name}-tree.svg" for name in plants.FILES}
     wanted |= {f"{name}.webp" for name in plants.FILES if gallery.has_twin(name)}

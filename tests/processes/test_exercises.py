@@ -1,4 +1,4 @@
-"""Exercises: what belongs to each, and how their judge finds; all of their works are in tests/exercises."""
+"""Works of exercises are judged in a process of their own, and told as a table and as stories."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typer.testing import CliRunner
 
 from arboleda.campaigns.exercises import judge_process
 from arboleda.campaigns.exercises.exercise import exercise
-from arboleda.campaigns.exercises.work import SHEET, Work
+from arboleda.campaigns.exercises.work import Work
 from arboleda.cli.main import cli
 
-from ..exercises.works import Sample, samples
+from ..exercises.works import handed_in
 
 FOREVER = """
 import sys
@@ -27,22 +27,6 @@ def top_up(cell):
         os._exit(0)
     return work(cell.device("scale").weigh())
 """
-
-
-def two(name: str) -> list[Sample]:
-    """The first right work of an exercise, and the first wrong one that is not its beginning."""
-    known = list(samples(name))
-    return [next(each for each in known if each.right), [each for each in known if not each.right][1]]
-
-
-def handed_in(folder: Path, name: str, student: str) -> Path:
-    """The first right work of an exercise as a folder of a student."""
-    made = folder / student / name
-    made.mkdir(parents=True)
-    (made / SHEET).write_text(f"exercise: {name}\nstudent: {student}\n", "utf-8")
-    for called, content in two(name)[0].files.items():
-        (made / called).write_bytes(content)
-    return made
 
 
 def test_python_that_ends_the_judge_gets_no_verdict() -> None:

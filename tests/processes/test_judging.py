@@ -1,4 +1,4 @@
-"""The sample, the planting, the children and the book."""
+"""A mutant is planted and judged in a child."""
 
 from __future__ import annotations
 
@@ -15,24 +15,8 @@ from arboleda_mutation.children import Children
 from arboleda_mutation.planted import plant
 from arboleda_mutation.sources import PACKAGE, Sources
 
-CORE = """
-LIMIT = 3
-
-
-def fits(number):
-    return number < LIMIT
-"""
-
-
-@pytest.fixture
-def sources(tmp_path: Path) -> Sources:
-    """A tree with one file of the core."""
-    file = tmp_path / PACKAGE / "core" / "sizes.py"
-    file.parent.mkdir(parents=True)
-    for folder in (file.parent, file.parents[1]):
-        (folder / "__init__.py").touch()
-    file.write_text(CORE)
-    return Sources(tmp_path)
+from ..unit.mutation.sizes import CORE
+from ..unit.mutation.sizes import sources as sources
 
 
 def test_a_mutant_is_imported_and_no_file_is_written(sources: Sources, tmp_path: Path) -> None:

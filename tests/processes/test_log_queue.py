@@ -8,35 +8,8 @@ import pytest
 from arboleda.runtime.log_queue import LogQueue
 
 from ..patience import PATIENCE_S
-
-LOG = logging.getLogger("arboleda.test")
-
-
-class Shelf:
-    """An output that keeps what it gets."""
-
-    def __init__(self) -> None:
-        self.lines: list[logging.LogRecord] = []
-
-    def __call__(self, line: logging.LogRecord) -> None:
-        self.lines.append(line)
-
-    @property
-    def texts(self) -> list[str]:
-        return [line.getMessage() for line in self.lines]
-
-
-class Clock:
-    def __init__(self) -> None:
-        self.now = 0.0
-
-    def __call__(self) -> float:
-        return self.now
-
-
-@pytest.fixture
-def clock() -> Clock:
-    return Clock()
+from ..unit.runtime.shelf import Clock, Shelf
+from ..unit.runtime.shelf import clock as clock
 
 
 def test_an_output_that_is_stuck_holds_up_nobody(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""The loop steps once per waking with everything that waits; time is moved by hand."""
+"""The thread of a loop: what wakes it, what ends it, and who reads beside it."""
 
 from __future__ import annotations
 
@@ -6,42 +6,12 @@ import threading
 
 import pytest
 
-from arboleda.runtime.loop import Loop, StepInFlight
+from arboleda.runtime.loop import Loop
 
 from ..patience import PATIENCE_S
-
-
-class Echo:
-    """Answers each event with itself; `alarm` is its next deadline, which it answers once."""
-
-    def __init__(self) -> None:
-        self.steps: list[tuple[float, tuple]] = []
-        self.alarm: float | None = None
-
-    @property
-    def next_deadline(self) -> float | None:
-        return self.alarm
-
-    def step(self, now, events):
-        self.steps.append((now, tuple(events)))
-        rings = self.alarm is not None and now >= self.alarm
-        if rings:
-            self.alarm = None
-        if "crash" in events:
-            raise ZeroDivisionError("by design")
-        return [*events, *(["ring"] if rings else [])]
-
-
-class Clock:
-    """Stands still until it is moved; counts who looks."""
-
-    def __init__(self) -> None:
-        self.now = 10.0
-        self.looks = 0
-
-    def __call__(self) -> float:
-        self.looks += 1
-        return self.now
+from ..unit.runtime.echo import clock as clock
+from ..unit.runtime.echo import machine as machine
+from ..unit.runtime.echo import read
 
 
 class Sent(list):
@@ -58,16 +28,6 @@ class Sent(list):
     def wait(self, *messages) -> None:
         with self._more:
             assert self._more.wait_for(lambda: self == list(messages), timeout=PATIENCE_S), self
-
-
-@pytest.fixture
-def machine():
-    return Echo()
-
-
-@pytest.fixture
-def clock():
-    return Clock()
 
 
 @pytest.fixture
@@ -117,13 +77,6 @@ def test_a_crash_ends_the_loop_and_is_handed_over(make, machine):
     assert isinstance(error, ZeroDivisionError)
     assert [events for _now, events in machine.steps] == [("crash",)]
     assert loop.read(lambda echo: echo.alarm) is None
-
-
-def read(loop: Loop, found: list) -> None:
-    try:
-        found.append(loop.read_handed_on(lambda machine: len(machine.steps), within_s=1.0))
-    except StepInFlight:
-        found.append("under way")
 
 
 def test_a_step_is_read_once_what_came_out_of_it_is_sent(make, clock):

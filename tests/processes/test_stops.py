@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import logging
 import threading
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from arboleda.core import stop_lane
-from arboleda.core.leaving import StopLeft, ends_motion
+from arboleda.core.leaving import StopLeft
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import (
     Fact,
@@ -21,16 +19,15 @@ from arboleda.model.messages import (
     TaskState,
     Verb,
 )
-from arboleda.runtime.parts import orchestrator
 from arboleda.runtime.parts.orchestrator import KeptStateUnknown, Orchestrator
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskQuery
-from arboleda.testing.plants import shipped
 
 from ..patience import SOON_S
-
-MODEL = shipped("sis_a", "sis_b")
-ROBOTS = set(MODEL.robots)
+from ..unit.runtime.hanging import ROBOTS, Robots, commit_of_a_task, fail, hang_before, log, made
+from ..unit.runtime.hanging import crashes as crashes
+from ..unit.runtime.hanging import robots as robots
+from ..unit.runtime.hanging import store as store
 
 
 class Gate:
@@ -54,94 +51,20 @@ class Gate:
         self._opened.set()
 
 
-class Robots:
-    """The port to the robots, on ROS 2 as well: what was sent, and whether it came while a gate hung."""
-
-    watched, diagnosed = True, False
-
-    def __init__(self, gate: Gate) -> None:
-        self.gate = gate
-        self.messages: list[Any] = []
-        self.stopped_while_it_hung: set[str] = set()
-        self.all_told = threading.Event()
-        self.answers: list[OperatorAnswer] = []
-        self.on_change: Callable[[], None] = lambda: None
-        self.on_view: Callable[[], None] = lambda: None
-
-    def send(self, message: Any) -> None:
-        self.messages.append(message)
-        if isinstance(message, TaskChanged):
-            self.on_change()
-        elif isinstance(message, OperatorAnswer):
-            self.answers.append(message)
-        elif ends_motion(message) and self.gate.hangs:
-            self.stopped_while_it_hung.add(message.robot)
-            if self.stopped_while_it_hung == ROBOTS:
-                self.all_told.set()
-
-    def check_alone(self) -> None: ...
-
-    def publish_view(self, _view: dict[str, Any]) -> Iterator[None]:
-        self.on_view()
-        yield
-
-
-class HangingHandler(logging.Handler):
-    """An output of the log that hangs, and with it the lock that all who log take."""
-
-    def __init__(self, gate: Gate) -> None:
-        super().__init__()
-        self._gate = gate
-
-    def emit(self, _record: logging.LogRecord) -> None:
-        self._gate()
-
-
 @pytest.fixture
 def gate() -> Iterator[Gate]:
-    made = Gate()
-    yield made
-    made.open()
-
-
-@pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
-    with Store(tmp_path / "plant.sqlite") as opened:
-        yield opened
-
-
-@pytest.fixture
-def robots(gate: Gate) -> Robots:
-    return Robots(gate)
-
-
-@pytest.fixture
-def crashes() -> list[BaseException]:
-    return []
+    gate = Gate()
+    yield gate
+    gate.open()
 
 
 @pytest.fixture
 def plant(store: Store, robots: Robots, crashes: list[BaseException], gate: Gate) -> Iterator[Orchestrator]:
-    made = Orchestrator(MODEL, 7, lambda name, error: crashes.append(error), store)
-    made.connect(robots)
-    made.connect_ros(robots)
-    yield made
+    plant = made(store, robots, crashes)
+    plant.connect_ros(robots)
+    yield plant
     gate.open()
-    made.stop()
-
-
-def hang_before(gate: Gate, owner: Any, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    real = getattr(owner, name)
-    monkeypatch.setattr(owner, name, lambda *args, **named: (gate(), real(*args, **named))[1])
-
-
-def commit_of_a_task(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
-    hang_before(gate, plant._store, "task", monkeypatch)
-
-
-def log(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(orchestrator.TASKS, "isEnabledFor", lambda level: True)
-    monkeypatch.setattr(orchestrator.TASKS, "handlers", [HangingHandler(gate)])
+    plant.stop()
 
 
 def page(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -160,7 +83,7 @@ def test_every_robot_is_told_to_stop_while_something_hangs(plant, gate, robots, 
     plant.submit("sis_a 0B 1")
     assert gate.reached.wait(SOON_S)
     answer = plant.operate(Verb.STOP)
-    assert robots.all_told.wait(SOON_S)
+    assert robots.all_stopped.wait(SOON_S)
     assert gate.hangs
     said = answer.result(SOON_S)
     assert isinstance(said, StopLeft) and "has not kept it" in str(said.why)
@@ -174,7 +97,7 @@ def test_a_stop_leaves_before_the_commit_of_its_own_latch(plant, gate, robots, s
     hang_before(gate, store, "keep", monkeypatch)
     gate.shut = True
     answer = plant.operate(Verb.STOP)
-    assert robots.all_told.wait(SOON_S)
+    assert robots.all_stopped.wait(SOON_S)
     assert gate.reached.wait(SOON_S)
     assert store.facts(Fact.LATCH) == {}
     assert isinstance(answer.result(SOON_S), StopLeft)
@@ -188,10 +111,6 @@ def test_whoever_asks_a_plant_that_is_free_hears_that_the_stop_is_kept(plant, ro
     said = plant.operate(Verb.STOP).result(SOON_S)
     assert type(said) is OperatorAnswer and said.refusal is None
     assert store.facts(Fact.LATCH) == dict.fromkeys(ROBOTS, "on")
-
-
-def fail(*_: object, **__: object) -> None:
-    raise ArboledaError("The disk is full.")
 
 
 def states(plant: Orchestrator, task: str) -> tuple[str | None, list[str]]:

@@ -1,4 +1,4 @@
-"""What systemd is told of a plant that it started."""
+"""The watchdog that a plant feeds which systemd started."""
 
 from __future__ import annotations
 
@@ -6,31 +6,15 @@ import itertools
 import os
 import socket
 import threading
-from collections.abc import Iterator
-from pathlib import Path
-
-import pytest
 
 from arboleda.adapters import clock
 from arboleda.runtime.parts.systemd import SystemdPart, systemd_part
 
 from ..patience import PATIENCE_S
+from ..unit.runtime.notified import asked
+from ..unit.runtime.notified import heard as heard
 
 LONG_S = 60.0
-
-
-@pytest.fixture
-def heard(tmp_path: Path) -> Iterator[socket.socket]:
-    """The socket on which systemd listens."""
-    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listens:
-        listens.bind(str(tmp_path / "notify"))
-        listens.settimeout(PATIENCE_S)
-        yield listens
-
-
-def asked(heard: socket.socket, **more: str) -> dict[str, str]:
-    """The environment of a process that systemd started."""
-    return {"NOTIFY_SOCKET": heard.getsockname(), **more}
 
 
 def test_it_is_told_that_the_plant_is_ready_lives_and_ends(heard: socket.socket) -> None:

@@ -65,9 +65,7 @@ def heard(there: WebSocketStream, size: int) -> bytes:
     return data
 
 
-def test_every_line_is_a_message_the_last_client_has_the_line_and_an_unplugged_one_lets_nobody_in(
-    line: WebSocketLine,
-) -> None:
+def test_every_line_is_a_message_and_the_last_client_has_the_line(line: WebSocketLine) -> None:
     first = connected(line.port)
     first.write(b"one\ntwo\n")
     assert heard(first, 8) == b"one\ntwo\n"
@@ -77,11 +75,16 @@ def test_every_line_is_a_message_the_last_client_has_the_line_and_an_unplugged_o
     while first.read():  # an empty line may be on its way
         pass
     first.close()
+    second.close()
+
+
+def test_a_line_that_is_unplugged_ends_its_client_and_lets_nobody_in(line: WebSocketLine) -> None:
+    client = connected(line.port)
     assert isinstance(line.machine, Echo)
     line.machine.is_unplugged = True
-    while second.read():
+    while client.read():
         pass
-    second.close()
+    client.close()
     with pytest.raises(OSError, match=r"closed the connection|reset"):
         connected(line.port)
 
@@ -114,7 +117,7 @@ def test_a_message_right_behind_the_answer_is_seen_by_a_selector() -> None:
         clients[0].close()
 
 
-def test_a_message_in_parts_is_one_line_a_ping_is_none_and_a_server_that_is_no_websocket_is_named() -> None:
+def test_a_message_in_parts_is_one_line_and_a_ping_is_none() -> None:
     keys: list[str | None] = []
 
     def talk(connection: ServerConnection) -> None:
@@ -137,6 +140,8 @@ def test_a_message_in_parts_is_one_line_a_ping_is_none_and_a_server_that_is_no_w
         server.shutdown()
         thread.join()
 
+
+def test_a_server_that_is_no_websocket_is_named() -> None:
     with socket.create_server((HOST, 0)) as no_websocket:
 
         def answer() -> None:

@@ -20,6 +20,10 @@ from arboleda.web.server import SecondLoop, Server
 
 from ...patience import PATIENCE_S
 from ...web_plant import TOKENS, Plant
+from ...web_plant import local as local
+from ...web_plant import open_to_all as open_to_all
+from ...web_plant import plant as plant
+from ...web_plant import web as web
 
 
 class Web:
@@ -75,11 +79,6 @@ def echo(app: FastAPI) -> None:
             pass
 
 
-@pytest.fixture
-def plant() -> Plant:
-    return Plant()
-
-
 @contextmanager
 def running(
     plant: Plant,
@@ -114,20 +113,3 @@ def serve(plant: Plant) -> Iterator[Callable[..., Web]]:
     """`serve()`, `serve(tokens)`: see `running`."""
     with ExitStack() as stack:
         yield lambda *args, **options: stack.enter_context(running(plant, *args, **options))
-
-
-@pytest.fixture
-def local(serve: Callable[..., Web]) -> Web:
-    """A plant on one's own machine."""
-    return serve()
-
-
-@pytest.fixture
-def open_to_all(serve: Callable[..., Web]) -> Web:
-    """A plant on a network."""
-    return serve(dict(TOKENS))
-
-
-@pytest.fixture
-def web(local: Web) -> httpx.Client:
-    return local.client()

@@ -7,25 +7,21 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import AsyncIterator, Iterator
-from contextlib import asynccontextmanager, contextmanager
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import httpx2
-import pytest
 from mcp import Client, StdioServerParameters, stdio_client
 from mcp.client.streamable_http import streamable_http_client
 
 from arboleda.assistant.bench import Bench
-from arboleda.assistant.envelope import NOTE
-from arboleda.assistant.server import made
-from arboleda.client import AsyncPlant
-from arboleda.model.assistants import NO_LIMITS, Assistants
 from arboleda.model.messages import Verb
 from arboleda.web.access.auth import Role
 
+from ...unit.assistant.asking import in_process, replied
+from ...unit.assistant.asking import read as read
 from ...web_plant import TOKENS, Plant
 from .conftest import Web
 
@@ -33,23 +29,6 @@ PROGRAM = "from arboleda.cli.main import main; main()"
 ENVIRON = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
 PROOF: dict[str, Any] = {"complete": True, "runs": {"done": 1, "of": 9}, "alone": 1.0}
 PROOF |= {key: [] for key in ("table", "scenarios", "unnoticed", "breaches")}
-
-
-@pytest.fixture
-def read(plant: Plant) -> Plant:
-    """A plant whose file lets assistants look."""
-    plant.model = SimpleNamespace(assistants=Assistants.READ, assistant_limits=NO_LIMITS)  # type: ignore[attr-defined]
-    return plant
-
-
-async def replied(client: Client, tool: str, **given: Any) -> dict[str, Any]:
-    """The envelope of a reply, which is one text and the same as an object."""
-    result = await client.call_tool(tool, given)
-    assert not result.is_error and result.structured_content is not None
-    assert json.loads(result.content[0].text) == result.structured_content  # type: ignore[union-attr]
-    reply: dict[str, Any] = result.structured_content
-    assert reply.keys() == {"note", "refused", "data"} and reply["note"] == NOTE
-    return reply
 
 
 def over_stdio(url: str, *options: str) -> Any:
@@ -69,12 +48,6 @@ def over_http(url: str) -> Iterator[str]:
         process.terminate()
         process.wait()
         process.stderr.close()
-
-
-@asynccontextmanager
-async def in_process(web: Web, bench: Bench | None = None) -> AsyncIterator[Client]:
-    async with Client(made(lambda _: AsyncPlant(web.origin, patience_s=0.0), bench)) as client:
-        yield client
 
 
 def test_over_stdio_an_assistant_looks_and_stops_and_has_nothing_else(local: Web, read: Plant) -> None:
@@ -124,7 +97,7 @@ def test_a_plant_elsewhere_is_shown_the_token_of_a_file(
     asyncio.run(work())
 
 
-def test_without_its_library_and_without_a_plant_it_says_so(tmp_path: Path) -> None:
+def test_without_its_library_it_says_how_to_get_it() -> None:
     missing = f"import sys; sys.modules['mcp'] = None; sys.argv = ['arboleda', 'mcp']; {PROGRAM}"
     ran = subprocess.run(
         [sys.executable, "-c", missing], env=ENVIRON, capture_output=True, text=True, check=False
@@ -133,6 +106,8 @@ def test_without_its_library_and_without_a_plant_it_says_so(tmp_path: Path) -> N
         ran.returncode == 1 and "pip install 'arboleda[mcp]'" in ran.stderr and "Traceback" not in ran.stderr
     )
 
+
+def test_without_a_plant_it_says_who_can_start_one(tmp_path: Path) -> None:
     async def work() -> None:
         command = ["-c", PROGRAM, "mcp", "--state", str(tmp_path)]
         nobody = StdioServerParameters(command=sys.executable, args=command, env=ENVIRON)
@@ -168,7 +143,7 @@ def test_a_plant_file_is_tried_by_commands_within_limits_and_what_they_find_is_d
         return [sys.executable, "-c", f"print({printed[given[0]]!r})"]
 
     async def work() -> None:
-        async with in_process(local, Bench(Path("plant.yaml"), command)) as client:
+        async with in_process(local.origin, Bench(Path("plant.yaml"), command)) as client:
             broke = (await replied(client, "simulate"))["data"]
             assert broke["status"] == 1 and broke["lines"] == ["sis_a: broke\\x1b[31m"]
             checked = (await replied(client, "check"))["data"]

@@ -92,9 +92,12 @@ def test_idle_connections_of_one_client_make_room_for_one_that_asks(serve):
         assert talks[-1].recv(100).startswith(b"HTTP/1.1 200 ")
 
 
-def test_a_taken_port_is_refused_where_it_was_named_and_else_another_one_is_found(local, serve):
+def test_a_port_that_was_named_is_refused_where_it_is_taken(local, serve):
     with pytest.raises(StartError, match=f"cannot listen on 127.0.0.1:{local.port}: "):
         serve(port=local.port)
+
+
+def test_another_port_is_found_where_the_usual_one_is_taken(local, serve):
     other = serve(port=None, usual_port=local.port)
     assert other.port != local.port
     assert other.client().get("/api/plant").json() == VIEW
@@ -108,7 +111,7 @@ def test_an_application_that_does_not_start_is_one_sentence():
         Server(broken, port=0).start()
 
 
-def test_it_stops_with_a_connection_open_and_twice(serve, monkeypatch):
+def test_it_stops_once_and_for_all_though_a_connection_is_open(serve, monkeypatch):
     monkeypatch.setattr(server, "STOP_S", PATIENCE_S)
     web = serve()
     kept = http.client.HTTPConnection("127.0.0.1", web.port, timeout=PATIENCE_S)

@@ -49,14 +49,20 @@ def test_headers_without_end_are_cut_off(local: Web) -> None:
         assert talk.recv(100).startswith(b"HTTP/1.1 400 ")
 
 
-def test_a_body_without_end_is_refused_while_it_comes_and_one_that_breaks_off_does_nothing(
-    local: Web, web: httpx.Client, plant: Plant
-) -> None:
-    head = f"POST /api/plant/release HTTP/1.1\r\nHost: 127.0.0.1:{local.port}\r\n"
+RELEASE = "POST /api/plant/release HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n"
+
+
+def test_a_body_without_end_is_refused_while_it_comes(local: Web, plant: Plant) -> None:
+    head = RELEASE.format(port=local.port)
     with socket.create_connection(("127.0.0.1", local.port), timeout=PATIENCE_S) as talk:
         chunks = (b"400\r\n" + b"a" * 1024 + b"\r\n") * 5
         talk.sendall(f"{head}Transfer-Encoding: chunked\r\n\r\n".encode() + chunks)
         assert talk.recv(100).startswith(b"HTTP/1.1 413 ")
+    assert plant.acts == []
+
+
+def test_a_body_that_breaks_off_does_nothing(local: Web, web: httpx.Client, plant: Plant) -> None:
+    head = RELEASE.format(port=local.port)
     with socket.create_connection(("127.0.0.1", local.port), timeout=PATIENCE_S) as talk:
         talk.sendall(f"{head}Content-Length: 9\r\n\r\n".encode())
     assert web.get("/api/plant").json() == VIEW

@@ -76,7 +76,9 @@ def address(app: App) -> str:
     return note.split()[2]  # behind it may stand that the usual port is taken
 
 
-def test_over_http_and_from_the_terminal(app: App, robots: Robots, disk: Disk, tmp_path: Path) -> None:
+def test_whoever_asks_is_told_that_the_stop_has_left_and_is_not_kept_yet(
+    app: App, robots: Robots, disk: Disk, tmp_path: Path
+) -> None:
     said = PlantClient(tmp_path).operate(Verb.STOP, "ra1")
     assert "the stop has left for ra1" in said["why"]
     assert robots.stopped == {"ra1"}

@@ -47,9 +47,7 @@ def task(state: str) -> list[dict]:
     return [TASK | {"state": state}]
 
 
-def test_it_begins_with_the_plant_and_who_comes_back_hears_what_it_missed(
-    web: httpx.Client, plant: Plant
-) -> None:
+def test_who_comes_back_hears_what_it_missed(web: httpx.Client, plant: Plant) -> None:
     with listening(web) as listener:
         assert listener.event() == ("7-0", "snapshot", VIEW)
         plant.becomes(tasks=task("running"))

@@ -87,10 +87,14 @@ async def talk(web: Web, origin: str, headers: dict[str, str], *says: str) -> li
         return heard
 
 
-def test_the_pages_socket_speaks_both_ways_and_not_to_the_same_origin_in_clear(secure: Web) -> None:
+def test_the_pages_socket_speaks_both_ways(secure: Web) -> None:
     session = {"cookie": f"{secure.cookie}={secure.session(Role.VIEWER)}"}
     long = "x" * 60_000  # several records of TLS
     assert asyncio.run(talk(secure, secure.origin, session, "hello", long)) == ["viewer", "hello", long]
+
+
+def test_a_page_of_the_same_origin_in_clear_gets_no_socket(secure: Web) -> None:
+    session = {"cookie": f"{secure.cookie}={secure.session(Role.VIEWER)}"}
     with pytest.raises(InvalidStatus, match="403"):
         asyncio.run(talk(secure, secure.origin.replace("https", "http"), session))
 

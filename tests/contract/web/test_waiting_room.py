@@ -13,7 +13,7 @@ from arboleda.runtime.web_options import WebOptions
 from ...patience import PATIENCE_S
 
 
-def test_it_announces_its_port_and_sends_a_client_on_to_the_leader(tmp_path: Path) -> None:
+def test_a_client_at_the_announced_port_is_sent_on_to_the_leader(tmp_path: Path) -> None:
     announced: list[int] = []
     room = WaitingRoom("demo", tmp_path, WebOptions(port=0))
     room.start(lambda port, **_: announced.append(port))

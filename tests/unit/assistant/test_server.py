@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 import asyncio
-import json
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
-from mcp import Client
 
 from arboleda.assistant.bench import Bench
-from arboleda.assistant.envelope import NOTE
-from arboleda.assistant.server import made
-from arboleda.client import AsyncPlant
 from arboleda.model.assistants import NO_LIMITS, Assistants
 from arboleda.testing import Rig, shipped
 
 from ...guarded_plant import guarded
-from ...in_process import ORIGIN, Machine, without_threads
+from ...in_process import ORIGIN, Machine
+from ...in_process import machine as machine
 from ...web_plant import Plant
+from .asking import in_process, replied
+from .asking import read as read
 
 LOOKS = {"plant", "devices", "recipes", "nodes", "targets", "tree", "tasks", "task", "history", "why_failed"}
 LOOKS |= {"worked"}
@@ -45,41 +40,17 @@ NEVER = (
 
 
 @pytest.fixture
-def plant(monkeypatch: pytest.MonkeyPatch) -> Plant:
-    without_threads(monkeypatch)
+def plant(machine: Machine) -> Plant:
     plant = Plant()
-    Machine(monkeypatch).listen(8080, guarded(plant).app)
+    machine.listen(8080, guarded(plant).app)
     return plant
-
-
-@pytest.fixture
-def read(plant: Plant) -> Plant:
-    """A plant whose file lets assistants look."""
-    plant.model = SimpleNamespace(assistants=Assistants.READ, assistant_limits=NO_LIMITS)  # type: ignore[attr-defined]
-    return plant
-
-
-async def replied(client: Client, tool: str, **given: Any) -> dict[str, Any]:
-    """The envelope of a reply, which is one text and the same as an object."""
-    result = await client.call_tool(tool, given)
-    assert not result.is_error and result.structured_content is not None
-    assert json.loads(result.content[0].text) == result.structured_content  # type: ignore[union-attr]
-    reply: dict[str, Any] = result.structured_content
-    assert reply.keys() == {"note", "refused", "data"} and reply["note"] == NOTE
-    return reply
-
-
-@asynccontextmanager
-async def in_process(bench: Bench | None = None) -> AsyncIterator[Client]:
-    async with Client(made(lambda _: AsyncPlant(ORIGIN, patience_s=0.0), bench)) as client:
-        yield client
 
 
 def test_a_plant_that_does_not_allow_it_is_not_looked_at_and_can_be_stopped(plant: Plant) -> None:
     plant.model = SimpleNamespace(assistants=Assistants.OFF, assistant_limits=NO_LIMITS)  # type: ignore[attr-defined]
 
     async def work() -> None:
-        async with in_process(Bench(Path("plant.yaml"), lambda _: ["false"])) as client:
+        async with in_process(ORIGIN, Bench(Path("plant.yaml"), lambda _: ["false"])) as client:
             for tool in (await client.list_tools()).tools:
                 named = tool.input_schema.get("required", [])
                 reply = await replied(client, tool.name, **dict.fromkeys(named, "sis_a"))
@@ -92,7 +63,7 @@ def test_a_plant_that_does_not_allow_it_is_not_looked_at_and_can_be_stopped(plan
 
 def test_what_people_do_has_no_tool_and_what_only_looks_says_so(read: Plant) -> None:
     async def work() -> None:
-        async with in_process(Bench(Path("plant.yaml"))) as client:
+        async with in_process(ORIGIN, Bench(Path("plant.yaml"))) as client:
             tools = {tool.name: tool for tool in (await client.list_tools()).tools}
             assert tools.keys() == LOOKS | PROPOSES | TRIES | {"stop"}
             acts = {name for name, tool in tools.items() if not tool.annotations.read_only_hint}
@@ -116,7 +87,7 @@ def test_a_tree_that_runs_is_drawn_and_a_cell_that_is_none_is_said_to_be_that(re
     read.becomes(cells=[cell])
 
     async def work() -> None:
-        async with in_process() as client:
+        async with in_process(ORIGIN) as client:
             assert "tree" not in (await replied(client, "plant"))["data"]["cells"][0]
             drawn = (await replied(client, "tree", cell="sis_a"))["data"]
             assert drawn["svg"].startswith("<svg ") and "drive path 0B" in drawn["svg"]

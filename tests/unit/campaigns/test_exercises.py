@@ -18,7 +18,7 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskState
 from arboleda.simulator.faults import KINDS
 
-from ...exercises.works import Sample, samples
+from ...exercises.works import Sample, handed_in, samples, two
 from ...lengths import length
 
 LEAST = {True: 3, False: 10}  # works of each exercise that are right, and wrong ones
@@ -53,28 +53,12 @@ def test_works_of_an_exercise_are_many_and_differ(name: str) -> None:
         assert len({str(each.files) for each in of_kind}) == len(of_kind) >= least
 
 
-def two(name: str) -> list[Sample]:
-    """The first right work of an exercise, and the first wrong one that is not its beginning."""
-    known = list(samples(name))
-    return [next(each for each in known if each.right), [each for each in known if not each.right][1]]
-
-
-@pytest.mark.sampled(4)
+@pytest.mark.long
 @pytest.mark.parametrize("work", [each for name in QUICK for each in two(name)], ids=str)
 def test_a_work_is_judged_as_it_is(work: Sample) -> None:
     verdict = work.judged()
     assert verdict.passes is work.right
     assert verdict.passes or verdict.findings[0].evidence
-
-
-def handed_in(folder: Path, name: str, student: str) -> Path:
-    """The first right work of an exercise as a folder of a student."""
-    made = folder / student / name
-    made.mkdir(parents=True)
-    (made / SHEET).write_text(f"exercise: {name}\nstudent: {student}\n", "utf-8")
-    for called, content in two(name)[0].files.items():
-        (made / called).write_bytes(content)
-    return made
 
 
 def test_a_packed_work_is_the_work_and_nothing_beside_it(tmp_path: Path) -> None:

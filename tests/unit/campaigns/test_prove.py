@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
@@ -15,10 +14,9 @@ from xml.etree import ElementTree as Xml
 import pytest
 
 from arboleda.campaigns.mending.mend import Edit, edited
-from arboleda.campaigns.plants import Plant
 from arboleda.campaigns.proof import forks
 from arboleda.campaigns.proof.between_steps import gaps, other_facts
-from arboleda.campaigns.proof.calm import Calm, calm_run, calm_runs
+from arboleda.campaigns.proof.calm import Calm, calm_runs
 from arboleda.campaigns.proof.changed_recipe import noticed_with, with_check
 from arboleda.campaigns.proof.course import course_of
 from arboleda.campaigns.proof.forks import run_all, run_one
@@ -27,35 +25,16 @@ from arboleda.campaigns.proof.outcome import End
 from arboleda.campaigns.proof.proof import Proof, Proved
 from arboleda.campaigns.proof.scenario import scenarios
 from arboleda.campaigns.proof.single_faults import single_faults
-from arboleda.cli.main import main
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
-from arboleda.plant_file import loader
 from arboleda.simulator.faults import Fault
 from arboleda.testing import Sim
 
 from ...lengths import length, sample
+from .lamp import GOOD, PLANT, Prove, calm_of, model_of, summary
+from .lamp import plant as plant
+from .lamp import prove as prove
 
-PLANT = """
-name: small
-uses: [small.py]
-kinds:
-  lamp:
-    facts: {lit: bool}
-    verbs:
-      light: {effect: switch, with: {on: bool}, sets: {lit: $on}}
-      test: {effect: query, answers: [good, bad], takes_s: 1}
-cells:
-  bench: {devices: {lamp: {kind: lamp}}}
-"""
-GOOD = """
-from arboleda.recipes import recipe, work
-
-
-@recipe("shine", ends_with={"lamp.lit": True})
-def shine(cell):
-    return work(cell.device("lamp").light(on=True))
-"""
 QUIET = GOOD.replace(
     'cell.device("lamp").light(on=True)',
     'cell.fallback(cell.device("lamp").light(on=True), cell.wait(1))',
@@ -118,28 +97,6 @@ def carry(cell):
     return work(taken, arm.visit("shelf", jaw.open()), arm.home())
 """
 KINDS = ("reboot", "driver_alarm", "refuses")
-Prove = Callable[..., int]
-
-
-@pytest.fixture
-def plant(tmp_path: Path) -> Path:
-    (tmp_path / "small.yaml").write_text(PLANT)
-    (tmp_path / "small.py").write_text(GOOD)
-    return tmp_path / "small.yaml"
-
-
-@pytest.fixture
-def prove(plant: Path, monkeypatch: pytest.MonkeyPatch) -> Prove:
-    """Runs the command in this process; returns its exit status."""
-
-    def run(*words: str) -> int:
-        state = ["--state", str(plant.parent / "state"), "--jobs", "1", "--budget", "all"]
-        monkeypatch.setattr("sys.argv", ["arboleda", "prove", str(plant), *state, *words])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        return int(ended.value.code or 0)
-
-    return run
 
 
 def ends(model: PlantModel, calm: Calm, instant: Instant) -> dict[tuple[str, str, float], str]:
@@ -148,11 +105,6 @@ def ends(model: PlantModel, calm: Calm, instant: Instant) -> dict[tuple[str, str
     runs = run_all(model, calm, faults, lambda: None)
     rows = zip(faults, runs, strict=True)
     return {(fault.kind, fault.word, fault.seconds): run.outcome.words for fault, run in rows}
-
-
-def summary(plant: Path) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads((plant.parent / "out.json").read_text())
-    return found
 
 
 def test_what_holds_is_said_of_every_run(
@@ -213,7 +165,7 @@ def test_a_recipe_that_gives_up_in_silence_is_found_and_its_test_fails_alike(
 
 def test_each_answer_that_leads_elsewhere_is_a_scenario(plant: Path) -> None:
     (plant.parent / "small.py").write_text(TESTED)
-    model = Plant(declared=loader.load(plant)).model
+    model = model_of(plant)
     found = list(calm_runs(model, scenarios(model)))
     assert [(each.scenario.name, each.run.outcome.words) for each in found] == [
         ("bench", "done"),
@@ -225,8 +177,7 @@ def test_each_answer_that_leads_elsewhere_is_a_scenario(plant: Path) -> None:
 def test_what_takes_less_than_a_fork_is_done_anew_in_this_process(
     plant: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    model = Plant(declared=loader.load(plant)).model
-    calm = calm_run(model, next(scenarios(model)))
+    model, calm = calm_of(plant)
     parts = single_faults(model, model.cells[0], calm.instants[-1], only=("refuses",))
     faults = [each for part in parts for each in part]
     told = Mock()
@@ -252,8 +203,7 @@ def test_runs_that_end_as_soon_as_the_rest_is_known_have_the_outcomes_of_whole_o
 ) -> None:
     (plant.parent / "small.yaml").write_text(file)
     (plant.parent / "small.py").write_text(recipe)
-    model = Plant(declared=loader.load(plant)).model
-    calm = calm_run(model, next(scenarios(model)))
+    model, calm = calm_of(plant)
     course, back = course_of(model, calm), 0
     for number, instant in enumerate(length(calm.instants[::21], whole=calm.instants)):
         parts = single_faults(model, model.cells[0], instant, number=number)
@@ -275,8 +225,7 @@ def test_a_run_in_which_more_or_fewer_messages_came_is_as_the_calm_one_again(
 ) -> None:
     plant.write_text(PRESS)
     (plant.parent / "small.py").write_text(STAMP)
-    model = Plant(declared=loader.load(plant)).model
-    calm = calm_run(model, next(scenarios(model)))
+    model, calm = calm_of(plant)
     fault = Fault(kind=kind, at=2.5, seconds=0.5, target="press", word=word)
     run = run_one(model, calm, fault, course=course_of(model, calm))
     whole = run_one(model, calm, fault)
@@ -286,8 +235,7 @@ def test_a_run_in_which_more_or_fewer_messages_came_is_as_the_calm_one_again(
 
 @pytest.mark.long
 def test_a_task_that_ended_as_the_plant_died_counts_as_what_was_kept_of_it(plant: Path) -> None:
-    model = Plant(declared=loader.load(plant)).model
-    calm = calm_run(model, next(scenarios(model)))
+    model, calm = calm_of(plant)
     last = [each for each in calm.instants if each.commits][-1]
     parts = single_faults(model, model.cells[0], last, only=("crash_in_step",))
     runs = run_all(model, calm, [each for part in parts for each in part], lambda: None)
@@ -331,8 +279,7 @@ def test_the_page_and_the_junit_file_say_what_broke_and_what_nobody_notices(
 def test_any_other_moment_ends_as_one_of_the_instants_beside_it(plant: Path) -> None:
     plant.write_text(PRESS)
     (plant.parent / "small.py").write_text(STAMP)
-    model = Plant(declared=loader.load(plant)).model
-    calm = calm_run(model, next(scenarios(model)))
+    model, calm = calm_of(plant)
     known = cache(partial(ends, model, calm))
     for number in range(1, 8, length(4, whole=2)):
         at = round(2.0 + 0.43 * number, 3)
@@ -373,8 +320,7 @@ def test_a_hold_in_the_very_step_in_which_a_command_ends_breaks_nothing(plant: P
 
 def test_a_hold_in_the_very_step_in_which_a_question_is_answered_breaks_nothing(plant: Path) -> None:
     (plant.parent / "small.py").write_text(TESTED)
-    model = Plant(declared=loader.load(plant)).model
-    calm = calm_run(model, next(scenarios(model)))
+    model, calm = calm_of(plant)
     (answered,) = [each for each in calm.instants if each.at == 3.2 and each.side is Side.BEFORE]
     run = run_one(model, calm, Fault(kind="operator_hold", at=answered.at, target="bench"))
     assert (run.outcome.words, run.outcome.broken) == ("held: held", None)
@@ -383,8 +329,7 @@ def test_a_hold_in_the_very_step_in_which_a_question_is_answered_breaks_nothing(
 def test_a_cell_is_ready_only_once_its_boards_have_said_what_is_truly_so(plant: Path) -> None:
     plant.write_text(CARRY)
     (plant.parent / "small.py").write_text(CARRIED)
-    model = Plant(declared=loader.load(plant)).model
-    calm = calm_run(model, next(scenarios(model)))
+    model, calm = calm_of(plant)
     fault = Fault(kind="stale_fact", at=2.0, seconds=15.0, target="jaw", word="gripped")
     outcome = run_one(model, calm, fault).outcome
     assert (outcome.words, outcome.broken, outcome.alone) == ("failed: deadline", None, False)
@@ -447,7 +392,7 @@ def shine(cell):
 def test_each_answer_of_a_person_is_a_scenario(plant: Path) -> None:
     plant.write_text(PLANT.replace("lamp: {kind: lamp}}}", "lamp: {kind: lamp}, ana: {kind: person}}}"))
     (plant.parent / "small.py").write_text(ASKS)
-    model = Plant(declared=loader.load(plant)).model
+    model = model_of(plant)
     found = list(calm_runs(model, scenarios(model)))
     assert [(each.scenario.name, each.run.outcome.words) for each in found] == [
         ("bench", "done"),
@@ -496,7 +441,7 @@ def test_a_step_notices_a_fault_where_the_task_with_it_is_done_without_the_fault
     plant: Path, lit: bool, end: End | None
 ) -> None:
     (plant.parent / "small.py").write_text(QUIET.replace(', ends_with={"lamp.lit": True}', ""))
-    model = Plant(declared=loader.load(plant)).model
+    model = model_of(plant)
     scenario, fault = next(scenarios(model)), Fault(kind="refuses", at=2.0, seconds=1.0, target="lamp")
     changed = with_check(model.cells[0].recipe("shine"), "lamp", "lit", lit)
     found = noticed_with(model, scenario, changed, [replace(fault, word="ocupado")])
@@ -518,8 +463,7 @@ def test_a_check_between_two_steps_is_named_where_none_at_the_end_notices_the_fa
 
 def test_between_two_steps_only_what_the_plant_hears_otherwise_is_a_check(plant: Path) -> None:
     (plant.parent / "small.py").write_text(BLINK)
-    model = Plant(declared=loader.load(plant)).model
-    calm = calm_run(model, next(scenarios(model)))
+    model, calm = calm_of(plant)
     fault = Fault(kind="refuses", at=2.0, seconds=1.0, target="lamp", word="ocupado")
     found = [
         (gap.number, gap.name, fact, value)
@@ -530,9 +474,9 @@ def test_between_two_steps_only_what_the_plant_hears_otherwise_is_a_check(plant:
 
 
 def test_a_step_that_sees_nothing_of_a_fault_does_not_notice_it(plant: Path) -> None:
-    model = Plant(declared=loader.load(plant)).model
+    model, calm = calm_of(plant)
     lies = Fault(kind="lying_fact", at=2.0, seconds=10.0, target="lamp", word="lit")
-    assert run_one(model, calm_run(model, next(scenarios(model))), lies).outcome.goes_unnoticed
+    assert run_one(model, calm, lies).outcome.goes_unnoticed
     changed = with_check(model.cells[0].recipe("shine"), "lamp", "lit", True)
     assert noticed_with(model, next(scenarios(model)), changed, [lies]) is None
 

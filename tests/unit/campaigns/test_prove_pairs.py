@@ -3,41 +3,20 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 
 import pytest
 
-from arboleda.campaigns.plants import Plant
-from arboleda.campaigns.proof.calm import calm_run
 from arboleda.campaigns.proof.outcome import End, Outcome
-from arboleda.campaigns.proof.pairs import PairProof, PairTally
-from arboleda.campaigns.proof.proof import Proof, Proved
+from arboleda.campaigns.proof.pairs import PairTally
+from arboleda.campaigns.proof.proof import Proved
 from arboleda.campaigns.proof.proof_report import pairs_line
-from arboleda.campaigns.proof.scenario import scenarios
 from arboleda.cli.main import main
-from arboleda.plant_file import loader
 from arboleda.simulator.faults import KINDS
 
-from .test_prove import GOOD, PLANT
-
-
-@pytest.fixture
-def plant(tmp_path: Path) -> Path:
-    (tmp_path / "small.yaml").write_text(PLANT)
-    (tmp_path / "small.py").write_text(GOOD)
-    return tmp_path / "small.yaml"
-
-
-def pairs_of(plant: Path, *kinds: str) -> PairProof:
-    model = Plant(declared=loader.load(plant)).model
-    return PairProof(proof=Proof(model=model, calm=(calm_run(model, next(scenarios(model))),), kinds=kinds))
-
-
-def portions(pairs: PairProof) -> Iterator[int]:
-    """The portions in which there is something."""
-    return (number for number in pairs.numbers() if pairs.count(number))
+from .lamp import pairs_of, portions
+from .lamp import plant as plant
 
 
 def test_each_pair_is_there_once_with_the_later_fault_second(plant: Path) -> None:

@@ -80,6 +80,7 @@ def test_to_record_a_seed_changes_nothing_of_it_and_is_the_same_every_time(
     assert record.read_bytes() == Path("seed.mcap").read_bytes()
 
 
+@pytest.mark.long
 def test_a_recorded_seed_can_be_looked_at(seed: tuple[Path, list[str]]) -> None:
     views = Views(reader.opened(seed[0]))
     assert any(row["state"] == "done" for row in views.at(views.ended_ns)["tasks"])

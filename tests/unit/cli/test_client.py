@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -21,20 +20,10 @@ from arboleda.web import stream
 from arboleda.web.api import answer_in_sentences
 
 from ...guarded_plant import guarded
-from ...in_process import Machine, without_threads
+from ...in_process import Machine
+from ...in_process import machine as machine
 from ...web_plant import QUEUED, TASK, VIEW, Plant
-
-
-@pytest.fixture
-def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
-    without_threads(monkeypatch)
-    monkeypatch.setattr(time, "sleep", lambda seconds: None)
-    return Machine(monkeypatch)
-
-
-@pytest.fixture
-def plant() -> Plant:
-    return Plant()
+from ...web_plant import plant as plant
 
 
 @pytest.fixture

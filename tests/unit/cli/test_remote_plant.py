@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import socket
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -32,7 +31,8 @@ from arboleda.web import stream
 from arboleda.web.access.auth import Role
 
 from ...guarded_plant import guarded
-from ...in_process import Machine, without_threads
+from ...in_process import Machine
+from ...in_process import machine as machine
 from ...web_plant import QUEUED, TOKENS, VIEW, Plant
 
 HERE, LEADER, OTHER = 8080, 8081, 8082  # ports of a process here, of the leader, of another standby
@@ -42,13 +42,6 @@ LED = LeaderInfo(
 ASKED = f"plant demo is led on {LED.host}: asked there\n"
 STORE = "postgresql://db"
 CUT = httpx.RemoteProtocolError("it broke off")
-
-
-@pytest.fixture
-def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
-    without_threads(monkeypatch)
-    monkeypatch.setattr(time, "sleep", lambda seconds: None)
-    return Machine(monkeypatch)
 
 
 @pytest.fixture

@@ -28,7 +28,7 @@ def rig() -> Rig:
     rig.wait(0.5)
     for text in ("sis_a 0B 7", "sis_a 0B 3", "sis_b 1C 3", "sis_c 2A 5"):
         rig.submit(text)
-    assert rig.wait(9.0, until=lambda: str(rig.snapshot()["cells"][0]["step"]) == "move to pick-up")
+    rig.wait_for("sis_a", "move to pick-up", 9.0)
     return rig
 
 

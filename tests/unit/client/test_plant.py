@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-import time
 from pathlib import Path
 from socket import gethostname
 from typing import Any
@@ -32,20 +31,10 @@ from arboleda.runtime.web_options import WebOptions
 from arboleda.web.access.auth import Role
 
 from ...guarded_plant import guarded
-from ...in_process import ORIGIN, Machine, without_threads
+from ...in_process import ORIGIN, Machine
+from ...in_process import machine as machine
 from ...web_plant import KEPT, LATE, TASK, TOKENS, Plant
-
-
-@pytest.fixture
-def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
-    without_threads(monkeypatch)
-    monkeypatch.setattr(time, "sleep", lambda seconds: None)
-    return Machine(monkeypatch)
-
-
-@pytest.fixture
-def plant() -> Plant:
-    return Plant()
+from ...web_plant import plant as plant
 
 
 @pytest.fixture

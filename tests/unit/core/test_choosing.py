@@ -229,7 +229,7 @@ def test_a_task_that_was_held_long_is_not_nearly_done(rig: Rig) -> None:
     rig.wait(5.0)
     assert left(rig, "sis_a") == pytest.approx(course.seconds - 5.0, abs=0.5)
     rig.operate(Verb.HOLD, "sis_a")
-    rig.wait(300.0)
+    rig.wait(100.0)
     assert left(rig, "sis_a") == pytest.approx(course.seconds - 5.0, abs=0.5), "it stands"
     rig.operate(Verb.RESUME, "sis_a")
     rig.wait(2.0)
@@ -240,7 +240,7 @@ def test_a_task_is_learned_without_its_hold(rig: Rig) -> None:
     course, task = learned(rig), rig.submit("sis_a 0B 1").task
     rig.wait(5.0)
     rig.operate(Verb.HOLD, "sis_a")
-    rig.wait(300.0)
+    rig.wait(100.0)
     rig.operate(Verb.RESUME, "sis_a")
     assert rig.wait(60.0, lambda: rig.plant.intake.tasks[task].state is TaskState.DONE)
     again = rig.plant.intake.tasks[task].course
@@ -270,7 +270,7 @@ def test_what_is_left_after_a_restart_goes_by_the_steps_that_began_since(rig: Ri
     rig.submit("sis_a 0B 1 #lot7")
     rig.wait(5.0)
     rig.crash(PLANT)
-    rig.wait(300.0)
+    rig.wait(100.0)
     run = rig.plant.cells["sis_a"].run
     assert not run.steps
     rig.operate(Verb.RESUME, "sis_a")

@@ -71,7 +71,7 @@ def test_a_held_cell_does_not_look_as_if_it_moved(told: Callable[..., Any]) -> N
     rig.submit("sis_a 0B 7")
     rig.wait_for("sis_a", "drive path 0B")
     rig.operate(Verb.HOLD, "sis_a")
-    assert rig.wait(10.0, until=lambda: rig.snapshot()["cells"][0]["state"] == "held")
+    assert rig.wait(10.0, until=lambda: rig.plant.cells["sis_a"].state.value == "held")
     face = rig.face()
     assert face["text/sis_a.feedback"][0] == "" and face["text/sis_a.step"] == ["drive path 0B", "held"]
     nodes = [node for key, node in face.items() if key.startswith("node/sis_a/")]
@@ -85,11 +85,11 @@ def test_a_stop_is_told_once_until_it_is_cleared(told: Callable[..., Any]) -> No
     rig.submit("sis_a 0B 7")
     rig.wait_for("sis_a", "drive path 0B")
     rig.operate(Verb.STOP, "sis_a")
-    assert rig.wait(10.0, until=lambda: rig.snapshot()["cells"][0]["state"] == "aborted")
+    assert rig.wait(10.0, until=lambda: rig.plant.cells["sis_a"].state.value == "aborted")
     face = rig.face()
     assert face["text/sis_a.cause"][0] == "" and "stopped" in face["text/sis_a.trouble"][0]
     rig.operate(Verb.CLEAR, "sis_a")
-    assert rig.wait(10.0, until=lambda: rig.snapshot()["cells"][0]["state"] == "stopped")
+    assert rig.wait(10.0, until=lambda: rig.plant.cells["sis_a"].state.value == "stopped")
     assert rig.face()["text/sis_a.cause"][0] == "sis_a was stopped by the operator"
 
 

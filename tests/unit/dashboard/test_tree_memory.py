@@ -19,7 +19,7 @@ def row(path: str, status: str, *, kind: str = "command", failure: str | None = 
 def test_a_done_task_leaves_a_tree_that_succeeded(told: Callable[..., Any]) -> None:
     rig = told()
     rig.submit("sis_a 0B 7")
-    assert rig.wait(60.0, until=lambda: not rig.snapshot()["cells"][0]["tree"])
+    assert rig.wait(60.0, until=lambda: rig.plant.cells["sis_a"].tree is None)
     statuses = rig.statuses()
     assert statuses["storage"] == statuses["main"] == statuses["move to station 7"] == "success"
     assert statuses["recovery"] == "idle"
@@ -42,7 +42,7 @@ def test_after_a_recovery_the_recovery_succeeded_and_the_task_failed(told: Calla
     rig.submit("sis_a 0B 7")
     rig.wait_for("sis_a", "drive path 0B")
     rig.lost = lambda publication: publication.topic == "rm_sis_a/sensores"
-    assert rig.wait(60.0, until=lambda: not rig.snapshot()["cells"][0]["tree"])
+    assert rig.wait(60.0, until=lambda: rig.plant.cells["sis_a"].tree is None)
     statuses = rig.statuses()
     assert statuses["recovery"] == "success" and statuses["storage"] == statuses["main"] == "failure"
 
@@ -139,7 +139,7 @@ def test_a_recovery_of_its_own_ends_as_a_part_of_the_work_that_it_ended(
     rig.wait_for("sis_a", "move to station 7")
     if verb is Verb.ABANDON:
         rig.operate(Verb.HOLD, "sis_a")
-        assert rig.wait(10.0, until=lambda: rig.snapshot()["cells"][0]["state"] == "held")
+        assert rig.wait(10.0, until=lambda: rig.plant.cells["sis_a"].state.value == "held")
     assert rig.operate(verb, "sis_a") is None
     assert rig.story.trees["sis_a"].rows[0]["phase"] == "recovery"
     assert rig.wait(60.0, until=lambda: task in rig.story.ended)
@@ -159,7 +159,7 @@ def test_a_new_task_begins_with_a_fresh_tree(told: Callable[..., Any]) -> None:
     rig = told()
     for text in ("sis_a 0B 7", "sis_a 0B 3"):
         rig.submit(text)
-    assert rig.wait(60.0, until=lambda: rig.snapshot()["cells"][0]["queue"] == [])
+    assert rig.wait(60.0, until=lambda: not rig.plant.cells["sis_a"].queue)
     assert set(rig.statuses().values()) <= {"running", "idle", "success"}
     assert rig.statuses()["main"] == "running" and rig.statuses()["move to station 3"] == "idle"
 

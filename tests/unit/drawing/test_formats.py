@@ -86,6 +86,7 @@ def test_dot_has_a_node_per_row_and_an_edge_to_each_but_the_root() -> None:
     assert r'  "0.0" [label="drive \"0B\"", fillcolor="#e5f3e9", color="#17713a"];' in lines
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")  # pydot's parser, not ours
 def test_the_graph_is_in_the_language_of_graphviz() -> None:
     (graph,) = pydot.graph_from_dot_data(draw(ROWS, "dot").decode())

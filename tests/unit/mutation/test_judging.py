@@ -1,4 +1,4 @@
-"""The sample, the planting, the children and the book."""
+"""The sample, the order of its judges, and the book."""
 
 from __future__ import annotations
 
@@ -10,26 +10,9 @@ from arboleda_mutation import argued, by_tests
 from arboleda_mutation.book import Book, Verdict
 from arboleda_mutation.reach import Reach
 from arboleda_mutation.report import Row, totals
-from arboleda_mutation.sources import PACKAGE, Sources
+from arboleda_mutation.sources import Sources
 
-CORE = """
-LIMIT = 3
-
-
-def fits(number):
-    return number < LIMIT
-"""
-
-
-@pytest.fixture
-def sources(tmp_path: Path) -> Sources:
-    """A tree with one file of the core."""
-    file = tmp_path / PACKAGE / "core" / "sizes.py"
-    file.parent.mkdir(parents=True)
-    for folder in (file.parent, file.parents[1]):
-        (folder / "__init__.py").touch()
-    file.write_text(CORE)
-    return Sources(tmp_path)
+from .sizes import sources as sources
 
 
 def test_a_seed_draws_the_same_sample_and_a_larger_one_has_all_of_it(sources: Sources) -> None:

@@ -99,7 +99,7 @@ def test_the_recipes_of_storage_run_in_a_cell_of_devices(tmp_path: Path) -> None
     assert [change.state for change in rig.outcomes().values()] == [TaskState.DONE] * 3
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("more", ["", "      ana: {kind: person}\n"], ids=["alone", "with a person"])
 def test_such_a_cell_is_judged_right(tmp_path: Path, more: str) -> None:
     model = load(tmp_path, LONG.replace("    targets:\n", f"{more}    targets:\n"))

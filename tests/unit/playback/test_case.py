@@ -81,6 +81,7 @@ def test_a_case_of_one_task_begins_with_it_and_ends_soon_after_it(said: Said, re
     assert happened("b.mcap")[1][:1] == happened(record)[1][1:2]
 
 
+@pytest.mark.long
 def test_what_cannot_be_a_case_is_a_sentence(said: Said, record: str) -> None:
     for words, sentence in (
         (("a.yaml", record, "--task", "nobody"), "nobody: it did not begin in this record"),

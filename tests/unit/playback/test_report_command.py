@@ -91,7 +91,7 @@ def test_the_test_of_a_report_fails_in_the_same_way(
         names["test_what_failed_in_sis_a"](Sim())
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["stuck_effector", "opened_effector"])
 def test_forks_that_do_not_fail_as_the_record_did_say_that_they_prove_nothing(
     tmp_path: Path, kind: str

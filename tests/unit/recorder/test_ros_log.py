@@ -27,18 +27,21 @@ from .recorded import Site
 TEXTS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=9)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def log() -> RosLog:
+    """What the record of `site` has of ROS 2."""
     return RosLog(shipped())
 
 
-@pytest.fixture
-def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, log: RosLog) -> Site:
-    made = Site(tmp_path, monkeypatch, logs=[log])
-    made.work("sis_a 0B 7", s=8.0)
-    made.rig.operate(Verb.STOP, "sis_a")
-    made.work(s=3.0)
-    made.end()
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory, log: RosLog) -> Site:
+    """A plant that was stopped at work, and has ended."""
+    with pytest.MonkeyPatch.context() as patch:
+        made = Site(tmp_path_factory.mktemp("stopped"), patch, logs=[log])
+        made.work("sis_a 0B 7", s=8.0)
+        made.rig.operate(Verb.STOP, "sis_a")
+        made.work(s=3.0)
+        made.end()
     return made
 
 
@@ -158,5 +161,5 @@ def test_a_text_is_read_back(text: str) -> None:
         Report(at=1.0, robot="rm_sis_a", node=999),
     ],
 )
-def test_a_report_that_means_nothing_is_passed_over(log: RosLog, report: Report) -> None:
-    assert list(log.stepped(Step(0, 1.0, (report,), (), {}))) == []
+def test_a_report_that_means_nothing_is_passed_over(report: Report) -> None:
+    assert list(RosLog(shipped()).stepped(Step(0, 1.0, (report,), (), {}))) == []

@@ -12,30 +12,10 @@ from arboleda.runtime.log_file import LogFile
 from arboleda.runtime.log_queue import LONGEST, RATE, RATES, LogQueue, log_to
 
 from ...threads import AtTheEnd, stand_in
+from .shelf import Clock, Shelf
+from .shelf import clock as clock
 
 LOG = logging.getLogger("arboleda.test")
-
-
-class Shelf:
-    """An output that keeps what it gets."""
-
-    def __init__(self) -> None:
-        self.lines: list[logging.LogRecord] = []
-
-    def __call__(self, line: logging.LogRecord) -> None:
-        self.lines.append(line)
-
-    @property
-    def texts(self) -> list[str]:
-        return [line.getMessage() for line in self.lines]
-
-
-class Clock:
-    def __init__(self) -> None:
-        self.now = 0.0
-
-    def __call__(self) -> float:
-        return self.now
 
 
 class Prompt(Queue):
@@ -57,11 +37,6 @@ def no_thread(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def shelf() -> Shelf:
     return Shelf()
-
-
-@pytest.fixture
-def clock() -> Clock:
-    return Clock()
 
 
 @pytest.fixture

@@ -6,42 +6,12 @@ import pytest
 
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime import loop as module
-from arboleda.runtime.loop import Loop, StepInFlight
+from arboleda.runtime.loop import Loop
 
 from ...threads import AtOnce, stand_in
-
-
-class Echo:
-    """Answers each event with itself; `alarm` is its next deadline, which it answers once."""
-
-    def __init__(self) -> None:
-        self.steps: list[tuple[float, tuple]] = []
-        self.alarm: float | None = None
-
-    @property
-    def next_deadline(self) -> float | None:
-        return self.alarm
-
-    def step(self, now, events):
-        self.steps.append((now, tuple(events)))
-        rings = self.alarm is not None and now >= self.alarm
-        if rings:
-            self.alarm = None
-        if "crash" in events:
-            raise ZeroDivisionError("by design")
-        return [*events, *(["ring"] if rings else [])]
-
-
-class Clock:
-    """Stands still until it is moved; counts who looks."""
-
-    def __init__(self) -> None:
-        self.now = 10.0
-        self.looks = 0
-
-    def __call__(self) -> float:
-        self.looks += 1
-        return self.now
+from .echo import Clock, read
+from .echo import clock as clock
+from .echo import machine as machine
 
 
 class Outside:
@@ -60,16 +30,6 @@ class Outside:
             self.loop.stop()
         else:
             self._clock.now += timeout
-
-
-@pytest.fixture
-def machine():
-    return Echo()
-
-
-@pytest.fixture
-def clock():
-    return Clock()
 
 
 @pytest.fixture
@@ -213,13 +173,6 @@ def test_what_comes_out_of_a_step_is_sent_in_the_order_that_is_wanted(make, sent
     loop.turn()
     assert sent == ["b", "a"]
     assert steps == [(10.0, ("a", "b"), ["a", "b"])]
-
-
-def read(loop: Loop, found: list) -> None:
-    try:
-        found.append(loop.read_handed_on(lambda machine: len(machine.steps), within_s=1.0))
-    except StepInFlight:
-        found.append("under way")
 
 
 def test_nobody_waits_for_a_step_longer_than_he_will(make, clock):

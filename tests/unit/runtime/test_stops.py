@@ -2,37 +2,34 @@
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from arboleda.core.leaving import StopLeft, ends_motion
+from arboleda.core.leaving import StopLeft
 from arboleda.core.plant import Plant
 from arboleda.kinds.arm import SetEffector
 from arboleda.model.commands import Command, Stop, StopMode
-from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import (
     Fact,
     Heartbeat,
     OperatorAnswer,
     OperatorRequest,
     Remember,
-    TaskChanged,
     Undelivered,
     Verb,
 )
 from arboleda.runtime.parts import orchestrator
 from arboleda.runtime.parts.orchestrator import Orchestrator
 from arboleda.store.sqlite import Store
-from arboleda.testing.plants import shipped
 
-MODEL = shipped("sis_a", "sis_b")
-ROBOTS = set(MODEL.robots)
+from .hanging import Robots, commit_of_a_task, fail, hang_before, log, made
+from .hanging import crashes as crashes
+from .hanging import robots as robots
+from .hanging import store as store
 
 
 class Gate:
@@ -49,77 +46,16 @@ class Gate:
             self.hangs = False
 
 
-class Robots:
-    """The port to the robots, on ROS 2 as well: what was sent, and who was stopped while a gate hung."""
-
-    watched, diagnosed = True, False
-
-    def __init__(self, gate: Gate) -> None:
-        self.gate = gate
-        self.messages: list[Any] = []
-        self.stopped_while_it_hung: set[str] = set()
-        self.on_change: Callable[[], None] = lambda: None
-
-    def send(self, message: Any) -> None:
-        self.messages.append(message)
-        if isinstance(message, TaskChanged):
-            self.on_change()
-        elif ends_motion(message) and self.gate.hangs:
-            self.stopped_while_it_hung.add(message.robot)
-
-    def check_alone(self) -> None: ...
-
-    def publish_view(self, _view: dict[str, Any]) -> Iterator[None]:
-        yield
-
-
 @pytest.fixture
 def gate() -> Gate:
     return Gate()
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
-    with Store(tmp_path / "plant.sqlite") as opened:
-        yield opened
-
-
-@pytest.fixture
-def robots(gate: Gate) -> Robots:
-    return Robots(gate)
-
-
-@pytest.fixture
-def crashes() -> list[BaseException]:
-    return []
-
-
-@pytest.fixture
 def plant(store: Store, robots: Robots, crashes: list[BaseException]) -> Orchestrator:
-    made = Orchestrator(MODEL, 7, lambda name, error: crashes.append(error), store)
-    made.connect(robots)
-    made.connect_ros(robots)
-    return made
-
-
-class HangingHandler(logging.Handler):
-    """An output of the log that hangs, and with it the lock that all who log take."""
-
-    def __init__(self, gate: Gate) -> None:
-        super().__init__()
-        self._gate = gate
-
-    def emit(self, _record: logging.LogRecord) -> None:
-        self._gate()
-
-
-def hang_before(gate: Gate, owner: Any, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    real = getattr(owner, name)
-    monkeypatch.setattr(owner, name, lambda *args, **named: (gate(), real(*args, **named))[1])
-
-
-def commit_of_a_task(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
-    hang_before(gate, plant._store, "task", monkeypatch)
+    plant = made(store, robots, crashes)
+    plant.connect_ros(robots)
+    return plant
 
 
 def database_that_is_asked_who_leads(
@@ -130,11 +66,6 @@ def database_that_is_asked_who_leads(
 
 def recorder(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
     plant.recorder = SimpleNamespace(trouble="", stepped=gate, saw=gate)
-
-
-def log(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(orchestrator.TASKS, "isEnabledFor", lambda level: True)
-    monkeypatch.setattr(orchestrator.TASKS, "handlers", [HangingHandler(gate)])
 
 
 def listener(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -181,7 +112,7 @@ def test_every_robot_is_told_to_stop_while_something_hangs(
     gate.shut, gate.meanwhile = True, meanwhile
     plant.submit("sis_a 0B 1")
     plant.loop.turn()
-    assert robots.stopped_while_it_hung == ROBOTS
+    assert robots.all_stopped.is_set()
 
 
 class Script(Plant):
@@ -197,9 +128,7 @@ class Script(Plant):
 @pytest.fixture
 def scripted(monkeypatch, store, robots, crashes) -> Orchestrator:
     monkeypatch.setattr(orchestrator, "Plant", Script)
-    made = Orchestrator(MODEL, 7, lambda name, error: crashes.append(error), store)
-    made.connect(robots)
-    return made
+    return made(store, robots, crashes)
 
 
 ON = SetEffector(id="7-1", robot="ra1", on=True)
@@ -278,10 +207,6 @@ def test_a_plant_that_another_process_leads_sends_no_stop_beside_its_steps(
     scripted.operate(Verb.STOP)
     scripted.stops.loop.turn()
     assert crashes and robots.messages == []
-
-
-def fail(*_: object, **__: object) -> None:
-    raise ArboledaError("The disk is full.")
 
 
 def test_a_stop_that_cannot_be_kept_is_told_to_have_left(scripted, robots, store, monkeypatch) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -11,21 +10,8 @@ import pytest
 from arboleda.adapters import clock
 from arboleda.runtime.parts.systemd import systemd_part
 
-from ...patience import PATIENCE_S
-
-
-@pytest.fixture
-def heard(tmp_path: Path) -> Iterator[socket.socket]:
-    """The socket on which systemd listens."""
-    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listens:
-        listens.bind(str(tmp_path / "notify"))
-        listens.settimeout(PATIENCE_S)
-        yield listens
-
-
-def asked(heard: socket.socket, **more: str) -> dict[str, str]:
-    """The environment of a process that systemd started."""
-    return {"NOTIFY_SOCKET": heard.getsockname(), **more}
+from .notified import asked
+from .notified import heard as heard
 
 
 def test_without_a_watchdog_nothing_is_said_between_beginning_and_end(heard: socket.socket) -> None:

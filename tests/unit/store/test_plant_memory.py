@@ -18,7 +18,6 @@ from arboleda.model.messages import (
     Reason,
     Remember,
     TaskAnswer,
-    TaskChanged,
     TaskState,
     Verb,
 )
@@ -28,10 +27,7 @@ from arboleda.store.plant_memory import PRUNED
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery, answers_of, course_of
 
-LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
-ACT = Journal(
-    verb=Verb.OVERRIDE, scope="mesa", cell=None, sentence=OWN(text="mesa is free: ra1 was carried away")
-)
+from .told import ACT, FOUND, LATCH, ODD, ended, queued, tell_of_four
 
 
 class Site:
@@ -71,14 +67,6 @@ def site(tmp_path):
 def store(site):
     with site.memory() as opened:
         yield opened
-
-
-def queued(id, text="sis_a 0B 1"):
-    return TaskChanged(task=id, text=text, cell=text.split()[0], state=TaskState.QUEUED)
-
-
-def ended(id, state=TaskState.DONE, **why):
-    return replace(queued(id), state=state, **why)
 
 
 def times(site):
@@ -222,32 +210,10 @@ def test_a_task_that_was_refused_is_not_kept(store):
     assert store.tasks(TaskQuery()) == []
 
 
-@pytest.mark.parametrize(
-    ("query", "ids"),
-    [
-        (TaskQuery(), ["d", "c", "b", "a"]),
-        (TaskQuery(limit=2), ["d", "c"]),
-        (TaskQuery(limit=2, before=3), ["b", "a"]),
-        (TaskQuery(cell="sis_b"), ["c"]),
-        (TaskQuery(state="done"), ["a"]),
-        (TaskQuery(recipe="palletizing"), ["d"]),
-        (TaskQuery(is_open=True), ["d", "c", "b"]),
-        (TaskQuery(is_open=False), ["a"]),
-        (TaskQuery(words="0b 2"), ["b"]),
-        (TaskQuery(words="0_ 2"), []),
-        (TaskQuery(words="%"), []),
-        (TaskQuery(words="is_a"), ["d", "b", "a"]),
-        (TaskQuery(id="c"), ["c"]),
-        (TaskQuery(since_s=2.0, until_s=4.0), ["c", "b"]),
-        (TaskQuery(cell="sis_b", state="done"), []),
-    ],
-)
+@pytest.mark.parametrize(("query", "ids"), FOUND)
 def test_tasks_are_found_by_what_is_asked_for(site, query, ids):
     with site.memory() as store:
-        texts = {"a": "sis_a 0B 1", "b": "sis_a 0B 2", "c": "sis_b 0B 1", "d": "sis_a palletizing"}
-        for at, (id, text) in enumerate(texts.items(), start=1):
-            store.task(queued(id, text), "palletizing" if "pall" in text else "storage", float(at))
-        store.task(ended("a"), "storage", 9.0)
+        tell_of_four(store)
         assert [row.id for row in store.tasks(query)] == ids
         assert [row.id for row in site.history().select(query)] == ids
 
@@ -287,11 +253,10 @@ def test_of_facts_that_are_kept_together_the_last_word_on_each_counts(store):
 
 
 def test_a_text_may_have_any_character(store):
-    odd = "ñ 'x' \"y\" % ? %s {} \\ \n 日本"
-    store.keep(Remember(fact=Fact.STEP, name=odd, value=odd))
-    store.task(queued("a"), odd, 1.0)
-    assert store.facts(Fact.STEP) == {odd: odd}
-    assert [row.recipe for row in store.tasks(TaskQuery(recipe=odd))] == [odd]
+    store.keep(Remember(fact=Fact.STEP, name=ODD, value=ODD))
+    store.task(queued("a"), ODD, 1.0)
+    assert store.facts(Fact.STEP) == {ODD: ODD}
+    assert [row.recipe for row in store.tasks(TaskQuery(recipe=ODD))] == [ODD]
 
 
 def test_figures_are_made_of_what_was_kept(site):

@@ -20,19 +20,14 @@ from tests.rights import modes_count
 
 from arboleda.core.choosing import LATER
 from arboleda.model.errors import ArboledaError, StartError
-from arboleda.model.messages import Check, Course, Fact, Journal, Remember, TaskChanged, TaskState, Verb
-from arboleda.model.sentence import OWN
+from arboleda.model.messages import Check, Course, Fact, Remember, TaskState
 from arboleda.store import row_sums, sqlite
 from arboleda.store.memory_file import VERSION
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery, choice_of, course_of, unchecked_of
 
 from ...lengths import length, sample
-
-LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
-ACT = Journal(
-    verb=Verb.OVERRIDE, scope="mesa", cell=None, sentence=OWN(text="mesa is free: ra1 was carried away")
-)
+from .told import ACT, LATCH, ended, queued
 
 
 @pytest.fixture
@@ -448,28 +443,24 @@ def test_a_file_without_times_of_cells_gets_them(path):
 
 def of_before_choices(path):
     """The file as a format had it in which no task said why it is done in its cell."""
-    db = of_before_courses(path)
-    if db.execute("SELECT 1 FROM sqlite_master WHERE name = 'task'").fetchone():
-        db.execute("ALTER TABLE task DROP COLUMN choice")
-    db.execute("PRAGMA user_version = 7")
-    return db
+    return without_column(of_before_courses(path), "choice", 7)
 
 
 def of_before_courses(path):
     """The file as a format had it in which no task said how it went."""
-    db = of_before_sums(path)
-    if db.execute("SELECT 1 FROM sqlite_master WHERE name = 'task'").fetchone():
-        db.execute("ALTER TABLE task DROP COLUMN course")
-    db.execute("PRAGMA user_version = 8")
-    return db
+    return without_column(of_before_sums(path), "course", 8)
 
 
 def of_before_checks(path):
     """The file as a format had it in which no task said what of it nobody confirmed."""
-    db = sqlite3.connect(path)
+    return without_column(sqlite3.connect(path), "unchecked", 10)
+
+
+def without_column(db, column, version):
+    """The file in a format whose tasks had no such column."""
     if db.execute("SELECT 1 FROM sqlite_master WHERE name = 'task'").fetchone():
-        db.execute("ALTER TABLE task DROP COLUMN unchecked")
-    db.execute("PRAGMA user_version = 10")
+        db.execute(f"ALTER TABLE task DROP COLUMN {column}")
+    db.execute(f"PRAGMA user_version = {version}")
     return db
 
 
@@ -497,14 +488,6 @@ def times(path):
     downs = db.execute("SELECT cell, state, since_s, until_s FROM down ORDER BY number").fetchall()
     db.close()
     return runs, downs
-
-
-def queued(id, text="sis_a 0B 1"):
-    return TaskChanged(task=id, text=text, cell=text.split()[0], state=TaskState.QUEUED)
-
-
-def ended(id, state=TaskState.DONE, **why):
-    return replace(queued(id), state=state, **why)
 
 
 @pytest.fixture(scope="module")

@@ -8,8 +8,12 @@ from functools import partial
 import pytest
 
 from ...guarded_plant import Web, guarded
-from ...in_process import Caller, without_threads
-from ...web_plant import TOKENS, Plant
+from ...in_process import without_threads
+from ...web_plant import Plant
+from ...web_plant import local as local
+from ...web_plant import open_to_all as open_to_all
+from ...web_plant import plant as plant
+from ...web_plant import web as web
 
 
 @pytest.fixture(autouse=True)
@@ -18,28 +22,6 @@ def no_threads(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def plant() -> Plant:
-    return Plant()
-
-
-@pytest.fixture
 def serve(plant: Plant) -> Callable[..., Web]:
     """`serve()`, `serve(tokens)`: see `guarded`."""
     return partial(guarded, plant)
-
-
-@pytest.fixture
-def local(serve: Callable[..., Web]) -> Web:
-    """A plant on one's own machine."""
-    return serve()
-
-
-@pytest.fixture
-def open_to_all(serve: Callable[..., Web]) -> Web:
-    """A plant on a network."""
-    return serve(dict(TOKENS))
-
-
-@pytest.fixture
-def web(local: Web) -> Caller:
-    return local.client()

@@ -11,9 +11,10 @@ import httpx
 import pytest
 
 from arboleda.web.access.auth import Role
-from arboleda.web.api import make_app
 from arboleda.web.desks.faults import BegunFault, FaultRefused
 from arboleda.web.routes import faults
+
+from ...guarded_plant import PRESENT, shared_app
 
 BEGUN = BegunFault(number=1, robot="ra1", kind="no_grip", about="Grip beside the part", left_s=600.0)
 NO_GRIP = {"kind": "no_grip", "robot": "ra1", "seconds": 600}
@@ -62,10 +63,10 @@ def ask(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> Ask:
     def go(
         path: str, body: dict[str, Any], *, role: Role = Role.OPERATOR, at: Desk | None = desk
     ) -> httpx.Response:
-        app: Any = make_app(SimpleNamespace(faults=at))  # type: ignore[arg-type]
+        monkeypatch.setattr(PRESENT, "plant", SimpleNamespace(faults=at))
 
         async def as_role(scope: Any, receive: Any, send: Any) -> None:
-            await app({**scope, "arboleda.role": role}, receive, send)
+            await shared_app()({**scope, "arboleda.role": role}, receive, send)
 
         async def post() -> httpx.Response:
             transport = httpx.ASGITransport(app=as_role)
