@@ -489,8 +489,9 @@ class Dispatcher:
         if isinstance(command, Work) and (tool := self.effectors.opening_tool(robot)) is not None:
             return Failure(reason=Reason.REJECTED, sentence=MAY_LET_GO(robot=robot, tool=tool))
         obstacle = self.obstacle(robot, was=was)
-        if isinstance(command, Home) and obstacle and self.beliefs[robot].is_led_out_by_homing:
-            return None
+        led_out = isinstance(command, Home) and self.beliefs[robot].is_led_out_by_homing
+        if led_out and robot not in self.latched:
+            obstacle = None
         moving = obstacle is not None and obstacle.reason is Reason.REJECTED
         if moving and self._shows_its_own_end(command) and not self._breaks_its_work(command):
             obstacle = None  # its last code may be older than the end of its last move, which was proven
