@@ -123,8 +123,6 @@ class Dispatcher:
         self.rejected: dict[str, tuple[int, Sentence | None]] = {}
         self.not_given: deque[Entry] = deque(maxlen=NOT_GIVEN_KEPT)  # commands of tasks that never left
         self.not_given_count = 0
-        # a place that was told before may be older than the last move of an earlier start
-        self.sure_from = -math.inf
         self._count = 0
 
     @property
@@ -279,7 +277,7 @@ class Dispatcher:
     def place(self, workspace: Workspace) -> Pose | None:
         """The zone-free pose at, or above, which its robot stands, as far as its evidence goes.
 
-        What it said last may be older than a move that it was just given.
+        What it said last may be older than a move that it was just given, or than its last stop.
         """
         robot = workspace.robot
         belief = self.beliefs[robot.name]
@@ -288,7 +286,7 @@ class Dispatcher:
         if not belief.online or belief.unhomed or restless:
             return None
         here = belief.position if belief.supervised else self.reached.get(robot.name)
-        if here is None or (belief.supervised and belief.position_at < self.sure_from):
+        if here is None or (belief.supervised and not belief.is_sure):
             return None
         return next((pose for spot, pose in workspace.free_spots if robot.motion.stands_at(here, spot)), None)
 
@@ -300,10 +298,10 @@ class Dispatcher:
         belief = self.beliefs.get(report.robot)
         if belief is None or belief.drawn:
             return
-        located_at = belief.position_at
+        was_sure = belief.is_sure
         if belief.hear_again(report):
-            if located_at < self.sure_from <= belief.position_at:  # only now `place` goes by it
-                self.ledger.changed |= self._cells_of[report.robot]
+            if belief.is_sure and not was_sure:  # only now `place` and interlocks go by it
+                self.wake([report.robot])
             self._prove(belief, report, now)
             return
         if belief.robot.objection(report) is not None:
@@ -330,6 +328,8 @@ class Dispatcher:
         self._prove(belief, report, now, before)
         if latched and (new_link or (belief.online and not was_online)):  # it may have forgotten its stop
             self._stop(report.robot, StopMode.LATCH)
+        if belief.is_sure and not was_sure:
+            self.wake([report.robot])
         if self._facts_shown(belief) != facts:
             self.version += 1
             self.ledger.changed |= self._cells_of[report.robot]
@@ -636,6 +636,8 @@ class Dispatcher:
             doubtful.difference_update(name for name, _ in command.sets)
         if command.robot in self.unfinished.by_device:
             self.unfinished.done(command)
+        if isinstance(command, Work):
+            self.beliefs[command.robot].be_sure()
         if isinstance(command, Switch) and command.grips is not None:
             self.effectors.set(command.robot, Grip.ON if command.grips else Grip.OFF)
         elif isinstance(command, Motion) and command.way:
