@@ -399,12 +399,8 @@ class Dispatcher:
 
     def give_up(self, cell: str, failure: Failure, now: float) -> None:
         """Fail every open command of a cell, and halt what moves: nobody can judge them any more."""
-        self.version += 1
         for entry in self.ledger.of_cell(cell):
-            self.ledger.feed(entry.command.id, Feed.FAILED, now, failure)
-            self._doubt(entry)
-            if entry.halts:
-                self._stop(entry.command.robot, StopMode.HALT)
+            self._book(entry, Verdict(feed=Feed.FAILED, failure=failure), now)
 
     def _moves_again(self, robot: str) -> None:
         """A robot that tells no position moves, or cannot: it is no longer where its last move ended."""
@@ -610,14 +606,22 @@ class Dispatcher:
         failed = entry.state is State.FAILED and verdict.feed is not Feed.REJECTED
         if failed:
             self._doubt(entry)
-        if failed and _may_still_come(entry, verdict):
-            allowed_s = self._allowed_s(entry.command, self.timings[entry.cell])
-            self.unfinished.expect(entry.command, _arrives_s(entry, now) + allowed_s, now)
         called_off = entry.state is State.CANCELLED and verdict.feed is Feed.HALTED and not verdict.failure
-        if called_off and _arrives_s(entry, now) > 0:  # reports of before it came show its device at rest
-            self.unfinished.expect(entry.command, _arrives_s(entry, now), now)
+        if failed or called_off:
+            self._expect_late(entry, verdict, now)
         if failed and entry.halts and verdict.failure and verdict.failure.reason not in KNOWN_STILL:
             self._stop(entry.command.robot, StopMode.HALT)
+
+    def _expect_late(self, entry: Entry, verdict: Verdict, now: float) -> None:
+        """Expect a command that is over for the plant, where its device may still carry it out.
+
+        Reports of before it came show its device at rest. Where it is halted, its halt comes after it.
+        """
+        lasts_s = 0.0 if _ended_by_boot(verdict) else _arrives_s(entry, now)
+        if entry.state is State.FAILED and _may_go_on(entry, verdict):
+            lasts_s += self._allowed_s(entry.command, self.timings[entry.cell])
+        if lasts_s > 0:
+            self.unfinished.expect(entry.command, lasts_s, now)
 
     def _doubt(self, entry: Entry) -> None:
         """Take what is reported of the facts of a failed command for old, until another of them is done."""
@@ -662,14 +666,18 @@ def was_broken_off(entry: Entry) -> bool:
     return entry.failure is None or entry.failure.reason in BROKEN_OFF
 
 
-def _may_still_come(entry: Entry, verdict: Verdict) -> bool:
-    """True where a device may carry out a command that has failed.
+def _may_go_on(entry: Entry, verdict: Verdict) -> bool:
+    """True where a device may carry out a command to its end that has failed.
 
     A boot ends all, and work that does not go on to its end is halted; but of a link that was lost nobody
     knows if the command, or word of its beginning, is still on its way.
     """
-    reason = None if verdict.failure is None else verdict.failure.reason
-    return reason is Reason.LINK_LOST if entry.halts else reason is not Reason.REBOOTED
+    lost = verdict.failure is not None and verdict.failure.reason is Reason.LINK_LOST
+    return lost if entry.halts else not _ended_by_boot(verdict)
+
+
+def _ended_by_boot(verdict: Verdict) -> bool:
+    return verdict.failure is not None and verdict.failure.reason is Reason.REBOOTED
 
 
 def _arrives_s(entry: Entry, now: float) -> float:
