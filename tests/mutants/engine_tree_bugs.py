@@ -24,8 +24,8 @@ OF_LEAVES = (
     bug(
         LEAVES,
         "A command is given again without a pause.",
-        "            self.again_at = self.time.now + retry.backoff_s\n",
-        "            self.again_at = self.time.now\n",
+        "            self.again_at = self.time.now + max(retry.backoff_s, LEAST_S)\n",
+        "            self.again_at = self.time.now + LEAST_S\n",
     ),
     bug(
         LEAVES,
