@@ -266,8 +266,14 @@ OF_CELLS = (
     bug(
         INTERLOCKS,
         "A machine that is not heard is out of the way.",
-        "            if not belief.online\n            or (belief",
-        "            if (belief",
+        "            if not belief.online\n            or not belief.is_sure\n",
+        "            if not belief.is_sure\n",
+    ),
+    bug(
+        INTERLOCKS,
+        "What a machine has told before its stop counts.",
+        "            or not belief.is_sure\n",
+        "",
     ),
     bug(
         INTERLOCKS,

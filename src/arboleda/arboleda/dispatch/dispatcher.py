@@ -640,7 +640,7 @@ class Dispatcher:
             doubtful.difference_update(name for name, _ in command.sets)
         if command.robot in self.unfinished.by_device:
             self.unfinished.done(command)
-        if isinstance(command, Work):
+        if not self.beliefs[command.robot].is_sure and isinstance(command, Work):
             self.beliefs[command.robot].be_sure()
         if isinstance(command, Switch) and command.grips is not None:
             self.effectors.set(command.robot, Grip.ON if command.grips else Grip.OFF)
