@@ -24,8 +24,8 @@ OF_LEAVES = (
     bug(
         LEAVES,
         "A command is given again without a pause.",
-        "            self.again_at = self.time.now + retry.backoff_s\n",
-        "            self.again_at = self.time.now\n",
+        "            self.again_at = self.time.now + max(retry.backoff_s, LEAST_S)\n",
+        "            self.again_at = self.time.now + LEAST_S\n",
     ),
     bug(
         LEAVES,
@@ -266,8 +266,14 @@ OF_CELLS = (
     bug(
         INTERLOCKS,
         "A machine that is not heard is out of the way.",
-        "            if not belief.online\n            or (belief",
-        "            if (belief",
+        "            if not belief.online\n            or not belief.is_sure\n",
+        "            if not belief.is_sure\n",
+    ),
+    bug(
+        INTERLOCKS,
+        "What a machine has told before its stop counts.",
+        "            or not belief.is_sure\n",
+        "",
     ),
     bug(
         INTERLOCKS,

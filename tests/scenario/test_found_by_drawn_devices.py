@@ -222,6 +222,40 @@ def do_1(cell):
 """
         },
     ),
+    "a press went down in a zone that was free since it was given up at a bridge that hears late": Found(
+        seconds=30.0,
+        faults=(
+            Fault(kind="hop_delay", at=5.0, seconds=8.0, target="plant", amount=1.134, word="to bridge"),
+        ),
+        file="""
+            name: drawn_77185
+            uses: [recipes.py]
+            kinds:
+              one:
+                facts: {mode: [up, down]}
+                verbs: {put: {effect: switch, with: {to: [up, down]}, sets: {mode: $to}}}
+              press:
+                facts: {door: [up, down]}
+                verbs:
+                  move:
+                    {effect: motion, with: {to: [up, down]}, sets: {door: $to}, takes_s: 0.2, at_most_s: 0.6}
+            cells:
+              cell: {devices: {oven: {kind: one}, press: {kind: press}}, retry: {times: 3}}
+            zones:
+              mouth: {free_while: {oven: {mode: up}}, held_while: {press: [move]}}
+        """,
+        beside={
+            "recipes.py": """
+from arboleda.recipes import recipe, work
+
+
+@recipe("do_1")
+def do_1(cell):
+    press = cell.device("press")
+    return work(press.move(to="down"), cell.wait(1), press.move(to="up"))
+"""
+        },
+    ),
     "a process without a duration was never told by a device that tells its state of another instant": Found(
         seed=2,
         file="""

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.plant_file.loader import load
+from arboleda.simulator.faults import Fault
 from arboleda.simulator.run import Simulation
 from arboleda.simulator.shrink import explicit
 
@@ -42,3 +43,36 @@ def test_it_waits_for_the_zone_of_a_node_on_its_way(tmp_path: Path, seed: int) -
     result = Simulation(model, seed, explicit(())).run(seconds=60.0)
     assert result.broken is None, str(result.broken)
     assert result.outcomes.keys() == {"done"}
+
+
+LONELY = """
+name: lonely
+uses: [recipes.py]
+cells:
+  yard:
+    devices: {one: {kind: mobile, evidence: joints}}
+    targets:
+      home: {one: {node: 6}}
+      gate: {one: {node: 3}}
+      far: {one: {node: 0}}
+zones:
+  gate: {poses: [yard gate]}
+"""
+THERE_AND_BACK = """
+from arboleda.recipes import recipe, work
+
+@recipe("go")
+def go(cell):
+    one = cell.device("one")
+    return work(one.go("far"), one.home())
+"""
+
+
+def test_its_zone_is_kept_while_its_last_node_may_be_from_before_its_stop(tmp_path: Path) -> None:
+    """It is stopped on its way into the zone, and its nodes come later than its state."""
+    (tmp_path / "plant.yaml").write_text(LONELY, "utf-8")
+    (tmp_path / "recipes.py").write_text(THERE_AND_BACK, "utf-8")
+    stop = Fault(kind="operator_stop", at=5.0, target="one")
+    result = Simulation(load(tmp_path / "plant.yaml"), 28, explicit((stop,))).run(seconds=12.0)
+    assert result.broken is None, str(result.broken)
+    assert result.outcomes["stopped"] == 1

@@ -311,7 +311,7 @@ def test_shutdown_halts_what_moves_and_rests_when_the_halt_is_confirmed(
     plant.tell("ra1", state=MOVING, q=(0.05, 0.0, 0.0), accepted=move.id)
     plant.plant.step(plant.now, [Shutdown(at=plant.now, drops_waiting=drops_waiting)])
     assert not plant.plant.at_rest
-    for _ in range(2 if evidence is not Evidence.JOINTS else 6):
+    for _ in range(2 if evidence is not Evidence.JOINTS else 8):
         plant.tell("ra1", state=STILL, q=(0.08, 0.0, 0.0), accepted=move.id)
     assert plant.plant.at_rest
     (task,) = plant.plant.intake.tasks.values()

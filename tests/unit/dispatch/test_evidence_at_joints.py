@@ -229,6 +229,21 @@ def test_a_halt_is_not_proven_by_what_was_said_before_the_robot_heard_it() -> No
     assert belief.still_since(moment)
 
 
+def test_a_halt_is_not_proven_by_nodes_that_may_be_from_before_the_robot_stopped() -> None:
+    """It is halted on an edge, at whose end it stops; on the way there it tells one node all the time."""
+    judged = drive(0, 3)
+    belief = judged.belief
+    moment = belief.moment(1.0)
+    judged.stays(1.01, 1.5, 0, MOVING)
+    judged.hear(1.5, state=STOPPED)
+    judged.hear(1.507, 0)
+    assert not belief.still_since(moment)
+    judged.stays(1.6, 1.8, 3)
+    assert not belief.still_since(moment)
+    judged.stays(1.8, 2.0, 3)
+    assert belief.still_since(moment)
+
+
 @pytest.mark.parametrize(
     ("online", "place", "is_astray"), [(False, HALFWAY, True), (False, GOAL, False), (True, HALFWAY, False)]
 )

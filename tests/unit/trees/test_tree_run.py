@@ -10,8 +10,12 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import ParallelPolicy, Status
 from py_trees.composites import Parallel, Selector, Sequence
 
+from arboleda.model.messages import Failure, Reason
+from arboleda.model.plant_model import Retry
+from arboleda.trees.cell_time import CellTime
+from arboleda.trees.failures import Failures
 from arboleda.trees.leaves import Act
-from arboleda.trees.tree_run import TreeRun
+from arboleda.trees.tree_run import TICK_BOUND, TreeRun
 
 
 class Known(Behaviour):
@@ -74,3 +78,39 @@ def test_a_tree_whose_only_step_under_way_is_a_command_is_ticked_once() -> None:
 )
 def test_a_tree_that_asks_others_once_more_is_ticked_until_it_rests(make: Any) -> None:
     assert ticks_of(make) > 1
+
+
+class Refused:
+    """Commands of a cell whose robot was lost: none leaves."""
+
+    sent = 0
+
+    def send(self, *_: Any, **__: Any) -> Any:
+        self.sent += 1
+        lost = Failure(reason=Reason.LINK_LOST, sentence="it is lost")
+        return SimpleNamespace(open=False, left=False, too_early=False, failure=lost, state=None)
+
+    def cancel_all(self) -> None:
+        """Nothing is open."""
+
+
+def test_tries_that_take_no_time_are_not_all_at_one_instant() -> None:
+    """However many steps there are, each with as many tries as a plant file may allow, without a pause."""
+    clock = [0.0]
+    failures = Failures(SimpleNamespace(carrier=None, opened_by=None))  # type: ignore[arg-type]
+    context: Any = SimpleNamespace(
+        cell=SimpleNamespace(name="cell", retry=Retry(times=10, backoff_s=0.0)),
+        time=CellTime(lambda: clock[0]),
+        commands=Refused(),
+        failures=failures,
+        timing=SimpleNamespace(stop_timeout_s=5.0),
+    )
+    acts = [Act(f"move {n}", context, lambda: None, "moving") for n in range(TICK_BOUND + 1)]
+    run = TreeRun(context)
+    status = run.begin(lambda: Selector("one of them", memory=True, children=[*acts]))
+    while status is Status.RUNNING:
+        clock[0] = context.time.next_deadline
+        assert context.time.woken()
+        status = run.tick()
+    assert failures.last is not None and failures.last.reason is Reason.LINK_LOST
+    assert context.commands.sent == len(acts) * 11

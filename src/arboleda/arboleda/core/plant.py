@@ -123,7 +123,9 @@ class Plant:
         self.intake = Intake(model, epoch)
         self.dispatcher = Dispatcher(model, epoch, memory)
         if memory.get(Fact.QUARANTINE):
-            self.dispatcher.sure_from = now + SHORTEST_ABSENCE_S
+            for belief in self.dispatcher.beliefs.values():
+                if belief.robot.goes:  # what it tells may be older than its last move of an earlier start
+                    belief.doubt(until=now + SHORTEST_ABSENCE_S)
         self.zones = Zones((*model.zones, *model.shared), memory.get(Fact.QUARANTINE, {}))
         self.cells = {cell.name: self._run(cell) for cell in model.cells}
         self._operator = Operator(

@@ -49,6 +49,7 @@ class Belief:
 
     `supervised`: whether silence means anything; a robot at `state` speaks only when it moves.
     `stale_at`: when silence will have lasted too long; None where that cannot happen (again).
+    `is_sure`: its place is no older than its last stop; of what goes nowhere, its facts.
     `barred`: a command was refused because of a stop which it does not tell: it has none, or did not hear it.
     """
 
@@ -60,6 +61,9 @@ class Belief:
         self.position_in = _position_under(robot.position_key)  # of a report, or of this
         self.held_in = _fact_under(robot.held_fact)  # likewise: whether it holds something
         self.drawn = robot.link is Link.NONE
+        self._goes = robot.goes
+        tells = self._goes or robot.fact_names
+        self._comes_apart = bool(tells) and robot.evidence is Evidence.JOINTS  # from its state
         self.heard_at: float | None = None
         self.stale = False
         self.stale_at: float | None = None
@@ -74,6 +78,9 @@ class Belief:
         self.position: Position | None = None
         self.position_at = 0.0
         self.position_no = 0
+        self._told_at = 0.0  # its place; of what goes nowhere, its facts
+        self._sure_from = -math.inf
+        self.is_sure = True
         self.state_no = 0
         self.state_at = 0.0
         self.reports = 0
@@ -182,6 +189,9 @@ class Belief:
         self.reports += 1
         if report.number is not None:
             self.number = report.number
+        stands = self._comes_apart and report.state not in (None, MotionState.MOVING)
+        if stands and (self.state is MotionState.MOVING or (self.heard_at is not None and not self.online)):
+            self._sure_from = report.at + APART_S
         if report.state is not MotionState.NO_LINK:
             self.heard_at = report.at
             self.stale = False
@@ -198,6 +208,9 @@ class Belief:
             self.position_no = self.reports
         if report.q is not None or report.node is not None:
             self.position_at = report.at
+        if position is not None or (report.facts and not self._goes):
+            self._told_at = report.at
+        self.is_sure = self._told_at >= self._sure_from
         if report.piece is not None:
             self.piece_at = report.at
             self.piece_since = report.at if report.piece is not self.piece else self.piece_since
@@ -225,7 +238,8 @@ class Belief:
         two reports, all of them after that moment. What has no position says so twice; what has no work to do
         stands still.
 
-        At `joints` a report may be older than the other one that came before it; so old ones do not count.
+        At `joints` a report may be older than the other one that came before it; so old ones do not count,
+        and no positions that may be older than the stop: on an edge a robot tells one node all the time.
         """
         count, at = moment
         if not self.robot.works:
@@ -239,7 +253,17 @@ class Belief:
         if self.robot.position_key is None:
             return count < self._still_from
         rested = count < self._rested_from < self.position_no
-        return rested and (self.robot.evidence is Evidence.IDS or self.rested_since(at + APART_S))
+        if self.robot.evidence is Evidence.IDS:
+            return rested
+        return rested and self.rested_since(max(at + APART_S, self._sure_from))
+
+    def doubt(self, until: float) -> None:
+        """Take what it tells of its place before that time for older than its last move."""
+        self._sure_from, self.is_sure = until, False
+
+    def be_sure(self) -> None:
+        """Take what it has told for no older than its last stop: it has proven a command."""
+        self._sure_from, self.is_sure = -math.inf, True
 
     @property
     def answered(self) -> bool:

@@ -123,8 +123,6 @@ class Dispatcher:
         self.rejected: dict[str, tuple[int, Sentence | None]] = {}
         self.not_given: deque[Entry] = deque(maxlen=NOT_GIVEN_KEPT)  # commands of tasks that never left
         self.not_given_count = 0
-        # a place that was told before may be older than the last move of an earlier start
-        self.sure_from = -math.inf
         self._count = 0
 
     @property
@@ -279,7 +277,7 @@ class Dispatcher:
     def place(self, workspace: Workspace) -> Pose | None:
         """The zone-free pose at, or above, which its robot stands, as far as its evidence goes.
 
-        What it said last may be older than a move that it was just given.
+        What it said last may be older than a move that it was just given, or than its last stop.
         """
         robot = workspace.robot
         belief = self.beliefs[robot.name]
@@ -288,7 +286,7 @@ class Dispatcher:
         if not belief.online or belief.unhomed or restless:
             return None
         here = belief.position if belief.supervised else self.reached.get(robot.name)
-        if here is None or (belief.supervised and belief.position_at < self.sure_from):
+        if here is None or (belief.supervised and not belief.is_sure):
             return None
         return next((pose for spot, pose in workspace.free_spots if robot.motion.stands_at(here, spot)), None)
 
@@ -300,10 +298,10 @@ class Dispatcher:
         belief = self.beliefs.get(report.robot)
         if belief is None or belief.drawn:
             return
-        located_at = belief.position_at
+        was_sure = belief.is_sure
         if belief.hear_again(report):
-            if located_at < self.sure_from <= belief.position_at:  # only now `place` goes by it
-                self.ledger.changed |= self._cells_of[report.robot]
+            if belief.is_sure and not was_sure:  # only now `place` and interlocks go by it
+                self.wake([report.robot])
             self._prove(belief, report, now)
             return
         if belief.robot.objection(report) is not None:
@@ -330,6 +328,8 @@ class Dispatcher:
         self._prove(belief, report, now, before)
         if latched and (new_link or (belief.online and not was_online)):  # it may have forgotten its stop
             self._stop(report.robot, StopMode.LATCH)
+        if belief.is_sure and not was_sure:
+            self.wake([report.robot])
         if self._facts_shown(belief) != facts:
             self.version += 1
             self.ledger.changed |= self._cells_of[report.robot]
@@ -399,12 +399,8 @@ class Dispatcher:
 
     def give_up(self, cell: str, failure: Failure, now: float) -> None:
         """Fail every open command of a cell, and halt what moves: nobody can judge them any more."""
-        self.version += 1
         for entry in self.ledger.of_cell(cell):
-            self.ledger.feed(entry.command.id, Feed.FAILED, now, failure)
-            self._doubt(entry)
-            if entry.halts:
-                self._stop(entry.command.robot, StopMode.HALT)
+            self._book(entry, Verdict(feed=Feed.FAILED, failure=failure), now)
 
     def _moves_again(self, robot: str) -> None:
         """A robot that tells no position moves, or cannot: it is no longer where its last move ended."""
@@ -489,8 +485,9 @@ class Dispatcher:
         if isinstance(command, Work) and (tool := self.effectors.opening_tool(robot)) is not None:
             return Failure(reason=Reason.REJECTED, sentence=MAY_LET_GO(robot=robot, tool=tool))
         obstacle = self.obstacle(robot, was=was)
-        if isinstance(command, Home) and obstacle and self.beliefs[robot].is_led_out_by_homing:
-            return None
+        led_out = isinstance(command, Home) and self.beliefs[robot].is_led_out_by_homing
+        if led_out and robot not in self.latched:
+            obstacle = None
         moving = obstacle is not None and obstacle.reason is Reason.REJECTED
         if moving and self._shows_its_own_end(command) and not self._breaks_its_work(command):
             obstacle = None  # its last code may be older than the end of its last move, which was proven
@@ -609,14 +606,22 @@ class Dispatcher:
         failed = entry.state is State.FAILED and verdict.feed is not Feed.REJECTED
         if failed:
             self._doubt(entry)
-        if failed and _may_still_come(entry, verdict):
-            allowed_s = self._allowed_s(entry.command, self.timings[entry.cell])
-            self.unfinished.expect(entry.command, _arrives_s(entry, now) + allowed_s, now)
         called_off = entry.state is State.CANCELLED and verdict.feed is Feed.HALTED and not verdict.failure
-        if called_off and _arrives_s(entry, now) > 0:  # reports of before it came show its device at rest
-            self.unfinished.expect(entry.command, _arrives_s(entry, now), now)
+        if failed or called_off:
+            self._expect_late(entry, verdict, now)
         if failed and entry.halts and verdict.failure and verdict.failure.reason not in KNOWN_STILL:
             self._stop(entry.command.robot, StopMode.HALT)
+
+    def _expect_late(self, entry: Entry, verdict: Verdict, now: float) -> None:
+        """Expect a command that is over for the plant, where its device may still carry it out.
+
+        Reports of before it came show its device at rest. Where it is halted, its halt comes after it.
+        """
+        lasts_s = 0.0 if _ended_by_boot(verdict) else _arrives_s(entry, now)
+        if entry.state is State.FAILED and _may_go_on(entry, verdict):
+            lasts_s += self._allowed_s(entry.command, self.timings[entry.cell])
+        if lasts_s > 0:
+            self.unfinished.expect(entry.command, lasts_s, now)
 
     def _doubt(self, entry: Entry) -> None:
         """Take what is reported of the facts of a failed command for old, until another of them is done."""
@@ -635,6 +640,8 @@ class Dispatcher:
             doubtful.difference_update(name for name, _ in command.sets)
         if command.robot in self.unfinished.by_device:
             self.unfinished.done(command)
+        if not self.beliefs[command.robot].is_sure and isinstance(command, Work):
+            self.beliefs[command.robot].be_sure()
         if isinstance(command, Switch) and command.grips is not None:
             self.effectors.set(command.robot, Grip.ON if command.grips else Grip.OFF)
         elif isinstance(command, Motion) and command.way:
@@ -659,14 +666,18 @@ def was_broken_off(entry: Entry) -> bool:
     return entry.failure is None or entry.failure.reason in BROKEN_OFF
 
 
-def _may_still_come(entry: Entry, verdict: Verdict) -> bool:
-    """True where a device may carry out a command that has failed.
+def _may_go_on(entry: Entry, verdict: Verdict) -> bool:
+    """True where a device may carry out a command to its end that has failed.
 
     A boot ends all, and work that does not go on to its end is halted; but of a link that was lost nobody
     knows if the command, or word of its beginning, is still on its way.
     """
-    reason = None if verdict.failure is None else verdict.failure.reason
-    return reason is Reason.LINK_LOST if entry.halts else reason is not Reason.REBOOTED
+    lost = verdict.failure is not None and verdict.failure.reason is Reason.LINK_LOST
+    return lost if entry.halts else not _ended_by_boot(verdict)
+
+
+def _ended_by_boot(verdict: Verdict) -> bool:
+    return verdict.failure is not None and verdict.failure.reason is Reason.REBOOTED
 
 
 def _arrives_s(entry: Entry, now: float) -> float:

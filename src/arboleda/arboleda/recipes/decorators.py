@@ -15,7 +15,7 @@ from py_trees.decorators import Decorator
 
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase, Sentence
-from arboleda.trees.cell_time import CellTime
+from arboleda.trees.cell_time import LEAST_S, CellTime
 from arboleda.trees.context import Context
 from arboleda.trees.failures import Failures
 from arboleda.trees.leaves import title_of, titled
@@ -29,8 +29,6 @@ RESCUE = Phrase("step.rescue", "rescue: {step}")
 INVERT = Phrase("step.invert", "invert {step}")
 TOO_LATE = Phrase("recipe.too_late", "{step} did not end within {seconds:g} s")
 RESCUE_FAILED = Phrase("recipe.rescue_failed", "{cause}; and the rescue failed: {second}")
-LEAST_S = 0.01
-"""Pause before the next round of what has taken no time: one step of the plant ticks a tree only so often."""
 NO_RESCUE = frozenset({Reason.STOPPED, Reason.CANCELLED, Reason.INTERRUPTED, Reason.INTERNAL})
 """Reasons of a failure after which nothing of the task may go on."""
 NOT_FAILED = Phrase("recipe.not_failed", "{step} was to fail, and did not")

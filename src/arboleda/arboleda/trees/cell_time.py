@@ -5,6 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+LEAST_S = 0.01
+"""Pause before a further try, or round, of what may have taken no time: a tree is ticked only so often at one
+instant."""
+
 
 class CellTime:
     """Clock of a cell: what waits in its tree waits on while the cell is held.

@@ -22,7 +22,8 @@ class Interlocks:
         that leads there, or one that is over and may still be carried out.
 
         What moves without a command of this plant may be on its way there, and so may what has not taken its
-        new work yet: it may still carry out what it was told before.
+        new work yet: it may still carry out what it was told before. What it has told may be older than its
+        last stop.
         """
         belief = self._dispatcher.beliefs[device]
         may_come = [entry.command for entry in self._dispatcher.ledger.of_robot(device)]
@@ -31,6 +32,7 @@ class Interlocks:
             each.zone
             for each in self._cell.interlocks_of(device)
             if not belief.online
+            or not belief.is_sure
             or (belief.state is MotionState.MOVING and not self._is_at_its_work(device))
             or any(belief.fact(name) != value for name, value in each.free_while)
             or any(map(each.is_ended_by, may_come))

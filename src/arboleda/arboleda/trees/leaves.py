@@ -15,7 +15,7 @@ from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.messages import Check, Failure, Notice, Reason
 from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
 
-from .cell_time import CellTime
+from .cell_time import LEAST_S, CellTime
 from .context import Context
 from .failures import Failures
 from .parts import Parts
@@ -242,7 +242,7 @@ class Act(Leaf):
             self.tries += 1
             self.last_failure = failure.sentence
             self.feedback = AGAIN(why=failure.sentence, number=self.tries, most=retry.times)
-            self.again_at = self.time.now + retry.backoff_s
+            self.again_at = self.time.now + max(retry.backoff_s, LEAST_S)
             self.time.wake_at(self.again_at)
             return Status.RUNNING
         return self._failed(failure)
