@@ -120,6 +120,46 @@ def test_a_task_ends_with_the_parts_that_it_left_whatever_another_cell_takes_aft
     assert (places.at_end["seat"], places.as_left["seat"]) == (0, 1)
 
 
+WITHOUT_PLACES = """
+  right:
+    devices: {arm: {shared: arm}, hand: {shared: hand}, bob: {kind: person}}
+    targets:
+      home: {arm: {deg: [0, 0], mm: 0}}
+      shelf: {arm: {deg: [100, 20], mm: 40}}
+      bench: {arm: {deg: [-90, 20], mm: 40}}
+    recipes: [move]
+"""
+MOVES = """
+from arboleda.recipes import recipe, work
+
+def carry(cell, source, goal):
+    arm, hand = cell.devices("arm", "hand")
+    return arm.visit(source, hand.close()), arm.visit(goal, hand.open()), arm.home()
+
+@recipe("move")
+def move(cell):
+    return work(*carry(cell, "shelf", "bench"))
+
+@recipe("forget", ends_with={"seat": 0})
+def forget(cell):
+    return work(*carry(cell, "feed", "seat"), cell.wait(15.0))
+"""
+
+
+def test_what_the_other_cell_puts_where_this_one_has_no_place_says_nothing_of_its_parts(
+    tmp_path: Path,
+) -> None:
+    left = PLANT.partition("  right:")[0].replace("    places:", "    recipes: [forget]\n    places:")
+    (tmp_path / "recipes.py").write_text(MOVES, "utf-8")
+    (tmp_path / "plant.yaml").write_text(left + WITHOUT_PLACES.lstrip("\n"), "utf-8")
+    world = JudgedWorld(load(tmp_path / "plant.yaml")).world
+    world.request_task("left forget")
+    world.request_task("right move")
+    assert world.advance(30.0, lambda: world.plant.intake.tasks["t-1000-2"].state.value == "done")
+    with pytest.raises(BrokenInvariant, match="t-1000-1 is called done, and seat is 1, not 0"):
+        world.advance(15.0)
+
+
 def test_what_nobody_could_know_at_the_end_of_a_task_is_not_judged_by_what_the_next_one_knows() -> None:
     watched = JudgedWorld(storing(), invariants=[done_tasks_leave_nothing_behind])
     watched.world.request_task("tending forgets")

@@ -16,9 +16,10 @@ from arboleda.model.facts import Value
 from arboleda.recipes.authoring import FAIL, IS, NO_OTHER
 from arboleda.recipes.decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
 from arboleda.recipes.handles import FactCheck, FactWait
-from arboleda.trees.leaves import Act, Approach, Leaf, Require, Unless
+from arboleda.trees.leaves import Act, Approach, Leaf, Require, Unless, title_of
+from arboleda.trees.steps import HOME_AGAIN
 
-from .foresight import Key, Scene, common
+from .foresight import AT, OVER, Key, Scene, common
 from .parallel_scenes import Branches
 from .walkthrough import MOST_ROUNDS, Outcome, Rule, Walkthrough, answer_key, few
 
@@ -91,6 +92,9 @@ def _selector(walk: Walkthrough, node: composites.Selector, scenes: Sequence[Sce
     question = getattr(node, "asked", None)
     if question is not None:
         return _chosen(walk, node, question, scenes)
+    title = title_of(node)
+    if title.key == HOME_AGAIN.key:
+        return _gone_home(walk, node, str(title.values["arm"]), scenes)
     if not node.memory:
         return walk.unsure(node, scenes)
     outcome = Outcome(failed=tuple(scenes))
@@ -98,6 +102,15 @@ def _selector(walk: Walkthrough, node: composites.Selector, scenes: Sequence[Sce
         found = walk.follow(child, outcome.failed)
         outcome = Outcome(done=(*outcome.done, *found.passed), failed=found.failed)
     return outcome
+
+
+def _gone_home(walk: Walkthrough, node: composites.Selector, robot: str, scenes: Sequence[Scene]) -> Outcome:
+    """The outcome of going home unless a robot is there already: both ways lead to one and the same scene."""
+    home = walk.foresight.home(robot)
+    there = {(robot, AT): home, (robot, OVER): home}
+    stays = [scene.put(there) for scene in scenes if scene.get(robot, AT) in (None, home)]
+    goes = walk.follow(node.children[-1], [scene for scene in scenes if scene.get(robot, AT) != home])
+    return Outcome(done=(*stays, *goes.passed), failed=goes.failed)
 
 
 def _chosen(

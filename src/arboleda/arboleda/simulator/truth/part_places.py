@@ -75,7 +75,8 @@ class CellPlaces:
             return None
         found = [] if carrier is None else self._found(self._hands[name], carrier)
         if len(found) != 1:
-            self.is_doubtful |= not now or bool(found)
+            # what another cell puts down where this one has no place is no part of its places
+            self.is_doubtful |= bool(found) or not (now or is_of_others)
             return None
         place = found[0]
         if is_of_others and place.by_people:
