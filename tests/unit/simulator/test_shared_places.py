@@ -256,6 +256,14 @@ def test_home_of_a_plant_is_no_matter_of_devices_that_have_no_homing(tmp_path: P
     assert homed == ["arm"]
 
 
+def test_parts_stay_in_doubt_where_a_task_begins_in_the_middle_of_a_grip(tmp_path: Path) -> None:
+    seat = judged(tmp_path).truth.places.cells["left"]
+    for hands, is_doubtful in ((["hand"], True), ([], False)):
+        seat.is_doubtful = True
+        seat.begin({"seat": 0}, hands)
+        assert seat.is_doubtful is is_doubtful
+
+
 READER = """
 name: two
 uses: [recipes.py]

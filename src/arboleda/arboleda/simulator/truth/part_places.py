@@ -50,13 +50,15 @@ class CellPlaces:
         """A task begins: people have filled the supplies and emptied the outputs; these hands are about to
         close or to open.
         """
+        self._began_in_grip = frozenset(in_grip)
         if self.is_doubtful:
             self.parts = dict(booked)
-            self.is_doubtful = any(self._held.values())  # a hand has what the plant may not know of
+            # a hand has what the plant may not know of, or is about to take what is booked as taken
+            self.is_doubtful = any(self._held.values()) or bool(self._began_in_grip)
         for target in self.by_people:
             place = self._places[target]
             self.parts[target] = place.holds if place.supply else 0
-        self._began_with, self._began_in_grip = dict(self.parts), frozenset(in_grip)
+        self._began_with = dict(self.parts)
         self._left, self._moved_by_others = {}, set()
 
     def end(self) -> None:
