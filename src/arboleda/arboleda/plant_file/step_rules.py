@@ -16,6 +16,7 @@ from arboleda.model.facts import Value
 from arboleda.recipes.authoring import FAIL, IS, NO_OTHER
 from arboleda.recipes.decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
 from arboleda.recipes.handles import FactCheck, FactWait
+from arboleda.recipes.places import PlaceQuestion
 from arboleda.trees.leaves import Act, Approach, Leaf, Require, Unless, title_of
 from arboleda.trees.steps import HOME_AGAIN
 
@@ -64,6 +65,11 @@ def _fact_check(walk: Walkthrough, node: FactCheck, scenes: Sequence[Scene]) -> 
 def _fact_wait(walk: Walkthrough, node: FactWait, scenes: Sequence[Scene]) -> Outcome:
     """The outcome of waiting for facts: what is known may change by itself meanwhile."""
     return _fact_outcome(walk, _facts(node), scenes, scenes)
+
+
+def _place_question(walk: Walkthrough, node: PlaceQuestion, scenes: Sequence[Scene]) -> Outcome:
+    """The outcome of a question to the books: an earlier answer counts no more."""
+    return Outcome(done=tuple(scene.without({answer_key(node)}) for scene in scenes))
 
 
 def _facts(node: FactCheck | FactWait) -> dict[Key, Value]:
@@ -213,6 +219,7 @@ RULES: Mapping[type, Rule] = {
     Unless: _unless,
     FactCheck: _fact_check,
     FactWait: _fact_wait,
+    PlaceQuestion: _place_question,
     composites.Sequence: _sequence,
     composites.Selector: _selector,
     composites.Parallel: _parallel,
