@@ -13,7 +13,7 @@ from arboleda.sim.board import Board
 from arboleda.trees import steps
 from arboleda.trees.cell_zones import CellZones
 from arboleda.trees.failures import Failures
-from arboleda.trees.leaves import Piece
+from arboleda.trees.leaves import Piece, TakeZones
 from arboleda.trees.parts import Parts
 
 from .mutant import SHARED, edit, mutant
@@ -50,8 +50,8 @@ ZONES = (
     ),
     mutant(
         "a_wait_names_its_cause",
-        "Who waits on is not told that another one has the zone now.",
-        edit(CellZones.leave, "self._zones.give_back(held) + waiting", "self._zones.give_back(held)"),
+        "A robot that waits names who asked before it, not who has the zone.",
+        edit(TakeZones._awaited, "if held := self.access.awaited(self.robot, self.zones):", "if held := {}:"),
         seeds=SHARED,
     ),
 )

@@ -15,9 +15,10 @@ from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.model.sentence import NOTHING
-from arboleda.recipes import Kit, parallel, recipe, work
+from arboleda.recipes import Choice, Kit, parallel, recipe, work
 from arboleda.recipes.errors import RecipeError
 from arboleda.testing.following import advised, follow, works
+from arboleda.trees.cell_devices import CellDevices
 from arboleda.trees.tree_run import step_of
 
 from .lab import Bench
@@ -104,6 +105,58 @@ def test_who_waits_says_for_what_and_which_cell_has_it() -> None:
     here.submit("above ride")
     here.wait(1.0)
     assert waits_for(here, "above") == "waits for lift, which below holds"
+
+
+@recipe("both")
+def both(cell: Kit):  # type: ignore[no-untyped-def]
+    """Hoist and lift are used together."""
+    return work(cell.using(["hoist", "lift"], cell.device("hoist").up(), cell.device("hoist").down()))
+
+
+@recipe("alone")
+def alone(cell: Kit, role=Choice("hoist", "lift")):  # type: ignore[no-untyped-def]
+    """One of them is used."""
+    return work(cell.using(role, cell.device(role).up(), cell.device(role).down()))
+
+
+def hoisting() -> Bench:
+    """Three cells that share a hoist and a lift: `one` has the lift, and `two` waits for both."""
+    shared = [
+        (name, Device(name=name, mqtt=name, **IDS, timeout_s=5.0, kind=LIFT)) for name in ("hoist", "lift")
+    ]
+    cell = Cell(name="one", queue_limit=5, members=tuple(shared), shared=("hoist", "lift"), zone_wait_s=30.0)
+    cells = [replace(cell, name=name, recipes=(both, alone)) for name in ("one", "two", "three")]
+    here = Bench(PlantModel(name="shop", cells=tuple(cells)))
+    for task in ("one alone lift", "two both"):
+        here.submit(task)
+        here.wait(0.5)
+    return here
+
+
+def test_a_cell_that_waits_names_who_holds_a_device_before_who_asked_for_one_earlier() -> None:
+    here = hoisting()
+    here.submit("three both")
+    here.wait(0.5)
+    assert waits_for(here, "three") == "waits for lift, which one holds"
+
+
+def test_a_cell_that_waits_names_who_got_its_device_meanwhile() -> None:
+    here = hoisting()
+    here.submit("three alone hoist")
+    here.wait(0.5)
+    assert waits_for(here, "three") == "waits for hoist, which two asked for before"
+    assert here.wait(10.0, lambda: here.plant.zones.holder("hoist") == "two")
+    assert waits_for(here, "three") == "waits for hoist, which two holds"
+
+
+def test_a_cell_that_cannot_ask_yet_for_a_device_that_no_cell_holds_says_why(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(CellDevices, "is_as_left", lambda self, device: False)
+    here = Bench(plant())
+    here.submit("above ride")
+    here.wait(1.0)
+    assert waits_for(here, "above") == "waits for lift, which no cell holds and which may still hold a part"
 
 
 def test_who_waits_too_long_fails_and_names_the_cell_that_has_it() -> None:

@@ -175,6 +175,50 @@ def test_it_says_what_is_wrong_for_certain(tmp_path: Path, body: str, sentence: 
     assert sentence in warned(tmp_path, body)
 
 
+ARMS = "{loader: {kind: arm, model: scara}, jaw: {kind: gripper, tool_of: loader}}"
+OTHER = """  other:
+    devices: {loader: {shared: loader}, jaw: {shared: jaw}, eye: {kind: camera}}
+    targets: {home: {loader: {deg: [0, 0], mm: 0}}}
+"""
+SHARED = (
+    PLANT.replace("{kind: arm, model: scara}", "{shared: loader}")
+    .replace("{kind: gripper, tool_of: loader}", "{shared: jaw}")
+    .replace("cells:\n", f"shared: {ARMS}\ncells:\n")
+    .replace("zones:\n", f"{OTHER}zones:\n")
+)
+LOOKS = """
+@recipe("look")
+def look(cell):
+    return cell.device("eye").look()
+"""
+
+
+@pytest.mark.parametrize(
+    ("body", "wrong"),
+    [
+        (f"{INTO}, seen, {WAYS % (OUT, OUT)}", []),
+        (f"{INTO}, seen, {OUT}", []),
+        (f"{INTO}, seen, {WAYS % (OUT, '')}", ["ends with drawer 1, and says that it ends with 0"]),
+        (
+            f"cell.recover(work({INTO}, reader.open(), seen), cell.wait(1)), {OUT}",
+            ["has reader read, which needs lid of reader to be closed, where it is open"],
+        ),
+        (
+            'take("rack"), take("nest"), put("bin"), loader.home()',
+            ["has jaw take hold of a part at nest while it holds one from rack"],
+        ),
+    ],
+)
+def test_an_arm_that_cells_share_does_not_silence_it(tmp_path: Path, body: str, wrong: list[str]) -> None:
+    decorator = '"try", ends_with={"drawer": 0}'
+    assert warned(tmp_path, body, decorator) == wrong
+    with (tmp_path / "recipes.py").open("a", encoding="utf-8") as file:
+        file.write(LOOKS)
+    (tmp_path / "plant.yaml").write_text(SHARED, "utf-8")
+    where = f"{tmp_path / 'recipes.py'}:4:1: lab: try "
+    assert advance_check.warnings(load(tmp_path / "plant.yaml")) == tuple(where + each for each in wrong)
+
+
 def test_what_a_recipe_says_of_its_end_counts(tmp_path: Path) -> None:
     left = '"try", ends_with={"drawer": 1, "reader.lid": "open"}'
     assert warned(tmp_path, f"{INTO}, reader.open(), loader.home()", left) == []

@@ -19,6 +19,7 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Home
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.model.sentence import Sentence
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
@@ -37,7 +38,7 @@ from arboleda.trees.cell_zones import CellZones
 from arboleda.trees.context import Context
 from arboleda.trees.failures import Failures
 from arboleda.trees.handling import Handling
-from arboleda.trees.leaves import Piece
+from arboleda.trees.leaves import Piece, TakeZones
 from arboleda.trees.parts import Parts
 from arboleda.wire.payloads import EffectorGoal, Goal, JointsGoal, encode
 from arboleda.wire.rivals import Rivals
@@ -182,7 +183,9 @@ def entered_unasked(patch: Patch) -> Watch:
 
 
 def told_once(patch: Patch) -> Watch:
-    patch.setattr(Zones, "waiting_for", lambda self, zones: ())
+    said: dict[TakeZones, Sentence] = {}
+    awaited = TakeZones._awaited
+    patch.setattr(TakeZones, "_awaited", lambda self: said.setdefault(self, awaited(self)))
     watch = Watch(zoned())
     for cell in watch.world.model.cells:
         watch.world.request_task(f"{cell.name} palletizing")

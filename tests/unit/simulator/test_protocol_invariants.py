@@ -24,6 +24,7 @@ from arboleda.model.messages import Fact, Heartbeat, OperatorRequest, TaskState,
 from arboleda.model.plant_model import Evidence, ForeignCommands, PlantModel, Retry
 from arboleda.model.sentence import Phrase, as_sentence
 from arboleda.plant_file.loader import load
+from arboleda.recipes import recipe, work
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.board import Board
 from arboleda.sim.freshness import Freshness
@@ -912,6 +913,34 @@ def test_zone_requests_end__in_the_cells_own_time(monkeypatch):
     watch.verb(Verb.RESUME, "sis_a", wait_s=5)
     watch.wait(10)
     assert watch.found == {}
+
+
+def test_zone_requests_end__anew_after_the_pause_of_a_retry(monkeypatch):
+    @recipe("look")
+    def look(cell):
+        return work(cell.retry(cell.device("arm").visit("pickup", cell.wait(1.0)), times=3))
+
+    model = zoned()
+    cells = tuple(replace(each, recipes=(*each.recipes, look)) for each in model.cells)
+    watch = Watch(replace(model, cells=cells))
+    assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
+    monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
+    watch.task("sis_a look", wait_s=7.0)
+    assert [cell.name for cell in watch.record.waiting] == ["sis_a"]
+    watch.wait(10)
+    assert watch.found == {}
+
+
+def test_zone_requests_end__once_a_cell_that_was_held_at_that_moment_goes_on(monkeypatch):
+    watch = Watch(zoned())
+    assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
+    monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
+    watch.task("sis_a palletizing", wait_s=3.1)
+    watch.world.stall(PLANT, 0.3)
+    watch.verb(Verb.HOLD, "sis_a", wait_s=5)
+    assert watch.world.plant.cells["sis_a"].state is CellState.HELD
+    watch.verb(Verb.RESUME, "sis_a", wait_s=1)
+    assert watch.found == {} and watch.world.plant.cells["sis_a"].run.recovering
 
 
 @pytest.mark.parametrize("act", [lambda watch: watch.task(wait_s=1), lambda watch: watch.world.crash("ra_1")])

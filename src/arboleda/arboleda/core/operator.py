@@ -373,10 +373,9 @@ class Operator:
         return partial(self._override, zone)
 
     def _override(self, zone: str) -> None:
-        waiting = self._zones.waiting_for(frozenset({zone}))
         granted = self._zones.override(zone)
         self._dispatcher.memory.vacate([zone])
-        self._dispatcher.wake({*granted, *waiting, *self._zones.robbed})
+        self._dispatcher.wake({*granted, *self._zones.robbed})
 
     def _is_left_anywhere(self, device: str) -> bool:
         """True for a shared device that goes nowhere and holds no part, so that any cell may have it next."""

@@ -85,9 +85,17 @@ class Zones:
         names, zones = list(self._waiting), self._waiting[robot]
         return tuple(name for name in names[: names.index(robot)] if zones & self._waiting[name])
 
-    def waiting_for(self, zones: frozenset[str]) -> tuple[str, ...]:
-        """The robots that wait for any of the zones, the first one first."""
-        return tuple(robot for robot, asked in self._waiting.items() if asked & zones)
+    def awaited(self, robot: str, zones: Iterable[str]) -> dict[str, str]:
+        """Those of the zones that somebody else holds, in order of their names, each with its holder."""
+        holders = [(zone, self._holders.get(zone)) for zone in sorted(zones)]
+        return {zone: other for zone, other in holders if other is not None and other != robot}
+
+    def asked_before(self, robot: str) -> tuple[str, str] | None:
+        """A zone that a waiting robot asked for, and the first of those that asked for it before."""
+        asked = self._waiting.get(robot, frozenset())
+        for other in self.ahead_of(robot) if asked else ():
+            return min(asked & self._waiting[other]), other
+        return None
 
     def is_quarantined(self, zone: str) -> bool:
         return zone in self._quarantined

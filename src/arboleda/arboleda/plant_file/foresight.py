@@ -74,6 +74,11 @@ class Foresight:
         numbers = {(target, what): 0 for target in self.places for what in OF_PLACES}
         return Scene(known={**numbers, **{(hand, HELD): False for hand in self.hands}})
 
+    def home(self, robot: str) -> str:
+        """The target at which a robot waits."""
+        space = self.cell.reach[robot]
+        return next(name for name, pose in space.targets.items() if pose == space.home)
+
     def touched(self, command: Command) -> set[Key]:
         """The facts and places that a command may change."""
         keys = {(command.robot, what) for what in (HELD, TAKEN, AT, OVER, *dict(command.sets))}
@@ -189,7 +194,7 @@ class Foresight:
             return
         does = "take hold" if command.grips else "let go"
         if place is None:
-            at_home = self.cell.places and here == self._home(hand)
+            at_home = self.cell.places and here == self.home(self.hands[hand].robot.name)
             yield from [f"has {hand} {does} of a part at {here}, where none lies"] if at_home else []
         elif not self._can(scene, place, -1 if command.grips else +1):
             why = "where nothing can be" if command.grips else "which is full already"
@@ -200,10 +205,6 @@ class Foresight:
         taken = scene.get(hand, TAKEN)
         if self.places and None not in (here, taken) and here != taken:
             yield f"has {hand} take hold of a part at {here} while it holds one from {taken}"
-
-    def _home(self, hand: str) -> str:
-        space = self.hands[hand]
-        return next(name for name, pose in space.targets.items() if pose == space.home)
 
     def _can(self, scene: Scene, place: Place, parts: int) -> bool:
         """True where there is any number of parts to begin with by which a place can give or take one."""

@@ -21,14 +21,17 @@ def of_ends(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> I
 
 def certain_ends(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> Iterator[str]:
     """The end that all ways have in common: as the recipe says, which is marked, then facts, parts and robots
-    as its steps leave them.
+    as its steps leave them. A device that cells share is so when the task gives it back.
     """
     sure = dict(frozenset.intersection(*(end.mark for end in ends))) if ends else {}
-    yield from (f"{what} {shown(value)} (it says so)" for what, value in wanted.items())
+    for what, value in wanted.items():
+        role, dot, _ = what.partition(".")
+        device = cell.roles[role].name if dot else ""
+        yield f"{what} {shown(value)}{_when(cell, device)} (it says so)"
     for role, device in cell.members:
         for fact in device.fact_names:
             if (device.name, fact) in sure and f"{role}.{fact}" not in wanted:
-                yield f"{role}.{fact} {shown(sure[device.name, fact])}"
+                yield f"{role}.{fact} {shown(sure[device.name, fact])}{_when(cell, device.name)}"
     for place in cell.places:
         change = int(sure.get((place.target, CHANGE)) or 0)
         if change and place.target not in wanted:
@@ -36,6 +39,11 @@ def certain_ends(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene])
     for space in cell.spaces:
         if (target := sure.get((space.robot.name, OVER))) is not None:
             yield f"{space.robot.name} at {target}"
+
+
+def _when(cell: Cell, device: str) -> str:
+    """Words for when a device is so: another cell may have a shared one before the task is over."""
+    return f" when {device} is given back" if device in cell.shared else ""
 
 
 def _parts(change: int) -> str:

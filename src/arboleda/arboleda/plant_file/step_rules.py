@@ -16,9 +16,11 @@ from arboleda.model.facts import Value
 from arboleda.recipes.authoring import FAIL, IS, NO_OTHER
 from arboleda.recipes.decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
 from arboleda.recipes.handles import FactCheck, FactWait
-from arboleda.trees.leaves import Act, Approach, Leaf, Require, Unless
+from arboleda.recipes.places import PlaceQuestion
+from arboleda.trees.leaves import Act, Approach, Leaf, Require, Unless, title_of
+from arboleda.trees.steps import HOME_AGAIN
 
-from .foresight import Key, Scene, common
+from .foresight import AT, OVER, Key, Scene, common
 from .parallel_scenes import Branches
 from .walkthrough import MOST_ROUNDS, Outcome, Rule, Walkthrough, answer_key, few
 
@@ -65,6 +67,11 @@ def _fact_wait(walk: Walkthrough, node: FactWait, scenes: Sequence[Scene]) -> Ou
     return _fact_outcome(walk, _facts(node), scenes, scenes)
 
 
+def _place_question(walk: Walkthrough, node: PlaceQuestion, scenes: Sequence[Scene]) -> Outcome:
+    """The outcome of a question to the books: an earlier answer counts no more."""
+    return Outcome(done=tuple(scene.without({answer_key(node)}) for scene in scenes))
+
+
 def _facts(node: FactCheck | FactWait) -> dict[Key, Value]:
     return {(node.device, fact): value for fact, value in node.facts.items()}
 
@@ -91,6 +98,9 @@ def _selector(walk: Walkthrough, node: composites.Selector, scenes: Sequence[Sce
     question = getattr(node, "asked", None)
     if question is not None:
         return _chosen(walk, node, question, scenes)
+    title = title_of(node)
+    if title.key == HOME_AGAIN.key:
+        return _gone_home(walk, node, str(title.values["arm"]), scenes)
     if not node.memory:
         return walk.unsure(node, scenes)
     outcome = Outcome(failed=tuple(scenes))
@@ -98,6 +108,15 @@ def _selector(walk: Walkthrough, node: composites.Selector, scenes: Sequence[Sce
         found = walk.follow(child, outcome.failed)
         outcome = Outcome(done=(*outcome.done, *found.passed), failed=found.failed)
     return outcome
+
+
+def _gone_home(walk: Walkthrough, node: composites.Selector, robot: str, scenes: Sequence[Scene]) -> Outcome:
+    """The outcome of going home unless a robot is there already: both ways lead to one and the same scene."""
+    home = walk.foresight.home(robot)
+    there = {(robot, AT): home, (robot, OVER): home}
+    stays = [scene.put(there) for scene in scenes if scene.get(robot, AT) in (None, home)]
+    goes = walk.follow(node.children[-1], [scene for scene in scenes if scene.get(robot, AT) != home])
+    return Outcome(done=(*stays, *goes.passed), failed=goes.failed)
 
 
 def _chosen(
@@ -200,6 +219,7 @@ RULES: Mapping[type, Rule] = {
     Unless: _unless,
     FactCheck: _fact_check,
     FactWait: _fact_wait,
+    PlaceQuestion: _place_question,
     composites.Sequence: _sequence,
     composites.Selector: _selector,
     composites.Parallel: _parallel,

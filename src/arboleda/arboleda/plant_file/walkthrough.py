@@ -11,6 +11,7 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.bt_xml.running.node import Node
 from arboleda.model.by_class import nearest
+from arboleda.recipes.places import PlaceQuestion
 from arboleda.trees.leaves import Act
 
 from .foresight import Foresight, Key, Scene, common
@@ -115,6 +116,8 @@ class Walkthrough:
         for each in node.iterate():
             if isinstance(each, Node):
                 yield from map(key_of, each.writes)
+            elif isinstance(each, PlaceQuestion):
+                yield answer_key(each)
             elif isinstance(each, Act):
                 yield answer_key(each)
                 yield from self.foresight.touched(each.make(id=""))

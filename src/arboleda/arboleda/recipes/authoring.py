@@ -32,9 +32,10 @@ from arboleda.trees.leaves import Dwell, Require, Unless, titled
 
 from .decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
 from .errors import RecipeError, RoleError
-from .handles import Ask, Step, chain, flat, handle, is_list, named, question_of, usable, value_text
+from .handles import Question, Step, chain, flat, handle, is_list, named, question_of, usable, value_text
 from .holding import WORK, held
 from .parameters import parameter
+from .places import PlaceHandle
 from .sharing import check_at_once, using
 
 RETURNS = "a recipe returns a step, e.g. work(...)"
@@ -172,7 +173,7 @@ class Making:
     """A recipe in the making: those that run each other in it, and what was chosen by whose answer."""
 
     running: tuple[tuple[str, Mapping[str, object]], ...] = ()
-    chosen: list[tuple[Step, Ask]] = field(default_factory=list)
+    chosen: list[tuple[Step, Question]] = field(default_factory=list)
 
     def within(self, name: str, values: Mapping[str, object]) -> Making:
         """The same, of a recipe in it; RecipeError where it would run itself without an end."""
@@ -268,6 +269,14 @@ class Kit:
             cell = self._context.cell.name
             raise RoleError(f"{cell} has no group of targets {name!r}; {among(name, groups)}")
         return groups[name]
+
+    def place(self, target: str) -> PlaceHandle:
+        """The place at a target, of which a recipe may ask whether a part is there."""
+        places = [place.target for place in self._context.cell.places]
+        if target not in places:
+            cell = self._context.cell.name
+            raise RoleError(f"{cell} has no place {target!r}; {among(target, places)}")
+        return PlaceHandle(target, self._context)
 
     def handover(self, path: str = "") -> str:
         """The target at which one robot takes what another one brings on this path, or on most paths."""

@@ -45,10 +45,30 @@ DOING = Phrase("doing.order", "doing {order}")
 ASKING = Phrase("doing.ask", "asking {person}")
 
 
-class Ask(Act):
-    """A question to a device, and what it may answer; `by` is its name, `asked` the question in words."""
+class Question(Leaf):
+    """A step that ends with one of these `answers`, by which a recipe may go on."""
 
     answers: tuple[Value, ...] = ()
+
+    @property
+    def answer(self) -> Value | None:
+        """The answer; None where there is none yet."""
+        raise NotImplementedError
+
+    def check(self, ways: Mapping[Value, object]) -> None:
+        """RecipeError where the ways are not those of all answers, and of no others."""
+        allowed = ", ".join(map(shown, self.answers))
+        for answer in ways:
+            if answer not in self.answers:
+                raise RecipeError(f"{self.name} never answers {quoted(answer)}; its answers: {allowed}")
+        for answer in self.answers:
+            if answer not in ways:
+                raise RecipeError(f"choose has no way for {quoted(answer)}, which {self.name} may answer")
+
+
+class Ask(Act, Question):
+    """A question to a device, and what it may answer; `by` is its name, `asked` the question in words."""
+
     by = asked = ""
     _answer: Value | None = None  # of an earlier start of the plant
 
@@ -70,16 +90,6 @@ class Ask(Act):
         if self.answer is not None:
             self.context.note(TaskAnswer(by=self.by, asked=self.asked, answer=self.answer))
         return super()._done()
-
-    def check(self, ways: Mapping[Value, object]) -> None:
-        """RecipeError where the ways are not those of all answers, and of no others."""
-        allowed = ", ".join(map(shown, self.answers))
-        for answer in ways:
-            if answer not in self.answers:
-                raise RecipeError(f"{self.name} never answers {quoted(answer)}; its answers: {allowed}")
-        for answer in self.answers:
-            if answer not in ways:
-                raise RecipeError(f"choose has no way for {quoted(answer)}, which {self.name} may answer")
 
 
 class FactCheck(Require):
@@ -104,10 +114,10 @@ class AskInZones(composites.Sequence):
         self.asked = question
 
 
-def question_of(step: object) -> Ask | None:
+def question_of(step: object) -> Question | None:
     """The question of a step that asks, also one in zones."""
     found = step.asked if isinstance(step, AskInZones) else step
-    return found if isinstance(found, Ask) else None
+    return found if isinstance(found, Question) else None
 
 
 class Handle:

@@ -12,6 +12,7 @@ from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.messages import Reason, TaskChanged, TaskState
 from arboleda.recipes.authoring import FAIL
 from arboleda.recipes.decorators import RESCUE_FAILED
+from arboleda.recipes.places import NO_PART_YET, NO_ROOM_YET
 
 from .record import Record
 from .storage.tasks import NAMES
@@ -19,6 +20,7 @@ from .truth.refused_commands import RefusedCommands
 from .world import World
 
 AS_WRITTEN = (FAIL.key, FAILS.key)  # steps that do nothing but fail
+UP_TO_OTHERS = (NO_PART_YET.key, NO_ROOM_YET.key)  # waits for what another task brings, or takes
 BY_PEOPLE = frozenset({Reason.STOPPED, Reason.CANCELLED, Reason.INTERRUPTED})
 REFUSALS = frozenset({Reason.REJECTED, Reason.PRECONDITION})
 
@@ -50,12 +52,14 @@ class Findings:
 
     `as_written` counts failures that a recipe asks for: by `cell.fail`, or `AlwaysFailure` of a tree, in a
     task in which a device or a person has answered, for answers are drawn. Tasks of storage have an invariant
-    of their own, and what a person has ended is none.
+    of their own, and what a person has ended is none. Neither is a wait for a place that ended in vain once
+    `nobody_asks` for tasks any more.
     """
 
     def __init__(self, world: World, record: Record) -> None:
         self.found: Counter[Finding] = Counter()
         self.as_written: Counter[Finding] = Counter()
+        self.nobody_asks = False
         self._world = world
         self._record = record
         self._refused_commands = RefusedCommands()
@@ -115,6 +119,8 @@ class Findings:
         if recipe is None or recipe in NAMES:
             return
         failed = change.state is TaskState.FAILED and change.reason not in BY_PEOPLE
+        if self.nobody_asks and change.sentence.key in UP_TO_OTHERS:
+            failed = False
         if failed:
             self._failed(recipe, change)
         sentence = str(change.sentence)

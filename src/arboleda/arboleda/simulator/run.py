@@ -106,6 +106,7 @@ class Simulation:
             while not self._enough(cycles, seconds):
                 self._minute(self.result.minutes, math.inf if seconds is None else seconds)
             self._people.go()
+            self.watched.findings.nobody_asks = self._script is None
             if self._engineers is not None:
                 self._engineers.go()
             self.watched.come_to_rest()

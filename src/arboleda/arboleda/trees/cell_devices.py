@@ -102,8 +102,7 @@ class CellDevices:
         held = self._zones.held_by(name) & devices
         quiet = frozenset(filter(self._may_change_hands, held))
         if quiet:
-            waiting = self._zones.waiting_for(quiet)  # who still waits names another holder now
-            granted += self._zones.give_back(quiet) + waiting
+            granted += self._zones.give_back(quiet)
             self._dispatcher.memory.vacate(quiet)
         self._dispatcher.wake(granted)
         return held == quiet
@@ -117,19 +116,13 @@ class CellDevices:
         elif ended:
             self.leave(frozenset({device}))
 
-    def awaited(self, devices: Iterable[str]) -> tuple[str, str, bool] | None:
-        """The first of the devices that another cell holds, or asked for before this one; that cell, and True
-        where it holds the device.
-        """
-        name, requests = self._cell.name, dict(self._zones.waiting)
-        for device in sorted(devices):
-            holder = self._zones.holder(device)
-            if holder not in (None, name):
-                return device, holder, True
-            ahead = self._zones.ahead_of(name) if name in requests else ()
-            if earlier := [other for other in ahead if device in requests[other]]:
-                return device, earlier[0], False
-        return None
+    def awaited(self, devices: Iterable[str]) -> dict[str, str]:
+        """Those of the devices that another cell holds, each with that cell."""
+        return self._zones.awaited(self._cell.name, devices)
+
+    def asked_before(self) -> tuple[str, str] | None:
+        """A device that the cell waits for, and the first of the cells that asked for it before."""
+        return self._zones.asked_before(self._cell.name)
 
     def unused(self, devices: Iterable[str]) -> list[str]:
         """Those of the devices that no cell holds and that do nothing, in order of their names."""

@@ -104,7 +104,7 @@ class CellZones:
         A robot of this cell that is seen outside of them keeps none.
         """
         space = self._cell.workspaces.get(robot)
-        found = {} if space is None else self.awaited(robot, sorted(space.zones))
+        found = {} if space is None else self.awaited(robot, space.zones)
         return {zone: holder for zone, holder in found.items() if not self._is_outside(holder)}
 
     def make_room(self, robot: str) -> None:
@@ -123,8 +123,7 @@ class CellZones:
         granted = self._zones.withdraw(robot)
         held = self._left(robot, self._zones.held_by(robot))
         if held:
-            waiting = self._zones.waiting_for(held)  # who still waits names another holder now
-            granted += self._zones.give_back(held) + waiting
+            granted += self._zones.give_back(held)
             self._dispatcher.memory.vacate(held)
             self._dispatcher.wake(self._zones.robbed)
         self._dispatcher.wake(granted)
@@ -176,15 +175,11 @@ class CellZones:
 
     def awaited(self, robot: str, zones: Iterable[str]) -> dict[str, str]:
         """Those of the zones that somebody else holds, each with its holder."""
-        holders = {zone: self._zones.holder(zone) for zone in zones}
-        return {zone: other for zone, other in holders.items() if other is not None and other != robot}
+        return self._zones.awaited(robot, zones)
 
     def asked_before(self, robot: str) -> tuple[str, str] | None:
         """A zone that a waiting robot asked for, and the first of those that asked for it before."""
-        requests = dict(self._zones.waiting)
-        for other in self._zones.ahead_of(robot) if robot in requests else ():
-            return min(requests[robot] & requests[other]), other
-        return None
+        return self._zones.asked_before(robot)
 
     def kept_by_machine(self, robot: str, zones: Iterable[str]) -> tuple[str, tuple[str, ...]] | None:
         """A machine at rest that keeps one of these zones, and the facts that it would have to report."""

@@ -50,6 +50,9 @@ CANNOT_TAKE = Phrase("device.cannot_take", "{cell} cannot take {device}: {why}")
 NOT_AT_HOME = Phrase(
     "device.not_at_home", "waits for {device}, which no cell holds and which is not seen at its home"
 )
+NOT_EMPTY = Phrase(
+    "device.not_empty", "waits for {device}, which no cell holds and which may still hold a part"
+)
 WAITS_TO_GIVE_BACK = Phrase("device.waits_to_give_back", "waits until {devices} can be given back")
 NOT_AT_REST = Phrase("device.not_at_rest", "{cell}: {devices} did not come to rest")
 NOT_OUTSIDE = Phrase("zone.not_outside", "{arm} was not seen outside its zones")
@@ -464,7 +467,27 @@ class Carry(Leaf):
         return Status.SUCCESS
 
 
-class TakeZones(Await):
+class Take(Await):
+    """Wait for what others may hold. While it waits, its feedback is made when somebody reads it: who holds
+    what changes without a tick of this leaf.
+    """
+
+    ended_with: Sentence = NOTHING
+
+    @property
+    def feedback(self) -> Sentence:
+        return self._awaited() if self.status is Status.RUNNING else self.ended_with
+
+    @feedback.setter
+    def feedback(self, sentence: Sentence) -> None:
+        self.ended_with = sentence
+
+    def _awaited(self) -> Sentence:
+        """The cause of its waiting; NOTHING where it waits no more."""
+        raise NotImplementedError
+
+
+class TakeZones(Take):
     """Wait until a robot has all the zones that `needed()` names then; left early, it waits no longer.
 
     `recovers`: a robot that stands in a zone may go on with what it holds, to get out; one outside keeps its
@@ -498,16 +521,12 @@ class TakeZones(Await):
         due = self.time.now >= self.until
         if due and self.recovers and self.access.will_come_free(self.robot):
             super().initialise()
-        status = super().update()
-        if status is Status.RUNNING:
-            self.feedback = self._awaited()
-        return status
+        return super().update()
 
     def _taken(self) -> bool:
         return self.access.take(self.robot, self.zones, inside=self.recovers)
 
     def _awaited(self) -> Sentence:
-        """The cause of its waiting; NOTHING where that is not known."""
         if (kept := self.access.kept_by_machine(self.robot, self.zones)) is not None:
             machine, facts = kept
             return WAITS_FOR_MACHINE(device=machine, facts=facts)
@@ -517,7 +536,8 @@ class TakeZones(Await):
         if ahead := self.access.asked_before(self.robot):
             zone, other = ahead
             return WAITS_FOR_ZONE_TURN(zone=zone, other=other)
-        if own := self.access.held_by(self.robot):
+        own = self.access.held_by(self.robot)
+        if own and not self.zones <= own:
             return WAITS_TO_BE_OUTSIDE(arm=self.robot, zone=min(own))
         return NOTHING
 
@@ -553,7 +573,7 @@ class LeaveZones(Await):
             self.began = self.until = self.time.now
 
 
-class TakeDevices(Await):
+class TakeDevices(Take):
     """Wait until a cell has the devices that it shares, all at once; left early, it waits no longer.
 
     It fails at once where one that no cell holds may hold a part, or has lost its reference: only a person
@@ -571,10 +591,7 @@ class TakeDevices(Await):
         if (failure := self._objection()) is not None:
             self.failures.add(failure, self)
             return self.failed(failure)
-        status = super().update()
-        if status is Status.RUNNING:
-            self.feedback = self._awaited()
-        return status
+        return super().update()
 
     def _objection(self) -> Failure | None:
         """Why it would wait in vain for a device that no cell holds."""
@@ -590,12 +607,22 @@ class TakeDevices(Await):
 
     def _awaited(self) -> Sentence:
         if awaited := self.shared.awaited(self.devices):
-            device, holder, holds = awaited
-            return (WAITS_FOR_DEVICE if holds else WAITS_FOR_TURN)(device=device, cell=holder)
-        if held := self.shared.held():
+            device = min(awaited)
+            return WAITS_FOR_DEVICE(device=device, cell=awaited[device])
+        if ahead := self.shared.asked_before():
+            device, cell = ahead
+            return WAITS_FOR_TURN(device=device, cell=cell)
+        held = self.shared.held()
+        if held and not self.devices <= held:
             return WAITS_TO_GIVE_BACK(devices=tuple(sorted(held)))
-        away = next((each for each in sorted(self.devices) if not self.shared.is_home(each)), None)
-        return NOTHING if away is None else NOT_AT_HOME(device=away)
+        return NOTHING if held else self._not_as_left()
+
+    def _not_as_left(self) -> Sentence:
+        """The cause of its waiting for a device that no cell holds, and that it cannot ask for yet."""
+        device = next((each for each in sorted(self.devices) if not self.shared.is_as_left(each)), None)
+        if device is None:
+            return NOTHING
+        return (NOT_EMPTY if self.shared.is_home(device) else NOT_AT_HOME)(device=device)
 
     def _taken(self) -> bool:
         return self.shared.take(self.devices)
@@ -603,9 +630,11 @@ class TakeDevices(Await):
     def _not_free(self) -> Failure:
         cell, awaited = self.cell, self.shared.awaited(self.devices)
         sentence = DEVICE_NOT_FREE(cell=cell, devices=tuple(sorted(self.devices)), seconds=self.seconds)
-        if awaited and awaited[2]:
-            device, holder, _ = awaited
-            sentence = DEVICE_STILL_HELD(cell=cell, device=device, holder=holder, seconds=self.seconds)
+        if awaited:
+            device = min(awaited)
+            sentence = DEVICE_STILL_HELD(
+                cell=cell, device=device, holder=awaited[device], seconds=self.seconds
+            )
         return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
 
     def terminate(self, new_status: Status) -> None:

@@ -134,6 +134,14 @@ class Places:
         """The number of parts at a place."""
         return self._parts[target]
 
+    def is_filled(self, target: str) -> bool:
+        """True where a part is known to be at a place."""
+        return self.parts(target) > 0
+
+    def is_free(self, target: str) -> bool:
+        """True where a place has room for another part."""
+        return self.parts(target) < self._places[target].holds
+
     @property
     def counts(self) -> dict[str, int]:
         """The number of parts at each place."""
@@ -153,8 +161,8 @@ class Places:
     def is_so_still(self, trouble: Sentence) -> bool:
         """True while a place that people neither fill nor empty has no part, or no room, as it was told."""
         place = self._places[str(trouble.values["place"])]
-        parts = self.parts(place.target)
-        return not place.by_people and (parts >= place.holds if trouble.key == FULL.key else not parts)
+        is_over = self.is_free if trouble.key == FULL.key else self.is_filled
+        return not (place.by_people or is_over(place.target))
 
     def begin(self) -> None:
         """A task begins: people have filled the supplies and emptied the outputs."""
@@ -186,18 +194,18 @@ class Places:
         if self._dispatcher.effectors.grips[hand] is Grip.ON:
             taken = self._held.get(hand, HeldPart()).target
             return HOLDS_ONE(robot=hand, place=taken) if taken not in (None, here) else None
-        known = here in self._places and not self.parts(here)
-        return EMPTY(robot=hand, place=here, cell=self._cell.name) if here is not None and known else None
+        if here not in self._places or self.is_filled(here):
+            return None
+        return EMPTY(robot=hand, place=here, cell=self._cell.name)
 
     def _to_let_go(self, hand: str) -> Sentence | None:
         space = self._hands.get(hand)
         here = self._target(space) if space is not None else None
         if here not in self._places or not self._dispatcher.effectors.grips.holding(hand):
             return None
-        parts = self.parts(here)
-        if parts < self._places[here].holds:
+        if self.is_free(here):
             return None
-        return FULL(robot=hand, place=here, parts=parts, cell=self._cell.name)
+        return FULL(robot=hand, place=here, parts=self.parts(here), cell=self._cell.name)
 
     def _to_leave(self, robot: str) -> Sentence | None:
         """Why a robot must not leave with what it holds: a device holds the same part."""
@@ -289,6 +297,8 @@ class Places:
             self._parts[target] = max(parts, 0)
         elif target in self._places:
             self._parts[target] = max(self._parts[target] + parts, 0)
+            if not self._is_ours(hand):  # a step of this cell may wait for it
+                self._dispatcher.wake([self._cell.name])
 
     def _is_ours(self, hand: str) -> bool:
         """False while another cell has a hand that it shares with this one."""

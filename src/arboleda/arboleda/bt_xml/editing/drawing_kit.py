@@ -15,6 +15,7 @@ from arboleda.model.messages import Reason
 from arboleda.model.outside import quoted
 from arboleda.recipes.authoring import Kit, Making, work
 from arboleda.recipes.handles import Step, flat, question_of
+from arboleda.recipes.places import PlaceHandle
 from arboleda.trees.context import Context
 
 from .errors import EditError
@@ -68,6 +69,10 @@ class DrawingKit(Kit):
 
     def device(self, role: str) -> Any:
         return _DrawingHandle(role, super().device(role), self.kinds)
+
+    def place(self, target: str) -> PlaceHandle:
+        super().place(target)  # which refuses what is no place
+        raise refusal(f"place({quoted(target)})", NO_NODE)
 
     def using(self, roles: str | Sequence[str], *parts: Step | Sequence[Step]) -> Step:
         names = [roles] if isinstance(roles, str) else roles

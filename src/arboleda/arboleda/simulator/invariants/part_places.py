@@ -89,14 +89,14 @@ def _left_in_devices(look: Look, cell: Cell, task: str, wanted: dict[str, Value]
 
 @invariant(Trigger.DONE_TASKS)
 def recipes_end_as_they_say(look: Look) -> Iterator[str]:
-    """The end of a task that is called done is as its recipe says."""
-    for cell, task, _ in look.truth.done_tasks:
+    """The end of a task that is called done is as its recipe says, and what cells share as it left it."""
+    for cell, task, began in look.truth.done_tasks:
         model = look.world.model.cell(cell)
         if not _is_known(look, cell) or task not in look.world.plant.intake.tasks:
             continue
         for what, value in _wanted(look, model, task).items():
-            found = _found(look, model, what)
-            if found != value:
+            found = _found(look, model, what, began)
+            if found is not None and found != value:
                 yield f"{task} is called done, and {what} is {shown(found)}, not {shown(value)}"
 
 
@@ -129,12 +129,17 @@ def _wanted(look: Look, cell: Cell, task: str) -> dict[str, Value]:
     return cell.recipe(order.recipe).end_of(order.values)
 
 
-def _found(look: Look, cell: Cell, what: str) -> Value:
-    """The true value of a fact, as `reader.lid`, or the true number of parts at a place."""
+def _found(look: Look, cell: Cell, what: str, began: float) -> Value | None:
+    """The true value of a fact, as `reader.lid`, or the true number of parts at a place, as the task left it;
+    None where only another cell had to do with it.
+    """
     role, dot, fact = what.partition(".")
     if not dot:
-        return look.truth.places.cells[cell.name].at_end[what]
-    return look.truth.robot(cell.roles[role].name).body.true_facts[fact]  # type: ignore[no-any-return]
+        return look.truth.places.cells[cell.name].as_left.get(what)
+    device = cell.roles[role].name
+    if device in cell.shared:
+        return look.truth.shared.as_left_by(cell, device, since=began).get(fact)
+    return look.truth.robot(device).body.true_facts[fact]  # type: ignore[no-any-return]
 
 
 PLACES = (

@@ -17,7 +17,7 @@ from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.trees.leaves import Act, TakeZones
 
 from .commands import SentCommand
-from .starts import turn_of
+from .starts import turn_of, turns_of
 
 LOOK_S = 1.0  # a tree that sends nothing is looked through this often
 PAUSED = (CellState.HOLDING, CellState.HELD)
@@ -29,10 +29,10 @@ class KnownCell:
     `leaves` are those that run; `looked`: they were looked up in this step. `sends` counts the commands of
     each leaf of the tree in each turn of what repeats it, `again` how often an operator had an interrupted
     step given anew, `retries` how often one had a step tried again, over all starts. `waited_s` is how long
-    the arm has waited for its zones in the cell's own time, for a recovery only since all before it were at
-    work; `behind_work`: those were at work when it last waited. `frozen_s` is how much of that time did not
-    pass since the last news although the cell was not held, `ran_s` how much did pass although it was held
-    at work, also of what passed at once as it went on.
+    the arm has waited for its zones in the cell's own time since it asked for them, for a recovery only since
+    all before it were at work; `behind_work`: those were at work when it last waited. `frozen_s` is how much
+    of that time did not pass since the last news although the cell was not held, `ran_s` how much did pass
+    although it was held at work, also of what passed at once as it went on.
     """
 
     signs = attrgetter("state", "run.tree", "task", "queue.paused")
@@ -68,6 +68,7 @@ class KnownCell:
         self._held_at: float | None = None
         self._lag_s = math.inf
         self._waiter: Behaviour | None = None
+        self._turns: list[int] = []  # of what repeats the waiter
         self.wakes = self.context.time.wakes
         self.follow()
 
@@ -98,6 +99,10 @@ class KnownCell:
         now = self.context.time.now
         return any(at <= now for at in self.wakes)
 
+    def wait_no_more(self) -> None:
+        """Take in that its arm asks for no zones: when it asks again, it waits anew."""
+        self._waiter = None
+
     def wait(self, seconds: float, *, behind_work: bool) -> None:
         """Count the time that its arm waits for zones; `seconds` passed since the step before.
 
@@ -107,9 +112,10 @@ class KnownCell:
         if waiter is None or not _runs(waiter, tree):
             waiter = next((leaf for leaf in _running(tree) if isinstance(leaf, TakeZones)), None)
         recovers = isinstance(waiter, TakeZones) and waiter.recovers
+        turns = [] if waiter is None else turns_of(waiter)
         self.behind_work = behind_work
-        if waiter is not self._waiter or (recovers and behind_work):
-            self._waiter, self.waited_s = waiter, 0.0
+        if waiter is not self._waiter or turns != self._turns or (recovers and behind_work):
+            self._waiter, self._turns, self.waited_s = waiter, turns, 0.0
         elif self.state not in PAUSED:
             self.waited_s += seconds
 

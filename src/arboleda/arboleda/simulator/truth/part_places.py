@@ -21,18 +21,21 @@ class CellPlaces:
     """True number of parts at each place of one cell. A station of a rack has one or none.
 
     `at_begin` and `at_end` have those when its last task that is done began and ended; what another cell
-    meanwhile did with a hand that both share counts as if it was before. `is_doubtful` once nobody could
-    know them any more, `end_is_doubtful` where that was so when that task ended: a device has lied or lost
-    its power, its effector was stuck and nobody reports that, somebody took a hand's part, a hand took one
-    at a station where none was known, or two places are one to its robot. The next task begins with what is
-    in the books then, unless a hand still holds something. `late_hands` were in the middle of a grip, on an
-    earlier command, as that task began.
+    meanwhile did with a hand that both share counts as if it was before. `as_left` has those of the places at
+    which that task put or took a part last, and of those where no other cell did. `is_doubtful` once nobody
+    could know them any more, `end_is_doubtful` where that was so when that task ended: a device has lied or
+    lost its power, its effector was stuck and nobody reports that, somebody took a hand's part, a hand took
+    one at a station where none was known, or two places are one to its robot. The next task begins with what
+    is in the books then, unless a hand still holds something. `late_hands` were in the middle of a grip, on
+    an earlier command, as that task began.
     """
 
     def __init__(self, cell: Cell, robots: Mapping[str, Any]) -> None:
         self.cell = cell
         self.parts = {place.target: 0 for place in cell.counted}
-        self.at_begin = self.at_end = dict(self.parts)
+        self.at_begin = self.at_end = self.as_left = dict(self.parts)
+        self._left: dict[str, int] = {}  # by this task, since it began
+        self._moved_by_others: set[str] = set()
         self._began_with = dict(self.parts)
         self.late_hands: frozenset[str] = frozenset()
         self._began_in_grip: frozenset[str] = frozenset()
@@ -47,17 +50,22 @@ class CellPlaces:
         """A task begins: people have filled the supplies and emptied the outputs; these hands are about to
         close or to open.
         """
+        self._began_in_grip = frozenset(in_grip)
         if self.is_doubtful:
             self.parts = dict(booked)
-            self.is_doubtful = any(self._held.values())  # a hand has what the plant may not know of
+            # a hand has what the plant may not know of, or is about to take what is booked as taken
+            self.is_doubtful = any(self._held.values()) or bool(self._began_in_grip)
         for target in self.by_people:
             place = self._places[target]
             self.parts[target] = place.holds if place.supply else 0
-        self._began_with, self._began_in_grip = dict(self.parts), frozenset(in_grip)
+        self._began_with = dict(self.parts)
+        self._left, self._moved_by_others = {}, set()
 
     def end(self) -> None:
         """The task is done."""
         self.at_begin, self.at_end = self._began_with, dict(self.parts)
+        unseen = self._moved_by_others - self._left.keys()
+        self.as_left = {each: n for each, n in (self.parts | self._left).items() if each not in unseen}
         self.end_is_doubtful, self.late_hands = self.is_doubtful, self._began_in_grip
 
     def follow(self, hand: RobotTruth, carrier: RobotTruth | None, *, is_of_others: bool) -> str | None:
@@ -69,16 +77,26 @@ class CellPlaces:
             return None
         found = [] if carrier is None else self._found(self._hands[name], carrier)
         if len(found) != 1:
-            self.is_doubtful |= not now or bool(found)
+            # what another cell puts down where this one has no place is no part of its places
+            self.is_doubtful |= bool(found) or not (now or is_of_others)
             return None
         place = found[0]
         if is_of_others and place.by_people:
             return None  # people see to it for each task
+        sentence = self._move(place, name, -1 if now else 1, is_of_others=is_of_others)
+        if is_of_others:
+            self._moved_by_others.add(place.target)
+        else:
+            self._left[place.target] = self.parts[place.target]
+        return sentence
+
+    def _move(self, place: Place, name: str, moved: int, *, is_of_others: bool) -> str | None:
+        """Count a part that a hand took or put; the sentence about what cannot be."""
+        now = moved < 0
         if place.target in self._rack:
             self.is_doubtful |= now and not self.parts[place.target]
             self.parts[place.target] = 0 if now else 1
             return None
-        moved = -1 if now else 1
         self.parts[place.target] += moved
         self._began_with[place.target] += moved * is_of_others
         if now and self.parts[place.target] < 0:
@@ -95,6 +113,7 @@ class CellPlaces:
         for target, now in parts.items():
             self._began_with[target] += now - self.parts[target]
             self.parts[target] = now
+            self._left.pop(target, None)
 
     def capacity(self, target: str) -> int:
         """The most parts that a place can have."""

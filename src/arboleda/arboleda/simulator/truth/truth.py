@@ -20,6 +20,7 @@ from .ended_commands import EndedCommand
 from .part_places import PlacesTruth
 from .refused_commands import RefusedCommands
 from .robots import RobotsTruth
+from .shared_devices import SharedDevicesTruth
 from .stops import is_order_of, robots_of
 
 RELEASE_S = 60.0  # within which an operator's release opens a tool
@@ -35,6 +36,7 @@ class Truth(RobotsTruth):
         super().__init__(world)
         self.storage = StorageTruth(world, self.robots, self.unseen)
         self.places = PlacesTruth(world, self.robots, mistaken=self.mistaken, released=self.released)
+        self.shared = SharedDevicesTruth(world, self.robots)
         self.done_tasks: list[tuple[str, str, float]] = []
         self._refused_commands = RefusedCommands()
         self._facts = {name: dict(robot.body.true_facts) for name, robot in self.robots.items()}
@@ -100,6 +102,7 @@ class Truth(RobotsTruth):
         if self.done_tasks:
             self.done_tasks = []
         super().look()
+        self.shared.look()
         for booked in self.books.ended:
             self._end(booked)
         plant = self.world.plant

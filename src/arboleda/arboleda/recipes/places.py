@@ -1,0 +1,83 @@
+"""The places of a cell as a recipe asks for the parts there: each call returns a step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from py_trees.common import Status
+
+from arboleda.model.facts import Value
+from arboleda.model.messages import Failure, Reason
+from arboleda.model.sentence import Phrase, Sentence
+from arboleda.trees.context import Context
+from arboleda.trees.leaves import Await
+
+from .handles import Question, Step
+
+HAS_PART = Phrase("step.has_part", "look for a part at {place}")
+HAS_ROOM = Phrase("step.has_room", "look for room at {place}")
+GETS_PART = Phrase("step.gets_part", "wait for a part at {place}")
+GETS_ROOM = Phrase("step.gets_room", "wait for room at {place}")
+NO_PART_YET = Phrase("recipe.no_part_yet", "no part came to {place} within {seconds:g} s")
+NO_ROOM_YET = Phrase("recipe.no_room_yet", "{place} got no room for another part within {seconds:g} s")
+
+
+class PlaceQuestion(Question):
+    """A question that the books of parts answer, with yes or no."""
+
+    answers = (True, False)
+    known: bool | None = None
+
+    def __init__(self, title: Sentence, is_so: Callable[[], bool]) -> None:
+        super().__init__(title)
+        self._is_so = is_so
+
+    @property
+    def answer(self) -> Value | None:
+        return self.known
+
+    def update(self) -> Status:
+        self.known = self._is_so()
+        return Status.SUCCESS
+
+    def kept(self) -> Mapping[str, Any] | None:
+        return None if self.known is None else {"answer": self.known}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        self.known = state["answer"]
+
+
+class PlaceHandle:
+    """A place, of which the plant counts the parts: whether one is there, and whether there is room."""
+
+    def __init__(self, target: str, context: Context) -> None:
+        self._target = target
+        self._context = context
+
+    def has_part(self) -> Step:
+        """A question for `choose`: True where a part is there."""
+        return PlaceQuestion(HAS_PART(place=self._target), self._is_filled)
+
+    def has_room(self) -> Step:
+        """A question for `choose`: True where there is room for another part."""
+        return PlaceQuestion(HAS_ROOM(place=self._target), self._is_free)
+
+    def gets_part(self, *, at_most_s: float) -> Step:
+        """Wait until a part is there, at most `at_most_s` s."""
+        return self._wait(GETS_PART, self._is_filled, at_most_s, NO_PART_YET)
+
+    def gets_room(self, *, at_most_s: float) -> Step:
+        """Wait until there is room for another part, at most `at_most_s` s."""
+        return self._wait(GETS_ROOM, self._is_free, at_most_s, NO_ROOM_YET)
+
+    def _is_filled(self) -> bool:
+        return self._context.places.is_filled(self._target)
+
+    def _is_free(self) -> bool:
+        return self._context.places.is_free(self._target)
+
+    def _wait(self, title: Phrase, arrived: Callable[[], bool], at_most_s: float, late: Phrase) -> Step:
+        sentence = late(place=self._target, seconds=at_most_s)
+        failure = Failure(reason=Reason.DEADLINE, sentence=sentence)
+        return Await(title(place=self._target), self._context, arrived, at_most_s, lambda: failure)

@@ -1,0 +1,52 @@
+"""Truth of devices that cells share: what was so of each as a cell gave it back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from arboleda.model.facts import Value
+from arboleda.model.plant_model import Cell
+
+from ..world import World
+from .robot import RobotTruth
+
+
+@dataclass(frozen=True, kw_only=True)
+class GivenBack:
+    """Facts of a device at the time, in s, at which a cell gave it back."""
+
+    at: float
+    facts: Mapping[str, Value]
+
+
+class SharedDevicesTruth:
+    """True facts of shared devices as the last task of each cell left them."""
+
+    def __init__(self, world: World, robots: Mapping[str, RobotTruth]) -> None:
+        self._world = world
+        self._robots = robots
+        self._holders: dict[str, str] = {}
+        self._given_back: dict[tuple[str, str], GivenBack] = {}  # by device and cell
+
+    def look(self) -> None:
+        """Take in which cells gave devices back in this step."""
+        holders = self._world.plant.zones.holders
+        now = {name: holders[name] for name in self._world.model.shared if name in holders}
+        for name, cell in self._holders.items():
+            if now.get(name) != cell and name in self._robots:
+                facts = dict(self._robots[name].body.true_facts)
+                self._given_back[name, cell] = GivenBack(at=self._world.now, facts=facts)
+        self._holders = now
+
+    def as_left_by(self, cell: Cell, device: str, *, since: float) -> Mapping[str, Value]:
+        """The facts of a device as a cell's task that began at `since`, in s, left it; none where that task
+        did not have it, and another cell did.
+        """
+        own, holder = self._given_back.get((device, cell.name)), self._holders.get(device)
+        if holder == cell.name:
+            return self._robots[device].body.true_facts
+        if own is not None and own.at >= since:
+            return own.facts
+        had = [each.at >= since for (name, _), each in self._given_back.items() if name == device]
+        return {} if holder is not None or any(had) else self._robots[device].body.true_facts

@@ -1,0 +1,143 @@
+"""A place between two cells that share an arm: each asks, or waits, for what the other brings or takes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.bt_xml.editing.drawing_kit import DrawingKit
+from arboleda.bt_xml.editing.errors import EditError
+from arboleda.core.plant import Plant
+from arboleda.model.errors import ConfigError
+from arboleda.plant_file import advance_check
+from arboleda.plant_file.loader import load
+from arboleda.recipes.places import PlaceHandle, PlaceQuestion
+from arboleda.simulator.judged_world import JudgedWorld
+from arboleda.simulator.run import Simulation
+
+PLANT = """
+name: hands
+uses: [recipes.py]
+shared:
+  arm: {kind: arm, model: scara}
+  jaw: {kind: gripper, tool_of: arm}
+cells:
+  left:
+    devices: {arm: {shared: arm}, jaw: {shared: jaw}, ana: {kind: person}}
+    targets:
+      home: {arm: {deg: [0, 0], mm: 0}}
+      in_1: {arm: {deg: [60, 20], mm: 50}}
+      pass: {arm: {deg: [30, 60], mm: 50}}
+    places: {in_1: {supply: true}, pass: {}}
+    recipes: [give]
+  right:
+    devices: {arm: {shared: arm}, jaw: {shared: jaw}, bob: {kind: person}}
+    targets:
+      home: {arm: {deg: [0, 0], mm: 0}}
+      pass: {arm: {deg: [30, 60], mm: 50}}
+      out_1: {arm: {deg: [-60, 20], mm: 50}}
+    places: {pass: {}, out_1: {output: true}}
+    recipes: [take]
+"""
+RECIPES = """
+from arboleda.recipes import recipe, work
+
+def carry(cell, source, goal):
+    arm, jaw = cell.devices("arm", "jaw")
+    taken = arm.visit(source, jaw.close(width_mm=30, force_n=20))
+    return [taken, arm.visit(goal, jaw.open()), arm.home()]
+
+@recipe("give")
+def give(cell):
+    room = cell.place("pass").has_room()
+    return work(room, cell.choose(room, {True: carry(cell, "in_1", "pass"), False: []}))
+
+@recipe("take")
+def take(cell):
+    return work(cell.place("pass").gets_part(at_most_s=8), *carry(cell, "pass", "out_1"))
+"""
+
+
+def written(folder: Path, code: str = RECIPES) -> Path:
+    (folder / "recipes.py").write_text(code, "utf-8")
+    (folder / "plant.yaml").write_text(PLANT, "utf-8")
+    return folder / "plant.yaml"
+
+
+def ends(watched: JudgedWorld) -> list[tuple[str, str]]:
+    """How the tasks stand, each with the sentence of its failure."""
+    tasks = watched.world.plant.intake.tasks.values()
+    return [(each.state.value, "" if each.failure is None else str(each.failure.sentence)) for each in tasks]
+
+
+def test_a_cell_waits_for_the_part_that_the_other_one_brings_and_leaves_the_arm_to_it(tmp_path: Path) -> None:
+    watched = JudgedWorld(load(written(tmp_path)))
+    watched.world.request_task("right take")
+    watched.world.advance(1.0)
+    assert watched.world.plant.zones.holder("arm") is None
+    watched.world.request_task("left give")
+    watched.world.advance(12.0)
+    assert ends(watched) == [("done", ""), ("done", "")]
+    assert watched.truth.places.cells["right"].parts == {"pass": 0, "out_1": 1}
+
+
+def test_a_question_to_a_place_has_a_way_for_each_answer(tmp_path: Path) -> None:
+    watched = JudgedWorld(load(written(tmp_path)))
+    watched.world.request_task("left give")
+    watched.world.advance(6.0)
+    watched.world.request_task("left give")
+    watched.world.advance(1.0)
+    assert ends(watched) == [("done", ""), ("done", "")]
+    assert watched.world.plant.cells["left"].context.places.counts["pass"] == 1
+
+
+def test_a_wait_for_a_part_that_does_not_come_names_its_place(tmp_path: Path) -> None:
+    watched = JudgedWorld(load(written(tmp_path)))
+    watched.world.request_task("right take")
+    watched.world.advance(9.0)
+    assert ends(watched) == [("failed", "no part came to pass within 8 s")]
+
+
+@pytest.mark.long
+def test_nothing_is_found_in_two_cells_that_hand_parts_over(tmp_path: Path) -> None:
+    model = load(written(tmp_path, RECIPES.replace("at_most_s=8", "at_most_s=60")))
+    assert advance_check.warnings(model) == ()
+    result = Simulation(model, 2, lambda minute: []).run(cycles=4)
+    assert result.broken is None and not result.findings and result.outcomes["deadline"] == 1
+
+
+@pytest.mark.parametrize(
+    ("wrong", "sentence"),
+    [
+        ('cell.place("in_1")', "right has no place 'in_1'; there are pass, out_1"),
+        ("cell.choose(cell.place('pass').has_part(), {True: []})", "choose has no way for False"),
+        (
+            "cell.choose(cell.place('pass').has_part(), {'yes': []})",
+            "look for a part at pass never answers 'yes'",
+        ),
+    ],
+)
+def test_what_a_place_is_not_or_never_answers_is_refused(tmp_path: Path, wrong: str, sentence: str) -> None:
+    code = RECIPES.replace("return work(cell.place", f"{wrong}\n    return work(cell.place")
+    with pytest.raises(ConfigError) as refused:
+        load(written(tmp_path, code))
+    assert sentence in str(refused.value)
+
+
+def test_the_answer_of_a_place_outlives_a_start_of_the_plant(tmp_path: Path) -> None:
+    context = Plant(load(written(tmp_path)), epoch=0, now=0.0).cells["left"].context
+    asked, restored = (PlaceHandle("pass", context).has_room() for _ in range(2))
+    assert isinstance(asked, PlaceQuestion) and isinstance(restored, PlaceQuestion)
+    assert asked.kept() is None
+    asked.tick_once()
+    kept = asked.kept()
+    assert kept is not None
+    restored.restore(kept)
+    assert restored.answer is True
+
+
+def test_a_question_to_a_place_is_no_node_of_a_tree_in_xml(tmp_path: Path) -> None:
+    context = Plant(load(written(tmp_path)), epoch=0, now=0.0).cells["left"].context
+    with pytest.raises(EditError, match="cannot be drawn: no node in XML does this"):
+        DrawingKit(context).place("pass")
