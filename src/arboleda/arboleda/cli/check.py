@@ -54,7 +54,7 @@ def check(
         Path | None,
         typer.Argument(
             metavar="FILE",
-            help=f"The plant file to check, or a file of trees, *.xml. [default: {IN_FOLDER} of this folder]",
+            help=f"The plant file to check, or a file of trees, *.xml or *.btproj. [default: {IN_FOLDER} of this folder]",
         ),
     ] = None,
     plant: Annotated[

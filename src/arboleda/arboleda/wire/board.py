@@ -32,7 +32,8 @@ UNREADABLE = Phrase("message.unreadable", "{topic}: {why}")
 ABSENT = Phrase("message.absent", "telemetry of a board whose conexion is 0")
 DENIED = Phrase(
     "link.denied",
-    "its board talks, but its `conexion` says 0; the board has to publish 1 there, retained, when it connects",
+    "its board talks, but its `conexion` says 0; "
+    "the board has to publish 1 there, retained, when it connects",
 )
 AGAIN_S = 0.1  # in a burst of others' commands, no report between two of the board's own
 
