@@ -91,7 +91,8 @@ def test_in_a_file_of_version_4_its_own_kinds_have_their_names_alone() -> None:
 
 
 def test_a_tree_called_as_a_later_kind_of_node_is_warned_of_in_a_file_of_version_3() -> None:
-    text = '<root><BehaviorTree ID="Sleep"><A/></BehaviorTree><BehaviorTree ID="RoundRobin"><A/></BehaviorTree></root>'
+    trees = [f'<BehaviorTree ID="{name}"><A/></BehaviorTree>' for name in ("Sleep", "RoundRobin")]
+    text = f"<root>{''.join(trees)}</root>"
     assert mistakes(text) == ()
     (found,) = warnings(text)
     assert "BehaviorTree.CPP 4 has a kind of node Sleep, too" in found and found.endswith(
