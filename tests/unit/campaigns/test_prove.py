@@ -7,7 +7,9 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial
+from itertools import chain, repeat
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 from unittest.mock import Mock
 from xml.etree import ElementTree as Xml
@@ -16,7 +18,7 @@ import pytest
 
 from arboleda.campaigns.mending.mend import Edit, edited
 from arboleda.campaigns.plants import Plant
-from arboleda.campaigns.proof import forks
+from arboleda.campaigns.proof import forks, proof_campaign
 from arboleda.campaigns.proof.between_steps import gaps, other_facts
 from arboleda.campaigns.proof.calm import Calm, calm_run, calm_runs
 from arboleda.campaigns.proof.changed_recipe import noticed_with, with_check
@@ -567,6 +569,23 @@ def test_where_nothing_was_run_it_is_not_said_that_it_held(
     assert prove("--fault", "refuses", "--budget", "0s", "--tests", str(tests)) == 2
     assert "nothing was run: --budget was over before" in capsys.readouterr().out
     assert not tests.exists()
+
+
+def test_running_without_faults_takes_at_most_half_of_the_budget_and_what_is_left_out_is_said(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recipes = plant.parent / "small.py"
+    recipes.write_text(GOOD + GOOD.partition("work\n")[2].replace("shine", "glow"))
+    seconds = chain([0.0, 1.0, 3.0], repeat(3.0))  # when it begins, and before the first two tasks
+    monkeypatch.setattr(proof_campaign, "time", SimpleNamespace(monotonic=lambda: next(seconds)))
+    out = str(plant.parent / "out.json")
+    assert prove("--fault", "refuses", "--budget", "4s", "--json", out) == 0
+    said = capsys.readouterr().out
+    assert (
+        "half of --budget was over when 1 task had run without faults: nothing is known of the others" in said
+    )
+    assert "HELD in 20 of 20 runs (100%): a sample" in said and "HELD: all" not in said
+    assert not summary(plant)["complete"] and len(summary(plant)["scenarios"]) == 1
 
 
 @pytest.mark.long
