@@ -562,6 +562,28 @@ def test_one_of_two_equal_steps_that_failed_is_told_though_the_other_was_done(
     assert "lamp: doing dust has failed, and was not done later" in capsys.readouterr().out
 
 
+FORCED = """<root BTCPP_format="4"><BehaviorTree ID="main"><Sequence>
+<ForceSuccess><mop_dust/></ForceSuccess><lamp_light on="true"/></Sequence></BehaviorTree></root>"""
+
+
+@pytest.mark.parametrize(("at", "seconds"), [(1.9, 15.0), (2.25, 1.0)], ids=["before it is given", "at work"])
+def test_work_that_failed_under_a_force_success_is_told_as_not_noticed(
+    plant: Path, at: float, seconds: float
+) -> None:
+    mop = "  mop: {verbs: {dust: {effect: process, takes_s: 2}}}\ncells:"
+    with_mop = PLANT.replace("cells:", mop).replace(
+        "lamp: {kind: lamp}", "lamp: {kind: lamp}, mop: {kind: mop}"
+    )
+    plant.write_text(with_mop.replace("small.py", "main.xml"))
+    (plant.parent / "main.xml").write_text(FORCED)
+    model = loader.load(plant)
+    calm = calm_run(model, next(scenarios(model)))
+    alarm = Fault(kind="driver_alarm", at=at, seconds=seconds, target="mop")
+    (run,) = run_all(model, calm, [alarm], lambda: None)
+    assert run.outcome.end in (End.DONE, End.RECOVERED) and run.outcome.goes_unnoticed
+    assert run.outcome.untrue == ("mop: doing dust has failed, and was not done later",)
+
+
 def test_where_nothing_was_run_it_is_not_said_that_it_held(
     plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
 ) -> None:
