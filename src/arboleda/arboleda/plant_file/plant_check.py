@@ -11,6 +11,7 @@ from . import (
     loader,
     meeting_points,
     need_check,
+    passed_over,
     place_check,
     unused_steps,
 )
@@ -24,6 +25,7 @@ CHECKS = (
     need_check,
     unused_steps,
     advance_check,
+    passed_over,
 )
 
 
