@@ -6,7 +6,9 @@ import json
 import re
 from dataclasses import replace
 from functools import cache, partial
+from itertools import chain, repeat
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 from unittest.mock import Mock
 from xml.etree import ElementTree as Xml
@@ -14,9 +16,9 @@ from xml.etree import ElementTree as Xml
 import pytest
 
 from arboleda.campaigns.mending.mend import Edit, edited
-from arboleda.campaigns.proof import forks
+from arboleda.campaigns.proof import forks, proof_campaign
 from arboleda.campaigns.proof.between_steps import gaps, other_facts
-from arboleda.campaigns.proof.calm import Calm, calm_runs
+from arboleda.campaigns.proof.calm import Calm, calm_run, calm_runs
 from arboleda.campaigns.proof.changed_recipe import noticed_with, with_check
 from arboleda.campaigns.proof.course import course_of
 from arboleda.campaigns.proof.forks import run_all, run_one
@@ -27,6 +29,7 @@ from arboleda.campaigns.proof.scenario import scenarios
 from arboleda.campaigns.proof.single_faults import single_faults
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import loader
 from arboleda.simulator.faults import Fault
 from arboleda.testing import Sim
 
@@ -504,6 +507,28 @@ def test_one_of_two_equal_steps_that_failed_is_told_though_the_other_was_done(
     assert "lamp: doing dust has failed, and was not done later" in capsys.readouterr().out
 
 
+FORCED = """<root BTCPP_format="4"><BehaviorTree ID="main"><Sequence>
+<ForceSuccess><mop_dust/></ForceSuccess><lamp_light on="true"/></Sequence></BehaviorTree></root>"""
+
+
+@pytest.mark.parametrize(("at", "seconds"), [(1.9, 15.0), (2.25, 1.0)], ids=["before it is given", "at work"])
+def test_work_that_failed_under_a_force_success_is_told_as_not_noticed(
+    plant: Path, at: float, seconds: float
+) -> None:
+    mop = "  mop: {verbs: {dust: {effect: process, takes_s: 2}}}\ncells:"
+    with_mop = PLANT.replace("cells:", mop).replace(
+        "lamp: {kind: lamp}", "lamp: {kind: lamp}, mop: {kind: mop}"
+    )
+    plant.write_text(with_mop.replace("small.py", "main.xml"))
+    (plant.parent / "main.xml").write_text(FORCED)
+    model = loader.load(plant)
+    calm = calm_run(model, next(scenarios(model)))
+    alarm = Fault(kind="driver_alarm", at=at, seconds=seconds, target="mop")
+    (run,) = run_all(model, calm, [alarm], lambda: None)
+    assert run.outcome.end in (End.DONE, End.RECOVERED) and run.outcome.goes_unnoticed
+    assert run.outcome.untrue == ("mop: doing dust has failed, and was not done later",)
+
+
 def test_where_nothing_was_run_it_is_not_said_that_it_held(
     plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -511,6 +536,23 @@ def test_where_nothing_was_run_it_is_not_said_that_it_held(
     assert prove("--fault", "refuses", "--budget", "0s", "--tests", str(tests)) == 2
     assert "nothing was run: --budget was over before" in capsys.readouterr().out
     assert not tests.exists()
+
+
+def test_running_without_faults_takes_at_most_half_of_the_budget_and_what_is_left_out_is_said(
+    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recipes = plant.parent / "small.py"
+    recipes.write_text(GOOD + GOOD.partition("work\n")[2].replace("shine", "glow"))
+    seconds = chain([0.0, 1.0, 3.0], repeat(3.0))  # when it begins, and before the first two tasks
+    monkeypatch.setattr(proof_campaign, "time", SimpleNamespace(monotonic=lambda: next(seconds)))
+    out = str(plant.parent / "out.json")
+    assert prove("--fault", "refuses", "--budget", "4s", "--json", out) == 0
+    said = capsys.readouterr().out
+    assert (
+        "half of --budget was over when 1 task had run without faults: nothing is known of the others" in said
+    )
+    assert "HELD in 20 of 20 runs (100%): a sample" in said and "HELD: all" not in said
+    assert not summary(plant)["complete"] and len(summary(plant)["scenarios"]) == 1
 
 
 @pytest.mark.long

@@ -219,6 +219,38 @@ def test_an_arm_that_cells_share_does_not_silence_it(tmp_path: Path, body: str, 
     assert advance_check.warnings(load(tmp_path / "plant.yaml")) == tuple(where + each for each in wrong)
 
 
+PROBE = """
+  probe:
+    facts: {out: bool}
+    verbs: {stab: {effect: motion, sets: {out: true}}, draw: {effect: motion, sets: {out: false}}}
+cells:"""
+
+
+def shut_out(folder: Path, zone: str) -> list[str]:
+    """What is said of a reader that closes before a probe comes out where the reader's zone is."""
+    written(folder, "", '"try"')
+    device = "reader: {kind: reader}"
+    plant = PLANT.replace("\ncells:", PROBE).replace(device, f"{device}\n      probe: {{kind: probe}}")
+    (folder / "plant.yaml").write_text(plant.replace("free_while: {reader: {lid: open}}}", zone), "utf-8")
+    code = (folder / "recipes.py").read_text("utf-8")
+    doing = 'reader.close(), cell.device("probe").stab(), cell.device("probe").draw(), reader.open()'
+    (folder / "recipes.py").write_text(code.replace("work()", f"work({doing})"), "utf-8")
+    return list(advance_check.warnings(load(folder / "plant.yaml")))
+
+
+def test_two_devices_that_shut_each_other_out_of_one_zone_are_told(tmp_path: Path) -> None:
+    (found,) = shut_out(tmp_path, "free_while: {reader: {lid: open}, probe: {out: false}}}")
+    assert found.endswith(
+        "has probe stab in the zone in_the_reader, which reader keeps while lid of reader is closed; "
+        "it has to be open, or each has a zone of its own"
+    )
+
+
+def test_two_devices_with_a_zone_each_are_not_in_each_others_way(tmp_path: Path) -> None:
+    second = "  beside: {poses: [lab drawer], free_while: {probe: {out: false}}}"
+    assert shut_out(tmp_path, f"free_while: {{reader: {{lid: open}}}}}}\n{second}") == []
+
+
 def test_what_a_recipe_says_of_its_end_counts(tmp_path: Path) -> None:
     left = '"try", ends_with={"drawer": 1, "reader.lid": "open"}'
     assert warned(tmp_path, f"{INTO}, reader.open(), loader.home()", left) == []

@@ -54,12 +54,38 @@ def test_two_arms_that_can_meet_are_told_with_their_targets(tmp_path: Path) -> N
     [
         PLANT + ZONE,
         PLANT.replace("[2.19888, 0.08893]", "[2.22, 0.08893]"),
-        PLANT.replace("origin_m: [2.19888, 0.08893], yaw_deg: 180", "origin_m: [0, 0]"),
+        PLANT.replace(", base: {origin_m: [2.19888, 0.08893], yaw_deg: 180}", ""),
     ],
-    ids=["a zone has both", "far enough", "nobody says where they stand"],
+    ids=["a zone has both", "far enough", "nobody says where one stands"],
 )
 def test_nothing_is_told_where_they_cannot_or_nobody_knows(tmp_path: Path, plant: str) -> None:
     assert warned(tmp_path, plant) == []
+
+
+def test_two_arms_on_one_base_that_the_file_names_can_meet(tmp_path: Path) -> None:
+    plant = PLANT.replace("origin_m: [2.19888, 0.08893], yaw_deg: 180", "origin_m: [0, 0]")
+    assert warned(tmp_path, plant) == [
+        "bay: left and right can meet at home and home (0 mm apart), middle and over (0 mm apart), "
+        "which no zone has in common"
+    ]
+
+
+def with_cart(folder: Path, zone: str) -> list[str]:
+    """What is said where the cart's node 5, `gate`, is below the place at which both arms can be."""
+    plant = PLANT.replace("grid: {origin_m: [1, 1]}", "grid: {origin_m: [0.69944, -0.15554]}")
+    return warned(folder, plant.replace("      far:", "      gate: {cart: {node: 5}}\n      far:") + zone)
+
+
+def test_an_arm_and_a_mobile_robot_of_one_cell_meet_on_purpose_where_no_zone_is(tmp_path: Path) -> None:
+    assert "cart" not in " ".join(with_cart(tmp_path, ""))
+    assert with_cart(tmp_path, ZONE.replace("bay over", "bay over, bay gate")) == []
+
+
+def test_a_mobile_robot_at_a_place_that_a_zone_guards_is_told(tmp_path: Path) -> None:
+    assert with_cart(tmp_path, ZONE) == [
+        "bay: left and cart can meet at middle and gate (0 mm apart), which no zone has in common",
+        "bay: right and cart can meet at over and gate (0 mm apart), which no zone has in common",
+    ]
 
 
 def test_two_targets_at_one_place_are_told(tmp_path: Path) -> None:

@@ -54,6 +54,59 @@ def test_what_a_urdf_does_not_say_is_assumed_and_said(tmp_path: Path) -> None:
     assert "the joint flange has no ends; it is taken as -360 deg to 360 deg" in said
 
 
+SPEEDLESS = {
+    "a velocity of 0, as exporters write it": ONE.replace('velocity="2"', 'velocity="0"'),
+    "no velocity": ONE.replace('velocity="2"', ""),
+    "no limit and no ends": robot(
+        link("post"), link("beam"), joint("swing", "post beam", "continuous", limit="")
+    ),
+}
+
+
+@pytest.mark.parametrize("urdf", SPEEDLESS.values(), ids=SPEEDLESS)
+def test_a_speed_that_a_urdf_leaves_open_is_that_of_the_plant_file(tmp_path: Path, urdf: str) -> None:
+    (swinging,) = arm(swing(tmp_path, urdf, more=", speeds: {q1_deg_s: 90}")).joints
+    assert swinging.speed == pytest.approx(math.radians(90))
+    assert swinging.acceleration == pytest.approx(math.radians(180)), "to full speed in 0.5 s"
+
+
+def test_fingers_beside_the_chain_may_follow_each_other(tmp_path: Path) -> None:
+    fingers = [joint(f"f{n}", f"beam finger{n}", "prismatic", limit=SLIDE) for n in "ab"]
+    hand = fingers[0] + fingers[1].replace("</joint>", '<mimic joint="fa"/></joint>')
+    urdf = ONE.replace("</robot>", f"{link('fingera')}{link('fingerb')}{hand}</robot>")
+    plant = swing(tmp_path, urdf, "{file: one.urdf, tip_link: beam}")
+    assert [each.name for each in arm(plant).joints] == ["swing"]
+    assert any(
+        "the joint fb is not on the way to the tool and stays at 0" in each for each in loader.notes(plant)
+    )
+    assert "mimic" not in robot_urdf(plant, "ra"), "a fixed joint follows nothing"
+
+
+def test_a_cylinder_that_follows_a_joint_of_the_arm_is_no_second_end(tmp_path: Path) -> None:
+    urdf = robot(
+        *map(link, ("post", "beam", "wrist", "piston")),
+        joint("swing", "post beam"),
+        joint("turn", "beam wrist"),
+        joint("balance", "post piston", more='<mimic joint="swing"/>'),
+    )
+    (tmp_path / "one.urdf").write_text(urdf)
+    poses = ("{deg: [0, 0]}", "{deg: [30, 0]}", "{0: {deg: [-30, 0]}}")
+    assert [each.name for each in arm(loader.load(written(tmp_path, "one.urdf", poses))).joints] == [
+        "swing",
+        "turn",
+    ]
+
+
+def test_what_a_maker_leaves_in_a_urdf_and_nothing_uses_does_no_harm(tmp_path: Path) -> None:
+    urdf = ONE.replace(
+        link("post"), '<xacro:property name="width" value=".2"/>' + link("post", '<box size="0 0 0"/>')
+    )
+    urdf = urdf.replace("<robot", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"').replace(
+        '"post"', '"/post"'
+    )
+    assert body(swing(tmp_path, urdf))["link"] == "ra_base_link"
+
+
 def test_it_is_said_of_an_arm_among_devices_too() -> None:
     said = loader.notes(loader.load(TENDER.parents[1] / "plant.yaml"))
     assert [each.split(":")[0] for each in said] == ["tender"] * len(said)

@@ -13,6 +13,12 @@ from arboleda.plant_file import loader
 from .own_arms import GANTRY, ONE, TENDER, joint, link, robot, swing, tender, written
 
 TWO_TIPS = robot(*map(link, "abc"), joint("left", "a b"), joint("right", "a c"))
+FINGERS = robot(
+    *map(link, "abcd"),
+    joint("swing", "a b"),
+    joint("left", "b c"),
+    joint("right", "b d", more='<mimic joint="left"/>'),
+).replace('<joint name="right"', '\n<joint name="right"')
 WRONG = {  # the file, then its line and a part of what is said
     "not XML": ("<robot", 1, "this is not XML: "),
     "damaged": (ONE.replace("</robot>", "</robt>"), 5, "this is not XML: mismatched tag"),
@@ -28,6 +34,11 @@ WRONG = {  # the file, then its line and a part of what is said
     "no joints": (robot(link("a")), 1, "no joint moves; an arm has a revolute, continuous or prismatic one"),
     "nothing moves": (robot(link("a"), link("b"), joint("j", "a b", "fixed", limit="")), 1, "no joint moves"),
     "two tips": (TWO_TIPS, 6, "two ends that move, b and c; say with tip_link which one is the arm's tool"),
+    "two fingers": (
+        FINGERS,
+        9,
+        "one is the arm's tool; if they are fingers, write tip_link: b",
+    ),
     "two ends": (
         ONE.replace("</robot>", link("x") + joint("k", "beam x", "fixed") + "</robot>").replace(
             "</robot>", link("y") + joint("l", "beam y", "fixed") + "</robot>"
@@ -51,7 +62,7 @@ WRONG = {  # the file, then its line and a part of what is said
     "a bad name": (
         ONE.replace('"swing"', '"sw ing"'),
         4,
-        "must be at most 64 letters, digits, dots, - and _",
+        "must be at most 64 letters, digits, dots, /, - and _",
     ),
     "a name twice": (
         ONE.replace("</robot>", link("post") + "</robot>"),
@@ -59,9 +70,14 @@ WRONG = {  # the file, then its line and a part of what is said
         "link post is there twice; the first is on line 2",
     ),
     "mimic": (
-        robot(link("post"), link("beam"), joint("swing", "post beam", more='\n<mimic joint="x"/>')),
-        5,
-        "the joint swing has <mimic>: it follows another joint",
+        robot(
+            *map(link, "abcd"),
+            joint("swing", "a b"),
+            joint("level", "b c", more='\n<mimic joint="swing"/>'),
+            joint("turn", "c d"),
+        ),
+        8,
+        "the joint level has <mimic>: it follows another joint",
     ),
     "planar": (ONE.replace("revolute", "planar"), 4, "the joint swing is planar: it moves in a plane"),
     "floating": (ONE.replace("revolute", "floating"), 4, "the joint swing is floating: nothing holds it"),
@@ -69,7 +85,7 @@ WRONG = {  # the file, then its line and a part of what is said
     "no limit": (
         robot(link("post"), link("beam"), joint("j", "post beam", limit="")),
         4,
-        "needs <limit> with lower, upper and velocity",
+        "the joint j needs <limit> with lower and upper",
     ),
     "crossed limits": (
         ONE.replace('upper="1"', 'upper="-2"'),
@@ -79,10 +95,9 @@ WRONG = {  # the file, then its line and a part of what is said
     "0 outside": (
         ONE.replace('lower="-1"', 'lower="0.5"'),
         4,
-        "must have 0 inside, where homing ends; they are 0.5 to 1 rad",
+        'must have 0 inside, where homing ends; they are 0.5 to 1 rad; write lower="0" in a copy',
     ),
-    "no speed": (ONE.replace('velocity="2"', ""), 4, "velocity of <limit> is missing"),
-    "speed 0": (ONE.replace('velocity="2"', 'velocity="0"'), 4, "must be more than 0 rad/s, is 0"),
+    "backwards": (ONE.replace('velocity="2"', 'velocity="-1"'), 4, "must be more than 0 rad/s, is -1"),
     "not a number": (ONE.replace('velocity="2"', 'velocity="fast"'), 4, 'must be a number, is "fast"'),
     "endless": (ONE.replace('velocity="2"', 'velocity="1e999"'), 4, 'must be finite, is "1e999"'),
     "nan": (ONE.replace('upper="1"', 'upper="nan"'), 4, 'must be a number, is "nan"'),
@@ -106,10 +121,10 @@ WRONG = {  # the file, then its line and a part of what is said
         2,
         "a shape is a box, cylinder, sphere or mesh",
     ),
-    "a shape of no size": (
-        ONE.replace(link("post"), link("post", '<sphere radius="0"/>')),
+    "a shape inside out": (
+        ONE.replace(link("post"), link("post", '<sphere radius="-1"/>')),
         2,
-        "must be more than 0",
+        "radius of <sphere> must be 0 to 100 m",
     ),
     "a mesh without a file": (
         ONE.replace(link("post"), link("post", "<mesh/>")),
@@ -216,6 +231,10 @@ IN_THE_PLANT = {  # what `model:` says, and a part of what is said of it
         "a motor step that is not from 0.001 deg or mm",
     ),
     "a crawl": ("{file: one.urdf, accelerations: {q1_deg_s2: 1e-9}}", "more than a day for its whole way"),
+    "no speed anywhere": (
+        "{file: idle.urdf}",
+        "no velocity for swing; write speeds: {q1_deg_s: 30} beside model, but with the numbers of its maker",
+    ),
     "an endless ramp": (
         "{file: wide.urdf, steps: {q1_deg: 0.001}, accelerations: {q1_deg_s2: 0.01}}",
         "the joint swing needs more than 250000 motor steps to its full speed",
@@ -229,6 +248,7 @@ IN_THE_PLANT = {  # what `model:` says, and a part of what is said of it
 
 @pytest.mark.parametrize(("model", "words"), IN_THE_PLANT.values(), ids=IN_THE_PLANT)
 def test_a_mistake_in_what_is_said_of_a_model_is_named(tmp_path: Path, model: str, words: str) -> None:
+    (tmp_path / "idle.urdf").write_text(ONE.replace('velocity="2"', 'velocity="0"'))
     (tmp_path / "wide.urdf").write_text(ONE.replace('="-1"', '="-10"').replace('="1"', '="10"'))
     with pytest.raises(ConfigError) as refusal:
         swing(tmp_path, model=model)

@@ -41,6 +41,15 @@ def test_a_good_file_is_told_with_its_warnings_and_the_leaves_that_nobody_knows(
     ]
 
 
+def test_a_project_of_groot2_is_read_with_the_files_that_it_names(file: Path) -> None:
+    project = file.with_name("Project.btproj")
+    model = '<TreeNodesModel><Action ID="Zap"/></TreeNodesModel>'
+    project.write_text(f'<root BTCPP_format="4" project_name="P"><include path="{file.name}"/>{model}</root>')
+    said = run("check", project)
+    assert said.exit_code == 0 and said.output.endswith(f"{project}: good: 5 nodes; trees Load, Main\n")
+    assert "Sequence" in run("tree", file).output
+
+
 def test_mistakes_are_told_all_at_once_those_of_included_files_too(file: Path) -> None:
     file.write_text(GOOD.replace("<Zap/>", "<Inverter/>"))
     load = file.parent / "parts/load.xml"

@@ -94,6 +94,36 @@ def test_presence_0_is_reported_once_and_telemetry_then_means_nothing(linked) ->
     assert "conexion is 0" in str(linked.bridge.counters["ra1"].last)
 
 
+def lost(messages: list) -> list[tuple[MotionState, str | None]]:
+    return [(each.state, each.lost and str(each.lost)) for each in messages if each.robot == "ra1"]
+
+
+def talks_on(linked) -> list:
+    """What comes of a board that talks for 2 s after its absence, of which the last message is returned."""
+    linked.presence(False)
+    linked.now += 1.85
+    assert lost(linked.tell()) == [], "it may have been under way"
+    return linked.tell()
+
+
+def test_a_board_that_goes_on_talking_in_its_absence_is_named_once(linked) -> None:
+    ((state, why),) = lost(talks_on(linked))
+    assert state is NO_LINK and why.startswith("its board talks, but its `conexion` says 0")
+    assert linked.tell() == []
+
+
+def test_a_board_that_no_longer_talks_in_its_absence_is_only_lost(linked) -> None:
+    talks_on(linked)
+    linked.now = linked.bridge.next_deadline
+    assert lost(linked.step()) == [(NO_LINK, None)]
+
+
+def test_a_board_that_talked_in_its_absence_is_back_with_its_presence(linked) -> None:
+    talks_on(linked)
+    assert linked.presence(True) == []
+    assert lost(linked.tell()) == [(STOPPED, None)]
+
+
 def test_a_board_is_back_when_it_speaks_again(linked) -> None:
     linked.presence(False)
     assert linked.presence(True) == []

@@ -17,6 +17,7 @@ from arboleda.model.plant_model import MotionState
 from arboleda.model.sentence import OWN
 from arboleda.testing import shipped
 from arboleda.wire import rejections
+from arboleda.wire.board import DENIED
 from arboleda.wire.status import (
     STALE,
     Status,
@@ -190,6 +191,11 @@ def test_what_a_sentence_is_made_of_counts_only_where_it_says_the_same(made_of: 
         values["foreign_said"] = made_of
     report = from_status(0.0, ROBOTS["ra1"], replace(status, values=values))
     assert report.foreign == OWN(text=str(OBEYED))
+
+
+def test_why_there_is_no_link_crosses_too() -> None:
+    status = to_status(ROBOTS["ra1"], Report(at=0.0, robot="ra1", state=MotionState.NO_LINK, lost=DENIED()))
+    assert from_status(0.0, ROBOTS["ra1"], status).lost == DENIED()
 
 
 @pytest.mark.parametrize(("characters", "read"), [(2000, True), (2001, False)])

@@ -48,16 +48,20 @@ def check(
         for node in tree.root.iterate():
             checker.look_at(node)
         for node in endings.unreached(tree.root):
-            findings.warning(node.place, f"{_named(node)} can never be reached, by what stands before it")
+            sentence = f"{_named(node)} can never be reached, by what stands before it"
+            findings.warning(node.place, sentence, kind="never-reached")
     _check_loops(forest, findings)
     ends.check(forest, findings)
     target_groups.check(forest, findings)
     choices.check(forest, findings)
     for place, name in variables.unwritten(forest, checker.kind):
-        findings.warning(place, f"the variable {quoted(name)} is read, and nothing in these files writes it")
+        sentence = f"the variable {quoted(name)} is read, and nothing in these files writes it"
+        findings.warning(place, sentence, kind="variable-that-nothing-writes")
     for clash in variable_types.clashes(forest, checker.kind):
-        is_sure = all(checker.knows(use.node) for use in (clash.first, clash.other))
-        (findings.mistake if is_sure else findings.warning)(clash.other.place, str(clash))
+        if all(checker.knows(use.node) for use in (clash.first, clash.other)):
+            findings.mistake(clash.other.place, str(clash))
+        else:
+            findings.warning(clash.other.place, str(clash), kind="types-of-a-variable")
     return CheckResult(nodes=checker.number, unknown=checker.unknown)
 
 
@@ -80,7 +84,7 @@ class _Checker:
         if node.is_subtree:
             return self._model_of(node)
         declared = self.forest.models if self.known is None else self.known
-        known = nodes.built_in(node.kind) or declared.get(node.kind)
+        known = self._built_in(node) or declared.get(node.kind)
         if known is None and self.known is None and node.tag is not None:
             fewest, most = nodes.children(node.tag)
             known = Kind(name=node.kind, category=node.tag, ports=None, fewest=fewest, most=most)
@@ -88,7 +92,12 @@ class _Checker:
 
     def knows(self, node: Node) -> bool:
         """True if the kind of a node is known by more than the file's own word."""
-        return self.known is not None or nodes.built_in(node.kind) is not None
+        return self.known is not None or self._built_in(node) is not None
+
+    def _built_in(self, node: Node) -> Kind | None:
+        """The built-in kind of a node. In a plant its name means nothing else."""
+        is_own = self.known is None and node.kind in self.forest.own
+        return None if is_own else nodes.built_in(node.kind)
 
     def _model_of(self, node: Node) -> Kind | None:
         model = self.forest.models.get(node.own["ID"].value)
@@ -127,12 +136,12 @@ class _Checker:
             self._mistake(node, f"a node cannot be called {quoted(node.name)}: {why}")
         if (why := names.of_node(node.kind)) is not None:
             sentence = f"newer editors refuse {quoted(node.kind)} as the name of a node: {why}"
-            self.findings.warning(node.place, sentence)
+            self.findings.warning(node.place, sentence, kind="name-of-a-node")
         for name, attribute in node.ports.items():
             if (why := names.of_port(name)) is not None:
                 place = Place(node.place.file, attribute.mark)
                 sentence = f"newer editors refuse {quoted(name)} as the name of a port: {why}"
-                self.findings.warning(place, sentence)
+                self.findings.warning(place, sentence, kind="name-of-a-port")
 
     def _check_unknown(self, node: Node) -> None:
         """Check a compact-form node that no file declares; a leaf may be one of a plant or a program."""
@@ -146,7 +155,7 @@ class _Checker:
         elif node.children:
             self._warn_of_unknown(node, hint)
         elif near:
-            self.findings.warning(node.place, f"nobody here knows {node.kind}{hint}")
+            self.findings.warning(node.place, f"nobody here knows {node.kind}{hint}", kind="unknown-leaf")
             self.unknown.setdefault(node.kind, node.place)
         else:
             self.unknown.setdefault(node.kind, node.place)
@@ -159,7 +168,8 @@ class _Checker:
         category = Category.DECORATOR if len(node.children) == 1 else Category.CONTROL
         declared = f'<{category.value} ID="{node.kind}"/> in the TreeNodesModel'
         how = f"; to have it run, declare {declared} and bring it along"
-        self.findings.warning(node.place, f"nobody here knows {node.kind}, which has children{hint or how}")
+        sentence = f"nobody here knows {node.kind}, which has children{hint or how}"
+        self.findings.warning(node.place, sentence, kind="unknown-node-with-children")
 
     def _check_children(self, node: Node, kind: Kind) -> None:
         there = len(node.children)
@@ -177,7 +187,8 @@ class _Checker:
     def _check_ports(self, node: Node, kind: Kind, ports: Mapping[str, Port]) -> None:
         if kind.some_of and not any(name in node.ports for name in kind.some_of) and self.knows(node):
             some = ", ".join(kind.some_of)
-            self.findings.warning(node.place, f"{_named(node)} is about no fact; give it some of {some}")
+            sentence = f"{_named(node)} is about no fact; give it some of {some}"
+            self.findings.warning(node.place, sentence, kind="about-no-fact")
         for name, attribute in node.ports.items():
             if name not in ports:
                 self._unknown_port(node, name, attribute, ports)
@@ -189,7 +200,7 @@ class _Checker:
                 if self.knows(node):
                     self._mistake(node, sentence)
                 elif port.way is not PortDirection.OUT:
-                    self.findings.warning(node.place, sentence)
+                    self.findings.warning(node.place, sentence, kind="needed-port")
 
     def _check_thresholds(self, node: Node) -> None:
         """Check thresholds; BehaviorTree.CPP refuses those that the children cannot reach."""
@@ -204,7 +215,12 @@ class _Checker:
     def _unknown_port(self, node: Node, name: str, attribute: Attribute, ports: Collection[str]) -> None:
         shown = [each for each in ports if node.kind != "Parallel" or each not in OLD_PARALLEL]
         place = Place(node.place.file, attribute.mark)
-        self.findings.mistake(place, f"{node.kind} has no port {quoted(name)}; {among(name, shown)}")
+        sentence = f"{node.kind} has no port {quoted(name)}; {among(name, shown)}"
+        if self.knows(node):
+            self.findings.mistake(place, sentence)
+        else:
+            hint = f"its model in these files may be outdated: {sentence}"
+            self.findings.warning(place, hint, kind="port-that-a-model-lacks")
 
     def _check_value(self, node: Node, port: Port, attribute: Attribute) -> None:
         if port.type == "script":
@@ -217,7 +233,8 @@ class _Checker:
             return
         if port.way is PortDirection.OUT:
             how = f'version 4 wants {port.name}="{{...}}"'
-            self.findings.warning(place, f"{port.name} of {node.kind} names a variable; {how}")
+            sentence = f"{port.name} of {node.kind} names a variable; {how}"
+            self.findings.warning(place, sentence, kind="output-that-names-a-variable")
         elif (wanted := values.objection(port.type, value)) is not None:
             self.findings.mistake(place, f"{port.name} of {node.kind} must be {wanted}, is {quoted(value)}")
         elif port.words and value not in port.words:
@@ -243,7 +260,7 @@ class _Checker:
         if name not in self.forest.trees and self.forest.is_whole:
             place = Place(node.place.file, node.own["ID"].mark)
             sentence = f"the tree {quoted(name)} is in none of these files; {among(name, self.forest.trees)}"
-            self.findings.warning(place, sentence)
+            self.findings.warning(place, sentence, kind="tree-that-is-missing")
         model = self._model_of(node)
         if model is None or model.ports is None or node.shares_names:
             return

@@ -47,7 +47,7 @@ def check(forest: Forest, findings: Findings) -> None:
             near = get_close_matches(each.key, KEYS, n=1, cutoff=0.8)
             if each.key not in KEYS and near:
                 sentence = f"nobody here knows {quoted(each.key)} of {tree}; did you mean {near[0]}?"
-                findings.warning(each.place, sentence)
+                findings.warning(each.place, sentence, kind="key-of-metadata")
         known: set[str] = set()
         for end in (end for each in _metadata(forest, tree) for end in _read(each)):
             if isinstance(end, _Unread):

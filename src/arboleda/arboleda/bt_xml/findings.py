@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from arboleda.trees.fingerprint import FOR_PEOPLE
 
+MOST_LINES = 10  # of warnings of one kind that are named
 MOST = 200  # mistakes that are shown; a file with more is no file of trees
 
 
@@ -49,16 +50,19 @@ class Finding:
 
 @dataclass
 class Findings:
-    """Mistakes, which keep a tree from being used, and warnings, which do not. Each is kept once."""
+    """Mistakes, which keep a tree from being used, and warnings, which do not. Each is kept once.
+
+    Warnings of one kind are told together; `kind` "": those with the same sentence.
+    """
 
     _mistakes: dict[tuple[Place, str], None] = field(default_factory=dict)
-    _warnings: dict[tuple[Place, str], None] = field(default_factory=dict)
+    _warnings: dict[tuple[Place, str], str] = field(default_factory=dict)
 
     def mistake(self, place: Place, sentence: str) -> None:
         self._mistakes[(place, sentence)] = None
 
-    def warning(self, place: Place, sentence: str) -> None:
-        self._warnings[(place, sentence)] = None
+    def warning(self, place: Place, sentence: str, kind: str = "") -> None:
+        self._warnings[(place, sentence)] = kind or sentence
 
     @property
     def entries(self) -> Iterator[Finding]:
@@ -76,6 +80,17 @@ class Findings:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        lines = [f"{place}: warning: {sentence}" for place, sentence in sorted(self._warnings)]
+        """The warnings as lines, in the order of the files: those of one kind in a file are one line."""
+        alike: dict[tuple[str, str], list[tuple[Place, str]]] = {}
+        for place, sentence in sorted(self._warnings):
+            alike.setdefault((place.file, self._warnings[(place, sentence)]), []).append((place, sentence))
+        lines = [f"{first}: warning: {sentence}{_more(rest)}" for (first, sentence), *rest in alike.values()]
         rest = len(lines) - MOST
         return tuple(lines) if rest <= 0 else (*lines[:MOST], f"and {rest} warnings more")
+
+
+def _more(rest: Sequence[tuple[Place, str]]) -> str:
+    """How many warnings of the same kind follow in the file, and on which lines."""
+    lines = list(dict.fromkeys(str(place.mark.line) for place, _ in rest))
+    shown = ", ".join([*lines[:MOST_LINES], *(["..."] if len(lines) > MOST_LINES else [])])
+    return f"; {len(rest)} more like it: line {shown}" if rest else ""

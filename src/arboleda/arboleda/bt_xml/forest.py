@@ -84,12 +84,14 @@ class Metadata:
 class Forest:
     """Trees of a file and of those that it includes.
 
-    `metadata`: those of the models of trees. `main`: the tree to execute, if that is clear. `is_whole`:
+    `own`: the names of built-in kinds by which they declare other ones. `metadata`: those of the models of
+    trees. `main`: the tree to execute, if that is clear. `is_whole`:
     every included file was read.
     """
 
     trees: Mapping[str, Tree]
     models: Mapping[str, Kind]
+    own: frozenset[str] = frozenset()
     metadata: Mapping[str, tuple[Metadata, ...]] = field(default_factory=dict)
     main: str | None
     is_whole: bool = True

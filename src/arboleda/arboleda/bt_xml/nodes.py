@@ -197,6 +197,31 @@ OTHER_SPELLINGS: Mapping[str, str] = {
 """Their names in version 3."""
 
 
+SINCE_VERSION_4 = frozenset(
+    {
+        *("AsyncSequence", "AsyncFallback", "SequenceWithMemory", "ParallelAll", "TryCatch", "RunOnce"),
+        *("Precondition", "LoopInt", "LoopBool", "LoopDouble", "LoopString"),
+        *("SkipUnlessUpdated", "WaitValueUpdate", "Script", "UnsetBlackboard", "Sleep"),
+        *("ScriptCondition", "WasEntryUpdated"),
+    }
+)
+"""Those of the library that version 3 does not have."""
+
+
+def is_own(declared: Kind, *, is_old: bool) -> bool:
+    """True if a file declares a kind of its own by the name of a built-in one that its author need not know.
+
+    Those are the kinds of Nav2 and MoveIt, and in a file of version 3 (`is_old`) those of version 4. A
+    declaration that agrees with the built-in kind means that one.
+    """
+    built = BUILT_IN.get(declared.name)
+    if built is None or (declared.name in OF_LIBRARY and not (is_old and declared.name in SINCE_VERSION_4)):
+        return False
+    there, known = declared.ports or {}, built.ports or {}
+    needed = {port.name for port in known.values() if port.is_needed}
+    return declared.category is not built.category or not needed <= there.keys() <= known.keys()
+
+
 def built_in(name: str) -> Kind | None:
     """The built-in kind of that name, in any spelling; None if there is none."""
     return BUILT_IN.get(OTHER_SPELLINGS.get(name, name))

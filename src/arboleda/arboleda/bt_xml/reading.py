@@ -47,6 +47,7 @@ def read(file: str, content: bytes, findings: Findings, fetch: Fetch = nothing_b
     return Forest(
         trees=reader.trees,
         models=reader.models,
+        own=frozenset(reader.own),
         metadata=reader.metadata,
         main=main,
         is_whole=reader.is_whole,
@@ -59,6 +60,7 @@ class _Reader:
     fetch: Fetch
     trees: dict[str, Tree] = field(default_factory=dict)
     models: dict[str, Kind] = field(default_factory=dict)
+    own: set[str] = field(default_factory=set)
     metadata: dict[str, tuple[Metadata, ...]] = field(default_factory=dict)
     main: str | None = None
     is_whole: bool = True
@@ -81,7 +83,11 @@ class _Reader:
                 self._include(page, element)
         for element in markup.root.children:
             if element.name == MODELS:
-                self.models |= page.models(element)
+                declared = page.models(element)
+                self.models |= declared
+                self.own |= {
+                    each.name for each in declared.values() if nodes.is_own(each, is_old=page.is_old)
+                }
                 self.metadata |= page.metadata(element)
         for element in markup.root.children:
             if element.name == TREE:
@@ -103,9 +109,10 @@ class _Reader:
             page.mistake(element.mark, f'each of several trees needs a name: <{TREE} ID="...">')
         name = name or f"{TREE}_{next(self._numbers)}"
         if (why := names.of_node(name)) is not None:
-            page.warning(element.mark, f"newer editors refuse {quoted(name)} as the name of a tree: {why}")
+            sentence = f"newer editors refuse {quoted(name)} as the name of a tree: {why}"
+            page.warning(element.mark, sentence, kind="name-of-a-tree")
         if nodes.built_in(name) is not None:
-            page.mistake(element.mark, f"a tree cannot be called {name}: a kind of node has this name")
+            self._refuse_name(page, element, name)
         if len(element.children) != 1:
             page.mistake(element.mark, f"the tree {name} has {len(element.children)} nodes below it, not 1")
         if name in self.trees:
@@ -114,6 +121,15 @@ class _Reader:
         elif element.children and (root := page.node(element.children[0])) is not None:
             own = {key: each for key, each in element.attributes.items() if key != "ID"}
             self.trees[name] = Tree(name=name, root=root, own=own, place=page.place(element.mark))
+
+    def _refuse_name(self, page: _Page, element: Element, name: str) -> None:
+        """Keep what is wrong with a tree that has the name of a built-in kind of node."""
+        if name in nodes.OF_LIBRARY and not (page.is_old and name in nodes.SINCE_VERSION_4):
+            page.mistake(element.mark, f"a tree cannot be called {name}: a kind of node has this name")
+        elif name in nodes.BUILT_IN:
+            where = "BehaviorTree.CPP 4" if name in nodes.OF_LIBRARY else "Nav2 or MoveIt"
+            sentence = f"{where} has a kind of node {name}, too: with it a tree cannot be called so"
+            page.warning(element.mark, sentence, kind="name-of-a-tree-that-a-node-has")
 
     def _include(self, page: _Page, element: Element) -> None:
         path, package = element.attributes.get("path"), element.attributes.get("ros_pkg")
@@ -151,24 +167,24 @@ class _Page:
     def mistake(self, mark: Mark, sentence: str) -> None:
         self.findings.mistake(self.place(mark), sentence)
 
-    def warning(self, mark: Mark, sentence: str) -> None:
-        self.findings.warning(self.place(mark), sentence)
+    def warning(self, mark: Mark, sentence: str, kind: str = "") -> None:
+        self.findings.warning(self.place(mark), sentence, kind)
 
     def look_at(self, markup: Markup) -> None:
         """Note the faults of the file as a whole: its root, format, and unknown tags."""
         root, format = markup.root, markup.root.attributes.get("BTCPP_format")
         for mark, letter in markup.raw:
             entity = {"&": "&amp;", "<": "&lt;"}[letter]
-            self.warning(mark, f"a raw {letter} is no XML, though BehaviorTree.CPP takes it; write {entity}")
+            sentence = f"a raw {letter} is no XML, though BehaviorTree.CPP takes it; write {entity}"
+            self.warning(mark, sentence, kind="raw-letter")
         if root.name != ROOT:
             self.mistake(root.mark, f"the outermost tag is <{root.name}>; it must be <{ROOT}>")
         if format is not None and format.value not in FORMATS:
             self.mistake(format.mark, f"BTCPP_format is {quoted(format.value)}; 3 and 4 are known")
         for element in root.children:
             if element.name not in (TREE, MODELS, INCLUDE):
-                self.warning(
-                    element.mark, f"<{element.name}> means nothing here; {TREE}, {MODELS}, {INCLUDE} do"
-                )
+                sentence = f"<{element.name}> means nothing here; {TREE}, {MODELS}, {INCLUDE} do"
+                self.warning(element.mark, sentence, kind="tag")
         for second in root.all(MODELS)[1:]:
             self.mistake(second.mark, f"a second <{MODELS}>; one is allowed")
         if root.name == ROOT and not root.children:
@@ -215,14 +231,14 @@ class _Page:
         for child in element.children:
             name = child.value("ID")
             if child.name not in TAGS:
-                self.warning(child.mark, f"<{child.name}> is no kind of node; there are {', '.join(TAGS)}")
+                sentence = f"<{child.name}> is no kind of node; there are {', '.join(TAGS)}"
+                self.warning(child.mark, sentence, kind="tag-of-a-model")
             elif not name:
                 self.mistake(child.mark, f'which? <{child.name} ID="...">')
             else:
                 if (why := names.of_node(name)) is not None:
-                    self.warning(
-                        child.mark, f"newer editors refuse {quoted(name)} as the name of a node: {why}"
-                    )
+                    sentence = f"newer editors refuse {quoted(name)} as the name of a node: {why}"
+                    self.warning(child.mark, sentence, kind="name-of-a-node")
                 found[name] = self._kind(child, name, TAGS[child.name])
         return found
 
@@ -252,7 +268,8 @@ class _Page:
             self.mistake(element.mark, f'which? <{way.value} name="...">')
             return None
         if not name.startswith("_") and (why := names.of_port(name)) is not None:
-            self.warning(element.mark, f"newer editors refuse {quoted(name)} as the name of a port: {why}")
+            sentence = f"newer editors refuse {quoted(name)} as the name of a port: {why}"
+            self.warning(element.mark, sentence, kind="name-of-a-port")
         default = element.value("default")
         return Port(
             name=name,

@@ -39,20 +39,21 @@ def collect_rarely() -> None:
 class Workers(Campaign[R]):
     """Workers: `jobs` processes inside a `with` block, which end with it in any case.
 
-    Enter it before any thread is started, as it forks the workers if the system can.
+    Enter it before any thread is started, as it forks the workers if the system can. `ahead`: so many seeds
+    are handed out to each worker, of which it has begun one.
     """
 
-    def __init__(self, *arguments: Any, jobs: int, **options: Any) -> None:
+    def __init__(self, *arguments: Any, jobs: int, ahead: int = AHEAD, **options: Any) -> None:
         super().__init__(*arguments, **options)
         context = get_context("fork" if "fork" in get_all_start_methods() else "spawn")
         self._others = frozenset(active_children())
         self._passed_by = context.Value("Q", 0)  # minutes, of all workers
         self._pool = ProcessPoolExecutor(jobs, context, _Worker.prepare, (self.setting, self._passed_by))
         self._under_way: dict[Future[R], int] = {}
-        self._jobs = jobs
+        self._jobs, self._ahead = jobs, ahead
 
     def __enter__(self) -> Campaign[R]:
-        self._hand_out(self._jobs * AHEAD)
+        self._hand_out(self._jobs * self._ahead)
         return self
 
     def __exit__(

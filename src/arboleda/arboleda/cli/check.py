@@ -54,7 +54,8 @@ def check(
         Path | None,
         typer.Argument(
             metavar="FILE",
-            help=f"The plant file to check, or a file of trees, *.xml. [default: {IN_FOLDER} of this folder]",
+            help="The plant file to check, or a file of trees, *.xml or *.btproj. "
+            f"[default: {IN_FOLDER} of this folder]",
         ),
     ] = None,
     plant: Annotated[

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+from arboleda.trees.fingerprint import FOR_PEOPLE
 
 
 @dataclass(frozen=True, kw_only=True)
 class Placement:
-    """A pose on the floor of the `world` frame: m, m, rad."""
+    """A pose on the floor of the `world` frame: m, m, rad. `is_declared`: somebody has said it."""
 
     x: float
     y: float
     yaw: float = 0.0
+    is_declared: bool = field(default=True, compare=False, metadata={FOR_PEOPLE: True})
 
     @property
     def on_floor(self) -> list[float]:

@@ -119,7 +119,10 @@ class GridDrive:
     def robot(self, kind: str, named: Mapping[str, Any]) -> Robot:
         """The robot of this kind that has these names, link and evidence."""
         grid = Grid(
-            origin=Placement(x=0.0, y=0.0), pitch=self.pitch_mm / 1000, rows=self.rows, columns=self.columns
+            origin=Placement(x=0.0, y=0.0, is_declared=False),
+            pitch=self.pitch_mm / 1000,
+            rows=self.rows,
+            columns=self.columns,
         )
         return Mobile(kind_name=kind, grid=grid, speed=self.mm_s / 1000, **named)
 

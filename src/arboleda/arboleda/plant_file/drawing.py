@@ -11,7 +11,8 @@ from arboleda.kinds.joints import Joint
 
 from .robot_models import millimetres
 from .shapes import OffsetShape
-from .urdf_file import Axis, Chain
+from .urdf_axis import Axis
+from .urdf_file import Chain
 
 ROOT, TOOL = "base_link", "tool0"
 UPRIGHT = 0.999  # how vertical a sliding joint is that lifts

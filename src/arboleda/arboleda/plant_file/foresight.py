@@ -57,7 +57,7 @@ class Foresight:
         self.cell = cell
         self.back = back
         self.places = {place.target: place for place in cell.places}
-        self._free = {each.zone: each for each in cell.interlocks if each.free_while}
+        self._free = [each for each in cell.interlocks if each.free_while and each.device not in cell.shared]
 
     @cached_property
     def hands(self) -> dict[str, Workspace]:
@@ -148,10 +148,8 @@ class Foresight:
 
     def _locks(self, robot: str, target: str | None) -> Iterator[Interlock]:
         """The machines that keep a robot out of the zones of a target by their facts."""
-        for zone in self.cell.reach[robot].targets[target].zones if target is not None else ():
-            lock = self._free.get(zone)
-            if lock is not None and lock.device not in (robot, *self.cell.shared):
-                yield lock
+        zones = self.cell.reach[robot].targets[target].zones if target is not None else ()
+        return (lock for lock in self._free if lock.zone in zones and lock.device != robot)
 
     def _moved(self, scene: Scene, place: str, parts: int) -> Scene:
         if scene.get(place, CHANGE) is None:
@@ -239,10 +237,7 @@ class Foresight:
     def _locked(self, robot: str, target: str | None, scene: Scene) -> Iterator[tuple[str, str]]:
         """The facts that keep a robot out of the zones of a target, and what they have to be."""
         for lock in self._locks(robot, target):
-            for fact, value in lock.free_while:
-                known = scene.get(lock.device, fact)
-                if known not in (None, value):
-                    yield f"{fact} of {lock.device} is {shown(known)}", shown(value)
+            yield from _kept(lock, scene)
 
     def _closing(self, command: Command, scene: Scene) -> Iterator[str]:
         for lock in self.cell.interlocks_of(command.robot):
@@ -250,9 +245,25 @@ class Foresight:
                 for name, pose in self._standing(scene):
                     if lock.zone in pose.zones and name != command.robot:
                         yield f"has {command.robot} {command.word} while {name} stands at {pose.name}"
+                yield from self._shut_out(command, lock.zone, scene)
+
+    def _shut_out(self, command: Command, zone: str, scene: Scene) -> Iterator[str]:
+        """The machines that are in a zone which a command takes: a zone has one of them at a time."""
+        for lock in (each for each in self._free if each.zone == zone and each.device != command.robot):
+            for is_so, value in _kept(lock, scene):
+                waits = f"has {command.robot} {command.word} in the zone {zone}, which {lock.device} keeps"
+                yield f"{waits} while {is_so}; it has to be {value}, or each has a zone of its own"
 
     def _standing(self, scene: Scene) -> Iterator[tuple[str, Pose]]:
         for space in self.cell.spaces:
             at = scene.get(space.robot.name, AT)
             if at is not None:
                 yield space.robot.name, space.targets[str(at)]
+
+
+def _kept(lock: Interlock, scene: Scene) -> Iterator[tuple[str, str]]:
+    """The facts by which a machine keeps its zone for certain, and what they have to be."""
+    for fact, value in lock.free_while:
+        known = scene.get(lock.device, fact)
+        if known not in (None, value):
+            yield f"{fact} of {lock.device} is {shown(known)}", shown(value)

@@ -33,19 +33,14 @@ def _sentence(one: Workspace, pose: Pose, other: Workspace, node: int) -> str:
 
 def _open_nodes(one: Workspace, pose: Pose, other: Workspace) -> Iterator[int]:
     """The nodes of another robot at the place of a pose that lies in zones, if it has none of these there."""
-    place, grid = _place(one.robot.floor_grid, pose.q), other.robot.floor_grid
+    place, grid = on_floor(one.robot.floor_grid, pose), other.robot.floor_grid
     for node in range(grid.size):
         guarded = any(each.q == node and each.zones & pose.zones for each in other.poses)
-        if math.dist(place, _place(grid, node)) <= MEETING_M and not guarded:
+        if math.dist(place, grid.on_floor(node)) <= MEETING_M and not guarded:
             yield node
 
 
-def _place(grid: Grid, node: object) -> tuple[float, float]:
-    """A node on the floor, m."""
-    assert isinstance(node, int)
-    x, y = grid.position(node)
-    turn = grid.origin.yaw
-    return (
-        grid.origin.x + x * math.cos(turn) - y * math.sin(turn),
-        grid.origin.y + x * math.sin(turn) + y * math.cos(turn),
-    )
+def on_floor(grid: Grid, pose: Pose) -> tuple[float, float]:
+    """The place of a mobile robot's pose on the floor, m."""
+    assert isinstance(pose.q, int)
+    return grid.on_floor(pose.q)

@@ -172,6 +172,7 @@ def trial(name: str, content: bytes, folder: Path | None, watch: Watch) -> Verdi
     def tried(cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
         tried_here = Trial(document=document, used=used, watch=watch)
         found.offers, found.missed = tried_here.run(cells), tried_here.missed
+        found.unused = tried_here.unused
         return {}
 
     used = own_recipes.imported(document, own_recipes.listed(document), watch)

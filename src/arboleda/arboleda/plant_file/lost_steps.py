@@ -1,4 +1,7 @@
-"""Steps that a recipe makes in a statement of their own, where nothing takes them: nobody ever does them."""
+"""Steps that a recipe makes and that stand in no other one, so that nobody ever does them.
+
+One in a statement of its own is lost for certain. One that gets a name may be for other parameters.
+"""
 
 from __future__ import annotations
 
@@ -9,35 +12,60 @@ from dataclasses import dataclass, field
 from py_trees.behaviour import Behaviour
 
 KEEP = "__made_by_a_statement__"  # function that a statement calls with its value, in a file that is tried
+NAME = "__made_with_a_name__"  # function that an assignment calls with its value and its name
+
+
+@dataclass(frozen=True, kw_only=True)
+class Made:
+    """A step, and where it was made; `name` "": by a statement of its own."""
+
+    step: Behaviour
+    file: str
+    line: int
+    name: str = ""
+
+    @property
+    def is_lost(self) -> bool:
+        """True if it stands in no other step."""
+        return self.step.parent is None and not getattr(self.step, "is_taken", False)
 
 
 @dataclass
 class LostSteps:
-    """Notes the steps that statements of a user's files make, while a recipe is built."""
+    """Notes the steps that statements and assignments of a user's files make, while a recipe is built."""
 
-    made: list[tuple[Behaviour, str, int]] = field(default_factory=list)
+    made: list[Made] = field(default_factory=list)
 
-    def note(self, value: object) -> object:
-        """Called by a statement with its value."""
+    def note(self, value: object, name: str = "") -> object:
+        """Called by a statement with its value, by an assignment with the name, too."""
         if isinstance(value, Behaviour):
             frame = sys._getframe(1)
-            self.made.append((value, frame.f_code.co_filename, frame.f_lineno))
+            code = frame.f_code
+            self.made.append(Made(step=value, file=code.co_filename, line=frame.f_lineno, name=name))
         return value
 
-    def lost(self) -> list[tuple[str, str, int]]:
-        """The names of the steps that stand in no other one, with file and line."""
-        made = [row for row in self.made if row[0].parent is None and not getattr(row[0], "is_taken", False)]
-        return [(step.name, file, line) for step, file, line in made]
+    def lost(self) -> list[Made]:
+        """The steps of statements that stand in no other one."""
+        return [each for each in self.made if each.is_lost and not each.name]
 
 
 class _Noting(ast.NodeTransformer):
     def visit_Expr(self, node: ast.Expr) -> ast.Expr:
         if isinstance(node.value, ast.Call):
-            called = ast.Call(func=ast.Name(id=KEEP, ctx=ast.Load()), args=[node.value], keywords=[])
-            node.value = ast.copy_location(called, node.value)
+            node.value = _passed_on(KEEP, node.value)
+        return node
+
+    def visit_Assign(self, node: ast.Assign) -> ast.Assign:
+        if isinstance(node.value, ast.Call) and isinstance(node.targets[0], ast.Name):
+            node.value = _passed_on(NAME, node.value, ast.Constant(node.targets[0].id))
         return node
 
 
+def _passed_on(function: str, value: ast.expr, *more: ast.expr) -> ast.expr:
+    called = ast.Call(func=ast.Name(id=function, ctx=ast.Load()), args=[value, *more], keywords=[])
+    return ast.copy_location(called, value)
+
+
 def noting(tree: ast.Module) -> ast.Module:
-    """The same program, whose statements pass on their values."""
+    """The same program, whose statements and assignments pass on their values."""
     return ast.fix_missing_locations(_Noting().visit(tree))  # type: ignore[no-any-return]

@@ -1,4 +1,4 @@
-"""Check of targets: two of one robot at one place, and places at which two arms can meet without a zone."""
+"""Check of targets: two of one robot at one place, and places at which two robots can meet without a zone."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from arboleda.kinds.arm import Arm
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import Cell, PlantModel, Pose, Workspace
 
+from .grid_check import on_floor
 from .urdf import drawn_arm, robot_urdf
 
 MEETING_M = 0.010  # two tools that come so near to each other meet
@@ -21,19 +22,33 @@ MOST_NAMED = 3  # pairs of targets in one sentence
 
 @dataclass(frozen=True, kw_only=True)
 class ToolPoint:
-    """Place of an arm's tool at a target, m."""
+    """Place of an arm's tool at a target, m; of a mobile robot the node, which has no height."""
 
     pose: Pose
     at: Point
 
 
+@dataclass(frozen=True, kw_only=True)
+class Placed:
+    """Robot of a cell that stands where its file says, with its points; `drives`: on a grid."""
+
+    cell: Cell
+    space: Workspace
+    points: list[ToolPoint]
+    drives: bool
+
+    def meets_on_purpose(self, other: Placed) -> bool:
+        """True for an arm and a mobile robot of one cell, which hand over to each other where no zone is."""
+        return self.cell is other.cell and self.drives != other.drives
+
+
 def warnings(plant: PlantModel) -> tuple[str, ...]:
-    """The targets that are one place, and those at which two arms can meet."""
+    """The targets that are one place, and those at which two robots can meet."""
     alike = [each for cell in plant.cells for space in cell.spaces for each in _alike(cell, space)]
     try:
         return (*alike, *_meetings(plant))
     except ArboledaError as error:
-        return (*alike, f"nobody has looked where arms can meet: {error}")
+        return (*alike, f"nobody has looked where robots can meet: {error}")
 
 
 def _alike(cell: Cell, space: Workspace) -> Iterator[str]:
@@ -48,15 +63,23 @@ def _alike(cell: Cell, space: Workspace) -> Iterator[str]:
 
 
 def _meetings(plant: PlantModel) -> Iterator[str]:
-    spaces = [(cell, space) for cell in plant.cells for space in cell.spaces]
-    arms = [(cell, space, arm) for cell, space in spaces if (arm := drawn_arm(space.robot)) is not None]
-    points = [_points(plant, space, arm) for _, space, arm in arms]
-    for (one, other), (its, others) in zip(combinations(arms, 2), combinations(points, 2), strict=True):
-        if one[2].name == other[2].name or one[2].base == other[2].base:
-            continue  # one arm that cells share; or their places are not declared
-        near = list(_near(its, others))
-        if near:
-            yield _sentence(one[:2], other[:2], near)
+    """Meetings of arms with each other, and with mobile robots; `grid_check` has those of mobile robots."""
+    placed = [each for cell in plant.cells for space in cell.spaces for each in _placed(plant, cell, space)]
+    for one, other in combinations(placed, 2):
+        if one.space.robot.name == other.space.robot.name or (one.drives and other.drives):
+            continue
+        if near := list(_near(one, other)):
+            yield _sentence(one, other, near)
+
+
+def _placed(plant: PlantModel, cell: Cell, space: Workspace) -> Iterator[Placed]:
+    """The robot of a workspace; nothing where nobody says where it stands."""
+    arm, grid = drawn_arm(space.robot), space.robot.floor_grid
+    if arm is not None and arm.base.is_declared:
+        yield Placed(cell=cell, space=space, points=_points(plant, space, arm), drives=False)
+    elif grid is not None and grid.origin.is_declared:
+        points = [ToolPoint(pose=pose, at=(*on_floor(grid, pose), 0.0)) for pose in space.poses]
+        yield Placed(cell=cell, space=space, points=points, drives=True)
 
 
 def _points(plant: PlantModel, space: Workspace, arm: Arm) -> list[ToolPoint]:
@@ -68,20 +91,20 @@ def _points(plant: PlantModel, space: Workspace, arm: Arm) -> list[ToolPoint]:
     ]
 
 
-def _near(its: Sequence[ToolPoint], others: Sequence[ToolPoint]) -> Iterator[tuple[Pose, Pose, float]]:
-    """The targets at which the tools would be near each other, and that have no zone in common."""
-    for one in its:
-        for other in others:
-            apart = math.dist(one.at, other.at)
-            if apart <= MEETING_M and not one.pose.zones & other.pose.zones:
-                yield one.pose, other.pose, apart
+def _near(one: Placed, other: Placed) -> Iterator[tuple[Pose, Pose, float]]:
+    """The targets at which the two would be near each other, and that have no zone in common."""
+    axes = 2 if one.drives or other.drives else 3
+    for its in one.points:
+        for others in other.points:
+            apart = math.dist(its.at[:axes], others.at[:axes])
+            zones = (its.pose.zones, others.pose.zones)
+            is_wanted = one.meets_on_purpose(other) and not any(zones)
+            if apart <= MEETING_M and not zones[0] & zones[1] and not is_wanted:
+                yield its.pose, others.pose, apart
 
 
-def _sentence(
-    one: tuple[Cell, Workspace], other: tuple[Cell, Workspace], near: Sequence[tuple[Pose, Pose, float]]
-) -> str:
-    (cell, space), (_, further) = one, other
+def _sentence(one: Placed, other: Placed, near: Sequence[tuple[Pose, Pose, float]]) -> str:
     pairs = [f"{a.name} and {b.name} ({apart * 1000:.0f} mm apart)" for a, b, apart in near[:MOST_NAMED]]
     more = "" if len(near) <= MOST_NAMED else f" and {len(near) - MOST_NAMED} more"
-    arms = f"{space.robot.name} and {further.robot.name}"
-    return f"{cell.name}: {arms} can meet at {', '.join(pairs)}{more}, which no zone has in common"
+    robots = f"{one.space.robot.name} and {other.space.robot.name}"
+    return f"{one.cell.name}: {robots} can meet at {', '.join(pairs)}{more}, which no zone has in common"

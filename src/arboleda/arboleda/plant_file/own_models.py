@@ -16,8 +16,9 @@ from . import urdf_file, user_file, xml_marks, yaml_marks, yaml_model
 from .document import Document, Place, choice, shown
 from .drawing import drawing, lifts
 from .robot_models import PINION_MM, TO_SI, ArmModel, millimetres
-from .shapes import DAY_S, MAPPING, POSITIVE, ModelShape, OffsetShape
-from .urdf_file import Axis, Chain
+from .shapes import DAY_S, MAPPING, POSITIVE, SPEED, ModelShape, OffsetShape
+from .urdf_axis import Axis
+from .urdf_file import Chain
 from .yaml_marks import clipped
 
 ENDINGS = (".urdf", ".yaml", ".yml")
@@ -28,6 +29,7 @@ FASTEST = 1e6  # steps/s, one per microsecond of a board's clock
 FULL_SPEED_S = 0.5  # time of a joint to its full speed, where none is declared
 STEP_DEG, STEP_MM = 0.01, 0.1  # a motor step, where none is declared
 LONGEST_RAMP = 250_000  # steps to full speed; a virtual board counts each of them
+SLOW = {"deg": 30, "mm": 50}  # deg/s and mm/s, as a person might write them
 LEAST_STEP = 0.001  # deg or mm: MQTT has four decimals
 
 
@@ -126,12 +128,21 @@ def _find_meshes(chain: Chain, folder: Path) -> None:
 
 
 def _joints(document: Document, place: Place, spot: Place, chain: Chain) -> tuple[Joint, ...] | None:
-    """The joints with all that a motor needs; None, with the problems kept, if one cannot be driven."""
+    """The joints with all that a motor needs; None, with the problems kept, if one cannot be driven.
+
+    `place` is that of `model:`, beside which `speeds:` may say what the file leaves open.
+    """
     if len(chain.axes) > MOST_JOINTS:
         most = f"at most {MOST_JOINTS}; one MQTT message has room for no more"
         document.problem(spot, f"has {len(chain.axes)} joints that move, {most}")
         return None
-    joints = [_joint(document, place, number, axis) for number, axis in enumerate(chain.axes, start=1)]
+    axes = [_with_speed(document, place, number, axis) for number, axis in enumerate(chain.axes, start=1)]
+    _refuse_open_speeds(document, place, spot, axes)
+    joints = [
+        _joint(document, place, number, axis, axis.speed)
+        for number, axis in enumerate(axes, start=1)
+        if axis.speed
+    ]
     for key, unit in (("accelerations", "_s2"), ("steps", "")):
         known = [f"q{number}_{_unit(axis)}{unit}" for number, axis in enumerate(chain.axes, start=1)]
         written = document.read_plain(MAPPING, (*place, key)) if document.has((*place, key)) else None
@@ -139,10 +150,36 @@ def _joints(document: Document, place: Place, spot: Place, chain: Chain) -> tupl
             if name not in known:
                 document.unknown((*place, key, name), known)
     good = [_is_drivable(document, spot, joint) for joint in joints]
-    return tuple(joints) if all(good) else None
+    return tuple(joints) if all(good) and len(joints) == len(axes) else None
 
 
-def _joint(document: Document, place: Place, number: int, axis: Axis) -> Joint:
+def _with_speed(document: Document, place: Place, number: int, axis: Axis) -> Axis:
+    """The axis; with the speed of the plant file, if its own file says none."""
+    if axis.speed is not None:
+        return axis
+    speed = document.read_plain(SPEED, _speed_place(place, number, axis))
+    return replace(axis, speed=TO_SI[_unit(axis)](speed) if speed else None)
+
+
+def _speed_place(place: Place, number: int, axis: Axis) -> Place:
+    return (*place[:-1], "speeds", f"q{number}_{_unit(axis)}_s")
+
+
+def _refuse_open_speeds(document: Document, place: Place, spot: Place, axes: Sequence[Axis]) -> None:
+    """Keep a problem that says what to write, if neither file has the speed of some joints."""
+    places = {axis.name: _speed_place(place, number, axis) for number, axis in enumerate(axes, 1)}
+    open_ = [axis for axis in axes if axis.speed is None and not document.has(places[axis.name])]
+    if open_:
+        joints = " and ".join(axis.name for axis in open_)
+        written = ", ".join(f"{places[axis.name][-1]}: {SLOW[_unit(axis)]}" for axis in open_)
+        document.problem(
+            spot,
+            f"no velocity for {joints}; "
+            f"write speeds: {{{written}}} beside model, but with the numbers of its maker",
+        )
+
+
+def _joint(document: Document, place: Place, number: int, axis: Axis, speed: float) -> Joint:
     """The joint as its file and the plant file have it, with defaults if both say nothing."""
     si = TO_SI[_unit(axis)]
     acceleration = document.read_plain(POSITIVE, (*place, "accelerations", f"q{number}_{_unit(axis)}_s2"))
@@ -152,8 +189,8 @@ def _joint(document: Document, place: Place, number: int, axis: Axis) -> Joint:
         name=axis.name,
         lower=axis.lower,
         upper=axis.upper,
-        speed=axis.speed,
-        acceleration=si(acceleration) if acceleration else axis.acceleration or axis.speed / FULL_SPEED_S,
+        speed=speed,
+        acceleration=si(acceleration) if acceleration else axis.acceleration or speed / FULL_SPEED_S,
         step=si(step) if step else axis.step or si(STEP_MM if slides else STEP_DEG),
         pinion_radius_m=(axis.pinion_radius_m or millimetres(PINION_MM)) if slides else None,
     )

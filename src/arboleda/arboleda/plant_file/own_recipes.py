@@ -29,7 +29,7 @@ from arboleda.recipes.storage import RECIPES
 
 from . import tree_includes, user_file
 from .document import Document, Place, nearest, shown
-from .lost_steps import KEEP, LostSteps, noting
+from .lost_steps import KEEP, NAME, LostSteps, noting
 from .moving_kinds import as_read
 from .python_uses import LONGEST, PythonUses, Spot, Watch, Written, error_text, unwatched
 from .registry import IN_PYTHON, RESERVED
@@ -205,7 +205,7 @@ def _beside(path: Path) -> list[Path]:
 def _run(path: Path, source: bytes, lost: LostSteps | None) -> ModuleType:
     """Run a file as a module of its own; Python keeps no compiled file of it beside the user's.
 
-    `lost`, where given, notes the steps that statements make.
+    `lost`, where given, notes the steps that statements and assignments make.
     """
     tree = ast.parse(source, str(path))
     code = compile(tree if lost is None else noting(tree), str(path), "exec", dont_inherit=True)
@@ -213,6 +213,7 @@ def _run(path: Path, source: bytes, lost: LostSteps | None) -> ModuleType:
     module.__file__ = str(path)
     if lost is not None:
         setattr(module, KEEP, lost.note)
+        setattr(module, NAME, lost.note)
     sys.modules[module.__name__] = module  # where dataclasses and annotations look for it
     exec(code, module.__dict__)
     return module

@@ -28,6 +28,7 @@ from arboleda.trees.tree_nodes import nodes_of
 from arboleda.views import tree_view
 
 from .document import Document, Place, choice, nearest, shown
+from .lost_steps import Made
 from .own_recipes import SECTION
 from .python_uses import LONGEST, PythonUses, Spot, Watch, error_text
 
@@ -35,6 +36,7 @@ MOST = 200  # combinations of parameters that are tried
 HOW_TO_CHOOSE = "; give it to a node that lists its values, or its port a type: int, double, bool"
 WAIT = "cell.wait(seconds)"
 DO_IT = "let it stand in what the recipe returns, as in work(...)"
+USE_IT = "let it stand in what the recipe returns, or delete it"
 AT_MOST = "becomes(..., at_most_s=...) of a device"
 NOT_WOKEN: Mapping[type[Behaviour], str] = {
     timers.Timer: WAIT,
@@ -62,6 +64,7 @@ class Trial:
     offers: dict[str, list[str]] = field(default_factory=dict)
     misfits: dict[str, list[str]] = field(default_factory=dict)  # by recipe: why not
     missed: dict[str, dict[str, str]] = field(default_factory=dict)  # by cell and recipe: why not
+    named: dict[str, dict[str, bool]] = field(default_factory=dict)  # by recipe and sentence: always lost
 
     def run(self, cells: Sequence[Cell]) -> dict[str, list[str]]:
         """The names of the recipes that each cell offers, in their order.
@@ -78,6 +81,14 @@ class Trial:
         if is_sound:
             self._check_all_fit(cells)
         return self.offers
+
+    @property
+    def unused(self) -> dict[str, list[str]]:
+        """By recipe a sentence for each step with a name that stands nowhere in any task, with its place."""
+        return {
+            recipe: [sentence for sentence, is_lost in said.items() if is_lost]
+            for recipe, said in self.named.items()
+        }
 
     def _check_all_fit(self, cells: Sequence[Cell]) -> None:
         """Keep the problems of recipes that no cell offers, and of cells that offer none."""
@@ -159,15 +170,30 @@ class Trial:
             return [
                 self.used.where(error, spot).problem(f"{recipe.name} cannot be built: {error_text(error)}")
             ]
+        self._note_named(recipe)
         objection = _objection(tree)
         found = [] if objection is None else [objection.at(spot).problem(f"{recipe.name} {objection.why}")]
         return [*found, *self._lost(recipe)]
 
     def _lost(self, recipe: Recipe) -> Iterator[str]:
         """Problems of steps that were made and stand nowhere."""
-        for name, file, line in self.used.lost.lost() if self.used.lost is not None else ():
-            spot = Spot(file=self.used.files.get(file, file), line=line)
-            yield spot.problem(f"{recipe.name} makes the step {name} and does it nowhere; {DO_IT}")
+        for made in self.used.lost.lost() if self.used.lost is not None else ():
+            sentence = f"{recipe.name} makes the step {made.step.name} and does it nowhere; {DO_IT}"
+            yield self._spot(made).problem(sentence)
+
+    def _note_named(self, recipe: Recipe) -> None:
+        """Note which steps with a name stand nowhere in this task; other tasks may do them."""
+        known = self.named.setdefault(recipe.name, {})
+        here: dict[str, bool] = {}
+        for made in self.used.lost.made if self.used.lost is not None else ():
+            if made.name:
+                step = f"{recipe.name} makes the step {made.step.name} as {made.name}"
+                said = self._spot(made).problem(f"{step} and does it nowhere; {USE_IT}")
+                here[said] = here.get(said, True) and made.is_lost
+        known |= {said: is_lost and known.get(said, True) for said, is_lost in here.items()}
+
+    def _spot(self, made: Made) -> Spot:
+        return Spot(file=self.used.files.get(made.file, made.file), line=made.line)
 
     def _miss(self, cell: Cell, recipe: Recipe, why: str, problem: str) -> None:
         self.misfits.setdefault(recipe.name, []).append(problem)

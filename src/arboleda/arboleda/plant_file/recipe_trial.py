@@ -20,6 +20,7 @@ from arboleda.host import abilities
 from arboleda.host.processor_alarm import ProcessorAlarm, ended_by_alarm
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Recipe
+from arboleda.recipes.authoring import WrittenRecipe
 
 from . import drivers, own_kinds, own_recipes
 from .devices import CELLS, is_of_devices
@@ -42,34 +43,46 @@ PLANT, REQUEST, RESULT, PHASE, STACK = "plant", "request.json", "result.json", "
 class Verdict:
     """The result of a trial: marked problems of the plant file, those of other files, and offers.
 
-    `missed` has by cell and recipe why a cell does not offer it.
+    `missed` has by cell and recipe why a cell does not offer it, `unused` by recipe the steps that it makes
+    and never does.
     """
 
     here: list[Kept] = field(default_factory=list)
     elsewhere: list[str] = field(default_factory=list)
     offers: dict[str, list[str]] = field(default_factory=dict)
     missed: dict[str, dict[str, str]] = field(default_factory=dict)
+    unused: dict[str, list[str]] = field(default_factory=dict)
 
 
 @dataclass
 class PlantPython:
-    """The Python of a plant, and the recipes that each of its cells offers; `missed`: why not the others."""
+    """The Python of a plant, and the recipes that each of its cells offers; `missed`: why not the others.
+
+    `unused`: by recipe the steps that it makes and never does.
+    """
 
     document: Document
     used: PythonUses = field(default_factory=PythonUses)
     offers: dict[str, list[str]] = field(default_factory=dict)
     missed: dict[str, dict[str, str]] = field(default_factory=dict)
+    unused: dict[str, list[str]] = field(default_factory=dict)
 
     def offered(self, cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
         """The recipes of one's own for each of these cells."""
         known = {cell.name: self.offers.get(cell.name, []) for cell in cells}
-        rows = {name: [self.used.recipes[each] for each in offers] for name, offers in known.items()}
+        rows = {name: [self._tried(each) for each in offers] for name, offers in known.items()}
         beside = {cell.name: cell.recipes for cell in cells}  # those that come with its shape
         return {
             name: _marked(self.document, name, each, beside[name], self.used.source)
             for name, each in rows.items()
             if each
         }
+
+    def _tried(self, name: str) -> Recipe:
+        """The recipe with what was noted when it was tried."""
+        recipe = self.used.recipes[name]
+        unused = tuple(self.unused.get(name, ()))
+        return replace(recipe, unused=unused) if isinstance(recipe, WrittenRecipe) else recipe
 
 
 def brought(document: Document, content: bytes, *, apart: bool = True) -> PlantPython:
@@ -96,7 +109,7 @@ def brought(document: Document, content: bytes, *, apart: bool = True) -> PlantP
     has_effect = of_devices or used.recipes or any(drivers.named(document))
     if words and not has_effect:
         document.problem(own_recipes.SECTION, "brings no recipe, so this has no effect; delete it")
-    return PlantPython(document, used, found.offers, found.missed)
+    return PlantPython(document, used, found.offers, found.missed, found.unused)
 
 
 def _marked(

@@ -74,7 +74,7 @@ def arm(
         **names_and_link(document, shape, place),
         model=model.name,
         twin=shape.twin or shape.name or str(place[-1]),
-        base=_placement(base),
+        base=_placement(base, is_declared=document.has((*place, "base"))),
         joints=model.joints,
         timeout_s=shape.timeout_s,
         tolerance=tolerance,
@@ -100,7 +100,10 @@ def mobile(document: Document, place: Place, written: type[MobileShape] | None =
     return Mobile(
         **names_and_link(document, shape, place),
         model=model.name,
-        grid=Grid(origin=_placement(grid), pitch=millimetres(grid.pitch_mm)),
+        grid=Grid(
+            origin=_placement(grid, is_declared=document.has((*place, "grid"))),
+            pitch=millimetres(grid.pitch_mm),
+        ),
         speed=speed,
         timeout_s=shape.timeout_s,
     )
@@ -147,8 +150,9 @@ def names_and_link(document: Document, shape: RobotShape, place: Place) -> dict[
     }
 
 
-def _placement(shape: BaseShape) -> Placement:
-    return Placement(x=shape.origin_m[0], y=shape.origin_m[1], yaw=math.radians(shape.yaw_deg))
+def _placement(shape: BaseShape, *, is_declared: bool) -> Placement:
+    x, y = shape.origin_m
+    return Placement(x=x, y=y, yaw=math.radians(shape.yaw_deg), is_declared=is_declared)
 
 
 def _section(document: Document, place: Place, shape: type[BaseShape]) -> Any:

@@ -18,13 +18,14 @@ from arboleda.model.outside import plain
 from . import tree_includes, user_file
 
 ENDING = ".xml"
+PROJECT = ".btproj"  # of Groot2: a file of trees that mostly includes others
 MOST = 10  # unknown leaves that are named
 LONGEST = 500  # characters of a line
 
 
 def is_tree_file(path: Path) -> bool:
     """True if a file is one of trees, by its name."""
-    return path.suffix.lower() == ENDING
+    return path.suffix.lower() in (ENDING, PROJECT)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,12 +10,11 @@ from arboleda.model.errors import ConfigError
 
 from .document import choice, nearest, shown
 from .problems import Problems
-from .robot_models import FULL_TURN_RAD
-from .urdf_values import check_color, check_origin, check_shapes, name_of, number, numbers
+from .urdf_axis import MOVING, Axis, axis
+from .urdf_values import check_color, check_origin, check_shapes, name_of
 from .xml_marks import Tag, XmlFault, parse
 from .yaml_marks import clipped
 
-MOVING = ("revolute", "continuous", "prismatic")
 KNOWN = (*MOVING, "fixed")
 NO_ENDS = "the joint {} has no ends; it is taken as -360 deg to 360 deg"
 MOST_LINKS = 300
@@ -23,20 +22,6 @@ REFUSED = {
     "planar": "it moves in a plane, and here every joint has one motor; write two prismatic joints",
     "floating": "nothing holds it, and here every joint has one motor; make it fixed",
 }
-
-
-@dataclass(frozen=True, kw_only=True)
-class Axis:
-    """A joint that moves, as a file describes it; None for values that it leaves open."""
-
-    name: str
-    type: str
-    lower: float
-    upper: float
-    speed: float
-    acceleration: float | None = None
-    step: float | None = None
-    pinion_radius_m: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,13 +75,13 @@ class _Reader:
         end = self._tool(foot, tip)
         self._problems.finish()
         way = self._way(foot, end)
-        axes = [self._axis(joint) for joint in way if joint.attributes["type"] in MOVING]
+        axes = [axis(self._problems, joint) for joint in way if joint.attributes["type"] in MOVING]
         if not axes:
             self._say(self._top, f"no joint moves between {foot} and {end}; an arm has one at least")
         self._problems.finish()
-        kept = tuple(axis for axis in axes if axis)
+        kept = tuple(each for each in axes if each)
         return Chain(
-            robot=self._pruned(foot, {axis.name for axis in kept}),
+            robot=self._pruned(foot, {each.name for each in kept}),
             base=foot,
             tip=end,
             axes=kept,
@@ -105,7 +90,7 @@ class _Reader:
 
     def _check_form(self) -> None:
         """Check every tag by itself, and that joints lead from links to links."""
-        if any(tag.name.startswith("xacro:") for tag in _all(self._top)):
+        if any(map(_needs_xacro, _all(self._top))):
             made = "this is xacro; type `xacro FILE.urdf.xacro > FILE.urdf` and name what that makes"
             self._say(self._top, made)
             self._problems.finish()
@@ -143,9 +128,6 @@ class _Reader:
         elif kind not in KNOWN:
             rule = f"type of the joint {name} must be {choice(KNOWN)}"
             self._say(joint, f"{rule}, is {shown(kind)}{nearest(kind, KNOWN)}")
-        if mimic := joint.first("mimic"):
-            why = "it follows another joint, and here every joint has a motor of its own; make it fixed"
-            self._say(mimic, f"the joint {name} has <mimic>: {why}")
         check_origin(self._problems, joint)
         for end in ("parent", "child"):
             tag = joint.first(end)
@@ -194,16 +176,32 @@ class _Reader:
             if wanted not in below:
                 raise WrongLink("tip_link", f"the link {wanted} does not hang on {foot}")
             return wanted
-        moving = [link for link in self._below(foot) if link != foot and self._moves(link)]
-        last = [link for link in moving if not set(self._below(link)) & set(moving) - {link}]
-        if not moving:
+        last = self._last(foot)
+        if not last:
             self._say(self._top, "no joint moves; an arm has a revolute, continuous or prismatic one")
         elif len(last) > 1:
             ends = f"it has two ends that move, {last[0]} and {last[1]}"
-            self._say(self._above[last[1]], f"{ends}; say with tip_link which one is the arm's tool")
+            choice_of_tool = f"{ends}; say with tip_link which one is the arm's tool"
+            self._say(self._above[last[1]], f"{choice_of_tool}{self._hand(foot, last)}")
         else:
             return self._end(last[0])
         return ""
+
+    def _last(self, foot: str) -> list[str]:
+        """The links after the last motors, and those that follow these, as the second finger of a hand."""
+        above = {link: self._above[link] for link in self._below(foot) if link != foot and self._moves(link)}
+        driven = {link for link, joint in above.items() if joint.first("mimic") is None}
+        last = [link for link in above if link in driven and set(self._below(link)) & driven == {link}]
+        leaders = {above[link].attributes["name"] for link in last}
+        return last + [link for link in above if _leader(above[link]) in leaders]
+
+    def _hand(self, foot: str, ends: list[str]) -> str:
+        """A hint, if the arm has moved before these ends part, as it has before its fingers."""
+        ways = [self._way(foot, end) for end in ends]
+        common = [joint for joint in ways[0] if all(joint in way for way in ways)]
+        if not any(joint.attributes["type"] in MOVING for joint in common):
+            return ""
+        return f"; if they are fingers, write tip_link: {_end_of(common[-1], 'child')}"
 
     def _end(self, link: str) -> str:
         beyond = list(self._below(link))
@@ -226,38 +224,6 @@ class _Reader:
             way.insert(0, self._above[end])
             end = _end_of(way[0], "parent")
         return way
-
-    def _axis(self, joint: Tag) -> Axis | None:
-        """A joint that moves, checked against the abilities of any motor here."""
-        name, kind = joint.attributes["name"], joint.attributes["type"]
-        axis = joint.first("axis")
-        if axis is not None and numbers(self._problems, axis, "xyz", 3) == (0.0, 0.0, 0.0):
-            self._say(axis, f"the axis of the joint {name} is 0 0 0; it must point somewhere")
-        limit = joint.first("limit")
-        if limit is None:
-            needs = "velocity" if kind == "continuous" else "lower, upper and velocity"
-            self._say(joint, f"the joint {name} needs <limit> with {needs}")
-            return None
-        lower, upper = self._ends(limit) if kind != "continuous" else (-FULL_TURN_RAD, FULL_TURN_RAD)
-        speed = number(self._problems, limit, "velocity")
-        if lower is None or upper is None or speed is None:
-            return None
-        unit = "m" if kind == "prismatic" else "rad"
-        if speed <= 0:
-            rule = f"velocity of the joint {name} must be more than 0 {unit}/s"
-            self._say(limit, f"{rule}, is {speed:g}")
-        if lower >= upper:
-            self._problems.keep(
-                limit.mark, f"lower of the joint {name} must be less than upper; is {lower:g}, {upper:g}"
-            )
-        elif not lower <= 0 <= upper:
-            rule = f"the limits of the joint {name} must have 0 inside, where homing ends"
-            self._say(limit, f"{rule}; they are {lower:g} to {upper:g} {unit}")
-        return Axis(name=name, type=kind, lower=lower, upper=upper, speed=speed)
-
-    def _ends(self, limit: Tag) -> tuple[float | None, float | None]:
-        lower, upper = (number(self._problems, limit, key, 0.0) for key in ("lower", "upper"))
-        return lower, upper
 
     def _notes(self, foot: str, way: list[Tag]) -> Iterator[str]:
         for link in self._below(foot):
@@ -299,7 +265,7 @@ class _Reader:
                 joint = SubElement(robot, "joint", _own(self._above[link].attributes))
                 joint.extend(_element(self._above[link]))
                 if joint.get("name") not in moving:
-                    joint.set("type", "fixed")
+                    _fix(joint)
             robot.append(_element(self._links[link]))
         return robot
 
@@ -308,6 +274,18 @@ def _all(tag: Tag) -> Iterator[Tag]:
     yield tag
     for child in tag.children:
         yield from _all(child)
+
+
+def _leader(joint: Tag) -> str | None:
+    """The joint that this one follows."""
+    mimic = joint.first("mimic")
+    return mimic.attributes.get("joint") if mimic else None
+
+
+def _needs_xacro(tag: Tag) -> bool:
+    """True if xacro has something to do for the tag: a property that nothing uses changes nothing."""
+    used = any("${" in value or "$(" in value for value in tag.attributes.values())
+    return used or (tag.name.startswith("xacro:") and tag.name != "xacro:property")
 
 
 def _end_of(joint: Tag, which: str) -> str:
@@ -324,6 +302,12 @@ def _element(tag: Tag) -> Element:
     element = Element(tag.name, _own(tag.attributes))
     element.extend(_element(child) for child in tag.children if ":" not in child.name)
     return element
+
+
+def _fix(joint: Element) -> None:
+    joint.set("type", "fixed")
+    for mimic in joint.findall("mimic"):
+        joint.remove(mimic)
 
 
 def _own(attributes: dict[str, str]) -> dict[str, str]:

@@ -10,8 +10,8 @@ from .problems import Problems
 from .xml_marks import Tag
 
 NUMBER = re.compile(r"[-+]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][-+]?[0-9]+)?", re.ASCII)
-NAME = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
-NAME_RULE = "at most 64 letters, digits, dots, - and _"
+NAME = re.compile(r"[A-Za-z0-9_./-]{1,64}", re.ASCII)
+NAME_RULE = "at most 64 letters, digits, dots, /, - and _"
 FARTHEST_M = 100.0
 SIZES = {"box": (("size", 3),), "cylinder": (("radius", 1), ("length", 1)), "sphere": (("radius", 1),)}
 
@@ -96,6 +96,6 @@ def _check_shape(problems: Problems, shape: Tag) -> None:
         return
     for key, count in SIZES[shape.name]:
         found = numbers(problems, shape, key, count)
-        if found and not all(0 < value <= FARTHEST_M for value in found):
-            rule = f"must be more than 0 and at most {FARTHEST_M:g} m"
+        if found and not all(0 <= value <= FARTHEST_M for value in found):
+            rule = f"must be 0 to {FARTHEST_M:g} m"
             problems.keep(shape.mark, f"{key} of <{shape.name}> {rule}, is {shown(shape.attributes[key])}")

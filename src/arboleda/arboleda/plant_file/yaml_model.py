@@ -13,7 +13,8 @@ from arboleda.kinds.joints import Joint
 from .document import Document, Place, shown
 from .drawing import ROOT, in_words
 from .robot_models import ArmFile, JointFile, described_joint
-from .urdf_file import NO_ENDS, Axis, Chain
+from .urdf_axis import Axis
+from .urdf_file import NO_ENDS, Chain
 from .urdf_values import NAME, NAME_RULE
 
 ALONG = (0.0, 0.0, 0.0)

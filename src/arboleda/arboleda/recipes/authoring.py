@@ -28,6 +28,7 @@ from arboleda.model.sentence import Phrase, Sentence, as_sentence
 from arboleda.model.task import Order
 from arboleda.trees import steps
 from arboleda.trees.context import Context
+from arboleda.trees.fingerprint import FOR_PEOPLE
 from arboleda.trees.leaves import Dwell, Require, Unless, titled
 
 from .decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
@@ -55,9 +56,13 @@ OTHER_ANSWER = Phrase("recipe.other_answer", "{robot} answered {answer}; the rec
 
 @dataclass(frozen=True, kw_only=True)
 class WrittenRecipe(Recipe):
-    """A recipe that is a function; `function(cell, **values)` returns its step."""
+    """A recipe that is a function; `function(cell, **values)` returns its step.
+
+    `unused`: a sentence for each step that it makes with a name and never does, where it was tried.
+    """
 
     function: Callable[..., Step]
+    unused: tuple[str, ...] = field(default=(), compare=False, metadata={FOR_PEOPLE: True})
 
     def __reduce__(self) -> tuple[Callable[..., object], tuple[str, str]]:
         """Its place in its module, by which `pickle` takes it to another process, as it does functions."""

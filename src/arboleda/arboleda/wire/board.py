@@ -30,6 +30,11 @@ from .units import from_wire
 Message = Publication | Report | Rejection | ForeignCommand
 UNREADABLE = Phrase("message.unreadable", "{topic}: {why}")
 ABSENT = Phrase("message.absent", "telemetry of a board whose conexion is 0")
+DENIED = Phrase(
+    "link.denied",
+    "its board talks, but its `conexion` says 0; "
+    "the board has to publish 1 there, retained, when it connects",
+)
 AGAIN_S = 0.1  # in a burst of others' commands, no report between two of the board's own
 
 
@@ -236,7 +241,7 @@ class Board:
             self._form.facts_in(message.facts)
 
     def _presence(self, at: float, online: bool) -> list[Message]:
-        self.link.presence(online)
+        self.link.presence(at, online)
         if not online:
             return self.lose(at)
         return self._stop_again(at) if self.link.up else []
@@ -246,8 +251,10 @@ class Board:
         update = self.link.hear(at, message)
         if update is LinkUpdate.OLD:
             self.counters = replace(self.counters, old=self.counters.old + 1)
-        if update is LinkUpdate.ABSENT:
+        if update in (LinkUpdate.ABSENT, LinkUpdate.DENIED):
             self._count(ABSENT())
+        if update is LinkUpdate.DENIED:
+            return [self._report(at, state=MotionState.NO_LINK, lost=DENIED())]
         if update in (LinkUpdate.LATE, LinkUpdate.ABSENT, LinkUpdate.OLD):
             return []
         if update is LinkUpdate.REBOOT:

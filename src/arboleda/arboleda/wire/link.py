@@ -13,17 +13,21 @@ class LinkUpdate(Enum):
 
     LATE = "late"  # it left the broker before the connection was lost
     ABSENT = "absent"  # the board's presence says that nobody is there
+    DENIED = "denied"  # so it says, but the board goes on talking: one message of it
     OLD = "old"  # overtaken by a newer one of the same boot
     NEWS = "news"
     ARRIVAL = "arrival"  # the link came up with it
     REBOOT = "reboot"  # so did another boot of the board
 
 
+DENIED_S = 2.0  # of talk after an absence: what was sent before it has arrived by then
+
+
 class BoardLink:
     """State of the link: up with the broker reached, presence not "0", and telemetry within `stale_after_s`.
 
     With `stale_after_s` None telemetry of any age counts. `stale_at` is the time at which silence will have
-    lasted too long; inf while down, and if silence means nothing.
+    lasted too long; inf while nobody talks, and if silence means nothing.
     """
 
     def __init__(self, stale_after_s: float | None) -> None:
@@ -33,30 +37,36 @@ class BoardLink:
         self._stale_after_s = math.inf if stale_after_s is None else stale_after_s
         self._connected = False
         self.returns = 0  # returns of an absent board; without ids each counts as a boot
-        self._absent = False
+        self._absent_since: float | None = None
+        self._denied = False  # the board talks, though its presence says that nobody is there
         self.number: int | None = None  # of the last telemetry, counted since boot
         self._below: tuple[float, int] | None = None  # since when old numbers rise, and the last of them
 
     def connection(self, up: bool) -> None:
         self._connected = up
-        self._absent = False  # the broker tells the retained presence again at the next subscription
+        self._absent_since = None  # the broker tells the retained presence again at the next subscription
 
-    def presence(self, online: bool) -> None:
+    def presence(self, at: float, online: bool) -> None:
         """Take the presence of a board; one that never sends any counts as present."""
-        self.returns += self._absent and online
-        self._absent = not online
+        if not online:
+            self._absent_since = at if self._absent_since is None else self._absent_since
+        elif self._absent_since is not None:
+            self.returns += 1
+            self._absent_since = None
+            self._denied = False
 
     def lose(self) -> bool:
-        """Lose the way to the board; True if that is new."""
-        was_up, self.up, self.stale_at, self._below = self.up, False, math.inf, None
-        return was_up
+        """Lose the way to the board, or the board that talked without one; True if that is new."""
+        was_heard = self.up or self._denied
+        self.up, self._denied, self.stale_at, self._below = False, False, math.inf, None
+        return was_heard
 
     def hear(self, at: float, telemetry: Telemetry) -> LinkUpdate:
         """Take a telemetry message, and return its meaning for the link."""
         if not self._connected:
             return LinkUpdate.LATE
-        if self._absent:
-            return LinkUpdate.ABSENT
+        if self._absent_since is not None:
+            return self._hear_absent(at, self._absent_since)
         if self._overtaken(telemetry) and not self._counts_anew(at, telemetry.seq):
             return LinkUpdate.OLD
         rebooted = telemetry.boot_id != self.boot_id and None not in (telemetry.boot_id, self.boot_id)
@@ -67,6 +77,13 @@ class BoardLink:
         if rebooted:
             return LinkUpdate.REBOOT
         return LinkUpdate.ARRIVAL if arrived else LinkUpdate.NEWS
+
+    def _hear_absent(self, at: float, since: float) -> LinkUpdate:
+        if at - since < DENIED_S:
+            return LinkUpdate.ABSENT
+        known, self._denied = self._denied, True
+        self.stale_at = at + self._stale_after_s
+        return LinkUpdate.ABSENT if known else LinkUpdate.DENIED
 
     def hear_again(self, at: float, seq: int) -> bool:
         """Take telemetry that repeats the last one; True if it is surely news, else `hear` decides."""

@@ -21,6 +21,7 @@ from arboleda.model.plant_model import MotionState, Robot
 from arboleda.model.sentence import OWN, Sentence, from_data
 
 from . import strict
+from .board import DENIED
 from .rejections import FOREIGN_PHRASES
 from .strict import UINT32
 
@@ -35,7 +36,8 @@ _ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
 _COUNT = re.compile(r"\d{1,10}", re.ASCII)
 _LONGEST = 300  # characters of a sentence
 _MOST_DATA = 2000  # characters of what a sentence is made of
-FOREIGN, FOREIGN_PARTS = "foreign", "foreign_said"
+PARTS = "_said"  # ends the key of what a sentence is made of
+_SENTENCES = {"foreign": FOREIGN_PHRASES, "lost": {DENIED.key: DENIED}}  # key: what its sentences are made of
 _FLAGS = {"true": True, "false": False}
 _LEVELS = {
     MotionState.STOPPED: (OK, "stopped"),
@@ -63,8 +65,9 @@ def to_status(robot: Robot, report: Report) -> Status:
     level, message = (WARN, "command refused") if report.state is None else _LEVELS[report.state]
     rows = [(key, getattr(report, name), write) for key, (name, _, write) in _ROWS.items()]
     values = {key: write(value) for key, value, write in rows if value is not None}
-    if report.foreign is not None:
-        values |= _written(report.foreign)
+    for key in _SENTENCES:
+        if (sentence := getattr(report, key)) is not None:
+            values |= _written(key, sentence)
     return Status(name=_name(robot), hardware_id=robot.mqtt, level=level, message=message, values=values)
 
 
@@ -75,7 +78,8 @@ def from_status(at: float, robot: Robot, status: Status) -> Report:
     row = {
         name: read(key, status.values[key]) for key, (name, read, _) in _ROWS.items() if key in status.values
     }
-    report = Report(at=at, robot=robot.name, foreign=_foreign(status.values), **row)  # type: ignore[arg-type]
+    row |= {key: _said(key, status.values) for key in _SENTENCES}
+    report = Report(at=at, robot=robot.name, **row)  # type: ignore[arg-type]
     _fits(robot, report)
     return report
 
@@ -142,18 +146,18 @@ def _sentence(key: str, text: str) -> str:
     return text
 
 
-def _written(sentence: Sentence) -> dict[str, str]:
+def _written(key: str, sentence: Sentence) -> dict[str, str]:
     """The values for a sentence: its text for people, and its parts."""
-    return {FOREIGN: str(sentence), FOREIGN_PARTS: json.dumps(sentence.data())}
+    return {key: str(sentence), f"{key}{PARTS}": json.dumps(sentence.data())}
 
 
-def _foreign(values: Mapping[str, str]) -> Sentence | None:
-    """The sentence on commands of others; only its text if its parts give another one."""
-    if FOREIGN not in values:
+def _said(key: str, values: Mapping[str, str]) -> Sentence | None:
+    """A sentence of the status; only its text if its parts give another one."""
+    if key not in values:
         return None
-    text, parts = _sentence(FOREIGN, values[FOREIGN]), values.get(FOREIGN_PARTS, "")
+    text, parts = _sentence(key, values[key]), values.get(f"{key}{PARTS}", "")
     try:
-        made = from_data(json.loads(parts), FOREIGN_PHRASES) if len(parts) <= _MOST_DATA else None
+        made = from_data(json.loads(parts), _SENTENCES[key]) if len(parts) <= _MOST_DATA else None
         if str(made) == text and made is not None:
             return made
     except (ValueError, LookupError, RecursionError):  # as an older bridge, or somebody else, writes it

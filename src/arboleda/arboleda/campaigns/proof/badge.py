@@ -23,9 +23,9 @@ SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height
 def badge(tally: ProofTally, total: int, *, broken: bool) -> str:
     """The content of the file; never more than a sample where not all was run."""
     runs = tally.runs
-    share = "all" if runs == total else f"{runs:,} of"
+    share = "all" if tally.is_whole(total) else f"{runs:,} of"
     text = "broken" if broken else f"held: {share} {total:,}" if runs else "nothing was run"
-    color = BROKEN if broken else HELD if 0 < runs == total else SAMPLE
+    color = BROKEN if broken else HELD if tally.is_whole(total) else SAMPLE
     middle = round(len(LABEL) * LETTER + 2 * MARGIN)
     rest = round(len(text) * LETTER + 2 * MARGIN)
     return SVG.format(

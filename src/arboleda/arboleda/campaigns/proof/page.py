@@ -96,7 +96,7 @@ def _parts(proof: ProofPage) -> Iterator[str]:
 
 def _amount(proof: ProofPage) -> Iterator[str]:
     done, share = proof.tally.runs, f"{proof.tally.runs / max(proof.total, 1):.0%}"
-    is_whole = done == proof.total and done > 0
+    is_whole = proof.tally.is_whole(proof.total)
     amount = _each("all" if is_whole else "some", done=f"{done:,}", total=f"{proof.total:,}", share=share)
     kinds = proof.tally.proof.kinds
     only = f" {_each('kinds', kinds=', '.join(kinds))}" if kinds else ""

@@ -6,8 +6,8 @@ import math
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from itertools import takewhile
 from pathlib import Path
+from typing import TypeVar
 
 from rich.console import Console
 from rich.text import Text
@@ -40,6 +40,8 @@ from .recipe_digest import recipe_digests
 from .scenario import scenarios
 
 MEND_S = 120.0  # a mend is looked for so long
+CALM_SHARE = 0.5  # of the budget, in which runs without faults begin
+Work = TypeVar("Work")
 NOTHING_RUN = 2  # exit status: of nothing it cannot be said that it held
 
 
@@ -54,6 +56,7 @@ class ProofCampaign:
         self._calm: list[Calm] = []
         self._tally = ProofTally(proof=Proof(model=self._plant.model))
         self._pairs: PairTally | None = None
+        self._is_cut = False  # the budget left no time for all tasks without faults
         self._known = 0  # runs that were kept from before
         self._total = 0
         self._began = time.monotonic()
@@ -89,7 +92,7 @@ class ProofCampaign:
         found = scenarios(self._plant.model, self._request.recipes)
         doing = "running without faults"
         with progress(self._console, doing, None) as show, self._lines.progress(doing) as tell:
-            for calm in calm_runs(self._plant.model, found):
+            for calm in self._within(CALM_SHARE, calm_runs(self._plant.model, found)):
                 self._calm.append(calm)
                 show(counted(len(self._calm), "task"), len(self._calm))
                 tell(len(self._calm), None)
@@ -99,7 +102,7 @@ class ProofCampaign:
         proof = Proof(model=self._plant.model, calm=sound, kinds=self._request.kinds)
         kept = Kept(self._request.folder, recipe_digests(self._plant.model, self._request.files), proof)
         kept.forget(all=self._request.anew)
-        self._tally = ProofTally(proof=proof, proved=kept.known())
+        self._tally = ProofTally(proof=proof, proved=kept.known(), is_cut=self._is_cut)
         self._total = sum(len(proof.faults(each)) for each in proof.portions)
         self._run(proof, range(len(proof.portions)), self._tally, kept, total=self._total, jobs=jobs)
 
@@ -127,7 +130,7 @@ class ProofCampaign:
         with (
             progress(self._console, name, total) as show,
             self._lines.progress(name) as tell,
-            self._campaign(proof, self._within_budget(waiting), jobs, (known, total), show) as campaign,
+            self._campaign(proof, self._within(1.0, waiting), jobs, (known, total), show) as campaign,
         ):
             tell(known, total)
             for proved in campaign.results():
@@ -152,16 +155,27 @@ class ProofCampaign:
         if jobs == 1:
             campaign = Campaign(proof, numbers, tick=tick)
         else:
-            campaign = Workers(proof, numbers, tick=tick, jobs=jobs)
+            campaign = Workers(proof, numbers, tick=tick, jobs=jobs, ahead=1)  # none begins after the budget
         return campaign
 
-    def _within_budget(self, numbers: Iterable[int]) -> Iterator[int]:
-        return takewhile(lambda _: time.monotonic() - self._began < self._request.budget_s, iter(numbers))
+    def _within(self, share: float, work: Iterable[Work]) -> Iterator[Work]:
+        """The pieces of work that begin within a share of the budget, and the first one in any case.
+
+        A piece begins when it is asked for.
+        """
+        over_s, pieces, is_first = self._request.budget_s * share, iter(work), True
+        while time.monotonic() - self._began < over_s or (is_first and over_s > 0.0):
+            try:
+                yield next(pieces)
+            except StopIteration:
+                return
+            is_first = False
+        self._is_cut |= share < 1.0
 
     def _report(self, *, complete: bool) -> None:
         tally, breaches = self._tally, breaches_of(self._tally, self._pairs)
         self._try_checks()
-        for line in proof_report.calm_lines(self._calm):
+        for line in proof_report.calm_lines(self._calm, is_cut=self._is_cut):
             self._console.print(line, soft_wrap=True)
         for line in proof_report.unnoticed_lines(tally):
             self._console.print(line, soft_wrap=True)
@@ -228,7 +242,7 @@ class ProofCampaign:
             self._tally,
             breaches,
             self._total,
-            complete=complete,
+            complete=complete and not self._is_cut,
             pairs=self._pairs,
             mended=mended,
         )

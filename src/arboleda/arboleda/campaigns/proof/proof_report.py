@@ -24,8 +24,11 @@ MOST_UNNOTICED = 40  # lines
 MOVED = "*"  # the end of the same fault is another one at another moment
 
 
-def calm_lines(calm: Sequence[Calm]) -> Iterator[Text]:
-    """Findings of the calm runs, in which nothing goes wrong."""
+def calm_lines(calm: Sequence[Calm], *, is_cut: bool = False) -> Iterator[Text]:
+    """Findings of the calm runs, in which nothing goes wrong; `is_cut`: the budget left no time for all."""
+    if is_cut:
+        ran = f"half of --budget was over when {counted(len(calm), 'task')} had run without faults"
+        yield Text(f"{ran}: nothing is known of the others; give more", "yellow")
     for each in (each for each in calm if not each.is_sound):
         outcome, name = each.run.outcome, each.scenario.name
         if outcome.broken:
@@ -144,9 +147,10 @@ def verdict(tally: ProofTally, total: int, *, bad_calm: int) -> Text:
         what += [f"{counted(bad_calm, 'task')} without any fault"] if bad_calm else []
         return Text(f"BROKEN: {' and '.join(what)}; {of}", "bold red")
     if not runs:
-        over = ": --budget was over before the first run with a fault; give more" if total else ""
+        is_over = total or tally.is_cut
+        over = ": --budget was over before the first run with a fault; give more" if is_over else ""
         return Text(f"nothing was run{over}", "bold yellow")
-    if runs < total:
+    if not tally.is_whole(total):
         share = f"{runs / total:.0%}"
         sentence = f"HELD in {of} ({share}): a sample, beginnings of steps first; nothing is proven"
         return Text(sentence, "bold yellow")

@@ -78,10 +78,14 @@ class Row:
 
 @dataclass(kw_only=True)
 class ProofTally:
-    """ProofTally: `cases` in a fixed order, of all portions that are `proved`, by number."""
+    """ProofTally: `cases` in a fixed order, of all portions that are `proved`, by number.
+
+    `is_cut`: there are tasks of which nothing is known, as they did not even run without faults.
+    """
 
     proof: Proof
     proved: dict[int, Proved] = field(default_factory=dict)
+    is_cut: bool = False
 
     def cases(self) -> Iterator[Case]:
         """All cases, task by task, of each in the order of the instants."""
@@ -140,6 +144,10 @@ class ProofTally:
     def runs(self) -> int:
         """The number of runs so far."""
         return sum(len(each.rows) for each in self.proved.values())
+
+    def is_whole(self, total: int) -> bool:
+        """True if all runs are done, which are so many, of all tasks."""
+        return 0 < self.runs == total and not self.is_cut
 
     @property
     def alone(self) -> float:

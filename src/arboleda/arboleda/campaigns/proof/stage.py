@@ -19,6 +19,7 @@ from arboleda.simulator.invariants.part_places import recipes_end_as_they_say
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.people import STANDS_BY_S, Attendant, FixedAnswers
 from arboleda.simulator.run import NO_EXCEPTION
+from arboleda.simulator.truth.refused_commands import RefusedCommands
 from arboleda.simulator.world import PLANT
 
 from .end_state import EndState, differences, end_state, facts_by_report, stated
@@ -85,6 +86,7 @@ class Stage:
         self.new_questions: list[Entry] = []
         self._people = [robot.name for robot in self.cell.robots if robot.link is Link.SCREEN]
         self._ended: dict[bool, Counter[str]] = {True: Counter(), False: Counter()}  # commands done, and not
+        self._refused_commands = RefusedCommands()
         self._questions: set[str] = set()  # by id, of all that persons were asked so far
         self.last_change: TaskChanged | None = None  # the last word on the task
         self.mended_at = 0.0  # when the fault was ended, s
@@ -220,8 +222,8 @@ class Stage:
         return Outcome(end=end, cause=cause, alone=self._is_ready(), untrue=untrue, broken=broken)
 
     def _left_out(self, commands: Sequence[str]) -> Iterator[str]:
-        """Sentences on commands of the run without a fault that failed and were not done as often as there;
-        of a plant that died nobody knows them all.
+        """Sentences on commands of the run without a fault that failed, or could not be given, and were not
+        done as often as there; of a plant that died nobody knows them all.
         """
         if self.world.plant_process.starts == 1:
             done, failed = self._ended[True], self._ended[False]
@@ -248,9 +250,7 @@ class Stage:
         return replace(outcome, broken=(broken.invariant, broken.sentence))
 
     def _look(self) -> None:
-        for ended in self.watched.truth.books.ended:
-            if ended.entry.cell == self.cell.name and not self.ended:
-                self._ended[ended.done][entry_name(ended.entry)] += 1
+        self._count_ended()
         entries = self.world.plant.dispatcher.ledger.entries
         for message in self.world.moment.sent:
             if isinstance(message, TaskChanged):
@@ -268,6 +268,14 @@ class Stage:
             self._look_up(self.last_change)
         if self._attendant is not None and self._acts is None and self._is_ready():
             self._acts = self._attendant.acts
+
+    def _count_ended(self) -> None:
+        """Count the commands of the task that are done, have failed, or could not even be given."""
+        ended = [(each.entry, each.done) for each in self.watched.truth.books.ended]
+        ended += [(entry, False) for entry in self._refused_commands.fresh(self.world.plant)]
+        for entry, done in ended:
+            if entry.cell == self.cell.name and not self.ended:
+                self._ended[done][entry_name(entry)] += 1
 
     def _fresh_questions(self) -> Iterator[Entry]:
         """The questions that persons see since this step: those are sent to nobody else."""

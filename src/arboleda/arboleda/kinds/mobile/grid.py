@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from dataclasses import dataclass
 
@@ -46,3 +47,12 @@ class Grid:
         """x, y of a node in the grid frame, m."""
         row, column = divmod(node, self.columns)
         return (column * self.pitch, row * self.pitch)
+
+    def on_floor(self, node: int) -> tuple[float, float]:
+        """x, y of a node in the `world` frame, m."""
+        x, y = self.position(node)
+        turn = self.origin.yaw
+        return (
+            self.origin.x + x * math.cos(turn) - y * math.sin(turn),
+            self.origin.y + x * math.sin(turn) + y * math.cos(turn),
+        )

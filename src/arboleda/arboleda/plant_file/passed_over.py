@@ -1,0 +1,155 @@
+"""Check of trees as XML: nodes with which a task is done although its work failed, or was broken off."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from py_trees.behaviour import Behaviour
+
+from arboleda.bt_xml.recipe import TreeRecipe
+from arboleda.bt_xml.running.controls import Parallel, TryCatch
+from arboleda.bt_xml.running.decorators import ALL_DONE, Loop, ResultDecorator
+from arboleda.bt_xml.running.device_steps import FactStep
+from arboleda.bt_xml.running.leaves import ConstantLeaf
+from arboleda.bt_xml.running.memory import Scope
+from arboleda.bt_xml.running.node import FAILURE, Node
+from arboleda.bt_xml.running.scripts import ScriptError
+from arboleda.core.plant import Plant
+from arboleda.model.commands import Command, Query, Switch, Work
+from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.recipes.handles import FactCheck, FactWait
+from arboleda.trees.context import Context
+from arboleda.trees.leaves import Act
+
+from .recipe_check import orders
+
+MOST_NAMED = 3  # commands in one sentence
+
+
+def warnings(plant: PlantModel) -> tuple[str, ...]:
+    """A sentence for each such node of the plant's trees, with its place."""
+    runs = Plant(plant, epoch=0, now=0.0).cells
+    found = [
+        f"{node.place}: {cell.name}: {recipe.name} {sentence}"
+        for cell in plant.cells
+        for recipe in cell.recipes
+        if isinstance(recipe, TreeRecipe)
+        for node, sentence in _of_recipe(cell, recipe, runs[cell.name].context)
+    ]
+    return tuple(dict.fromkeys(found))
+
+
+def _of_recipe(cell: Cell, recipe: TreeRecipe, context: Context) -> Iterator[tuple[Node, str]]:
+    """What is found with any parameters, which change the values of a tree and not its nodes."""
+    for order in orders(cell, recipe):
+        tree = _Tree(tree=recipe.build(order, context).children[0])
+        if not any(isinstance(node, ResultDecorator | Parallel) for node in tree.nodes):
+            return
+        yield from tree.found(cell, set(recipe.end_of(order.values)))
+
+
+@dataclass(frozen=True)
+class _Tree:
+    """Work of a recipe, without what recovers after it, as its nodes in the order in which they begin."""
+
+    tree: Behaviour
+
+    @cached_property
+    def nodes(self) -> list[Behaviour]:
+        return list(_in_order(self.tree))
+
+    def found(self, cell: Cell, ends: set[str]) -> Iterator[tuple[Node, str]]:
+        for node in self.nodes:
+            if (
+                isinstance(node, ResultDecorator)
+                and node.ends is ALL_DONE
+                and not self._leads_to_failure(node)
+            ):
+                yield from ((node, sentence) for sentence in self._forced(node))
+            elif isinstance(node, Parallel) and not _needs_all(node):
+                yield from ((node, sentence) for sentence in self._left_in_hand(node, cell, ends))
+
+    def _forced(self, node: ResultDecorator) -> Iterator[str]:
+        """The work below a ForceSuccess of which nobody asks afterwards what became of it."""
+        asked = {device for later in self._later(node) for device in _asked(later)}
+        work = [
+            each for each in _commands(node) if isinstance(each, Work | Switch) and each.robot not in asked
+        ]
+        names = list(dict.fromkeys(f"{each.robot} {each.word}" for each in work))
+        if names:
+            shown = f"{', '.join(names[:MOST_NAMED])}{' ...' if len(names) > MOST_NAMED else ''}"
+            how = f"ask {work[0].robot} afterwards, or say in a Fallback what is done instead"
+            yield f"has ForceSuccess pass over a failure of {shown}, and is done all the same; {how}"
+
+    def _left_in_hand(self, node: Parallel, cell: Cell, ends: set[str]) -> Iterator[str]:
+        """The hands that may be broken off while they hold a part, and do not let go of it afterwards."""
+        freed = {each.robot for later in self._later(node) for each in _grips(later, grips=False)}
+        for role, device in cell.members:
+            takes = any(each.robot == device.name for each in _grips(node, grips=True))
+            if takes and device.name not in freed and f"{role}.{device.held_fact}" not in ends:
+                many = f"Parallel end before all of its {len(node.children)} children are done"
+                how = "let all of them succeed, or let go of the part after it"
+                yield f"has {many}, and may be done with a part that {device.name} holds; {how}"
+
+    def _later(self, node: Behaviour) -> list[Behaviour]:
+        """The nodes that begin after a node has ended; of a loop around it all."""
+        last = list(_in_order(node))[-1]
+        later = self.nodes[self.nodes.index(last) + 1 :]
+        around = [each for each in _above(node) if isinstance(each, Loop)]
+        return [*later, *(each for loop in around for each in _in_order(loop))]
+
+    def _leads_to_failure(self, node: Behaviour) -> bool:
+        """True where the task is not done after it: in a rescue, or before a node that always fails."""
+        for below, above in zip([node, *_above(node)], _above(node), strict=False):
+            if isinstance(above, TryCatch) and above.children[-1] is below:
+                return True
+            behind = above.children[above.children.index(below) + 1 :]
+            if any(isinstance(each, ConstantLeaf) and each.result is FAILURE for each in behind):
+                return True
+        return False
+
+
+def _in_order(node: Behaviour) -> Iterator[Behaviour]:
+    """The node and all below it, each before its children."""
+    rest = [node]
+    while rest:
+        each = rest.pop()
+        yield each
+        rest += reversed(each.children)
+
+
+def _above(node: Behaviour) -> list[Behaviour]:
+    found: list[Behaviour] = []
+    while node.parent is not None:
+        node = node.parent
+        found.append(node)
+    return found
+
+
+def _needs_all(node: Parallel) -> bool:
+    try:
+        return node.needs_all(Scope())
+    except ScriptError:  # by a variable
+        return True
+
+
+def _commands(node: Behaviour) -> list[Command]:
+    return [each.make(id="") for each in _in_order(node) if isinstance(each, Act)]
+
+
+def _grips(node: Behaviour, *, grips: bool) -> Sequence[Switch]:
+    """The commands below a node that take hold of a part, or let go of it."""
+    commands = _commands(node) if isinstance(node, Act) or node.children else []
+    return [each for each in commands if isinstance(each, Switch) and each.grips is grips]
+
+
+def _asked(node: Behaviour) -> Iterator[str]:
+    """The devices that a node asks what is so."""
+    if isinstance(node, FactCheck | FactWait):
+        yield node.device
+    elif isinstance(node, FactStep):
+        yield from (device for device, _ in node.facts.values())
+    elif isinstance(node, Act) and isinstance(command := node.make(id=""), Query):
+        yield command.robot
