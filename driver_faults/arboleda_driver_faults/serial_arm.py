@@ -86,6 +86,10 @@ class ServoRig(Rig):
         self._driver = Loopback(Machine([self._arm], self._settings), self._servos, hear, now)
         return self._driver
 
+    @property
+    def where(self) -> tuple[int, ...]:
+        return tuple(self._servos.positions().values())
+
     def place(self) -> tuple[str, bool] | None:
         gripper = self._settings.gripper
         assert gripper is not None
