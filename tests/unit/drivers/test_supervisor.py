@@ -232,6 +232,17 @@ def test_a_latch_is_told_again_to_who_comes_back_or_boots(driven: Driven) -> Non
     assert len(driven.says()) == 1
 
 
+def test_a_clear_reaches_a_driver_whose_device_is_not_heard_and_is_refused_all_the_same() -> None:
+    driven = Driven()
+    driven.step()
+    refused, give = driven.asks(CLEAR)
+    assert isinstance(refused, Report) and refused.refusal == "no_link"
+    told = replace(CLEAR, id="")
+    assert give == driven.given(told), "its driver may wait for the word of a person"
+    unsent = SendResult(at=driven.now, life=driven.life, command=told, error=OWN(text="not connected"))
+    assert driven.step(unsent) == []
+
+
 class DrivenArm:
     """A supervisor with one driver of an arm, which says in what state it is."""
 
