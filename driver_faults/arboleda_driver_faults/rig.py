@@ -106,6 +106,11 @@ class Rig(ABC):
     def moves(self) -> tuple[int, int]:
         """The number of moves that the device was told, and of those that the driver was given."""
 
+    @property
+    def where(self) -> Hashable:
+        """The true position of the robot, which is another one at each moment while the robot moves."""
+        raise NotImplementedError(f"{self.driver} moves no robot")
+
     def bystanders(self, now: float) -> list[Report]:
         """The reports of other devices of the cell, which take no part in the test."""
         return []

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.drivers.ros_action.events import ListedGoal
+from arboleda.drivers.ros_action.events import ListedGoal, Measurement
 from arboleda.drivers.ros_action.machine import Machine
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Reason
@@ -89,7 +89,12 @@ class ActionRig(Rig):
             for name, body in self.bodies.items()
         }
         self.listed: dict[str, dict[str, ListedGoal]] = {part.name: {} for part in self.parts}
+        self._measured: dict[str, dict[type, Measurement]] = {part.name: {} for part in self.parts}
         self._joined: DeviceGroup | None = None
+
+    @property
+    def where(self) -> tuple[float, ...]:
+        return tuple(self.bodies[self.parts[0].name].position)
 
     @property
     def cell(self) -> Cell:
@@ -106,7 +111,8 @@ class ActionRig(Rig):
             assert device.driver is not None
             driver = part.machine([device], device.driver.settings)
             server, listed = self._servers[part.name], self.listed[part.name]
-            made[part.name] = Loopback(driver, server, part.read, hear, now, listed)
+            measured = self._measured[part.name]
+            made[part.name] = Loopback(driver, server, part.read, hear, now, listed, measured)
         self._joined = DeviceGroup(made)
         return self._joined
 

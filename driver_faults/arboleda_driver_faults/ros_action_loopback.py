@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from arboleda.drivers.nav2.localisation import MapPose
 from arboleda.drivers.ros_action.events import (
     CancelAll,
     CancelAnswer,
@@ -17,6 +18,7 @@ from arboleda.drivers.ros_action.events import (
     GoalList,
     GoalResult,
     ListedGoal,
+    Measurement,
     SendGoal,
     ServersFound,
 )
@@ -33,7 +35,8 @@ class Loopback:
     """Driver and virtual action server, connected: each gets the other's messages at once.
 
     `read` makes of a goal of the driver what the server's body takes, as the message between them does.
-    `listed` are the goals that the server accepted, by the ids of their messages: they outlive the driver.
+    `listed` are the goals that the server accepted, by the ids of their messages, and `measured` the last
+    measurement of each kind, which topics of ROS 2 may retain: both outlive the driver.
     """
 
     def __init__(
@@ -44,6 +47,7 @@ class Loopback:
         hear: Callable[[Report], None],
         now: float,
         listed: dict[str, ListedGoal],
+        measured: dict[type, Measurement],
     ) -> None:
         self.now, self.goals = now, 0
         self._driver, self._server, self._read, self._hear = driver, server, read, hear
@@ -52,7 +56,8 @@ class Loopback:
         self._open: dict[str, bool] = {}  # goals that have no end, and whether they are accepted
         self._early: dict[str, GoalResult] = {}  # ends of goals that are not yet accepted
         self._listed, self._uuids = listed, dict[str, bytes]()
-        self._to_driver: deque[Event] = deque([self._list()])
+        self._measured = measured
+        self._to_driver: deque[Event] = deque([self._list(), *self._retained()])
 
     @property
     def next_deadline(self) -> float:
@@ -105,6 +110,9 @@ class Loopback:
     def _cancel(self) -> None:
         """Cancel as action servers in C++ do: accepted goals only; no goal counts as no refusal."""
         accepted = [id for id, is_accepted in self._open.items() if is_accepted]
+        accepted += [
+            id for id, goal in self._listed.items() if goal.status is None and id not in self._uuids
+        ]  # of an earlier driver
         decided = self._step_server(*(CancelRequest(id=id) for id in accepted))
         refused = bool(decided) and not any(each.accepted for each in decided)
         self._to_driver.append(CancelAnswer(refused=refused))
@@ -131,8 +139,14 @@ class Loopback:
         elif isinstance(message, GoalResult) and message.id in self._listed:
             self._listed[message.id] = replace(self._listed[message.id], status=message.status)
         else:
+            if isinstance(message, Measurement):
+                self._measured[type(message)] = message
             return
         self._to_driver.append(self._list())
+
+    def _retained(self) -> list[Event]:
+        """The measurements that a new driver is told at once: localisation speaks seldom."""
+        return [each for kind, each in self._measured.items() if kind is MapPose]
 
     def _list(self) -> GoalList:
         return GoalList(goals=tuple(self._listed.values()))

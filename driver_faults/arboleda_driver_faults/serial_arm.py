@@ -36,14 +36,15 @@ CAUSES: Causes = {
     "unplugged": NO_LINK,
     "broken_frames": NO_LINK,
     "torn": NO_LINK,
+    "old_position": NO_WORK,
     "noise": set(),
     "echo": set(),
     "late": NO_LINK,
     "wrong_id": NO_LINK,
     "no_goal": {Reason.REJECTED, Reason.STOP_UNCONFIRMED},
     "another_master": {Reason.DEVICE_FAULT},
-    "pushed": {Reason.NOT_REACHED, Reason.DEADLINE},
-    "stall": {Reason.NOT_REACHED},
+    "pushed": {Reason.NOT_REACHED, Reason.DEADLINE, Reason.DEVICE_FAULT},
+    "stall": {Reason.DEVICE_FAULT, Reason.NOT_REACHED},
     "deaf": {Reason.REJECTED, Reason.STOP_UNCONFIRMED},
     "slow": {Reason.DEADLINE},
     "gripper_stuck": {Reason.REJECTED, Reason.DEADLINE},
@@ -85,6 +86,10 @@ class ServoRig(Rig):
     def join(self, hear: Hear, now: float) -> Loopback:
         self._driver = Loopback(Machine([self._arm], self._settings), self._servos, hear, now)
         return self._driver
+
+    @property
+    def where(self) -> tuple[int, ...]:
+        return tuple(self._servos.positions().values())
 
     def place(self) -> tuple[str, bool] | None:
         gripper = self._settings.gripper

@@ -51,6 +51,10 @@ class StorageRig(Rig):
     def shows(self) -> tuple[Sequence[float], bool]:
         """The true joints of the arm, rad, and its output."""
 
+    @property
+    def where(self) -> tuple[float, ...]:
+        return tuple(self.shows[0])
+
     def task(self, number: int) -> str:
         return f"{self.layout.name} palletizing #{number}"
 

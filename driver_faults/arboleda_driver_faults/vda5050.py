@@ -70,6 +70,11 @@ class AgvRig(Rig):
         self._driver = ActionCounter(self.robots, self._settings, self._agv, hear, now)
         return self._driver
 
+    @property
+    def where(self) -> tuple[str, float]:
+        since = self._driver.now if self._driver is not None and self._agv.driving else 0.0
+        return (self._agv.node, since)
+
     def place(self) -> tuple[str, bool]:
         return (self._agv.node, self._agv.loaded)
 

@@ -51,6 +51,8 @@ class Loopback:
         self._connected = False
         self._waiting: deque[VehicleMessage] = deque()
         self._do(self.vehicle.connected(now, up=True))
+        if agv.is_online:  # which the broker retains
+            self._take(Connect(anew=False))
 
     @property
     def next_deadline(self) -> float:

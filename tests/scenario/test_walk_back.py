@@ -27,7 +27,7 @@ from .restarts import ENDED, Mortal, restart
 Stage = Callable[..., tuple[Rig, Witness]]
 CELL, ID = "sis_a", "lot-1"
 TASK = f"{CELL} 0B 7 #{ID}"
-AT = 'task lot-1 was at work when the plant stopped; it stands at "{step}"'
+AT = 'task lot-1 was at work when the plant stopped, at its step "{step}"'
 STEPS = (
     "system start/dwell",
     "drive path 0B",

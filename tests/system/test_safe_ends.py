@@ -51,7 +51,7 @@ def test_a_plant_killed_in_a_move_leaves_the_boards_to_stop_by_themselves(moving
     moving.start("orchestrator", state_dir=moving.state)
     moving.wait_for_cell("sis_a", lambda cell: cell["state"] == "held" and not cell["refused"].get("resume"))
     assert moving.cell("sis_a")["held_by"].endswith(
-        'it stands at "move to pick-up"); resume sis_a or abandon sis_a'
+        'at its step "move to pick-up"); resume sis_a or abandon sis_a'
     )
 
 

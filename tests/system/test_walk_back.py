@@ -77,7 +77,7 @@ def test_a_killed_plant_finishes_its_task_after_resume(site: Site) -> None:
         site.until(lambda _: site.moves)
         site.kill()
         cell = site.until(lambda cell: cell["state"] == "held" and "resume" not in cell["refused"])
-        at = f'task lot-1 was at work when the plant stopped; it stands at "{step}"'
+        at = f'task lot-1 was at work when the plant stopped, at its step "{step}"'
         assert cell["held_by"] == f"sis_a is held ({at}); resume sis_a or abandon sis_a"
         assert site.plant.ask("POST", "/api/cells/sis_a/resume")[0] == 200
     site.until(lambda cell: cell["state"] == "idle")

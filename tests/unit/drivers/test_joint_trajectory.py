@@ -17,7 +17,9 @@ from arboleda.drivers.ros_action.events import (
     CommandRequest,
     Event,
     GoalAnswer,
+    GoalList,
     GoalResult,
+    ListedGoal,
     Message,
     SendGoal,
     ServersFound,
@@ -211,8 +213,39 @@ def test_a_latch_shows_until_it_is_cleared(rig: Rig) -> None:
 def test_an_arm_that_somebody_else_moves_is_moving(rig: Rig) -> None:
     assert rig.last.state is MotionState.STOPPED
     rig.q = (0.1, *ZERO[1:])
-    rig.wait(0.1)
+    rig.wait(0.2)
     assert rig.last.state is MotionState.MOVING
+
+
+def test_nothing_is_told_of_an_arm_before_it_is_known_whether_it_moves() -> None:
+    machine_, states = machine([ARM], Settings()), []
+    for step in range(8):
+        now = 100.0 + step * 0.05
+        joints = JointStateEvent(names=NAMES, positions=(step * 0.01, *ZERO[1:]), stamp=(step, 0))
+        said = machine_.step(now, [ServersFound(servers=(SERVER,)), joints])
+        states += [each.state for each in said if isinstance(each, Report) and each.q is not None]
+    assert states == [MotionState.MOVING]
+
+
+def listed(goal_status: Status | None) -> GoalList:
+    return GoalList(goals=(ListedGoal(uuid=bytes(16), stamp=(1, 0), status=goal_status),))
+
+
+def test_a_goal_of_before_that_has_no_end_counts_as_motion_until_it_is_cancelled(rig: Rig) -> None:
+    rig.tell(listed(None))
+    rig.wait(0.2)
+    assert rig.last.state is MotionState.MOVING, "it may wait at an obstacle"
+    rig.ask(HALT)
+    rig.tell(CancelAnswer(refused=False))
+    rig.tell(listed(None))
+    rig.wait(0.2)
+    assert rig.last.state is MotionState.STOPPED, "the list may be late"
+
+
+def test_a_goal_of_before_that_has_ended_is_none(rig: Rig) -> None:
+    rig.tell(listed(Status.SUCCEEDED))
+    rig.wait(0.2)
+    assert rig.last.state is MotionState.STOPPED
 
 
 @pytest.mark.parametrize(

@@ -206,7 +206,9 @@ def test_without_localisation_it_is_nowhere() -> None:
 def test_localisation_that_was_there_before_counts_from_the_first_odometry() -> None:
     machine = to_pose([CART], SETTINGS)
     early = MapPose(stamp=(50, 0), pose=on_map(4))
-    said = machine.step(100.0, [ServersFound(servers=(7,)), early, OdometryPose(stamp=(99, 0), pose=BEGAN)])
+    found = ServersFound(servers=(7,))
+    machine.step(100.0, [found, early, OdometryPose(stamp=(99, 0), pose=BEGAN)])
+    said = machine.step(100.4, [found, OdometryPose(stamp=(99, 4), pose=BEGAN)])
     assert [each.node for each in said if isinstance(each, Report)] == [4]
 
 

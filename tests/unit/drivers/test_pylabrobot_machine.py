@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from arboleda.adapters import pylabrobot as adapter
 from arboleda.drivers import MotionState, Report, Stop, StopMode
 from arboleda.drivers.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from arboleda.drivers.port import DriverError
@@ -158,9 +159,57 @@ def test_it_is_set_up_again_only_where_that_is_allowed() -> None:
 
 def test_a_setup_that_fails_is_told_and_not_repeated() -> None:
     bench = Bench()
-    bench.step(Closed(why="no such port"))
-    assert "no such port; setup is not called again" in str(bench.report.lost)
+    out = bench.step(Closed(why="no such port"))
+    assert any(isinstance(each, Close) for each in out), "what it began is left"
+    told = str(bench.report.lost)
+    assert "no such port; setup is not called again by itself" in told
+    assert "then stop hotplate and clear hotplate, which calls it" in told
     assert bench.step(after=100.0) == []
+
+
+def test_a_setup_that_has_failed_is_called_again_once_a_person_clears_the_device() -> None:
+    bench = Bench()
+    bench.step(Closed(why="no such port"))
+    assert not any(isinstance(each, Open) for each in bench.stop(StopMode.LATCH))
+    assert any(isinstance(each, Open) for each in bench.stop(StopMode.CLEAR))
+    assert not any(isinstance(each, Open) for each in bench.stop(StopMode.CLEAR)), "it is under way"
+    bench.step(Opened())
+    bench.looks(20.0)
+    assert bench.report.state is MotionState.STOPPED
+
+
+class Guard:
+    """A lock that says whether somebody has it."""
+
+    taken = False
+
+    def __enter__(self) -> None:
+        self.taken = True
+
+    def __exit__(self, *raised: object) -> None:
+        self.taken = False
+
+
+class Made:
+    """A machine that is set up at once."""
+
+    async def setup(self) -> None: ...
+
+
+def test_machines_are_made_one_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    guard, seen = Guard(), list[bool]()
+    monkeypatch.setattr(adapter, "MAKING", guard)
+
+    def make() -> Made:
+        seen.append(guard.taken)
+        return Made()
+
+    said: list[object] = []
+    settings = SHAKER.driver.settings if SHAKER.driver else None
+    assert isinstance(settings, MachineMapping)
+    with pytest.raises(StopIteration):
+        adapter.Bench(make, settings, said.append).open().send(None)
+    assert (seen, guard.taken, said) == ([True], False, [Opened()])
 
 
 def test_what_is_halted_is_never_done() -> None:

@@ -190,13 +190,83 @@ def test_another_program_that_moves_a_servo_is_noticed() -> None:
     assert rig.told("failure") == "another_goal of shoulder_pan"
 
 
-@pytest.mark.parametrize("fault", ["pushed", "stall"])
-def test_an_arm_that_does_not_get_there_ends_where_it_stands(fault: str) -> None:
+def test_an_arm_that_does_not_get_there_ends_where_it_stands() -> None:
     """The plant finds it there: the move has failed."""
-    rig = ServoRig("feetech", fault)
+    rig = ServoRig("feetech", "pushed")
     id = rig.move(*LEFT)
     end = rig.until(done=id)
     assert abs(degrees(end)[0] - LEFT[0]) > 10
+
+
+@MAKERS
+def test_a_joint_that_stands_still_while_it_should_move_is_a_fault_and_home_leads_out(maker: str) -> None:
+    rig = ServoRig(maker, "stall")
+    rig.move(*LEFT)
+    assert rig.told("failure") == "stands_still of shoulder_pan"
+    rig.until(state=MotionState.FAULT)
+    assert ("health", "stands_still") in (rig.report.facts or ())
+    rig.until(done=rig.home(), state=STILL, homed=True)
+    assert rig.servos.servos[1].goal == pytest.approx(rig.servos.servos[1].at, abs=1), "it presses no more"
+
+
+def third_goes_far(maker: str) -> ServoRig:
+    """A rig whose third joint repeats its position from the middle of a way of 80 degrees on."""
+    rig = ServoRig(maker)
+    rig.move(0, 0, 80, 0, 0)
+    rig.wait(0.6)
+    rig.faults.switch("old_position", on=True)
+    return rig
+
+
+@MAKERS
+def test_a_position_that_is_repeated_under_way_is_a_fault_within_half_a_second(maker: str) -> None:
+    rig = third_goes_far(maker)
+    rig.wait(0.5)
+    assert rig.report.failure == "stands_still of elbow_flex"
+    assert rig.report.state is MotionState.FAULT
+
+
+@MAKERS
+@pytest.mark.parametrize("after_s", [0.15, 0.25, 1.2])
+def test_a_stop_throws_no_joint_back_to_an_old_position(maker: str, after_s: float) -> None:
+    rig = third_goes_far(maker)
+    rig.wait(after_s)
+    elbow = rig.servos.servos[3]
+    there, way = elbow.at, math.copysign(1, elbow.goal - elbow.start)
+    rig.stop()
+    rig.wait(1.0)
+    assert way * (elbow.at - there) > -40, "nor faster than it came"
+    assert rig.report.state is not STILL
+    rig.faults.switch("old_position", on=False)
+    rig.until(state=STILL)
+    assert elbow.goal == pytest.approx(elbow.at, abs=1)
+
+
+@MAKERS
+def test_a_stop_is_held_at_the_speed_of_the_move(maker: str) -> None:
+    rig = ServoRig(maker)
+    rig.move(*LEFT)
+    rig.wait(0.6)
+    first = rig.servos.servos[1]
+    told = first.get(first.layout.speed)
+    rig.stop()
+    rig.wait(0.1)
+    assert first.get(first.layout.speed) == told
+
+
+def test_a_servo_that_is_silent_as_a_stop_comes_holds_once_it_is_heard() -> None:
+    rig = ServoRig()
+    rig.move(0, 0, 80, 0, 0)
+    rig.wait(0.6)
+    rig.faults.switch("mute_servo", on=True)
+    rig.wait(0.2)
+    elbow = rig.servos.servos[3]
+    there = elbow.at
+    rig.stop()
+    rig.wait(0.1)
+    rig.faults.switch("mute_servo", on=False)
+    rig.until(state=STILL)
+    assert elbow.at == pytest.approx(there, abs=60)
 
 
 def test_a_hand_that_moves_an_arm_without_torque_is_seen() -> None:

@@ -29,9 +29,11 @@ from arboleda.drivers.supervisor import (
 )
 from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.messages import Report, Undelivered
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.plant_model import Evidence, Link, MotionState
 from arboleda.model.sentence import OWN
+from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.board import SILENCE, SILENCE_US
+from arboleda.testing.plants import shipped
 
 from ..kinds.station import STATION, plant
 
@@ -228,6 +230,75 @@ def test_a_latch_is_told_again_to_who_comes_back_or_boots(driven: Driven) -> Non
     driven.gives(CLEAR)
     driven.step(after=STALE_S)
     assert len(driven.says()) == 1
+
+
+def test_a_clear_reaches_a_driver_whose_device_is_not_heard_and_is_refused_all_the_same() -> None:
+    driven = Driven()
+    driven.step()
+    refused, give = driven.asks(CLEAR)
+    assert isinstance(refused, Report) and refused.refusal == "no_link"
+    told = replace(CLEAR, id="")
+    assert give == driven.given(told), "its driver may wait for the word of a person"
+    unsent = SendResult(at=driven.now, life=driven.life, command=told, error=OWN(text="not connected"))
+    assert driven.step(unsent) == []
+
+
+class DrivenArm:
+    """A supervisor with one driver of an arm, which says in what state it is."""
+
+    def __init__(self) -> None:
+        self.machine = Supervisor([("ur", [ARM])], epoch=EPOCH, stale_after_s=STALE_S)
+        self.now, self.life = 10.0, Life(driver=0, number=1)
+        self.machine.step(self.now, [])
+
+    def says(self, state: MotionState | None, **said: object) -> list[Command]:
+        """The arm says this; returns what the driver is given for it."""
+        report = Report(at=self.now, robot=ARM.name, state=state, **said)  # type: ignore[arg-type]
+        out = self.machine.step(self.now, [DriverOutput(at=self.now, life=self.life, report=report)])
+        return [each.command for each in out if isinstance(each, Give)]
+
+    def breaks_down(self) -> None:
+        self.machine.step(self.now, [DriverCrash(at=self.now, life=self.life, error="ValueError: no")])
+        self.now += FIRST_RETRY_S
+        (begin,) = self.machine.step(self.now, [])
+        assert isinstance(begin, Begin)
+        self.life = begin.life
+
+
+ARM = replace(StorageLayout(shipped("sis_c").cells[0]).arm, link=Link.DRIVER, evidence=Evidence.IDS)
+ARM_HALT = Stop(id="", robot=ARM.name, mode=StopMode.HALT)
+
+
+def test_an_arm_that_moves_as_it_is_heard_first_is_halted_once() -> None:
+    arm = DrivenArm()
+    assert arm.says(None) == [], "nobody knows yet"
+    assert arm.says(MotionState.MOVING) == [ARM_HALT]
+    assert arm.says(MotionState.MOVING) == []
+
+
+def test_an_arm_that_somebody_else_moves_later_is_left_alone() -> None:
+    arm = DrivenArm()
+    assert arm.says(MotionState.STOPPED) == arm.says(MotionState.MOVING) == []
+
+
+def test_an_arm_that_moves_as_its_link_comes_back_is_halted() -> None:
+    arm = DrivenArm()
+    arm.says(MotionState.STOPPED)
+    arm.says(MotionState.NO_LINK, lost=OWN(text="the cable is out"))
+    assert arm.says(MotionState.MOVING) == [ARM_HALT]
+
+
+def test_an_arm_that_moves_as_its_driver_was_made_anew_is_halted() -> None:
+    arm = DrivenArm()
+    arm.says(MotionState.STOPPED)
+    arm.breaks_down()
+    assert arm.says(MotionState.MOVING) == [ARM_HALT]
+
+
+def test_a_device_that_goes_nowhere_may_be_at_work_that_ends_by_itself() -> None:
+    driven = Driven()
+    driven.step()
+    assert len(driven.says(state=MotionState.MOVING)) == 1
 
 
 def test_an_answer_to_the_plants_own_repetition_is_passed_over(driven: Driven) -> None:

@@ -37,6 +37,9 @@ MISSING = "PyLabRobot is not installed, which it needs: pip install 'arboleda[py
 NO_LISTENING = "a machine of PyLabRobot is reached by its setup, which may move it; begin the plant to try it"
 END_S = 2.0  # for the machine's own end
 LONGEST_WAIT_S = 0.5
+MAKING = threading.Lock()
+"""Lock of the one place where PyLabRobot is imported, by what makes a machine. Its modules import each other
+in circles: two threads at once find modules that the other one has half made."""
 Post = Callable[[Event], None]
 Make = Callable[[], Any]
 
@@ -56,7 +59,8 @@ class Bench:
     async def open(self) -> None:
         """Make the machine, and set it up."""
         try:
-            self._machine = self._make()
+            with MAKING:
+                self._machine = self._make()
             await self._machine.setup(**self._settings.setup)
         except Exception as error:  # noqa: BLE001 - backends raise their own, and all mean: it is not there
             self._post(Closed(why=_text(error)))

@@ -20,7 +20,7 @@ HELD = Phrase("cell.held", "{cell} is held ({why}); {next}")
 HELD_STRANDED = Phrase("cell.held_stranded", "{cell} is held ({why}); {stranded}: {next}")
 BY_OPERATOR = Phrase("cell.by_operator", "by the operator")
 WAS_AT_WORK = Phrase("walk.at_work", "task {task} was at work when the plant stopped")
-STANDS_AT = Phrase("walk.stands_at", 'task {task} was at work when the plant stopped; it stands at "{step}"')
+AT_STEP = Phrase("walk.stands_at", 'task {task} was at work when the plant stopped, at its step "{step}"')
 FOUND = Phrase(
     "walk.found",
     "{cell}: {found}; resume {cell} goes on if its devices prove what they did, abandon {cell} gives it up",
@@ -100,7 +100,7 @@ def _at_work(run: CellRun) -> Sentence | None:
     if run.keeping.walk is None or run.task is None:
         return None
     step = step_of(run.tree)
-    return WAS_AT_WORK(task=run.task.id) if step is None else STANDS_AT(task=run.task.id, step=step)
+    return WAS_AT_WORK(task=run.task.id) if step is None else AT_STEP(task=run.task.id, step=step)
 
 
 def _next(run: CellRun) -> Sentence:

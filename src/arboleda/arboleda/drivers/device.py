@@ -32,6 +32,7 @@ class DrivenDevice:
         self._known: OrderedDict[str, None] = OrderedDict()  # the ids of the commands that it was given
         self._work: Work | None = None  # the work that may still move it
         self._unwatched = False  # it was halted for want of a plant
+        self._unseen = True  # it has not said since its link is up whether it moves
         self._latched = False
         self._why: Sentence | None = None  # the reason for a missing link
 
@@ -96,6 +97,7 @@ class DrivenDevice:
     def no_link(self, at: float, why: Sentence) -> Report:
         """The report that there is no link, even if that is known."""
         self.up, self.stale_at, self._work, self._why = False, math.inf, None, why
+        self._unseen = True
         return self._stamped(Report(at=at, robot=self.robot.name, state=MotionState.NO_LINK, lost=why))
 
     def is_late(self, report: Report, now: float) -> bool:
@@ -103,9 +105,11 @@ class DrivenDevice:
         return report.at < self._reported_at or now - report.at > self._longest_s
 
     def hear(self, report: Report) -> tuple[Report, Stop | None]:
-        """The report for the plant, and a stop to send once more if the device may have forgotten its latch.
+        """The report for the plant, and a stop to send because of it; None for no stop.
 
-        One that comes back, or has booted, may have forgotten its latch; the operator has not.
+        A device that comes back, or has booted, may have forgotten its latch; the operator has not. A robot
+        that moves as its link comes up does what nobody of this start waits for: its driver may have been
+        begun anew since, and know nothing of that work.
         """
         booted = report.boot_id is not None and report.boot_id != self._boot_id
         returned = booted or not self.up
@@ -114,9 +118,20 @@ class DrivenDevice:
         ended = (report.done, report.rejected, report.failed)
         if booted or (self._work is not None and self._work.id in ended):
             self._work = None
-        again = returned and self._latched and self.robot.has_stop
-        stop = Stop(id="", robot=self.robot.name, mode=StopMode.LATCH) if again else None
+        strays = self._strays(report)
+        mode = StopMode.LATCH if returned and self._latched else StopMode.HALT if strays else None
+        stop = Stop(id="", robot=self.robot.name, mode=mode) if mode and self.robot.has_stop else None
         return self._stamped(self._of_ours(report)), stop
+
+    def _strays(self, report: Report) -> bool:
+        """True for a robot that moves as its link comes up.
+
+        A device that goes nowhere may do work that has to end by itself, or switch.
+        """
+        if report.state is None:
+            return False
+        unseen, self._unseen = self._unseen, False
+        return unseen and self._work is None and self.robot.goes and report.state is MotionState.MOVING
 
     @property
     def _can_stop(self) -> bool:

@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from arboleda.model.commands import Command, Stop
+from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.messages import Report, Undelivered
 from arboleda.model.plant_model import MotionState, Robot
 from arboleda.model.sentence import Phrase, Sentence
@@ -179,7 +179,13 @@ class SupervisedDriver:
         if device.repeated(command):
             return []
         word = device.refusal(command)
-        return [device.refuse(at, command, word)] if word else [self._give(at, device, command)]
+        if word is None:
+            return [self._give(at, device, command)]
+        refused: list[Message] = [device.refuse(at, command, word)]
+        is_clear = isinstance(command, Stop) and command.mode is StopMode.CLEAR
+        if is_clear and not device.up and self.begin_at == math.inf:
+            refused.append(self._give(at, device, replace(command, id="")))  # it may wait for a person's word
+        return refused
 
     def taken(self, event: SendResult) -> list[Message]:
         """Note that the driver came back from `send`."""
@@ -189,6 +195,8 @@ class SupervisedDriver:
         if event.error is None:
             return []
         name = event.command.robot
+        if not event.command.id and not event.broken:
+            return []  # the plant has not asked for it
         why = NOT_SENT(driver=self.name, error=event.error)
         news: list[Message] = [Undelivered(at=event.at, id=event.command.id, robot=name, sentence=why)]
         return [*news, *(self.devices[name].lose(event.at, why) if event.broken else [])]

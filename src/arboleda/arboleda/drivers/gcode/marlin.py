@@ -89,6 +89,7 @@ class MarlinMachine(Machine):
         self._unanswered: deque[str] = deque()  # lines without an answer
         self._number = 0
         self._has_name = self._has_parser = self._is_homed = False
+        self._moves_on = False  # it is at lines that nobody sent on this connection
         self._position: tuple[float, ...] | None = None
         self._place: Place | None = None  # of the answer that is under way
         self._refusal = self._trouble = ""
@@ -107,7 +108,7 @@ class MarlinMachine(Machine):
 
     @property
     def _at_work(self) -> bool:
-        return self._work is not None or self._open_halt is not None
+        return self._work is not None or self._open_halt is not None or self._moves_on
 
     def _ask(self, line: str) -> None:
         self._unanswered.append(line)
@@ -220,6 +221,8 @@ class MarlinMachine(Machine):
 
         Then it divides the move into pieces. M410 drops those that wait, and Marlin goes on with the others.
         """
+        if self._position is None and not self._trouble:
+            self._moves_on = self._is_heard = self._news = True
         divides = word == "processing" and bool(self._unanswered) and self._unanswered[0].startswith("G1")
         if not divides or self._open_halt is Halt.KILL:
             return
@@ -298,7 +301,7 @@ class MarlinMachine(Machine):
         self._position, work = position, self._work
         if self._open_halt is not None and self._unanswered:
             return  # the stop came after this question
-        self._is_heard = True
+        self._is_heard, self._moves_on = True, False
         if self._open_halt is not None:
             self._end_halt()
         elif isinstance(work, Homing) and work.is_answered:
@@ -351,7 +354,7 @@ class MarlinMachine(Machine):
 
     @property
     def _state(self) -> MotionState:
-        if self._open_halt is not None or isinstance(self._work, Move):
+        if self._open_halt is not None or isinstance(self._work, Move) or self._moves_on:
             return MotionState.MOVING
         if self._trouble:
             return MotionState.FAULT

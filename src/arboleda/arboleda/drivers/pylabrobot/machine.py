@@ -110,6 +110,7 @@ class Machine:
             self._boot += 1
             self._receipts = {}
         elif isinstance(event, Closed):
+            self._out.append(Close())
             self._shut(now, event.why)
         elif isinstance(event, Looked | LookFailed):
             if self._open and event.number == self._looks:
@@ -142,6 +143,11 @@ class Machine:
     # The link.
 
     @property
+    def _waits_for_person(self) -> bool:
+        """True where its setup has failed, and is called again once a person says so."""
+        return not self._open and self._open_at == self._open_until == math.inf
+
+    @property
     def _is_looking(self) -> bool:
         return self._looking_since < math.inf
 
@@ -152,16 +158,15 @@ class Machine:
 
     def _shut(self, now: float, why: str) -> None:
         """Note that the machine could not be set up, or is gone."""
-        again = self._settings.setup_again
+        name, again = self._device.name, self._settings.setup_again
         hint = (
-            ""
-            if again
-            else "; setup is not called again, as it may move: see to it, then start the plant anew"
+            f"; setup is not called again by itself, as it may move: see to it, then stop {name} and "
+            f"clear {name}, which calls it"
         )
         self._forget(now)
         self._open, self._open_until = False, math.inf
         self._open_at = now + AGAIN_S if again else math.inf
-        self._say_lost(now, why + hint)
+        self._say_lost(now, why if again else why + hint)
 
     def _lose(self, now: float, why: str, *, gone: bool = True) -> None:
         """Report silence; a machine that is gone is made anew where that is allowed."""
@@ -222,6 +227,8 @@ class Machine:
 
     def _command(self, now: float, command: Command) -> None:
         if not self._up:
+            if self._waits_for_person and isinstance(command, Stop) and command.mode is StopMode.CLEAR:
+                self._open_at = now
             self._out.append(CommandNotSent(why=f"{self._settings.peer} is not there"))
         elif isinstance(command, Stop):
             self._stop(now, command)

@@ -31,6 +31,8 @@ class GoalHistory:
         self._done: GoalId | None = None
         self._is_ours = False  # True once the server took a goal of this start
         self._foreign: bytes | None = None  # the id of the last goal while that is somebody else's
+        self.has_earlier_goal = False  # a goal has no end that this start neither sent nor cancelled
+        self._looks_back = True
 
     @property
     def receipt(self) -> Receipt | None:
@@ -74,6 +76,7 @@ class GoalHistory:
         sent = self._sent.pop(key, None)
         if accepted and sent is not None:
             self._accepted, self._is_ours, self._foreign = sent, True, None
+            self.leave_behind()
 
     def end(self) -> None:
         """The command whose goal was taken last has ended well."""
@@ -84,9 +87,15 @@ class GoalHistory:
         self._accepted = self._done = None
         self._sent.clear()
         self._foreign, self._is_ours = None, False
+        self.leave_behind()
+
+    def leave_behind(self) -> None:
+        """What the server had before is cancelled, or replaced: it may list that for a while."""
+        self._looks_back = self.has_earlier_goal = False
 
     def list(self, goals: Sequence[ListedGoal]) -> None:
         """Take the server's list of goals, in any order."""
+        self.has_earlier_goal = self._looks_back and any(each.status is None for each in goals)
         if not goals:
             return
         newest = max(goals, key=lambda each: each.stamp)

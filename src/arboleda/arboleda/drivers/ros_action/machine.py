@@ -28,7 +28,7 @@ from .events import (
     Status,
     UnusableMessage,
 )
-from .goal import Goal
+from .goal import SETTLE_S, Goal
 from .goal_history import GoalHistory
 from .health import Call, CallAnswer, Health, HealthReading, HealthWatch
 from .mover import Mover, NoGoal
@@ -59,7 +59,7 @@ class Machine:
         self._stop_id = ""
         self._latched = False
         self._ids: dict[str, str] = {}
-        self._has_measurement = False  # True once there was a measurement
+        self._measured_at = math.inf  # time of the first measurement
         self._news = False
         self._reported_at = -math.inf
 
@@ -72,7 +72,8 @@ class Machine:
             self._lose(now, why)
         else:
             self._pass_time(now)
-            if self._news or now >= self._reported_at + REPORT_S:
+            due = self._news or now >= self._reported_at + REPORT_S
+            if due and now >= self._measured_at + SETTLE_S:  # before, nobody knows whether the device rests
                 self._out.append(self._report(now))
         out, self._out = self._out, []
         return out
@@ -187,7 +188,7 @@ class Machine:
     def _see(self, now: float, measurement: Measurement) -> None:
         if not self._mover.see(now, measurement):
             return
-        self._news, self._has_measurement = self._news or not self._has_measurement, True
+        self._measured_at = min(self._measured_at, now)
         if self._homing is not None and self._health.is_well:
             self._end_homing()
 
@@ -317,6 +318,7 @@ class Machine:
             self._stop_id = ""
             return  # repeated after ANSWER_S
         self._cancel_at, self._cancelled_at = None, now
+        self._history.leave_behind()
         self._tell(accepted=self._stop_id)
         self._stop_id = ""
 
@@ -340,7 +342,10 @@ class Machine:
             self._tell(rejected=id, refusal=word)
 
     def _state(self, now: float) -> MotionState:
-        if self._goal is not None or self._cancel_at is not None or not self._mover.rests(now):
+        at_work = self._goal is not None or self._cancel_at is not None
+        # A device that waits at an obstacle rests, and goes on by itself; a grip may never end.
+        goes_on = self._history.has_earlier_goal and not self._mover.replaces
+        if at_work or goes_on or not self._mover.rests(now):
             return MotionState.MOVING
         if self._latched:
             return MotionState.STOP_LATCHED

@@ -22,12 +22,14 @@ from ..link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from ..port import lost
 from ..stream import Event, Message, Write
 from .packets import Packet, PacketReader
+from .position_watch import Plan, PositionWatch
 from .servos import MAKERS, TICKS, Goal, Reading, read, reboot
 from .settings import GRIPPER, Settings
 from .work import (
     NOT_TAKEN,
     SETTLE_S,
     STALL_S,
+    STANDS_STILL,
     TAKE_S,
     TORQUE_OFF,
     Look,
@@ -44,6 +46,7 @@ BOOT_S = 2.0  # one that boots is silent for a while
 REPORT_S = 0.1
 REST_TICKS = 3  # less than this is no motion
 HOLD_RAMP_S = 0.1  # the ramp of a hold
+LEAST_TICKS_S = 1.0  # speed of a servo that holds without a position: no servo takes 0 for standing
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,6 +86,7 @@ class Machine:
         self._maker = MAKERS[settings.protocol]
         self._joints = [servo.id for servo in settings.joints]
         self._ids = [servo.id for servo in settings.servos]
+        self._near = dict(zip(self._joints, map(_ticks, self._arm.tolerances), strict=True))
         names = [joint.name for joint in self._arm.joints]
         self._names = dict(zip(self._ids, [*names, GRIPPER], strict=False))
         self._out: list[Message] = []
@@ -106,7 +110,8 @@ class Machine:
         for event in events:
             self._take(now, event)
         self._pass_time(now)
-        if self._open and self._picture is not None and (self._news or now >= self._reported_at + REPORT_S):
+        due = self._news or now >= self._reported_at + REPORT_S
+        if self._open and self._picture is not None and self._is_judged and due:
             self._out.append(self._report(now, self._picture))
         out, self._out = self._out, []
         return out
@@ -121,6 +126,11 @@ class Machine:
         self._readings: dict[int, Reading] = {}  # of this round
         self._latest: dict[int, Reading] = {}
         self._picture: Picture | None = None
+        self._judged_at = math.inf  # from then on it is known whether the arm stands
+        self._is_judged = self._strays = False  # strays: nobody of this start told it to go where it goes
+        self._round_began_at = self._last_round_at = now
+        self._watch, self._holds_unheard = PositionWatch(), False
+        self._speeds: Mapping[int, float] = {}  # of the last move, ticks/s
         self._rest, self._grip_rest = Rest(), Rest()
         self._grip_rest_s = 0.0
         self._work: Move | Readying | None = None
@@ -189,6 +199,7 @@ class Machine:
     def _end_round(self, now: float) -> None:
         """Judge a round in which all servos answered, and begin the next one."""
         self._question_count, self._round_at = 0, now + self._settings.poll_s
+        self._last_round_at, self._round_began_at = self._round_began_at, now
         readings, self._readings = self._readings, {}
         if self._modes is not None:
             self._modes = None if len(self._modes) == len(self._ids) else self._modes
@@ -203,7 +214,7 @@ class Machine:
             self._give_up(now, silent)
 
     def _give_up(self, now: float, silent: Sequence[int]) -> None:
-        if isinstance(self._work, Move) and (held := self._held(set(self._joints) - set(silent))):
+        if isinstance(self._work, Move) and (held := self._held(self._joints)):
             self._out.append(Write(data=self._maker.goals(held)))
         if len(silent) == len(self._ids):
             self._close(now, "no servo answers; is the arm powered, and the baud rate right?")
@@ -250,19 +261,20 @@ class Machine:
         if refusal is not None:
             self._reject(command.id, refusal)
             return
-        near = dict(zip(self._joints, (_ticks(each) for each in self._arm.tolerances), strict=True))
-        self._work = Move(id=command.id, goals=goals, near=near, began_at=now)
-        self._stopping_at = None
-        self._writes.append(self._maker.goals(self._paced(goals, picture)))
+        self._work = Move(id=command.id, goals=goals, near=self._near, began_at=now)
+        self._stopping_at, self._strays = None, False
+        self._writes.append(self._maker.goals(self._paced(now, goals, picture)))
 
-    def _paced(self, goals: Mapping[int, int], picture: Picture) -> dict[int, Goal]:
+    def _paced(self, now: float, goals: Mapping[int, int], picture: Picture) -> dict[int, Goal]:
         """The goals with speeds by which all joints arrive together, at the share of the model's speed."""
         share = self._settings.model_speed_share
         rows = list(zip(self._joints, self._arm.joints, strict=True))
         ways = {id: abs(goals[id] - picture.readings[id].position) for id in self._joints}
         time_s = max(ways[id] / (_per_s(joint.speed) * share) for id, joint in rows)
         ramp_s = max(joint.speed * share / joint.acceleration for _, joint in rows)
-        speeds = {id: ways[id] / time_s if time_s > 0 else 1.0 for id in self._joints}
+        self._speeds = speeds = {id: ways[id] / time_s if time_s > 0 else 1.0 for id in self._joints}
+        begins_at = now + ramp_s / 2  # as if it had all of its speed at once
+        self._watch.begin(Plan(goals=goals, speeds=speeds, begins_at=begins_at, ends_at=begins_at + time_s))
         return {
             id: Goal(position=goals[id], speed=speed, acceleration=speed / ramp_s)
             for id, speed in speeds.items()
@@ -290,39 +302,64 @@ class Machine:
         if command.mode is StopMode.CLEAR:
             self._tell(accepted=command.id)
             return
-        self._work = None
         self._stop_id = command.id
         self._halt(now)
 
     def _halt(self, now: float) -> None:
-        """Give each joint the place where it is as its goal, before anything else that waits."""
+        """Have each joint hold where it is, before anything else that waits."""
+        self._holds_unheard = False
         held = self._held(self._joints)
+        self._watch.end()
         self._hold = {id: goal.position for id, goal in held.items()}
-        self._stopping_at, self._news = now, True
+        self._work, self._stopping_at, self._news, self._strays = None, now, True, False
         self._writes.clear()
         if held:
             self._writes.append(self._maker.goals(held))
 
-    def _held(self, ids: Iterable[int], *, without_torque: bool = False) -> dict[int, Goal]:
-        """The present positions of servos as their goals; one without torque has none."""
+    def _held(self, ids: Iterable[int]) -> dict[int, Goal]:
+        """The goals by which servos hold; a servo without torque has none.
+
+        Each holds at its position, to which it goes at the speed of the move. A servo whose position is older
+        than a round may be far from there by now: it keeps its goal, at the least speed that it has, until it
+        tells where it is.
+        """
+        held = {}
+        for id, reading in self._latest.items():
+            if id not in set(ids) or not reading.torque:
+                continue
+            is_heard, is_old = reading.at >= self._last_round_at, self._watch.is_old(id)
+            if is_heard and not is_old:
+                held[id] = self._goal(reading.position, self._speeds.get(id, self._usual_ticks_s))
+            else:
+                self._holds_unheard = self._holds_unheard or not is_heard
+                if is_old:
+                    self._watch.unknown.add(id)
+                goals = self._work.goals if isinstance(self._work, Move) else {}
+                held[id] = self._goal(goals.get(id, reading.goal), LEAST_TICKS_S)
+        return held
+
+    def _goal(self, position: int, speed: float) -> Goal:
         least, most = self._maker.positions
-        speed = _per_s(max(joint.speed for joint in self._arm.joints))
-        return {
-            id: Goal(
-                position=min(max(reading.position, least), most),
-                speed=speed,
-                acceleration=speed / HOLD_RAMP_S,
-            )
-            for id, reading in self._latest.items()
-            if id in set(ids) and (reading.torque or without_torque)
-        }
+        quick = _per_s(max(joint.speed for joint in self._arm.joints)) / HOLD_RAMP_S
+        return Goal(position=min(max(position, least), most), speed=speed, acceleration=quick)
+
+    @property
+    def _usual_ticks_s(self) -> float:
+        """The speed of a joint where no move of this connection has told another one."""
+        return _per_s(min(joint.speed for joint in self._arm.joints)) * self._settings.model_speed_share
 
     # What its servos show.
 
     def _look(self, now: float, readings: Mapping[int, Reading]) -> None:
         before = self._picture
         rest_s = self._rest.see(now, tuple(readings[id].position for id in self._joints))
-        picture = self._picture = Picture(readings=dict(readings), names=self._names, rest_s=rest_s)
+        returned = self._watch.see({id: readings[id] for id in self._joints})
+        picture = self._picture = Picture(
+            readings=dict(readings), names=self._names, rest_s=rest_s, stuck=self._watch.stuck()
+        )
+        if before is None:
+            self._judged_at, self._strays = now + SETTLE_S, self._is_away(picture)
+        self._is_judged = self._is_judged or now >= self._judged_at
         if self._settings.gripper is not None:
             grip = readings[self._settings.gripper.id]
             self._grip_rest_s = self._grip_rest.see(now, (grip.position,))
@@ -330,12 +367,19 @@ class Machine:
         if self._left_at_work:  # nobody waits for that work any more
             self._left_at_work = False
             self._halt(now)
+        elif (returned or self._holds_unheard) and self._work is None:
+            self._halt(now)  # now it is known where it is to hold
         self._see_hold(now, picture)
         if self._work is not None:
             self._go_on(now, self._work, self._work.look(now, picture), picture)
         if self._switching is not None:
             self._see_switch(now, self._switching, picture)
         self._news = self._news or before is None or before.trouble != picture.trouble
+
+    def _is_away(self, picture: Picture) -> bool:
+        """True where a joint with torque is not at its goal: it goes there, or would if it could."""
+        rows = ((picture.readings[id], near) for id, near in self._near.items())
+        return any(each.torque and abs(each.goal - each.position) > near for each, near in rows)
 
     def _see_boot(self, readings: Mapping[int, Reading]) -> None:
         booted = {id for id in self._marked if not readings[id].marked and not readings[id].torque}
@@ -356,7 +400,7 @@ class Machine:
         if self._stop_id:
             self._tell(accepted=self._stop_id)
             self._stop_id = ""
-        if picture.rest_s >= SETTLE_S:
+        if picture.rest_s >= SETTLE_S and not self._watch.awaits:
             self._stopping_at, self._news = None, True
 
     def _go_on(self, now: float, work: Move | Readying, look: Look, picture: Picture) -> None:
@@ -366,11 +410,9 @@ class Machine:
             self._work = None
             self._tell(done=work.id)
         elif look.refused is not None:
-            self._work = None
             self._reject(work.id, look.refused)
             self._halt(now)
         elif look.failed is not None:
-            self._work = None
             self._tell(failed=work.id, failure=look.failed)
             self._halt(now)
         elif isinstance(work, Readying):
@@ -382,7 +424,10 @@ class Machine:
             self._writes.extend(reboot(self._maker, id) for id in alarmed)
         if ready := [id for id in ids if id not in alarmed]:
             # Its goal first: with the one of before it would jump there.
-            self._writes.append(self._maker.goals(self._held(ready, without_torque=True)))
+            rows = {id: picture.readings[id].position for id in ready}
+            slow = {id: LEAST_TICKS_S if id in picture.stuck else self._usual_ticks_s for id in ready}
+            self._writes.append(self._maker.goals({id: self._goal(at, slow[id]) for id, at in rows.items()}))
+            self._watch.excuse(ready)
             self._writes.append(self._maker.torque(ready, on=True))
 
     def _see_switch(self, now: float, switching: Switching, picture: Picture) -> None:
@@ -399,7 +444,7 @@ class Machine:
         elif grip.goal != goal and now - switching.began_at > TAKE_S:
             refusal = NOT_TAKEN
         elif min(self._grip_rest_s, now - switching.began_at) >= STALL_S:
-            refusal = "stands_still"
+            refusal = STANDS_STILL
         else:
             return
         self._switching = None
@@ -425,11 +470,13 @@ class Machine:
 
     def _state(self, picture: Picture) -> MotionState:
         readying = isinstance(self._work, Readying)
-        if any(each.alarms for each in picture.readings.values()) and not readying:
+        in_fault = picture.stuck or any(each.alarms for each in picture.readings.values())
+        if in_fault and not readying:
             return MotionState.STOP_LATCHED if self._latched else MotionState.FAULT
         if readying or picture.trouble is not None:
             return MotionState.NOT_HOMED
-        if self._work is not None or self._stopping_at is not None or picture.rest_s < SETTLE_S:
+        at_work = self._work is not None or self._stopping_at is not None or self._strays
+        if at_work or picture.rest_s < SETTLE_S:
             return MotionState.MOVING
         return MotionState.STOP_LATCHED if self._latched else MotionState.STOPPED
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from .servos import Reading
@@ -14,16 +14,21 @@ STALL_S = 1.0  # one that stands for so long away from its goal gets no further
 STEP_S = 0.5  # between two tries to switch the torque of a servo on
 READY_S = 5.0
 TORQUE_OFF = "torque_off"
+STANDS_STILL = "stands_still"  # it should move, and tells the same position again and again
 NOT_TAKEN = "goal_not_taken"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Picture:
-    """Readings of all servos of one round; `rest_s` is how long the joints have stood, `names` of servos."""
+    """Readings of all servos of one round; `rest_s` is how long the joints have stood, `names` of servos.
+
+    `stuck`: servos that should have moved, and repeat an old position.
+    """
 
     readings: Mapping[int, Reading]
     names: Mapping[int, str]
     rest_s: float
+    stuck: Sequence[int] = ()
 
     @property
     def trouble(self) -> str | None:
@@ -31,6 +36,8 @@ class Picture:
         for id, reading in self.readings.items():
             if reading.alarms:
                 return f"{reading.alarms[0]} of {self.names[id]}"
+        if self.stuck:
+            return f"{STANDS_STILL} of {self.names[self.stuck[0]]}"
         return next(
             (f"{TORQUE_OFF} of {self.names[id]}" for id, each in self.readings.items() if not each.torque),
             None,
@@ -102,11 +109,9 @@ class Readying:
 
     def due(self, now: float, picture: Picture) -> list[int]:
         """The servos that are to be made ready now."""
-        found = [
-            id
-            for id, each in picture.readings.items()
-            if (each.alarms or not each.torque) and now - self.tried.get(id, -READY_S) >= STEP_S
-        ]
+        rows = picture.readings.items()
+        unready = [id for id, each in rows if each.alarms or not each.torque or id in picture.stuck]
+        found = [id for id in unready if now - self.tried.get(id, -READY_S) >= STEP_S]
         self.tried.update(dict.fromkeys(found, now))
         return found
 

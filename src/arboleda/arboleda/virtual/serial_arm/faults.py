@@ -13,6 +13,7 @@ FAULTS = {
     "unplugged": "the cable to the bus adapter is pulled while this is on",
     "broken_frames": "every third answer has a wrong check sum",
     "torn": "every third answer lacks its last two bytes",
+    "old_position": "the third servo repeats the position at which it was as this began",
     "noise": "stray bytes come before every answer",
     "echo": "the line echoes what is written",
     "late": "answers come 80 ms late",

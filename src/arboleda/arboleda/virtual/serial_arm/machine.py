@@ -207,7 +207,8 @@ class VirtualServos:
         for number, id in enumerate(self._ids):
             servo = self.servos[id]
             pushed = PUSH_TICKS if number == 0 and "pushed" in self.faults else 0
-            servo.put(self._layout.position, round(servo.at) + pushed)
+            if number != 2 or "old_position" not in self.faults:
+                servo.put(self._layout.position, round(servo.at) + pushed)
             servo.put(self._layout.volts, 45 if "low_voltage" in self.faults else 74)
 
     def _move(self, id: int, seconds: float) -> None:

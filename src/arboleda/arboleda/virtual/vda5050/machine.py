@@ -117,6 +117,11 @@ class VirtualAgv:
 
     # --- its connection ---
 
+    @property
+    def is_online(self) -> bool:
+        """True while the broker retains that it is there."""
+        return self._online
+
     def _join(self) -> list[Message]:
         off = "power_cycle" in self._faults
         away = off or "vanish" in self._faults
