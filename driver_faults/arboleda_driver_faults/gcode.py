@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from arboleda.drivers.gcode.dialects import machine
 from arboleda.drivers.gcode.settings import MM, Settings
@@ -24,6 +25,7 @@ NO_WORK = {Reason.DEVICE_FAULT, Reason.REJECTED, Reason.NOT_HOMED}
 NO_LINK = {Reason.LINK_LOST}
 GRBL_CAUSES: Causes = {
     "hard_limit": NO_WORK,
+    "soft_limit": NO_WORK,
     "door": {Reason.STOP_UNCONFIRMED, *NO_WORK},
     "hold_pressed": NO_WORK,
     "boot": {Reason.REBOOTED, *NO_LINK, *NO_WORK},
@@ -151,6 +153,22 @@ class GantryRig(Rig):
         if self._driver is None:
             return (0, 0)
         return (len(MOVE.findall(b"".join(self._driver.written))), self._driver.given)
+
+
+class LimpRig(GantryRig):
+    """Test with a gantry without switches, which does not lock itself when it boots."""
+
+    def __init__(self, example: PlantModel) -> None:
+        super().__init__(example)
+        self._settings = replace(self._settings, homing=False)
+
+    def _controller(self) -> VirtualGrbl:
+        self._grbl = VirtualGrbl(self.faults, homed=True)
+        self._grbl.step(0.0, b"$22=0\n")
+        return self._grbl
+
+    def before_home(self) -> None:
+        self._grbl.push_to_count()
 
 
 class MoonrakerRig(GantryRig):

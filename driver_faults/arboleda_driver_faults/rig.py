@@ -102,6 +102,9 @@ class Rig(ABC):
     def place(self) -> Hashable | None:
         """The true place of the device and its load; None at a place that does not matter."""
 
+    def before_home(self) -> None:  # noqa: B027 - most devices find their reference by themselves
+        """Do at the device what a person has to do there before it may be said to be homed."""
+
     @abstractmethod
     def moves(self) -> tuple[int, int]:
         """The number of moves that the device was told, and of those that the driver was given."""
@@ -291,6 +294,8 @@ class World:
                 if advice.do is Hand.REFERENCE and not self.rig.tells_homing:
                     continue  # the plant has to home it, which is the next advice
             else:
+                if advice.do is Verb.HOME:
+                    self.rig.before_home()
                 request = OperatorRequest(
                     at=self.now, verb=advice.do, scope=advice.scope, by_hand=advice.by_hand
                 )

@@ -42,6 +42,11 @@ class Loopback:
         self._settle()
         return next((each.why for each in out if isinstance(each, CommandNotSent)), None)
 
+    def hear(self, data: bytes) -> None:
+        """Have the driver hear bytes that the virtual device did not say."""
+        self._to_driver.append(Received(data=data))
+        self._settle()
+
     def pass_time(self, now: float) -> None:
         """Let both do everything due by now."""
         self.now = now

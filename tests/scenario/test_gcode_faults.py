@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.drivers.gcode import grbl, marlin, moonraker, moonraker_work
+from arboleda.drivers.gcode.grbl_book import Book
 from arboleda.drivers.gcode.grbl_lines import Status
 from arboleda.kinds.joints.motion import JointMotion
 from arboleda.plant_file.loader import load
@@ -21,6 +22,7 @@ from arboleda_driver_faults.gcode import (
     MARLIN_CAUSES,
     MOONRAKER_CAUSES,
     GantryRig,
+    LimpRig,
     MarlinRig,
     MoonrakerRig,
 )
@@ -30,6 +32,7 @@ from ..lengths import sample
 
 EXAMPLES = Path(__file__).parents[2] / "examples/gantry"
 GRBL = partial(GantryRig, load(EXAMPLES / "bench.yaml"))
+LIMP = partial(LimpRig, load(EXAMPLES / "bench.yaml"))
 MARLIN = partial(MarlinRig, load(EXAMPLES / "marlin.yaml"))
 MOONRAKER = partial(MoonrakerRig, load(EXAMPLES / "moonraker.yaml"))
 SEEDS = 8
@@ -41,7 +44,7 @@ def breaches(seed: int, *names: str, tasks: int = TASKS, rig: Callable[[], Rig] 
 
 
 @pytest.mark.sampled(6)
-@pytest.mark.parametrize("rig", [GRBL, MARLIN, MOONRAKER])
+@pytest.mark.parametrize("rig", [GRBL, LIMP, MARLIN, MOONRAKER])
 @pytest.mark.parametrize("seed", sample(range(SEEDS), every=4))
 def test_no_false_success_no_hang_and_the_right_cause(seed: int, rig: Callable[[], Rig]) -> None:
     assert breaches(seed, rig=rig) == []
@@ -68,6 +71,12 @@ def test_every_fault_of_moonraker_by_itself(fault: str) -> None:
 def test_a_machine_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(JointMotion, "stands_at", lambda self, position, goal: True)
     assert any("false success" in each for seed in range(3) for each in breaches(seed, "lie", "short"))
+
+
+def test_a_place_that_is_believed_after_a_boot_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert [each for seed in range(4) for each in breaches(seed, "boot", rig=LIMP)] == []
+    monkeypatch.setattr(Book, "lose", Book.trust)
+    assert any("false success" in each for seed in range(4) for each in breaches(seed, "boot", rig=LIMP))
 
 
 def test_an_ok_that_is_an_end_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:

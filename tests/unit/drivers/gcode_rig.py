@@ -6,6 +6,7 @@ import itertools
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from arboleda.drivers.gcode.dialects import machine
@@ -17,7 +18,7 @@ from arboleda.model.plant_model import Robot
 from arboleda.plant_file.loader import load
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.gcode.faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
-from arboleda.virtual.gcode.grbl import VirtualGrbl
+from arboleda.virtual.gcode.grbl import BANNER, VirtualGrbl
 from arboleda.virtual.gcode.marlin import VirtualMarlin
 from arboleda.virtual.gcode.moonraker import VirtualMoonraker
 from arboleda_driver_faults.stream_loopback import Loopback
@@ -42,6 +43,8 @@ class GcodeRig(ABC):
         self.faults = Faults(self.known, on)
         self.robot, settings = gantry(self.example)
         settings = Settings(**{**vars(settings), **changes})  # type: ignore[arg-type]
+        if not settings.homing:
+            self.robot = replace(self.robot, home_at_start=False)
         self.reports: list[Report] = []
         driver = machine([self.robot], settings)
         self.line = Loopback(driver, self.controller(), self.reports.append, 100.0)
@@ -105,15 +108,33 @@ class GcodeRig(ABC):
 
 
 class GrblRig(GcodeRig):
-    """Machine with GRBL."""
+    """Machine with GRBL, greeting with `banner`; `homed`: it was homed before; `locks`: its homing is on."""
 
-    def __init__(self, *on: str, homed: bool = True, **changes: object) -> None:
-        self._homed = homed
+    def __init__(
+        self, *on: str, homed: bool = True, locks: bool = True, banner: str = BANNER, **changes: object
+    ) -> None:
+        self._homed, self._locks, self._banner = homed, locks, banner
         super().__init__(*on, **changes)
 
     def controller(self) -> VirtualGrbl:
         self.grbl = VirtualGrbl(self.faults, homed=self._homed)
+        self.grbl.banner = self._banner
+        self.grbl.step(0.0, b"$22=1\n" if self._locks else b"$22=0\n")
         return self.grbl
+
+    def says(self, line: str) -> None:
+        """Have it say a line."""
+        self.line.hear(line.encode("ascii") + b"\r\n")
+
+    def again(self, fault: str) -> Report:
+        """Have a fault come and go, and wait for what the plant hears after it."""
+        before = len(self.reports)
+        self.faults.switch(fault, on=True)
+        self.wait(0.5)
+        self.faults.switch(fault, on=False)
+        self.wait(3.0)
+        assert len(self.reports) > before
+        return self.report
 
 
 class MarlinRig(GcodeRig):

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.drivers.gcode.grbl_lines import Alarm, Answer, Banner, State, Status, parsed
+from arboleda.drivers.gcode.grbl_lines import (
+    Alarm,
+    Answer,
+    Banner,
+    Demand,
+    LockSign,
+    State,
+    Status,
+    parsed,
+)
 from arboleda.drivers.gcode.lines import LineReader
 from arboleda.drivers.gcode.settings import Settings
 from arboleda.drivers.port import DriverError
@@ -51,6 +60,14 @@ def test_a_locked_machine_is_homed() -> None:
     assert rig.written.endswith(b"$H\n")
 
 
+def test_a_homing_under_way_says_nothing_and_is_waited_for() -> None:
+    """GRBL answers no query before its homing has ended."""
+    rig = GrblRig(homed=False)
+    id = rig.home()
+    rig.until(done=id, homed=True)
+    assert all(each.lost is None for each in rig.reports)
+
+
 def test_a_machine_without_switches_is_unlocked() -> None:
     rig = GrblRig(homed=False, homing=False)
     rig.until(done=rig.home(), state=STILL)
@@ -67,8 +84,11 @@ def test_homing_of_a_ready_machine_shows_that_it_was_not() -> None:
 
 def test_homing_that_finds_no_switch_fails_by_its_alarm() -> None:
     rig = GrblRig("homing_fails", homed=False)
+    boot = rig.report.boot_id
     rig.home()
     assert rig.told("failure") == "homing_no_switch"
+    rig.wait(1.0)
+    assert (rig.report.state, rig.report.boot_id) == (MotionState.FAULT, boot)  # its banner is no boot
 
 
 def test_a_stop_holds_the_feed_and_empties_the_queue() -> None:
@@ -91,12 +111,13 @@ def test_a_stop_holds_the_feed_and_empties_the_queue() -> None:
 def test_a_stop_at_rest_and_while_homing() -> None:
     rig = GrblRig()
     rig.until(accepted=rig.stop(), state=STILL)
+    boot = rig.report.boot_id
     rig.home()
     rig.wait(0.3)
     id = rig.stop()
     assert rig.line.written[-1] == b"\x18"  # homing hears no feed hold
     rig.until(accepted=id)
-    rig.until(homed=False)
+    rig.until(homed=False, boot_id=boot)
 
 
 @pytest.mark.parametrize("fault", ["deaf", "no_reset"])
@@ -109,13 +130,27 @@ def test_a_stop_that_is_not_taken_is_not_confirmed(fault: str) -> None:
     assert rig.report.accepted != id and rig.report.state is MotionState.MOVING
 
 
-def test_an_alarm_fails_a_move_and_home_leads_out() -> None:
-    rig = GrblRig("hard_limit")
+@pytest.mark.parametrize("alarm", ["hard_limit", "soft_limit"])
+def test_an_alarm_after_which_it_hears_only_a_reset_fails_a_move_and_home_leads_out(alarm: str) -> None:
+    rig = GrblRig(alarm)
+    boot = rig.report.boot_id
     rig.move(-60, 0, 0)
-    assert rig.told("failure") == "hard_limit"
-    rig.until(state=MotionState.FAULT, homed=False)
-    assert ("health", "hard_limit") in (rig.report.facts or ())
+    assert rig.told("failure") == alarm
+    rig.wait(2.0)
+    assert (rig.report.state, rig.report.homed, rig.report.boot_id) == (MotionState.FAULT, False, boot)
+    assert ("health", alarm) in (rig.report.facts or ())
+    rig.faults.switch(alarm, on=False)
+    rig.until(done=rig.home(), state=STILL, homed=True)
+    assert all(each.lost is None for each in rig.reports)
+
+
+def test_one_that_waits_for_a_reset_when_the_line_is_opened_is_led_out() -> None:
+    rig = GrblRig("hard_limit", "no_reset")
+    rig.move(-60, 0, 0)
+    rig.until(state=MotionState.NO_LINK)
+    rig.faults.switch("no_reset", on=False)
     rig.faults.switch("hard_limit", on=False)
+    rig.until(state=MotionState.NOT_HOMED)
     rig.until(done=rig.home(), state=STILL, homed=True)
 
 
@@ -199,6 +234,19 @@ def test_the_zero_of_an_axis_may_be_anywhere() -> None:
         ("error:20", Answer(error=20)),
         ("ALARM:1", Alarm(code=1)),
         ("Grbl 1.1h ['$' for help]", Banner()),
+        ("GrblHAL 1.1f ['$' or '$HELP' for help]", Banner(firmware="GrblHAL")),
+        ("Grbl 3.9 [FluidNC v3.9.1 (esp32-wifi) '$' for help]", Banner(firmware="FluidNC")),
+        ("[MSG:Reset to continue]", Demand()),
+        ("[MSG:ERR: Reset to continue]", Demand()),
+        ("$22=1", LockSign(name="$22", locks=True)),
+        ("$22=2", LockSign(name="$22", locks=False)),
+        ("[OPT:V,15,128]", LockSign(name="OPT", locks=True)),
+        ("[OPT:VL,15,128]", LockSign(name="OPT", locks=False)),
+        ("[VER:1.1h.20190830:L]", LockSign(name="VER", locks=True)),
+        ("[VER:3.9 FluidNC v3.9.1 (esp32-wifi) :]", LockSign(name="VER", locks=False)),
+        ("<Tool|MPos:0.000|Bf:100,1023>", Status(state=State.TOOL, position=(0.0,))),
+        ("<Alarm:11|MPos:0.000|H:0,0>", Status(state=State.ALARM, part=11, position=(0.0,), homed=False)),
+        ("<Idle|MPos:0.000|H:1>", Status(state=State.IDLE, position=(0.0,), homed=True)),
         ("<Idle|MPos:0.000,-1.500,3.000|FS:0,0>", Status(state=State.IDLE, position=(0.0, -1.5, 3.0))),
         ("<Door:1|MPos:0.000,0.000|Pn:DX>", Status(state=State.DOOR, part=1, position=(0.0, 0.0), door=True)),
         ("<Run|WPos:0.000,0.000>", Status(state=State.RUN)),
@@ -207,7 +255,7 @@ def test_the_zero_of_an_axis_may_be_anywhere() -> None:
         ("<Sleepy|MPos:0.000>", None),
         ("<Idle|MPos:0.000,0.000", None),
         ("error:0", None),
-        ("[MSG:Reset to continue]", None),
+        ("[MSG:'$H'|'$X' to unlock]", None),
         ("okay", None),
         ("", None),
     ],

@@ -96,5 +96,11 @@ class Settings(StreamAddress):
         for joint in device.joints:
             if joint.unit != "m":
                 yield ("axes",), f"{joint.name} turns; this driver moves axes that slide"
+        if device.home_at_start and not self.homing:
+            yield (
+                ("homing",),
+                f"homing: false contradicts home_at_start: true of {device.name}: without switches only a "
+                "person knows where it stands; keep one of them",
+            )
         if device.evidence is not Evidence.IDS:
             yield (), f"{device.name} has evidence: {device.evidence.value}; this driver proves ids"

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 GRBL_FAULTS = {
-    "hard_limit": "whenever it moves a limit switch is hit: alarm 1, and it is locked until it is homed",
+    "hard_limit": "whenever it moves a limit switch is hit: alarm 1, and it says nothing until it is reset",
+    "soft_limit": "moves lead beyond its soft limits: alarm 2, and it says nothing until it is reset",
     "door": "its door is open while this is on; it stands, and goes on only when it is told to",
     "hold_pressed": "whenever it moves somebody presses feed hold at it",
     "boot": "its controller is reset while this is on: it is locked, and its place is lost",

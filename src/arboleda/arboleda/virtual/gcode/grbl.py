@@ -6,22 +6,30 @@ import math
 import re
 from collections.abc import Collection
 
-from .machine import Path, VirtualMachine, words_of
+from .machine import Path, Place, VirtualMachine, words_of
 
 BANNER = "Grbl 1.1h ['$' for help]"
+LOCKED_MESSAGE = "[MSG:'$H'|'$X' to unlock]"
+BUILD = ("[VER:1.1h.20190830:]", "[OPT:V,15,128]", "ok")
 STATUS_BYTE, HOLD_BYTE, RESUME_BYTE, RESET_BYTE = b"?", b"!", b"~", b"\x18"
 MODALS = re.compile(r"(G\d+(?:\.\d)?|[XYZF]-?\d+(?:\.\d+)?)*")
-HOLD_S, HOMING_S, LATE_S = 0.1, 1.0, 0.3
-HARD_LIMIT, NO_SWITCH, ABORT = 1, 9, 3
-UNKNOWN, LOCKED, NOT_IDLE, BEYOND = 20, 9, 8, 15
+HOLD_S, HOMING_S, LATE_S = 0.1, 1.5, 0.3
+HARD_LIMIT, SOFT_LIMIT, ABORT, HOMING_RESET, NO_SWITCH = 1, 2, 3, 6, 9
+CRITICAL = (HARD_LIMIT, SOFT_LIMIT)  # it hears nothing but a reset then, and says nothing
+UNKNOWN, HOMING_OFF, LOCKED, NOT_IDLE, DOOR, BEYOND = 20, 5, 9, 8, 13, 15
 
 
 class VirtualGrbl(VirtualMachine):
-    """Virtual machine with GRBL."""
+    """Virtual machine with GRBL; `place` is where it is, counted from where it was homed or has booted."""
+
+    banner = BANNER
 
     def __init__(self, faults: Collection[str] = (), *, homed: bool = False) -> None:
         super().__init__(faults)
         self._locked = not homed
+        self._is_critical = False
+        self._homing_on = True  # its setting $22, which outlives a boot
+        self._zero: Place = (0.0, 0.0, 0.0)  # the place where it counts 0
         self._rest = b""
         self._statuses = 0
         self._was_off = self._was_asleep = False
@@ -44,6 +52,14 @@ class VirtualGrbl(VirtualMachine):
             out += self._take(now, data[at : at + 1])
         return self._sent(out)
 
+    def push_to_count(self) -> None:
+        """Have somebody push its axes to where it counts that they are."""
+        self.place, self._zero = self._count, (0.0, 0.0, 0.0)
+
+    @property
+    def _count(self) -> Place:
+        return tuple(at - zero for at, zero in zip(self.place, self._zero, strict=True))
+
     # How time passes.
 
     def _stop_all(self) -> None:
@@ -59,9 +75,9 @@ class VirtualGrbl(VirtualMachine):
         off = "boot" in self.faults
         if self._was_off and not off:
             self._stop_all()
-            self._locked, self.place, self._rest = True, (0.0, 0.0, 0.0), b""
-            self._was_off = False
-            return ["", BANNER]
+            self._locked, self._zero, self._rest = self._homing_on, self.place, b""
+            self._was_off = self._is_critical = False
+            return self._greeting
         self._was_off = off
         self._was_asleep = self._was_asleep or "asleep" in self.faults
         if self._path is not None:
@@ -70,7 +86,7 @@ class VirtualGrbl(VirtualMachine):
             self._homes_at = math.inf
             if "homing_fails" in self.faults:
                 return self._alarm(NO_SWITCH)
-            self._locked, self.place = False, (0.0, 0.0, 0.0)
+            self._locked, self.place, self._zero = False, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
             return ["ok"]
         return []
 
@@ -95,14 +111,20 @@ class VirtualGrbl(VirtualMachine):
 
     def _alarm(self, code: int) -> list[str]:
         self._stop_all()
-        self._locked = True
-        return [f"ALARM:{code}", "[MSG:Reset to continue]"]
+        self._locked, self._is_critical = True, code in CRITICAL
+        return [f"ALARM:{code}", *(["[MSG:Reset to continue]"] if self._is_critical else self._greeting)]
+
+    @property
+    def _greeting(self) -> list[str]:
+        return ["", self.banner, *([LOCKED_MESSAGE] if self._locked else [])]
 
     # Bytes and lines.
 
     def _take(self, now: float, byte: bytes) -> list[str]:
+        if self._is_critical and byte != RESET_BYTE:
+            return []
         if byte == STATUS_BYTE:
-            return self._status(now)
+            return self._status(now) if self._homes_at == math.inf else []
         if byte == HOLD_BYTE:
             if "deaf" not in self.faults and not self._held and self._homes_at == math.inf:
                 self._hold_at = now + (HOLD_S if self._path is not None else 0.0)
@@ -128,36 +150,56 @@ class VirtualGrbl(VirtualMachine):
         moves = (
             self._path is not None and not (self._held and self._hold_at <= now)
         ) or self._homes_at < math.inf
+        code = HOMING_RESET if self._homes_at < math.inf else ABORT
         self._stop_all()
+        self._is_critical = False
         self._rest, self._was_asleep = b"", "asleep" in self.faults
-        if moves:
-            self._locked = True
-            return [f"ALARM:{ABORT}", "", BANNER]
-        return ["", BANNER]
+        self._locked = self._locked or moves
+        return [*([f"ALARM:{code}"] if moves else []), *self._greeting]
 
     def _line(self, now: float, line: str) -> list[str]:
         if not line:
             return ["ok"]
-        if line == "$H":
-            if self._path is not None or self._held:
-                return [f"error:{NOT_IDLE}"]
-            self._homes_at = now + HOMING_S
-            return []
-        if line == "$X":
-            self._locked = False
-            return ["ok"]
-        if line.startswith("$") or MODALS.fullmatch(line) is None:
+        if line.startswith("$"):
+            return self._system_line(now, line)
+        if MODALS.fullmatch(line) is None:
             return [f"error:{UNKNOWN}"]
         if self._locked:
             return [f"error:{LOCKED}"]
         if "error" in self.faults:
             return [f"error:{BEYOND}"]
-        self._move(now, words_of(line))
-        return [] if "no_ok" in self.faults else ["ok"]
+        return self._move(now, words_of(line))
 
-    def _move(self, now: float, words: dict[str, float]) -> None:
+    def _system_line(self, now: float, line: str) -> list[str]:
+        if line == "$H" and not self._homing_on:
+            return [f"error:{HOMING_OFF}"]
+        if line in ("$H", "$X") and "door" in self.faults:
+            return [f"error:{DOOR}"]
+        if self._path is not None or self._held:
+            return [f"error:{NOT_IDLE}"]
+        if line == "$H":
+            self._homes_at = now + HOMING_S
+            return []
+        if line == "$X":
+            was_locked, self._locked = self._locked, False
+            return ["[MSG:Caution: Unlocked]", "ok"] if was_locked else ["ok"]
+        if line in ("$22=0", "$22=1"):
+            self._homing_on = line.endswith("1")
+            return ["ok"]
+        if line == "$$":
+            return ["$10=1", f"$22={int(self._homing_on)}", "ok"]
+        return list(BUILD) if line == "$I" else [f"error:{UNKNOWN}"]
+
+    def _move(self, now: float, words: dict[str, float]) -> list[str]:
+        if "soft_limit" in self.faults:
+            return self._alarm(SOFT_LIMIT)
         late = LATE_S if "late_start" in self.faults else 0.0
-        self._path = self._path_to(now + late, self.place, words)
+        there = {
+            letter: at + (self._zero["XYZ".index(letter)] if letter in "XYZ" else 0.0)
+            for letter, at in words.items()
+        }
+        self._path = self._path_to(now + late, self.place, there)
+        return [] if "no_ok" in self.faults else ["ok"]
 
     @property
     def state(self) -> str:
@@ -176,7 +218,7 @@ class VirtualGrbl(VirtualMachine):
 
     def _status(self, now: float) -> list[str]:
         self._statuses += 1
-        place = ",".join(f"{each:.3f}" for each in self.place)
+        place = ",".join(f"{each:.3f}" for each in self._count)
         if "garbled" in self.faults and self._statuses % 2:
             place = place.replace(".", "?")
         name = "WPos" if "no_position" in self.faults else "MPos"
