@@ -142,7 +142,7 @@ def test_the_report_of_a_task_is_waited_for(client: Client, plant: Plant) -> Non
 def test_the_draft_is_edited_under_one_id(client: Client, plant: Any) -> None:
     steps: list[tuple[Any, ...]] = []
     state = {"file": "plant.yaml", "editor": None, "changes": [], "waiting": [], "undo": 0, "redo": 0}
-    state |= {"values": {}, "trees": [], "restart": [], "is_ours": True}
+    state |= {"values": {}, "trees": [], "restart": [], "is_ours": True, "set_aside": []}
     applied = {"problems": [], "warnings": [], "version": 3, "cells": {"lab": "now"}, "cancelled": []}
 
     class Desk:

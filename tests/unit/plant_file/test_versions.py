@@ -11,6 +11,8 @@ from arboleda.plant_file.changes import changes
 from arboleda.plant_file.versions import FACTS, FOLDER, Version, Versions, version_of, whole
 from arboleda.recorder.preamble import PlantFiles
 
+from ...cuts import each_cut
+
 AT = "2026-11-25T20:00:00+00:00"
 
 
@@ -95,3 +97,12 @@ def test_a_version_that_cannot_be_written_leaves_nothing(tmp_path: Path) -> None
     with pytest.raises(StartError, match="cannot be written"):
         Versions(tmp_path / "plant.yaml").keep(version(files()))
     assert [each.name for each in tmp_path.iterdir()] == [FOLDER]
+
+
+def test_a_version_that_is_forgotten_is_there_whole_or_not_at_all(tmp_path: Path) -> None:
+    plant = tmp_path / "plant" / "plant.yaml"
+    plant.parent.mkdir()
+    kept = Versions(plant)
+    first, second = kept.keep(version(files())), kept.keep(version(files(t_xml=b"<a/>")))
+    for cut in each_cut(plant.parent, lambda: kept.forget(second)):
+        assert kept.all() in ([first], [first, second]), cut

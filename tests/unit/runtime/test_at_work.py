@@ -7,6 +7,8 @@ from pathlib import Path
 from arboleda.recorder.preamble import PlantFiles
 from arboleda.runtime import at_work
 
+from ...cuts import each_cut
+
 AT = "2026-11-25T20:00:00+00:00"
 
 
@@ -29,3 +31,21 @@ def test_of_a_start_without_a_record_nothing_is_known(tmp_path: Path) -> None:
     at_work.keep(tmp_path, files(b"name: a"), AT)
     at_work.keep(tmp_path, None, AT)
     assert at_work.known(tmp_path) is None
+
+
+def test_a_kill_leaves_what_was_at_work_before_or_what_is_now(tmp_path: Path) -> None:
+    state = tmp_path / "state"
+    at_work.keep(state, files(b"name: a"), AT)
+    for cut in each_cut(state, lambda: at_work.keep(state, files(b"name: b"), AT)):
+        found = at_work.known(state)
+        if not cut.power:
+            assert found is not None and found.files.contents["p.yaml"] in (b"name: a", b"name: b"), cut
+
+
+def test_a_start_goes_on_after_a_power_cut(tmp_path: Path) -> None:
+    state = tmp_path / "state"
+    at_work.keep(state, files(b"name: a"), AT)
+    for cut in each_cut(state, lambda: at_work.keep(state, files(b"name: b"), AT)):
+        at_work.keep(state, files(b"name: c"), AT)
+        found = at_work.known(state)
+        assert found is not None and found.files.contents["p.yaml"] == b"name: c", cut

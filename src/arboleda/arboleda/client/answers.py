@@ -417,6 +417,7 @@ class DraftState:
     trees: list[str]
     restart: list[str]
     is_ours: bool
+    set_aside: list[str]
 
 
 @dataclass(frozen=True, kw_only=True)

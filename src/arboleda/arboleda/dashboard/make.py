@@ -68,7 +68,7 @@ def _draft(words: Words) -> None:
         tag("ul", id="make-changes", classes="make-lines")
         tag("h2", words("make.problems"))
         tag("ul", id="make-problems", classes="draw-marks")
-        for name in ("restart", "waiting"):
+        for name in ("set_aside", "restart", "waiting"):
             with tag("div", id=f"make-{name}-box", hidden="true"):
                 tag("h2", words(f"make.{name}"))
                 tag("ul", id=f"make-{name}", classes="make-lines")

@@ -32,6 +32,11 @@ class Grips:
     def __getitem__(self, holder: str) -> Grip:
         return self._grips[holder]
 
+    @property
+    def known(self) -> dict[str, Grip]:
+        """The grip of every holder now."""
+        return dict(self._grips)
+
     def set(self, holder: str, grip: Grip) -> bool:
         """Set the grip of a holder; True where that is new."""
         changed = self._grips[holder] is not grip

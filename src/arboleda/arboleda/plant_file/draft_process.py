@@ -39,7 +39,7 @@ class CheckProcess:
 
     def check(self, files: PlantFiles, plant_file: Path) -> CheckResult:
         """The same as `draft_check.check`, without the plant. It waits; ArboledaError if no answer comes."""
-        request = {"plant_file": str(plant_file), "plant": files.plant, "contents": _texts(files.contents)}
+        request = {"plant_file": str(plant_file), "plant": files.plant, "contents": texts(files.contents)}
         run = self._start()
         try:
             output, _ = run.communicate(json.dumps(request).encode(), AT_MOST_S)
@@ -79,9 +79,9 @@ def main() -> None:
     """Run as the other process: read the request, answer on the last line, end."""
     give_way(KINDNESS)
     request = json.load(sys.stdin)
-    files = PlantFiles(plant=request["plant"], contents=_bytes(request["contents"]))
+    files = PlantFiles(plant=request["plant"], contents=from_texts(request["contents"]))
     found = draft_check.check(files, Path(request["plant_file"]))
-    read = None if found.read is None else _texts(found.read.contents)
+    read = None if found.read is None else texts(found.read.contents)
     answer = {"problems": found.problems, "warnings": found.warnings, "read": read}
     print(f"\n{json.dumps(answer)}", flush=True)
     os._exit(0)  # whatever threads the plant's Python has started
@@ -95,15 +95,15 @@ def _answer(output: bytes, plant: str) -> CheckResult:
         return CheckResult(
             problems=tuple(found["problems"]),
             warnings=tuple(found["warnings"]),
-            read=None if read is None else PlantFiles(plant=plant, contents=_bytes(read)),
+            read=None if read is None else PlantFiles(plant=plant, contents=from_texts(read)),
         )
     except (ValueError, KeyError, IndexError, TypeError) as error:
         raise ArboledaError(NO_ANSWER) from error
 
 
-def _texts(contents: Mapping[str, bytes]) -> dict[str, str]:
+def texts(contents: Mapping[str, bytes]) -> dict[str, str]:
     return {name: each.decode("utf-8", "surrogateescape") for name, each in contents.items()}
 
 
-def _bytes(texts: Mapping[str, str]) -> dict[str, bytes]:
+def from_texts(texts: Mapping[str, str]) -> dict[str, bytes]:
     return {name: each.encode("utf-8", "surrogateescape") for name, each in texts.items()}

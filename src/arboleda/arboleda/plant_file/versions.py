@@ -12,6 +12,7 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
+from arboleda.host.files import sync_folder
 from arboleda.model.errors import ConfigError, StartError
 from arboleda.recorder.preamble import PlantFiles
 
@@ -97,6 +98,8 @@ class Versions:
         last = self.last()
         numbered = replace(version, number=1 if last is None else last.number + 1)
         write(self._folder / str(numbered.number).zfill(DIGITS), numbered)
+        for each in (self._folder.parent, self._plant_file.parent):  # which the first version may make
+            sync_folder(each)
         return numbered
 
     def bring_back(self, version: Version) -> None:
@@ -117,13 +120,24 @@ class Versions:
                 written[file] = before
         except StartError:
             _put_back(written)
-            mark.unlink(missing_ok=True)
+            self._unmark()
             raise
-        mark.unlink(missing_ok=True)
+        self._unmark()
+
+    def _unmark(self) -> None:
+        """Remove the mark for good: after a power cut it would write over what people edited since."""
+        mark = self._folder / MARK
+        if mark.exists():
+            mark.unlink(missing_ok=True)
+            sync_folder(self._folder)
 
     def forget(self, version: Version) -> None:
-        """Forget a version that was kept and never was in its place."""
-        shutil.rmtree(self._folder / str(version.number).zfill(DIGITS), ignore_errors=True)
+        """Forget a version that was kept and never was in its place; a kill leaves none of it or all."""
+        folder = self._folder / str(version.number).zfill(DIGITS)
+        gone = _aside(folder)
+        with suppress(OSError):
+            folder.rename(gone)
+        shutil.rmtree(gone, ignore_errors=True)
 
     def go_on(self) -> Version | None:
         """Write the rest of a version that was cut off in the middle of `bring_back`; None if none was."""
@@ -176,7 +190,7 @@ def write(folder: Path, version: Version, *, syncs: bool = True) -> None:
 
     Without `syncs` a power cut may take it.
     """
-    fresh = folder.with_name(f".{folder.name}.{os.getpid()}")
+    fresh = _aside(folder)
     facts = {
         "format": FORMAT,
         "number": version.number,
@@ -191,17 +205,44 @@ def write(folder: Path, version: Version, *, syncs: bool = True) -> None:
     try:
         shutil.rmtree(fresh, ignore_errors=True)
         for name, content in version.files.contents.items():
-            file = fresh / CONTENTS / _inside(name)
-            file.parent.mkdir(parents=True, exist_ok=True)
-            _write(file, content, syncs=syncs)
+            _write(fresh / CONTENTS / _inside(name), content, syncs=syncs)
         _write(fresh / FACTS, json.dumps(facts, indent=2, ensure_ascii=False).encode(), syncs=syncs)
-        fresh.rename(folder)
+        _put_in_place(fresh, folder, syncs=syncs)
     except OSError as error:
         shutil.rmtree(fresh, ignore_errors=True)
         raise StartError(f"{folder} cannot be written: {error.strerror or error}") from error
 
 
+def write_files(folder: Path, contents: Mapping[str, bytes]) -> None:
+    """Write files into a new folder, whole or not at all; StartError if the disk refuses."""
+    fresh = _aside(folder)
+    try:
+        shutil.rmtree(fresh, ignore_errors=True)
+        for name, content in contents.items():
+            _write(fresh / _inside(name), content)
+        _put_in_place(fresh, folder)
+    except OSError as error:
+        shutil.rmtree(fresh, ignore_errors=True)
+        raise StartError(f"{folder} cannot be written: {error.strerror or error}") from error
+
+
+def _put_in_place(fresh: Path, folder: Path, *, syncs: bool = True) -> None:
+    """Give a folder that is written its name."""
+    if syncs:
+        for each in (fresh, *filter(Path.is_dir, fresh.rglob("*"))):
+            sync_folder(each)
+    fresh.rename(folder)
+    if syncs:
+        sync_folder(folder.parent)
+
+
+def _aside(path: Path) -> Path:
+    """The name of a file or folder before it is whole, and of a folder that is being deleted."""
+    return path.with_name(f".{path.name}.{os.getpid()}")
+
+
 def _write(file: Path, content: bytes, *, syncs: bool = True) -> None:
+    file.parent.mkdir(parents=True, exist_ok=True)
     with file.open("wb") as opened:
         opened.write(content)
         opened.flush()
@@ -211,13 +252,13 @@ def _write(file: Path, content: bytes, *, syncs: bool = True) -> None:
 
 def _replace(file: Path, content: bytes) -> None:
     """Put another content into a file, whole; its mode stays."""
-    fresh = file.with_name(f".{file.name}.{os.getpid()}")
+    fresh = _aside(file)
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
         _write(fresh, content)
         if file.exists():
             shutil.copymode(file, fresh)
         fresh.replace(file)
+        sync_folder(file.parent)
     except OSError as error:
         fresh.unlink(missing_ok=True)
         raise StartError(f"{file} cannot be written: {error.strerror or error}") from error

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import shutil
+from contextlib import suppress
 from pathlib import Path
 
+from arboleda.model.errors import StartError
 from arboleda.plant_file import versions
 from arboleda.plant_file.versions import Version, version_of
 from arboleda.recorder.preamble import PlantFiles
@@ -27,5 +29,7 @@ def keep(state: Path, files: PlantFiles | None, at: str) -> None:
 
 def known(state: Path) -> Version | None:
     """The version at work in a plant, or the last one; None if none was kept."""
-    there = next((each for each in (state / FOLDER, state / FRESH) if each.is_dir()), None)
-    return None if there is None else versions.read(there)
+    for folder in (state / FRESH, state / FOLDER):  # of which a kill may have left one half deleted
+        with suppress(StartError):
+            return versions.read(folder)
+    return None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import shutil
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -13,7 +12,6 @@ from typing import Any, Protocol
 
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain, quoted
-from arboleda.plant_file import versions
 from arboleda.plant_file.changes import changes
 from arboleda.plant_file.draft import Draft, draft_of
 from arboleda.plant_file.draft_check import CheckResult, root_of
@@ -26,10 +24,10 @@ from arboleda.recorder.preamble import PlantFiles
 from arboleda.web.desks.draft import DraftApi, DraftRefused, Place, State
 
 from . import at_work
+from .draft_file import DraftFile
 from .plant_folder import NOT_OURS, PlantFolder
 
 LOG = logging.getLogger("arboleda.operators")
-FOLDER, OPENED, MEANT = "draft", "opened", "meant"
 UNKNOWN = "this plant does not keep what it was started with (record: off), so there is nothing to draft from"
 NOBODY = "nobody edits this draft; begin to edit it first"
 OTHER = "{name} edits this draft since {since}; take it over to edit it"
@@ -75,6 +73,7 @@ class DraftDesk(DraftApi):
     ) -> None:
         self._folder = folder
         self._state = state
+        self._file = DraftFile(state)
         self._process = process
         self._work_by = work_by
         self._writing = writing or threading.Lock()
@@ -212,10 +211,11 @@ class DraftDesk(DraftApi):
         with self._turns:
             self._must_edit(editor)
             try:
-                self._draft = step(self._opened())
+                draft = step(self._opened())
             except EditRefused as error:
                 raise DraftRefused(error.sentence) from error
-            self._save(MEANT, self._draft.files)
+            self._file.write(draft)
+            self._draft = draft
             return self._shown()
 
     def _must_edit(self, editor: str, *, owns: bool = True) -> None:
@@ -266,33 +266,31 @@ class DraftDesk(DraftApi):
             "trees": sorted(name for name in contents if name.endswith(ENDING)),
             "restart": needing_restart(draft.changes),
             "is_ours": self._folder.is_ours,
+            "set_aside": list(self._file.lost),
         }
 
     def _opened(self) -> Draft:
         """The draft that there is, in this process or from an earlier start; else a new one of the files, as
         they are now: what changes nothing is begun anew once they were changed elsewhere."""
         if self._draft is None:
-            base = self._saved(OPENED) or self._on_disk()
-            self._draft = replace(draft_of(base), files=self._saved(MEANT) or base)
+            self._draft = self._saved() or draft_of(self._on_disk())
         if self._draft.files == self._draft.base and self._draft.base != (now := self._on_disk()):
             self._close()
             self._draft = draft_of(now)
         return self._draft
 
     def _close(self) -> None:
+        self._file.remove()
         self._draft = None
-        shutil.rmtree(self._state / FOLDER, ignore_errors=True)
 
-    def _save(self, part: str, files: PlantFiles) -> None:
-        folder = self._state / FOLDER
-        if part == MEANT and not (folder / OPENED).is_dir() and self._draft is not None:
-            self._save(OPENED, self._draft.base)
-        shutil.rmtree(folder / part, ignore_errors=True)
-        versions.write(folder / part, version_of(files, at=_now()), syncs=False)
-
-    def _saved(self, part: str) -> PlantFiles | None:
-        folder = self._state / FOLDER / part
-        return versions.read(folder).files if folder.is_dir() else None
+    def _saved(self) -> Draft | None:
+        """The draft of an earlier start; None where the plant's files have become all that it was to change:
+        that start ended before it could forget the draft."""
+        saved = self._file.read()
+        if saved is not None and _is_in(saved, self._on_disk()):
+            self._file.remove()
+            return None
+        return saved
 
     def _started(self) -> Version:
         found = at_work.known(self._state)
@@ -314,6 +312,12 @@ class DraftDesk(DraftApi):
         except OSError as error:
             raise ArboledaError(f"{error.filename} cannot be read: {error.strerror}") from error
         return replace(files, contents=contents)
+
+
+def _is_in(draft: Draft, files: PlantFiles) -> bool:
+    """True where each file that a draft knows is as the draft has it; one that it removes is gone."""
+    names = {*draft.base.contents, *draft.files.contents}
+    return all(files.contents.get(name) == draft.files.contents.get(name) for name in names)
 
 
 def _now() -> str:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import shutil
 from pathlib import Path, PurePosixPath
 
 from arboleda.model.errors import StartError
 from arboleda.model.outside import quoted
 from arboleda.plant_file.draft import Draft, check_name
 from arboleda.plant_file.draft_check import root_of
-from arboleda.plant_file.versions import Version, Versions
+from arboleda.plant_file.versions import Version, Versions, write_files
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.web.desks.draft import DraftRefused
 
@@ -75,15 +74,11 @@ class PlantFolder:
         cannot be."""
         if self._own.exists():
             raise DraftRefused(THERE.format(file=self._own / at_work.files.plant))
-        fresh = self._own.with_name(f".{OWN}.{os.getpid()}")
         try:
-            shutil.rmtree(fresh, ignore_errors=True)
-            for name, content in (dict(at_work.files.contents) | self._others(at_work)).items():
-                (fresh / name).parent.mkdir(parents=True, exist_ok=True)
-                (fresh / name).write_bytes(content)
-            fresh.rename(self._own)
+            others = self._others(at_work)
         except OSError as error:
-            raise StartError(f"{self._own} cannot be written: {error.strerror or error}") from error
+            raise StartError(f"{error.filename} cannot be read: {error.strerror or error}") from error
+        write_files(self._own, {**at_work.files.contents, **others})
         self.file = self._own / at_work.files.plant
         return self.file
 

@@ -199,6 +199,7 @@ def replace_file(file: Path, content: str) -> None:
             opened.flush()
             os.fsync(opened.fileno())
         os.replace(fresh, file)
+        files.sync_folder(file.parent)
     except OSError:
         fresh.unlink(missing_ok=True)
         raise

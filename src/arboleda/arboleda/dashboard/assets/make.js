@@ -83,7 +83,7 @@ function drawn() {
   button("keep").disabled = button("discard").disabled = !state.changes.length;
   if (state.changes.length) tell("changes");
   else lines("changes", [words.make_no_change]);
-  for (const name of ["restart", "waiting"]) tell(name), (box(`${name}-box`).hidden = !state[name].length);
+  for (const name of ["set_aside", "restart", "waiting"]) tell(name), (box(`${name}-box`).hidden = !state[name].length);
   const now = state.changes.join("\n");
   if (now === checked) return;
   clearTimeout(timer);

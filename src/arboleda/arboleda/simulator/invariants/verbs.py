@@ -97,6 +97,8 @@ def _refused(look: Look, request: OperatorRequest) -> bool | None:
     record, verb, scope = look.record, request.verb, request.scope
     if verb not in (*CAN, *CANNOT, Verb.UNLOAD, Verb.OVERRIDE):
         return None
+    if verb is Verb.UNLOAD and _ended_a_grip(look):
+        return None
     if verb is Verb.UNLOAD:
         named = record.scopes.parts(request)
         return not any(
@@ -292,7 +294,15 @@ def _homed(look: Look, request: OperatorRequest) -> Iterator[str]:
         yield f"{[each.robot for each in sent]} move by themselves"
 
 
+def _ended_a_grip(look: Look) -> bool:
+    """True where a grip ended in this step: nobody knows whether that was before the verb or after it."""
+    ended = (sent.command for sent, _ in look.record.commands.moved if sent.state not in OPEN)
+    return any(isinstance(each, Switch) and each.grips is not None for each in ended)
+
+
 def _booked(look: Look, request: OperatorRequest) -> Iterator[str]:
+    if _ended_a_grip(look):
+        return
     named = with_common_places(look.record.scopes.parts(request), look.world.model.cells)
     for before in look.record.before_requests.cells:
         wanted = before.parts | named.get(before.name, {})

@@ -170,6 +170,9 @@ class PlacesTruth:
         self._robots = robots
         self._mistaken = mistaken
         self._released = released
+        self._before: dict[str, Grip] = {}  # by the books, before this step
+        self._grips: dict[str, Grip] = {}
+        self._seen: tuple[object, int] | None = None  # whose books, and which version of them
         self._cells_of: dict[str, list[CellPlaces]] = {}
         for places in self.cells.values():
             for robot in places.cell.robots:
@@ -180,6 +183,10 @@ class PlacesTruth:
         self.wrong = []
         if self.missed:
             self.missed = []
+        self._before = self._grips
+        effectors = self._world.plant.dispatcher.effectors
+        if self._seen != (effectors, effectors.version):
+            self._seen, self._grips = (effectors, effectors.version), effectors.grips.known
 
     def follow(self, changed: Iterable[RobotTruth]) -> None:
         """Take in what robots did in this step."""
@@ -234,9 +241,13 @@ class PlacesTruth:
             places.end()
 
     def _set(self, named: Mapping[str, Mapping[str, int]]) -> None:
+        """Take in how many parts are at places. In the middle of a grip nobody knows whether a person counted
+        that part: no report says whether the effector moved before the person looked.
+        """
         for name, parts in named.items():
             self.cells[name].set(parts)
-            self.cells[name].is_doubtful |= any(map(self._closes_or_opens, self.cells[name].tools))
+            was_in_grip = any(self._before.get(hand) is Grip.SWITCHING for hand in self.cells[name].hands)
+            self.cells[name].is_doubtful |= was_in_grip or self._is_in_grip(self.cells[name])
 
     def _is_of_others(self, hand: str, cell: Cell) -> bool:
         """True while another cell has a hand that it shares with this one."""
@@ -248,7 +259,7 @@ class PlacesTruth:
         return switching or any(map(self._closes_or_opens, places.tools))
 
     def _closes_or_opens(self, hand: str) -> bool:
-        """True in the middle of a grip: nobody knows whether a person counted that part, too."""
+        """True while a hand that is a device of its own closes or opens."""
         robot = self._robots.get(hand)
         return robot is not None and robot.body.next_change_us is not None
 

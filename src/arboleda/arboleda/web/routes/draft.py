@@ -94,6 +94,9 @@ class DraftState(ResponseModel):
     is_ours: bool = Field(
         description="False where its files cannot be changed before they are made one's own."
     )
+    set_aside: list[str] = Field(
+        description="What of an earlier draft could not be read, and where it is now."
+    )
 
 
 class DraftCheck(ResponseModel):
