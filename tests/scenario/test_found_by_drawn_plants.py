@@ -38,6 +38,23 @@ ASSUMES_HOMED = """
 """
 
 FOUND = {
+    "an arm at rest where it picks up rose as if work had failed there": Found(
+        seed=1,
+        seconds=20.0,
+        faults=(),
+        file="""
+            name: drawn_910020
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: mqtt, evidence: ids}
+                mobile: {name: mobile_1, link: mqtt, evidence: ids}
+                home: {deg: [-21.4, 128.1], mm: 62.5}
+                pickup: {deg: [-21.4, 128.1], mm: 62.5, approach_mm: 6.2}
+                paths: {za: [5, 4]}
+                stations: {"0": {deg: [10, 100], mm: 62.32}}
+                palletizing: {pick: station 0, place: pickup}
+        """,
+    ),
     "the first step, tried again, was taken for the second where a cell rests at its pick-up": Found(
         seed=78,
         faults=(Fault(kind="stuck_bit", at=12.5, seconds=4.0, target="arm_1", word="q2_mov"),),

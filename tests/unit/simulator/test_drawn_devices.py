@@ -163,6 +163,19 @@ def test_cells_have_what_a_cell_can_have(drawn: list[DrawnDevices]) -> None:
     zones = [zone for each in drawn for zone in each.section.get("zones", {}).values()]
     assert {"poses", "free_while", "held_while"} <= {key for zone in zones for key in zone}
     assert any(each.section.get("timing", {}).get("dwell_s") == 0 for each in drawn)
+    assert {"times": 10, "backoff_s": 0} in [cell.get("retry") for cell in cells]
+
+
+def test_carts_that_tell_nodes_without_the_command_drive_through_zones(drawn: list[DrawnDevices]) -> None:
+    found = []
+    for each in drawn:
+        cell = each.section["cells"]["cell"]
+        carts = {role for role, row in cell["devices"].items() if row.get("kind") == "mobile"}
+        by_joints = {role for role in carts if cell["devices"][role].get("evidence") == "joints"}
+        inside = [pose for zone in each.section.get("zones", {}).values() for pose in zone.get("poses", ())]
+        targets = [cell["targets"].get(pose.removeprefix("cell "), {}) for pose in inside]
+        found += [target for target in targets if by_joints & target.keys()]
+    assert found
 
 
 def test_both_forms_of_recipes_are_drawn_and_read_by_the_ordinary_reader(tmp_path: Path) -> None:

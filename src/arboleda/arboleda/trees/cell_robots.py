@@ -75,11 +75,15 @@ class CellRobots:
         )
 
     def is_down_elsewhere(self, robot: str, goal: Pose) -> bool:
-        """True where a robot is at, or on the way down to, another target with an approach than its goal."""
+        """True where a robot is at, or on the way down to, another target with an approach than its goal.
+
+        Who stands at a target without an approach, as home, leaves it as it is, whatever else lies there.
+        """
         space, here = self._cell.reach[robot], self.position(robot)
         lifted = [(pose, pose.above) for pose in space.poses if pose.above is not None]
+        level = [pose.q for pose in space.poses if pose.above is None]
         motion = space.robot.motion
-        if here is None or any(motion.stands_at(here, above) for _, above in lifted):
+        if here is None or any(motion.stands_at(here, q) for q in (*level, *(above for _, above in lifted))):
             return False
         down = [pose for pose, above in lifted if motion.is_between(here, pose.q, above)]
         return bool(down) and goal not in down

@@ -142,6 +142,9 @@ def _stands_at(look: Look, space: Workspace, poses: list[Pose]) -> bool:
     # until it names its last command, that may still be on its way and set it in motion
     if robot.evidence is Evidence.IDS and robot.has_stop and known.unnamed is not None:
         return False
+    # the plant's evidence judges if what it told of its place may be older than its last stop
+    if not look.world.plant.dispatcher.beliefs[robot.name].is_sure:
+        return False
     points = [point for pose in poses for point in (pose.q, pose.above) if point is not None]
     here = known.node if known.q is None else known.q
     return here is not None and any(

@@ -17,6 +17,7 @@ AS_XML = 0.4
 RECIPES = (2, 3, 4, 5)  # of a plant
 IN_PYTHON = 0.35  # how often kinds are written in Python
 BESIDE_DEG = 7.0  # half of what targets are apart
+AT_ONCE = {"times": 10, "backoff_s": 0}  # the most tries that a file may ask for, without a pause
 
 
 def draw(seed: int, attempt: int = 0) -> DrawnDevices:
@@ -44,6 +45,7 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
         section["cells"][f"{CELL}_2"] = _other(drawer.section)
     if drawer.zones:
         section["zones"] = _zones(drawer.zones, alike=alike)
+    _be_odd(Dice(seed, "odd plants of devices", attempt), section)
     as_xml = dice.chance(AS_XML)
     trials = Trials(Dice(seed, "trials", attempt), layout, as_xml=as_xml)
     recipes = RecipeDrawer(dice, layout, trials, as_xml=as_xml)
@@ -56,6 +58,17 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
         kinds=written if are_written else None,
         spelling=seed,
     )
+
+
+def _be_odd(dice: Dice, section: Section) -> None:
+    """Now and then, have cells try again at once, and carts among zones tell nodes without the command."""
+    tries_at_once, by_joints = dice.chance(0.15), "zones" in section and dice.chance(0.5)
+    for cell in section["cells"].values():
+        if tries_at_once:
+            cell["retry"] = dict(AT_ONCE)
+        for device in cell["devices"].values() if by_joints else ():
+            if device.get("kind") == "mobile":
+                device["evidence"] = "joints"
 
 
 def _timing(dice: Dice) -> Section:
