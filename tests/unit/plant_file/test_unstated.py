@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 from arboleda.campaigns.mending.mend import edited
 from arboleda.campaigns.mending.offers import offers
 from arboleda.campaigns.plants import Plant, notes
+from arboleda.cli.main import cli
 from arboleda.plant_file import loader, unstated
 
 PLANT = """
@@ -93,3 +96,21 @@ def test_an_offer_is_edits_of_which_each_alone_states_it(tmp_path: Path, number:
     for edit in offer.edits:
         file.write_text(edited({file.name: PLANT}, [edit])[file.name])
         assert offer.sentence not in unstated.unknowns(loader.load(file))
+
+
+def test_a_simulation_says_of_what_nothing_is_known(tmp_path: Path) -> None:
+    words = [
+        "--seeds",
+        "1",
+        "--cycles",
+        "1",
+        "--faults",
+        "none",
+        "--jobs",
+        "1",
+        "--json",
+        str(tmp_path / "out.json"),
+    ]
+    said = CliRunner().invoke(cli, ["simulate", "--plant", str(written(tmp_path, PLANT)), *words])
+    assert PLACES in said.output
+    assert json.loads((tmp_path / "out.json").read_text())["unknown"] == [PLACES, GUARD, NEEDS]

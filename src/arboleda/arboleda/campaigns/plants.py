@@ -68,5 +68,10 @@ def notes(plants: Iterable[Plant]) -> list[str]:
     names = {link: ", ".join(robot.name for robot in robots if robot.link is link) for link in Link}
     instead = "simulated as if each had a virtual board on MQTT"
     others = [link for link in ELSEWHERE if names[link]]
-    unknown = [sentence for plant in listed for sentence in unknowns(plant.declared)]
-    return [*(f"declared link: {link.value}, {instead}: {names[link]}" for link in others), *unknown]
+    linked = [f"declared link: {link.value}, {instead}: {names[link]}" for link in others]
+    return [*linked, *unjudged(listed)]
+
+
+def unjudged(plants: Iterable[Plant]) -> list[str]:
+    """The sentences on what nobody can judge in these plants, as their files do not state it."""
+    return [sentence for plant in plants for sentence in unknowns(plant.declared)]
