@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any, Protocol
 
 from arboleda.model.plant_model import Link, PlantModel
+from arboleda.plant_file.unstated import unknowns
 from arboleda.recorder.preamble import NO_FILES, PlantFiles
 from arboleda.simulator.plants.devices import DrawnDevices
 
@@ -61,9 +62,16 @@ class PlantRotation:
 
 
 def notes(plants: Iterable[Plant]) -> list[str]:
-    """The notes for a person on how these plants are simulated."""
-    robots = [robot for plant in plants for robot in plant.declared.robots.values()]
+    """The notes for a person on how these plants are simulated, and on what nobody can judge in them."""
+    listed = list(plants)
+    robots = [robot for plant in listed for robot in plant.declared.robots.values()]
     names = {link: ", ".join(robot.name for robot in robots if robot.link is link) for link in Link}
     instead = "simulated as if each had a virtual board on MQTT"
     others = [link for link in ELSEWHERE if names[link]]
-    return [f"declared link: {link.value}, {instead}: {names[link]}" for link in others]
+    linked = [f"declared link: {link.value}, {instead}: {names[link]}" for link in others]
+    return [*linked, *unjudged(listed)]
+
+
+def unjudged(plants: Iterable[Plant]) -> list[str]:
+    """The sentences on what nobody can judge in these plants, as their files do not state it."""
+    return [sentence for plant in plants for sentence in unknowns(plant.declared)]

@@ -20,7 +20,7 @@ from arboleda.simulator.levels import LEVELS
 
 from .defaults import CYCLES, LEVEL, SEED, SEEDS
 from .faults_file import FaultsFile, line_of, read
-from .plants import Plant, PlantRotation, Plants, notes
+from .plants import Plant, PlantRotation, Plants, notes, unjudged
 from .random_plants import RandomPlants, loaded
 from .setting import Setting
 
@@ -153,6 +153,11 @@ class Request:
         if isinstance(self.plants, PlantRotation):
             return notes(self.plants.plants)
         return [OF_DRAWN]
+
+    @property
+    def unjudged(self) -> list[str]:
+        """The sentences on what nobody can judge, as the plant files do not state it."""
+        return unjudged(self.plants.plants) if isinstance(self.plants, PlantRotation) else []
 
     def replay(self, seed: int) -> str:
         """The command that runs one seed again, step by step."""

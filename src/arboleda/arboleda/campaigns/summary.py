@@ -40,6 +40,7 @@ def summary(request: Request, tally: Tally, shrunk: ShrunkBreach | None, *, comp
         "standby": request.two_hosts,
         "revisions": request.changes_files,
         "complete": complete,
+        "unknown": request.unjudged,
         "totals": {
             "seeds": len(rows),
             "broken": len(tally.broken),

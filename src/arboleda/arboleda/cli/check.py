@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from arboleda.model.sentence import Phrase
-from arboleda.plant_file import advance_check, loader, plant_check, tree_file
+from arboleda.plant_file import advance_check, loader, plant_check, tree_file, unstated
 from arboleda.plant_file.user_file import check_writable
 
 from . import apply, nodes
@@ -123,7 +123,7 @@ def _as_data(file: Path, json: Path | None, *, mend: bool) -> None:
 def _in_words(file: Path, *, ends: bool) -> None:
     """Print what the plant is, and what it is warned of; ConfigError with every problem."""
     model, missed = loader.load_with_offers(file)
-    for note in loader.notes(model):
+    for note in (*loader.notes(model), *unstated.notes(model)):
         print(say(NOTE(file=str(file), note=finding(note))))
     for warning in plant_check.warnings(model):
         print(say(apply.WARNING(file=str(file), warning=finding(warning))))

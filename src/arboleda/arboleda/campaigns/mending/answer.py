@@ -4,22 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from ..proof.calm import Calm
 from .finding import Finding, checked, run_findings
 from .mend import Mend
+from .offers import Offer, offers
 from .search import Search
 
 
 @dataclass(frozen=True, kw_only=True)
 class Answer:
-    """Answer: findings, and the mend for them; None where nothing that was tried makes it better."""
+    """Answer: findings, and the mend for them; None where nothing that was tried makes it better.
+
+    `offers`: what the plant file could state, and does not.
+    """
 
     findings: tuple[Finding, ...]
     mend: Mend | None = None
+    offers: tuple[Offer, ...] = ()
 
     @property
     def plain(self) -> dict[str, Any]:
@@ -27,6 +32,7 @@ class Answer:
         return {
             "findings": [each.plain for each in self.findings],
             "mend": None if self.mend is None else self.mend.plain,
+            "offers": [each.plain for each in self.offers],
         }
 
 
@@ -35,7 +41,11 @@ def check_answer(file: Path, *, within_s: float = math.inf, apart: bool = True) 
 
     `apart`: the plant's Python is first tried in another process, as nobody knows yet whether it ends.
     """
-    return _answer(file, checked(file, apart=apart).findings, within_s)
+    found = checked(file, apart=apart)
+    answer = _answer(file, found.findings, within_s)
+    if found.model is None:
+        return answer
+    return replace(answer, offers=offers(file.name, file.read_text("utf-8"), found.model))
 
 
 def run_answer(file: Path, runs: Iterable[Calm], *, within_s: float = math.inf) -> Answer:

@@ -10,6 +10,7 @@ from typing import Any
 
 from arboleda import __version__
 from arboleda.model.errors import ArboledaError
+from arboleda.plant_file.unstated import unknowns
 
 from ..mending.answer import Answer
 from .calm import Calm
@@ -52,6 +53,7 @@ def summary(
         "runs": {"done": tally.runs, "of": total},
         "pairs": None if pairs is None else {"done": pairs.runs, "of": pairs.pairs.total},
         "alone": round(tally.alone, 4),
+        "unknown": list(unknowns(tally.proof.model)),
         **mended.plain,
         "scenarios": [_scenario(each) for each in calm],
         "table": [_row(*each) for each in tally.table().items()],

@@ -1,0 +1,41 @@
+"""Offers: what a plant file could state, as edits, of which a person takes the one that is so."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import yaml_edit
+from arboleda.plant_file.unstated import Unstated, unstated
+from arboleda.plant_file.yaml_edit import EditRefused
+
+from .mend import Edit, cut_between, edit_of
+
+
+@dataclass(frozen=True, kw_only=True)
+class Offer:
+    """Offer: what nobody knows, and the edits of which each alone would state it."""
+
+    sentence: str
+    edits: tuple[Edit, ...]
+
+    @property
+    def plain(self) -> dict[str, Any]:
+        """The offer for JSON."""
+        return asdict(self)
+
+
+def offers(file: str, text: str, model: PlantModel) -> tuple[Offer, ...]:
+    """The offers for a plant file, whose text this is; one without an edit is for kinds of another file."""
+    found = [(each, tuple(_edits(file, text, each))) for each in unstated(model)]
+    return tuple(Offer(sentence=each.unknown, edits=edits) for each, edits in found if edits)
+
+
+def _edits(file: str, text: str, lack: Unstated) -> Iterator[Edit]:
+    for value in lack.values:
+        with suppress(EditRefused):
+            changed = yaml_edit.with_value(text.encode(), lack.place, value).decode()
+            yield edit_of({file: text}, cut_between(file, text, changed))

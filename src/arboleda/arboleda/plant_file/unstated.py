@@ -1,0 +1,179 @@
+"""What a plant file could state, and does not: where parts lie, who else is in a zone, what work needs.
+
+Nobody can judge what nobody has stated. Where it matters is read off the recipes. What is right there, a
+person knows: a recipe may be wrong, so each value of a fact is offered.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+
+from arboleda.bt_xml.recipe import TreeRecipe
+from arboleda.core.plant import Plant
+from arboleda.kinds.declared import DeviceVerb, Effect
+from arboleda.model.commands import Motion, Switch
+from arboleda.model.facts import Value
+from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.recipes.authoring import WrittenRecipe
+from arboleda.trees.leaves import Act
+
+from .document import Place, dotted
+from .recipe_check import orders
+from .yaml_flow import flow
+
+Facts = dict[tuple[str, str], Value]
+HOME = "home"
+MOST_ORDERS = 20  # tasks of a recipe that are looked at
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unstated:
+    """Statement that a plant file lacks: what is not known without it, its place in the file, and the values
+    of which one could stand there.
+    """
+
+    unknown: str
+    place: Place
+    values: tuple[Mapping[str, Any], ...]
+
+    @property
+    def offer(self) -> str:
+        """The sentence with what could be written."""
+        return f"{self.unknown}; {dotted(self.place)}: {' or '.join(map(flow, self.values))} would state it"
+
+
+def unstated(plant: PlantModel) -> tuple[Unstated, ...]:
+    """All that could be stated of the cells whose recipes are the plant's own."""
+    runs, found = Plant(plant, epoch=0, now=0.0).cells, dict[Place, Unstated]()
+    for cell in (each for each in plant.cells if each.handover is None):
+        seen = _Seen(cell=cell)
+        for recipe in (each for each in cell.recipes if isinstance(each, TreeRecipe | WrittenRecipe)):
+            for order, _ in zip(orders(cell, recipe), range(MOST_ORDERS), strict=False):
+                seen.follow(recipe.build(order, runs[cell.name].context).children[0])
+        for each in (*_places(seen), *_guards(plant, seen), *_needs(seen)):
+            found.setdefault(each.place, each)
+    return tuple(found.values())
+
+
+def notes(plant: PlantModel) -> tuple[str, ...]:
+    """A sentence for each, with what could be written."""
+    return tuple(each.offer for each in unstated(plant))
+
+
+def unknowns(plant: PlantModel) -> tuple[str, ...]:
+    """A sentence for each, as the answer of whoever judges the plant has it."""
+    return tuple(each.unknown for each in unstated(plant))
+
+
+@dataclass(kw_only=True)
+class _Seen:
+    """What the tasks of a cell do, in the order of their steps: which ways there are is left aside."""
+
+    cell: Cell
+    taken: set[str] = field(default_factory=set)  # targets
+    put: set[str] = field(default_factory=set)
+    entered: dict[tuple[str, str], list[Facts]] = field(default_factory=dict)  # by robot and target
+    called: dict[tuple[str, str], list[Facts]] = field(default_factory=dict)  # by device and verb
+
+    def follow(self, tree: Behaviour) -> None:
+        at, facts = dict[str, str](), Facts()
+        hands = {space.hand.name: space.robot.name for space in self.cell.spaces if space.hand.held_fact}
+        for command in (node.make(id="") for node in _in_order(tree) if isinstance(node, Act)):
+            if isinstance(command, Motion) and command.robot in self.cell.reach:
+                poses = self.cell.reach[command.robot].targets
+                goal = next((name for name, pose in poses.items() if pose.q in command.way[-1:]), None)
+                if goal is not None:
+                    at[command.robot] = goal
+                    self.entered.setdefault((command.robot, goal), []).append(dict(facts))
+            elif isinstance(command, Switch) and command.grips is not None and command.robot in hands:
+                target = at.get(hands[command.robot])
+                if target is not None:
+                    (self.taken if command.grips else self.put).add(target)
+            self.called.setdefault((command.robot, command.word), []).append(dict(facts))
+            facts |= {(command.robot, fact): value for fact, value in command.sets}
+
+    def doors(self, times: Sequence[Facts], roles: Collection[str]) -> Iterator[tuple[str, str, list[Value]]]:
+        """The facts by which something of a device moves, and that recipes have seen to each time.
+
+        Each with its role and its values, of which the recipes' own is the first.
+        """
+        sure = set.intersection(*(set(each.items()) for each in times)) if times else set[Any]()
+        for role, device in self.cell.members:
+            for (name, fact), value in sorted(sure, key=str):
+                values = _moved(self.cell, name).get(fact, [])
+                if role in roles and device.name == name and len(values) > 1 and value in values:
+                    yield role, fact, [value, *(each for each in values if each != value)]
+
+
+def _places(seen: _Seen) -> Iterator[Unstated]:
+    """The targets at which parts are taken and put down, where the cell has no place at all."""
+    cell, targets = seen.cell, sorted((seen.taken | seen.put) - {HOME})
+    if cell.places or not targets:
+        return
+    value = {each: _kept(is_taken=each in seen.taken, is_put=each in seen.put) for each in targets}
+    unknown = f"{cell.name}: nothing is known of where parts lie"
+    yield Unstated(unknown=unknown, place=("cells", cell.name, "places"), values=(value,))
+
+
+def _kept(*, is_taken: bool, is_put: bool) -> dict[str, bool]:
+    """How people keep a place: full where parts are only taken, empty where they are only put."""
+    return {} if is_taken and is_put else {"supply": True} if is_taken else {"output": True}
+
+
+def _guards(plant: PlantModel, seen: _Seen) -> Iterator[Unstated]:
+    """The zones in which only one robot ever is, and no device: they keep nobody out."""
+    roles = [role for role, _ in seen.cell.members]
+    for zone in plant.zones:
+        inside = [space for cell in plant.cells for space in cell.spaces if zone in space.zones]
+        devices = [lock for cell in plant.cells for lock in cell.interlocks if lock.zone == zone]
+        if devices or len({space.robot.name for space in inside}) != 1 or inside[0] not in seen.cell.spaces:
+            continue
+        robot = inside[0].robot.name
+        targets = [name for name, pose in inside[0].targets.items() if zone in pose.zones]
+        times = [facts for name in targets for facts in seen.entered.get((robot, name), [])]
+        for role, fact, values in seen.doors(times, roles):
+            unknown = f"{seen.cell.name}: nothing is known of who else is in the zone {zone} of {robot}"
+            choice_of = tuple({role: {fact: value}} for value in values)
+            yield Unstated(unknown=unknown, place=("zones", zone, "free_while"), values=choice_of)
+
+
+def _needs(seen: _Seen) -> Iterator[Unstated]:
+    """The work of devices before which recipes see to a moving part of the device, and that needs nothing."""
+    cell = seen.cell
+    for role, device in cell.members:
+        stated = {each.word for each in cell.needs if each.device == device.name}
+        for name, verb in _verbs(device).items():
+            if verb.effect is not Effect.PROCESS or verb.needs or verb.needs_of_others or name in stated:
+                continue
+            for _, fact, values in seen.doors(seen.called.get((device.name, name), []), [role]):
+                unknown = f"{cell.name}: nothing is known of what {name} of {device.name} needs"
+                place = ("kinds", device.kind_name, "verbs", name, "needs")
+                yield Unstated(unknown=unknown, place=place, values=tuple({fact: each} for each in values))
+
+
+def _moved(cell: Cell, name: str) -> dict[str, list[Value]]:
+    """The values that the moves of a device set, by fact."""
+    device = next(each for each in cell.robots if each.name == name)
+    found: dict[str, list[Value]] = {}
+    for verb in (each for each in _verbs(device).values() if each.effect is Effect.MOTION):
+        for fact, value in verb.sets:
+            if isinstance(value, str | bool) and value not in found.setdefault(fact, []):
+                found[fact].append(value)
+    return found
+
+
+def _verbs(device: Any) -> dict[str, DeviceVerb]:
+    """The verbs of a device by their names; empty for a kind without verbs."""
+    return dict(device.kind.verbs) if device.verb_names else {}
+
+
+def _in_order(node: Behaviour) -> Iterator[Behaviour]:
+    rest = [node]
+    while rest:
+        each = rest.pop()
+        yield each
+        rest += reversed(each.children)

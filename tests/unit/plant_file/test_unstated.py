@@ -1,0 +1,116 @@
+"""What `check` offers to state of a plant: where parts lie, who else is in a zone, what work needs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from arboleda.campaigns.mending.mend import edited
+from arboleda.campaigns.mending.offers import offers
+from arboleda.campaigns.plants import Plant, notes
+from arboleda.cli.main import cli
+from arboleda.plant_file import loader, unstated
+
+PLANT = """
+name: lab
+uses: [recipes.py]
+kinds:
+  oven:
+    facts: {door: [closed, open]}
+    verbs:
+      open:  {effect: motion, sets: {door: open}}
+      close: {effect: motion, sets: {door: closed}}
+      bake:  {effect: process, takes_s: 5}
+cells:
+  lab:
+    devices:
+      loader: {kind: arm, model: scara}
+      jaw: {kind: gripper, tool_of: loader}
+      oven: {kind: oven}
+    targets:
+      home: {loader: {deg: [0, 0], mm: 0}}
+      rack: {loader: {deg: [60, 10], mm: 80, approach_mm: 20}}
+      inside: {loader: {deg: [-60, 10], mm: 80, approach_mm: 20}}
+zones:
+  in_the_oven: {poses: [lab inside]}
+"""
+RECIPE = """
+from arboleda.recipes import recipe, work
+
+@recipe("bake")
+def bake(cell):
+    loader, jaw, oven = cell.devices("loader", "jaw", "oven")
+    take = lambda at: loader.visit(at, jaw.close(width_mm=20, force_n=20))
+    put = lambda at: loader.visit(at, jaw.open())
+    return work(take("rack"), oven.open(), put("inside"), loader.home(), oven.close(), oven.bake())
+"""
+PLACES = "lab: nothing is known of where parts lie"
+GUARD = "lab: nothing is known of who else is in the zone in_the_oven of loader"
+NEEDS = "lab: nothing is known of what bake of oven needs"
+STATED = (
+    PLANT.replace("takes_s: 5", "takes_s: 5, needs: {door: closed}").replace(
+        "poses: [lab inside]", "poses: [lab inside], free_while: {oven: {door: open}}"
+    )
+).replace("zones:", "    places: {rack: {supply: true}, inside: {of: oven}}\nzones:")
+
+
+def written(folder: Path, plant: str) -> Path:
+    (folder / "recipes.py").write_text(RECIPE)
+    (folder / "plant.yaml").write_text(plant)
+    return folder / "plant.yaml"
+
+
+def test_what_a_file_does_not_state_is_offered_with_its_place_in_the_file(tmp_path: Path) -> None:
+    model = loader.load(written(tmp_path, PLANT))
+    assert unstated.notes(model) == (
+        f"{PLACES}; cells.lab.places: {{inside: {{output: true}}, rack: {{supply: true}}}} would state it",
+        f"{GUARD}; zones.in_the_oven.free_while: "
+        "{oven: {door: open}} or {oven: {door: closed}} would state it",
+        f"{NEEDS}; kinds.oven.verbs.bake.needs: {{door: closed}} or {{door: open}} would state it",
+    )
+    assert notes([Plant(declared=model)]) == [PLACES, GUARD, NEEDS], "as simulate and prove say it"
+
+
+def test_nothing_is_offered_where_all_of_it_is_stated(tmp_path: Path) -> None:
+    assert unstated.notes(loader.load(written(tmp_path, STATED))) == ()
+
+
+def test_a_zone_with_two_robots_guards_them(tmp_path: Path) -> None:
+    other = PLANT.replace(
+        "      oven: {kind: oven}\n", "      oven: {kind: oven}\n      cart: {kind: mobile}\n"
+    )
+    both = other.replace("      rack:", "      gate: {cart: {node: 3}}\n      rack:").replace(
+        "home: {loader: {deg: [0, 0], mm: 0}}", "home: {loader: {deg: [0, 0], mm: 0}, cart: {node: 0}}"
+    )
+    model = loader.load(written(tmp_path, both.replace("[lab inside]", "[lab inside, lab gate]")))
+    assert GUARD not in unstated.unknowns(model)
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_an_offer_is_edits_of_which_each_alone_states_it(tmp_path: Path, number: int) -> None:
+    file = written(tmp_path, PLANT)
+    offer = offers(file.name, PLANT, loader.load(file))[number]
+    for edit in offer.edits:
+        file.write_text(edited({file.name: PLANT}, [edit])[file.name])
+        assert offer.sentence not in unstated.unknowns(loader.load(file))
+
+
+def test_a_simulation_says_of_what_nothing_is_known(tmp_path: Path) -> None:
+    words = [
+        "--seeds",
+        "1",
+        "--cycles",
+        "1",
+        "--faults",
+        "none",
+        "--jobs",
+        "1",
+        "--json",
+        str(tmp_path / "out.json"),
+    ]
+    said = CliRunner().invoke(cli, ["simulate", "--plant", str(written(tmp_path, PLANT)), *words])
+    assert PLACES in said.output
+    assert json.loads((tmp_path / "out.json").read_text())["unknown"] == [PLACES, GUARD, NEEDS]
