@@ -36,7 +36,7 @@ CAUSES: Causes = {
     "unplugged": NO_LINK,
     "broken_frames": NO_LINK,
     "torn": NO_LINK,
-    "old_position": NO_WORK,
+    "old_position": {Reason.NOT_REACHED, *NO_WORK},
     "noise": set(),
     "echo": set(),
     "late": NO_LINK,
