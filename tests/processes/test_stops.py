@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from arboleda.core import stop_lane
-from arboleda.core.leaving import StopLeft
+from arboleda.core.leaving import StopLeft, Unkept
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import (
     Fact,
@@ -104,6 +104,17 @@ def test_a_stop_leaves_before_the_commit_of_its_own_latch(plant, gate, robots, s
     gate.open()
     plant.stop()
     assert store.facts(Fact.LATCH) == dict.fromkeys(ROBOTS, "on")
+
+
+def test_an_act_that_has_happened_says_so_though_the_disk_hangs(plant, gate, store, monkeypatch) -> None:
+    monkeypatch.setattr(stop_lane, "KEPT_S", 0.0)
+    plant.start()
+    hang_before(gate, store, "sync", monkeypatch)
+    gate.shut = True
+    said = plant.operate(Verb.LOAD, "sis_b", arguments=(("place", "station_4"),)).result(SOON_S)
+    assert isinstance(said, Unkept) and "load sis_b is done, and the plant has not kept it" in str(said.why)
+    assert gate.hangs
+    gate.open()
 
 
 def test_whoever_asks_a_plant_that_is_free_hears_that_the_stop_is_kept(plant, robots, store) -> None:

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from arboleda.core.leaving import StopLeft, departure
+from arboleda.core.leaving import STILL_WAITS, StopLeft, Unkept, departure, done_at_once
 from arboleda.core.plant import Plant
-from arboleda.core.stop_lane import KEPT_S, Blocked, Closed, Departed, Event, Opened, Overrun, StopLane
+from arboleda.core.stop_lane import (
+    KEPT_S,
+    Blocked,
+    Closed,
+    Departed,
+    Event,
+    Happened,
+    Opened,
+    Overrun,
+    StopLane,
+)
 from arboleda.kinds.arm import SetEffector
 from arboleda.model.commands import Home, Stop, StopMode
-from arboleda.model.messages import Heartbeat, OperatorRequest, Report, Verb
+from arboleda.model.messages import Heartbeat, OperatorAnswer, OperatorRequest, Outcome, Report, Verb
 from arboleda.testing import shipped
 
 MODEL = shipped()
@@ -82,6 +94,27 @@ def test_who_asked_hears_in_time_that_a_stop_has_left_and_is_not_kept(lane: Stop
     assert (answer.request, answer.scope, answer.refusal) == ("a", "sis_a", None)
     assert str(answer.why).startswith("the stop has left for sis_a, and the plant has not kept it")
     assert lane.next_deadline is None and lane.step(due + 10.0, []) == []
+
+
+HOLD = OperatorAnswer(verb=Verb.HOLD, scope="sis_a", request="a", act=3, outcome=Outcome.DONE)
+
+
+def test_who_asked_hears_in_time_that_an_act_has_happened_and_is_not_kept(lane: StopLane) -> None:
+    lane.step(10.0, [Happened(at=10.0, answer=HOLD)])
+    assert lane.next_deadline == 10.0 + KEPT_S
+    (said,) = lane.step(10.0 + KEPT_S, [])
+    assert isinstance(said, Unkept) and (said.request, said.act, said.outcome) == ("a", 3, Outcome.DONE)
+    assert str(said.why).startswith("hold sis_a is done, and the plant has not kept it (its disk")
+    lane.step(20.0, [Happened(at=20.0, answer=HOLD), Closed(token="a")])
+    assert lane.next_deadline is None
+
+
+def test_an_act_with_commands_of_its_own_has_not_happened_before_these_leave() -> None:
+    clear = Stop(id="7-1", robot="ra1", mode=StopMode.CLEAR)
+    halt = Stop(id="7-1", robot="ra1", mode=StopMode.HALT)
+    assert done_at_once([halt, HOLD]) == [HOLD] and done_at_once([HOLD, clear]) == [HOLD]
+    assert done_at_once([clear, HOLD]) == []
+    assert done_at_once([replace(HOLD, refusal=STILL_WAITS())]) == []
 
 
 def test_a_stop_that_the_plant_has_sent_itself_is_told_to_have_left(lane: StopLane) -> None:

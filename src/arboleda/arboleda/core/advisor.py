@@ -202,10 +202,13 @@ class Advisor:
                     continue  # there it would meet whoever is in that zone
                 yield Advice(do=Hand.FREE, scope=holder, why=IN_THE_WAY(device=holder, facts=facts))
                 continue
+            why = HOLDS_ZONES(arm=holder, zones=tuple(its))
             if other is run and _can_leave(run, holder):
-                why = HOLDS_ZONES(arm=holder, zones=tuple(its))
                 yield from _letting_go(run, holder)
                 yield from _running_home(run, holder, why)
+                continue
+            if other is run and _can_be_taken_home(run, holder):
+                yield from self._homing(run, holder, why, visited)
                 continue
             waits_too = other.cell.name in visited
             leads = () if waits_too else self.ways_out(other.cell.name, visited)
@@ -278,6 +281,13 @@ def _can_leave(run: CellRun, robot: str) -> bool:
     space, robots = run.cell.workspaces.get(robot), run.context.robots
     ready = space is not None and robots.obstacle(robot) is None and robots.homes_by_routine(robot)
     return ready and space is not None and not run.context.zones.awaited(robot, space.zones)
+
+
+def _can_be_taken_home(run: CellRun, robot: str) -> bool:
+    """True for a robot that only a person homes, in a cell that only stands there."""
+    robots = run.context.robots
+    by_hand = robot in run.cell.workspaces and not robots.homes_by_routine(robot)
+    return by_hand and robots.obstacle(robot) is None
 
 
 def _until_it_moves(ways: Sequence[Advice]) -> Iterator[Advice]:

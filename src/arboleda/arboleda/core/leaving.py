@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
 from typing import NamedTuple
 
 from arboleda.model.commands import Command, Stop, StopMode
@@ -18,13 +19,21 @@ LEFT_UNKEPT = Phrase(
     "stop.left_unkept",
     "the stop has left for {scope}, and the plant has not kept it ({why}); a restart would not know of it",
 )
+DONE_UNKEPT = Phrase(
+    "act.done_unkept",
+    "{verb} {scope} is done, and the plant has not kept it ({why}); a restart would not know of it",
+)
 WORTH_TELLING_S = 0.02  # a commit takes a few ms
 EVERYTHING = Phrase("stop.everything", "the whole plant")
 SYNCED_WITHIN_S = 0.01  # from a write to its sync where nobody waits: one for what all cells write meanwhile
 MOST_UNSYNCED_S = 0.1  # only stops leave a plant of which a write has not been durable for so long
 
 
-class StopLeft(OperatorAnswer):
+class Unkept(OperatorAnswer):
+    """Answer to an act that has happened and is not kept; its `why` says so."""
+
+
+class StopLeft(Unkept):
     """Answer to a stop that has left for its robots and is not kept; its `why` says so."""
 
 
@@ -62,6 +71,28 @@ def stop_left(request: OperatorRequest | OperatorAnswer, why: Sentence) -> StopL
     return StopLeft(
         verb=request.verb, scope=request.scope, request=request.request, outcome=Outcome.SENT, why=unkept
     )
+
+
+def done_unkept(answer: OperatorAnswer, why: Sentence) -> Unkept:
+    """Answer to an act that has happened in the plant and is not kept because of `why`."""
+    known = {each.name: getattr(answer, each.name) for each in fields(answer)}
+    scope = answer.scope.strip() or EVERYTHING()
+    return Unkept(**{**known, "why": DONE_UNKEPT(verb=answer.verb.value, scope=scope, why=why)})
+
+
+def done_at_once(messages: Sequence[Command | Notice]) -> list[OperatorAnswer]:
+    """Answers of a step to acts that have happened once its stops have left: no other command is theirs.
+
+    The commands of an act come before its answer.
+    """
+    found = list[OperatorAnswer]()
+    for message in messages:
+        if isinstance(message, Command) and not ends_motion(message):
+            break
+        is_done = isinstance(message, OperatorAnswer) and message.refusal is None and message.request
+        if is_done and not message.verb.row.stops:
+            found.append(message)
+    return found
 
 
 def ends_motion(message: Command | Notice) -> bool:

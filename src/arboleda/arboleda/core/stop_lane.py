@@ -1,5 +1,7 @@
 """Stop lane: a pure machine that has stops leave while the plant is kept waiting, and answers who asked.
 
+It answers who asked for another act, too, that has happened and that the plant cannot keep in time.
+
 The plant's thread may hang at a disk, a database or a log when somebody asks for a stop. The lane is driven
 by a thread of its own, and needs nothing but the plant's model.
 """
@@ -11,10 +13,10 @@ from dataclasses import dataclass
 
 from arboleda.dispatch.dispatcher import UNSENT
 from arboleda.model.commands import Stop, StopMode
-from arboleda.model.messages import OperatorRequest
+from arboleda.model.messages import OperatorAnswer, OperatorRequest
 from arboleda.model.plant_model import PlantModel
 
-from .leaving import STILL_WAITS, StopLeft, stop_left
+from .leaving import STILL_WAITS, Unkept, done_unkept, stop_left
 from .operator import scope_of, scopes
 
 KEPT_S = 0.8  # within it a stop is kept, or whoever asked hears that it is not; a service of ROS 2 waits 1 s
@@ -42,6 +44,14 @@ class Departed:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Happened:
+    """The plant has done what somebody asked for, which is to be kept before it is answered."""
+
+    at: float
+    answer: OperatorAnswer
+
+
+@dataclass(frozen=True, kw_only=True)
 class Closed:
     """The request of this token is answered."""
 
@@ -55,14 +65,15 @@ class Overrun:
     robot: str
 
 
-Event = Opened | Blocked | Departed | Closed | Overrun
+Event = Opened | Blocked | Departed | Happened | Closed | Overrun
 
 
 @dataclass(kw_only=True)
-class OpenStop:
-    """A request that is not answered yet."""
+class OpenAct:
+    """A request that is not answered yet, and its answer if it has happened and is not kept in time."""
 
-    request: OperatorRequest
+    request: OperatorRequest | OperatorAnswer
+    unkept: Unkept
     due: float
     has_left: bool = False
 
@@ -79,27 +90,32 @@ class StopLane:
         self._robots = [name for name, robot in model.robots.items() if robot.link not in UNSENT]
         self._epoch = epoch
         self._count = 0
-        self._open: dict[str, OpenStop] = {}
+        self._open: dict[str, OpenAct] = {}
 
     @property
     def next_deadline(self) -> float | None:
-        """The time at which somebody is to be answered whose stop is not kept yet; None: never."""
+        """The time at which somebody is to be answered whose act is not kept yet; None: never."""
         return min((each.due for each in self._open.values() if each.has_left), default=None)
 
-    def reached(self, request: OperatorRequest) -> frozenset[str]:
+    def reached(self, request: OperatorRequest | OperatorAnswer) -> frozenset[str]:
         """Names of the robots that a request for a stop is for; none where its scope is unknown."""
         return self._scopes.get(scope_of(request), frozenset())
 
-    def step(self, now: float, events: Sequence[Event]) -> list[Stop | StopLeft]:
+    def step(self, now: float, events: Sequence[Event]) -> list[Stop | Unkept]:
         """Stops that must leave, then answers that are due."""
         out = [message for event in events for message in self._take(event)]
         due = [token for token, each in self._open.items() if each.has_left and each.due <= now]
-        return [*out, *(stop_left(self._open.pop(token).request, STILL_WAITS()) for token in due)]
+        return [*out, *(self._open.pop(token).unkept for token in due)]
 
-    def _take(self, event: Event) -> list[Stop | StopLeft]:
+    def _take(self, event: Event) -> list[Stop | Unkept]:
         if isinstance(event, Opened):
             token, due = event.request.request or "", event.request.at + KEPT_S
-            self._open[token] = OpenStop(request=event.request, due=due)
+            unkept = stop_left(event.request, STILL_WAITS())
+            self._open[token] = OpenAct(request=event.request, unkept=unkept, due=due)
+        elif isinstance(event, Happened):
+            token, due = event.answer.request or "", event.at + KEPT_S
+            unkept = done_unkept(event.answer, STILL_WAITS())
+            self._open[token] = OpenAct(request=event.answer, unkept=unkept, due=due, has_left=True)
         elif isinstance(event, Overrun):
             return self._stops(frozenset([event.robot]))
         elif isinstance(event, Closed):
@@ -110,7 +126,7 @@ class StopLane:
             return self._stops(reached) if isinstance(event, Blocked) else []
         return []
 
-    def _stops(self, names: frozenset[str]) -> list[Stop | StopLeft]:
+    def _stops(self, names: frozenset[str]) -> list[Stop | Unkept]:
         """A stop for each of these robots that anything leaves for."""
         id, self._count = f"{self._epoch}-{self._count:010d}", self._count + 1
         return [Stop(id=id, robot=name, mode=StopMode.LATCH) for name in self._robots if name in names]

@@ -493,7 +493,6 @@ class Record:
             if isinstance(event, OperatorRequest):
                 self._cancels_a_task |= event.verb is Verb.CANCEL and event.scope not in self.scopes
                 self.undisturbed = False
-                self.acts.take(event, self._acted_on(event))
                 for robot in self.scopes.robots(event.scope):
                     self._verbs.setdefault(robot, set()).add(event.verb)
 
@@ -634,6 +633,8 @@ class Record:
     def _on_answer(self, answer: OperatorAnswer) -> None:
         self.answers.append(answer)
         request = self._unanswered.popleft()
+        if answer.refusal is None:  # what is refused is no act
+            self.acts.take(request, self._acted_on(request))
         if answer.refusal is None and answer.verb in GETS_GOING:
             self._attend(answer.scope)
         done = DONE.get(answer.verb)

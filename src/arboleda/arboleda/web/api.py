@@ -24,7 +24,7 @@ from starlette.types import Receive, Scope, Send
 from arboleda import __version__
 from arboleda.bt_xml.editing.errors import EditError
 from arboleda.client.protocol import COMMAND_LINE
-from arboleda.core.leaving import StopLeft
+from arboleda.core.leaving import Unkept
 from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, TextError
 from arboleda.model.messages import Outcome, Verb
 from arboleda.model.outside import plain, quoted
@@ -283,7 +283,7 @@ def _operate(api: APIRouter, side: PlantApi) -> None:
             return PlainJson(explained({"sentence": answer.refusal}), status_code=409)
         known = {"act": answer.act, "outcome": answer.outcome, "why": answer.why}
         parts = {name: value for name, value in known.items() if value is not None}
-        is_open = isinstance(answer, StopLeft) or answer.outcome is Outcome.UNDER_WAY
+        is_open = isinstance(answer, Unkept) or answer.outcome is Outcome.UNDER_WAY
         return PlainJson({"verb": verb.value, "scope": scope, **parts}, status_code=202 if is_open else 200)
 
 

@@ -17,7 +17,9 @@ from arboleda.core.leading import Standing, may_leave
 from arboleda.core.leaving import (
     SENT_TOO_LATE,
     StopLeft,
+    Unkept,
     departure,
+    done_at_once,
     ends_motion,
     is_too_late,
     late_departure,
@@ -68,7 +70,7 @@ from .durability import Durability
 from .part import Crash
 from .router import PlantPort
 from .slices import PAUSE_S, Slices
-from .stops import CommandOvertaken, Stops, StopsAway
+from .stops import ActsDone, CommandOvertaken, Stops, StopsAway
 from .urgency import Urgency
 
 LOG = logging.getLogger(__name__)
@@ -413,7 +415,7 @@ class Orchestrator:
         self.durability.stop()
         self.stops.loop.stop()
 
-    def _send(self, message: Command | Notice | Facts | StopsAway | CommandsLeft) -> None:
+    def _send(self, message: Command | Notice | Facts | StopsAway | ActsDone | CommandsLeft) -> None:
         if isinstance(message, Facts):
             self._keep_facts(message.facts)
             return
@@ -422,6 +424,9 @@ class Orchestrator:
             return
         if isinstance(message, StopsAway):
             self.stops.departed(message)
+            return
+        if isinstance(message, ActsDone):
+            self.stops.happened(message)
             return
         if isinstance(message, CommandsLeft):
             self._settle()
@@ -473,9 +478,9 @@ class Orchestrator:
         if self._port is not None and may_leave(message, self._standing):
             self._port.send(message)
 
-    def _send_beside(self, message: Stop | StopLeft) -> None:
+    def _send_beside(self, message: Stop | Unkept) -> None:
         """Send a message of the lane, in its thread."""
-        if isinstance(message, StopLeft):
+        if isinstance(message, Unkept):
             waiting = self._waiting.pop(message.request or "", None)
             if waiting is not None:
                 waiting.set_result(message)
@@ -543,6 +548,8 @@ class Orchestrator:
                 self._not_sent(command, CommandOvertaken(command))
         if self.stops.ahead and (away := self.stops.stepped(messages)) is not None:
             stops = [*stops, away]
+        if OperatorAnswer in map(type, messages) and self._store is not None and self._leads_for_certain:
+            stops = [*stops, ActsDone(done_at_once(messages))]
         if stops or Remember in map(type, messages):
             return [*stops, *_bundled(messages), COMMANDS_LEFT]
         return messages

@@ -8,8 +8,9 @@ from dataclasses import replace
 from typing import Any, NamedTuple, TypeGuard
 from uuid import uuid4
 
-from arboleda.core.leaving import OVERTAKEN, StopLeft, ends_motion
-from arboleda.core.stop_lane import Blocked, Closed, Departed, Opened, Overrun, StopLane
+from arboleda.adapters import clock
+from arboleda.core.leaving import OVERTAKEN, Unkept, ends_motion
+from arboleda.core.stop_lane import Blocked, Closed, Departed, Happened, Opened, Overrun, StopLane
 from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Notice, OperatorAnswer, OperatorRequest
@@ -31,13 +32,19 @@ class StopsAway(NamedTuple):
     tokens: Sequence[str]
 
 
+class ActsDone(NamedTuple):
+    """Mark among the messages of a step: its stops have left, and with them these acts have happened."""
+
+    answers: Sequence[OperatorAnswer]
+
+
 class Stops:
     """Requests for stops that the plant has not stepped yet; `send` gets what leaves beside it, in a thread.
 
     Such a request overtakes a command that the plant made before it and that still waits to leave.
     """
 
-    def __init__(self, model: PlantModel, epoch: int, send: Callable[[Stop | StopLeft], None]) -> None:
+    def __init__(self, model: PlantModel, epoch: int, send: Callable[[Stop | Unkept], None]) -> None:
         self._lane = StopLane(model, epoch=epoch)
         self.loop: Loop[Any, Any] = Loop("stops", self._lane, send, on_send_error=_leave_it_to_the_plant)
         self.ahead: dict[str, frozenset[str]] = {}  # by token, their robots; never changed, only replaced
@@ -70,10 +77,14 @@ class Stops:
         for token in stops.tokens:
             self.loop.post(Departed(token=token))
 
+    def happened(self, acts: ActsDone) -> None:
+        """Have who asked for these acts answered in time, even if they cannot be kept."""
+        for answer in acts.answers:
+            self.loop.post(Happened(at=clock.seconds(), answer=answer))
+
     def closed(self, answer: OperatorAnswer) -> None:
         """Note that a request has its answer."""
-        if answer.verb.row.stops:
-            self.loop.post(Closed(token=answer.request or ""))
+        self.loop.post(Closed(token=answer.request or ""))
 
     def refuse_overtaken(self, message: Command | Notice) -> None:
         """Raise CommandOvertaken for a command that must not leave any more."""
