@@ -220,6 +220,7 @@ NO_FRAMES = {
     "devices",
     "device",
     "group",
+    "place",
     "handover",
     "run",
     "using",
