@@ -100,7 +100,8 @@ def _selector(walk: Walkthrough, node: composites.Selector, scenes: Sequence[Sce
         return _chosen(walk, node, question, scenes)
     title = title_of(node)
     if title.key == HOME_AGAIN.key:
-        return _gone_home(walk, node, str(title.values["arm"]), scenes)
+        (robot,) = map(str, title.values.values())
+        return _gone_home(walk, node, robot, scenes)
     if not node.memory:
         return walk.unsure(node, scenes)
     outcome = Outcome(failed=tuple(scenes))
