@@ -53,7 +53,17 @@ FATAL = {
     "list as key": (b"{[1]: 2}\n", "1:2: a key is a plain word here"),
     "too deep": (b"a: " + b"[" * 100_000, "nested deeper than 20 levels"),
     "too large": (b"# " + b"x" * 300_000, "is larger than 256 KiB"),
-    "bomb": (BOMB.encode(), "more than 50000 values"),
+    "bomb": (BOMB.encode(), "repeat more than 5000 values"),
+    "bomb of one level": (b"a: &a [1, 2]\nb: [" + b"*a, " * 2000 + b"]\n", "repeat more than 5000 values"),
+    "bomb of texts": (
+        b"a: &a " + b"x" * 90_000 + b"\nb: [" + b"*a, " * 9 + b"]\n",
+        "repeat more than 5000 values",
+    ),
+    "bomb of keys": (
+        b"a: &a {? " + b"x" * 90_000 + b" : 1}\nb: [" + b"*a, " * 9 + b"]\n",
+        "repeat more than 5000 values",
+    ),
+    "many values": (b"a: [" + b"1," * 50_000 + b"]\n", "more than 50000 values"),
 }
 
 

@@ -8,11 +8,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import user_file
-from arboleda.plant_file.yaml_marks import LARGEST, MOST_VALUES, YamlFault, parse
+from arboleda.plant_file.yaml_marks import LARGEST, YamlFault, parse, plain_value
 from arboleda.simulator.run import MINUTE_S
 
 LARGEST_SUMMARY = 16 * 1024 * 1024  # bytes of what --json wrote of many thousand seeds
@@ -94,24 +92,12 @@ def line_of(path: Path, place: Sequence[str | int]) -> str:
 
 
 def _data(path: Path) -> Any:
-    written_by_us = path.suffix == ".json"
-    text = user_file.read_text(path, LARGEST_SUMMARY if written_by_us else LARGEST)
     try:
-        data = json.loads(text) if written_by_us else yaml.safe_load(text)
-    except (ValueError, yaml.YAMLError, RecursionError) as error:
+        if path.suffix == ".json":  # which we have written
+            return json.loads(user_file.read_text(path, LARGEST_SUMMARY))
+        return plain_value(user_file.read_bytes(path, LARGEST))
+    except YamlFault as fault:
+        raise ConfigError((f"{path}:{fault.mark.line}:{fault.mark.column}: {fault.sentence}",)) from None
+    except (ValueError, RecursionError) as error:
         sentence = " ".join(str(error).split())
         raise ConfigError((f"{path}: cannot be read: {sentence}",)) from None
-    if not written_by_us and _values(data) > MOST_VALUES:
-        raise ConfigError((f"{path}: has more than {MOST_VALUES} values",))
-    return data
-
-
-def _values(data: Any) -> int:
-    """The number of values, at most MOST_VALUES + 1: ten anchors in ten lines, each of which repeats the one
-    before nine times, are hundreds of millions."""
-    count, left = 0, [data]
-    while left and count <= MOST_VALUES:
-        value = left.pop()
-        count += 1
-        left += value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
-    return count

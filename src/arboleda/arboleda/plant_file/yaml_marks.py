@@ -18,6 +18,8 @@ from arboleda.model.outside import plain
 
 LARGEST = 256 * 1024  # bytes of a file
 MOST_VALUES = 50_000  # values after aliases are followed
+MOST_REPEATED = 5_000  # of them by aliases: nobody has written these, and a check looks at each
+LETTERS = 100  # of a text or a key that count as one more value
 DEEPEST = 20  # levels
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
@@ -65,6 +67,14 @@ def parse(raw: bytes) -> tuple[Node, list[YamlFault]]:
         return _Composer(text).document()
     except yaml.MarkedYAMLError as error:
         raise YamlFault(_mark(error.problem_mark), f"this is not YAML: {_reason(error)}") from None
+
+
+def plain_value(raw: bytes) -> Any:
+    """The document as plain data; raises the first YamlFault."""
+    root, faults = parse(raw)
+    if faults:
+        raise faults[0]
+    return root.value
 
 
 def scalar(text: str) -> bool | int | float | str | None:
@@ -127,6 +137,7 @@ class _Composer:
         self.events: Iterator[Any] = yaml.parse(text, Loader=LOADER)
         self.anchors: dict[str, Node] = {}
         self.faults: list[YamlFault] = []
+        self.repeated = 0  # values by aliases
 
     def document(self) -> tuple[Node, list[YamlFault]]:
         next(self.events)
@@ -145,7 +156,7 @@ class _Composer:
         if isinstance(event, yaml.AliasEvent):
             if event.anchor not in self.anchors:
                 raise YamlFault(mark, f"*{event.anchor} is used before &{event.anchor} is complete")
-            return self.anchors[event.anchor]
+            return self.repeat(event.anchor, mark)
         if depth > DEEPEST:
             raise YamlFault(mark, f"nested deeper than {DEEPEST} levels")
         if event.tag is not None:
@@ -157,12 +168,20 @@ class _Composer:
             self.anchors[event.anchor] = node
         return node
 
+    def repeat(self, anchor: str, mark: Mark) -> Node:
+        node = self.anchors[anchor]
+        self.repeated += node.size
+        if self.repeated > MOST_REPEATED:
+            raise YamlFault(mark, f"aliases (*{clipped(anchor)}) repeat more than {MOST_REPEATED} values")
+        return node
+
     def built(self, event: Any, mark: Mark, depth: int) -> Node:
         if isinstance(event, yaml.MappingStartEvent):
             return self.mapping(mark, depth)
         if isinstance(event, yaml.SequenceStartEvent):
             return self.sequence(mark, depth)
-        return Node(scalar(event.value) if event.implicit[0] else event.value, mark)
+        value = scalar(event.value) if event.implicit[0] else event.value
+        return Node(value, mark, size=1 + len(event.value) // LETTERS)
 
     def sequence(self, mark: Mark, depth: int) -> Node:
         children: dict[str | int, Node] = {}
@@ -201,4 +220,5 @@ class _Composer:
 
 
 def _size(children: dict[str | int, Node]) -> int:
-    return 1 + sum(child.size for child in children.values())
+    keys = sum(len(key) // LETTERS for key in children if isinstance(key, str))
+    return 1 + keys + sum(child.size for child in children.values())

@@ -9,14 +9,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-import yaml
-
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.facts import shown
 from arboleda.model.messages import Reason
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
+from arboleda.plant_file.yaml_marks import YamlFault, plain_value
 from arboleda.simulator.faults import KINDS, Fault
 
 from ..plants import ELSEWHERE, Plant
@@ -142,10 +141,8 @@ class Judge:
         if PLANT not in self._theirs:
             return
         try:
-            before, now = (
-                yaml.safe_load(each) for each in (self._exercise.start[PLANT], self._theirs[PLANT])
-            )
-        except (yaml.YAMLError, UnicodeDecodeError, RecursionError):
+            before, now = map(plain_value, (self._exercise.start[PLANT], self._theirs[PLANT]))
+        except YamlFault:
             return  # the plant file's own check says what is wrong
         for place in self._exercise.keeps:
             if _at(before, place) != _at(now, place):
@@ -277,9 +274,9 @@ def _others(recorded: Course, course: Course) -> Iterator[str]:
 def _written(content: bytes, model: PlantModel, name: str) -> list[TimedFault]:
     """The faults that a student has written; ArboledaError with what is wrong."""
     try:
-        rows: Any = yaml.safe_load(content.decode("utf-8"))
+        rows: Any = plain_value(content)
         faults = [Fault(**{key: _number(value) for key, value in row.items()}) for row in rows["faults"]]
-    except (yaml.YAMLError, UnicodeDecodeError, KeyError, TypeError, AttributeError, RecursionError) as error:
+    except (YamlFault, KeyError, TypeError, AttributeError) as error:
         raise ArboledaError(
             f"{name} is to have a list of faults: `- {{kind: reboot, target: loader, at: 3.5}}`"
         ) from error

@@ -12,6 +12,7 @@ import yaml
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
+from arboleda.plant_file.yaml_marks import YamlFault, plain_value
 
 from .exercise import Exercise, catalog
 
@@ -107,9 +108,9 @@ def _zipped(file: Path) -> Iterator[Work]:
 
 def _read(where: Path, held: Mapping[str, bytes]) -> Work:
     try:
-        sheet: Any = yaml.safe_load(held.get(SHEET, b"").decode("utf-8"))
+        sheet: Any = plain_value(held.get(SHEET, b""))
         name, student = str(sheet["exercise"]), str(sheet.get("student") or "")
-    except (yaml.YAMLError, UnicodeDecodeError, KeyError, TypeError, AttributeError, RecursionError):
+    except (YamlFault, KeyError, TypeError, AttributeError):
         return Work(where=where, trouble=f"{SHEET} does not say which exercise it is: exercise: NAME")
     student = plain(student, LONGEST)
     if name not in catalog():
