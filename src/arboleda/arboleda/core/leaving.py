@@ -89,10 +89,14 @@ def done_at_once(messages: Sequence[Command | Notice]) -> list[OperatorAnswer]:
     for message in messages:
         if isinstance(message, Command) and not ends_motion(message):
             break
-        is_done = isinstance(message, OperatorAnswer) and message.refusal is None and message.request
-        if is_done and not message.verb.row.stops:
+        if isinstance(message, OperatorAnswer) and _has_happened(message):
             found.append(message)
     return found
+
+
+def _has_happened(answer: OperatorAnswer) -> bool:
+    """True for an act that was not refused, and of which somebody waits to hear; a stop has its own answer."""
+    return answer.refusal is None and bool(answer.request) and not answer.verb.row.stops
 
 
 def ends_motion(message: Command | Notice) -> bool:

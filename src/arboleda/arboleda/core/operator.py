@@ -743,7 +743,7 @@ def scopes(model: PlantModel) -> dict[str, frozenset[str]]:
     return robots | cells | dict.fromkeys(("", "plant"), frozenset(model.robots))
 
 
-def scope_of(request: OperatorRequest) -> str:
+def scope_of(request: OperatorRequest | OperatorAnswer) -> str:
     """Whom or what a request names; only task ids tell capitals apart."""
     scope = request.scope.strip()
     return scope if Scope.TASK in request.verb.row.scopes else scope.lower()

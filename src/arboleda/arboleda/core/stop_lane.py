@@ -110,8 +110,8 @@ class StopLane:
     def _take(self, event: Event) -> list[Stop | Unkept]:
         if isinstance(event, Opened):
             token, due = event.request.request or "", event.request.at + KEPT_S
-            unkept = stop_left(event.request, STILL_WAITS())
-            self._open[token] = OpenAct(request=event.request, unkept=unkept, due=due)
+            left = stop_left(event.request, STILL_WAITS())
+            self._open[token] = OpenAct(request=event.request, unkept=left, due=due)
         elif isinstance(event, Happened):
             token, due = event.answer.request or "", event.at + KEPT_S
             unkept = done_unkept(event.answer, STILL_WAITS())

@@ -26,8 +26,8 @@ def certain_ends(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene])
     sure = dict(frozenset.intersection(*(end.mark for end in ends))) if ends else {}
     for what, value in wanted.items():
         role, dot, _ = what.partition(".")
-        device = cell.roles[role].name if dot else ""
-        yield f"{what} {shown(value)}{_when(cell, device)} (it says so)"
+        named = cell.roles[role].name if dot else ""
+        yield f"{what} {shown(value)}{_when(cell, named)} (it says so)"
     for role, device in cell.members:
         for fact in device.fact_names:
             if (device.name, fact) in sure and f"{role}.{fact}" not in wanted:

@@ -15,7 +15,7 @@ from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Failure
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase
-from arboleda.recipes.handles import Ask, FactCheck, FactWait
+from arboleda.recipes.handles import Ask, FactCheck, FactWait, Question
 from arboleda.trees.failures import Failures
 from arboleda.trees.leaves import Act
 
@@ -168,7 +168,7 @@ class QuestionStep(DeviceStep):
         causes: list[Failure],
         order: Order,
         built: Mapping[str, Value],
-        question: Ask,
+        question: Question,
         out: str,
     ) -> None:
         super().__init__(name, step, failures, causes, order, built)

@@ -35,8 +35,7 @@ class SharedDevicesTruth:
         now = {name: holders[name] for name in self._world.model.shared if name in holders}
         for name, cell in self._holders.items():
             if now.get(name) != cell and name in self._robots:
-                facts = dict(self._robots[name].body.true_facts)
-                self._given_back[name, cell] = GivenBack(at=self._world.now, facts=facts)
+                self._given_back[name, cell] = GivenBack(at=self._world.now, facts=self._facts_of(name))
         self._holders = now
 
     def as_left_by(self, cell: Cell, device: str, *, since: float) -> Mapping[str, Value]:
@@ -45,8 +44,11 @@ class SharedDevicesTruth:
         """
         own, holder = self._given_back.get((device, cell.name)), self._holders.get(device)
         if holder == cell.name:
-            return self._robots[device].body.true_facts
+            return self._facts_of(device)
         if own is not None and own.at >= since:
             return own.facts
         had = [each.at >= since for (name, _), each in self._given_back.items() if name == device]
-        return {} if holder is not None or any(had) else self._robots[device].body.true_facts
+        return {} if holder is not None or any(had) else self._facts_of(device)
+
+    def _facts_of(self, device: str) -> dict[str, Value]:
+        return dict(self._robots[device].body.true_facts)
