@@ -95,7 +95,7 @@ def done_at_once(messages: Sequence[Command | Notice]) -> list[OperatorAnswer]:
 
 
 def _has_happened(answer: OperatorAnswer) -> bool:
-    """True for an act that was not refused, and of which somebody waits to hear; a stop has its own answer."""
+    """True for an act that was not refused and awaits an answer; a stop has an answer of its own."""
     return answer.refusal is None and bool(answer.request) and not answer.verb.row.stops
 
 

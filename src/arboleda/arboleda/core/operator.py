@@ -13,7 +13,17 @@ from arboleda.dispatch.zones import NONE, Zones
 from arboleda.model.commands import Home, Question
 from arboleda.model.common_places import with_common_places
 from arboleda.model.errors import ArboledaError, IllegalTransition
-from arboleda.model.messages import Fact, Failure, Journal, OperatorRequest, Outcome, Reason, TaskState, Verb
+from arboleda.model.messages import (
+    Fact,
+    Failure,
+    Journal,
+    OperatorAnswer,
+    OperatorRequest,
+    Outcome,
+    Reason,
+    TaskState,
+    Verb,
+)
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.model.recipe import known
