@@ -68,6 +68,11 @@ MISTAKES = {  # id: (what the function `heat` is, the line of the problem, what 
         6,
         "eye look never answers 'red'; its answers: good, bad",
     ),
+    "misspelled kit": (
+        "    return cell.fallbck(cell.wait(1), cell.wait(2))",
+        5,
+        "has no step 'fallbck'; there are ",
+    ),
     "raises": ("    return 1 / 0", 5, "cannot be built: ZeroDivisionError: division by zero"),
     "ends": ("    raise SystemExit(3)", 5, "it ends the program (SystemExit: 3)"),
     "a clock": (

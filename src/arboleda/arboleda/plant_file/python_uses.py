@@ -15,6 +15,7 @@ from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.outside import plain
 from arboleda.model.recipe import Recipe
 from arboleda.recipes import WrittenNode
+from arboleda.recipes.errors import misspelled
 
 from .document import Document
 from .lost_steps import LostSteps
@@ -89,6 +90,8 @@ def error_text(error: BaseException) -> str:
     """An error as the end of a sentence."""
     if isinstance(error, ArboledaError):
         return str(error)
+    if isinstance(error, AttributeError) and (sentence := misspelled(error)) is not None:
+        return sentence
     if isinstance(error, RecursionError):
         return "it calls itself without an end"
     if isinstance(error, SystemExit):

@@ -32,7 +32,7 @@ from arboleda.trees.fingerprint import FOR_PEOPLE
 from arboleda.trees.leaves import Dwell, Require, Unless, titled
 
 from .decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
-from .errors import RecipeError, RoleError
+from .errors import Offers, RecipeError, RoleError
 from .handles import Question, Step, chain, flat, handle, is_list, named, question_of, usable, value_text
 from .holding import WORK, held
 from .parameters import parameter
@@ -245,12 +245,15 @@ def parallel(*parts: Step) -> Step:
     return steps.framed(titled(node, PARALLEL()))
 
 
-class Kit:
+class Kit(Offers):
     """Kit of a recipe: the devices and targets of its cell, and the steps around steps."""
 
     def __init__(self, context: Context, making: Making | None = None) -> None:
         self._context = context
         self._making = making or Making()
+
+    def __str__(self) -> str:
+        return self._context.cell.name
 
     def devices(self, *roles: str) -> list[Any]:
         """The devices in these roles, to be told what to do."""

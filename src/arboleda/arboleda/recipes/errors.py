@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from arboleda.model.errors import ArboledaError
+from arboleda.model.outside import among, quoted
 
 
 class RecipeError(ArboledaError):
@@ -11,3 +12,18 @@ class RecipeError(ArboledaError):
 
 class RoleError(RecipeError):
     """A recipe that needs a device in a role that its cell does not have."""
+
+
+class Offers:
+    """Base of what a recipe calls by name, so that a misspelled name is told with the names that there are.
+
+    Its text is what sentences call it.
+    """
+
+
+def misspelled(error: AttributeError) -> str | None:
+    """The sentence for a call that a cell or a device does not offer; None for any other error."""
+    if not isinstance(error.obj, Offers):
+        return None
+    offered = [name for name in dir(error.obj) if not name.startswith("_")]
+    return f"{error.obj} has no step {quoted(error.name)}; {among(error.name, offered)}"

@@ -24,7 +24,7 @@ from arboleda.trees import paths, steps, zone_plan
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Act, Await, Leaf, Require, titled
 
-from .errors import RecipeError
+from .errors import Offers, RecipeError
 from .sharing import check_holds_none
 
 Step = Behaviour
@@ -120,12 +120,15 @@ def question_of(step: object) -> Question | None:
     return found if isinstance(found, Question) else None
 
 
-class Handle:
+class Handle(Offers):
     """A device of the cell, in whatever it can be asked; its kind adds what it can be told."""
 
     def __init__(self, device: Robot, context: Context) -> None:
         self._device = device
         self._context = context
+
+    def __str__(self) -> str:
+        return self._device.name
 
     def says(self, **facts: Value) -> Step:
         """A check: the device says so, else the task fails."""

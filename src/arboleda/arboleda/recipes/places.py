@@ -13,6 +13,7 @@ from arboleda.model.sentence import Phrase, Sentence
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Await
 
+from .errors import Offers
 from .handles import Question, Step
 
 HAS_PART = Phrase("step.has_part", "look for a part at {place}")
@@ -48,12 +49,15 @@ class PlaceQuestion(Question):
         self.known = state["answer"]
 
 
-class PlaceHandle:
+class PlaceHandle(Offers):
     """A place, of which the plant counts the parts: whether one is there, and whether there is room."""
 
     def __init__(self, target: str, context: Context) -> None:
         self._target = target
         self._context = context
+
+    def __str__(self) -> str:
+        return self._target
 
     def has_part(self) -> Step:
         """A question for `choose`: True where a part is there."""
