@@ -125,6 +125,8 @@ MORE_PARALLEL = MORE.replace("All max_failures", " success_count").replace("All>
         (MORE, TaskState.FAILED, "max_failures of ParallelAll is 3, and it has 2 children"),
         (MORE_PARALLEL, TaskState.FAILED, "success_count of Parallel is 3, and it has 2 children"),
         ("<AlwaysFailure/>", TaskState.FAILED, "the tree tend has failed"),
+        ('<AlwaysFailure name="no plate"/>', TaskState.FAILED, "the tree tend has failed: no plate"),
+        ('<AlwaysFailure _description="no lid"/>', TaskState.FAILED, "the tree tend has failed: no lid"),
     ],
 )
 def test_what_takes_no_time_ends(folder: Path, body: str, ends: TaskState, why: str) -> None:

@@ -10,7 +10,7 @@ from arboleda.core import advisor
 from arboleda.core.cell_states import CellState
 from arboleda.core.operator import Operator
 from arboleda.model.messages import Verb
-from arboleda.simulator.invariants.advice import ADVICE, ENOUGH
+from arboleda.simulator.invariants.advice import ADVICE, ENOUGH, no_advice_where_all_is_well
 from arboleda.simulator.invariants.invariant import Judges, Look
 from arboleda.simulator.people import Attendant
 from arboleda.simulator.record import Record
@@ -120,3 +120,9 @@ def test_advice_where_all_is_well_is_found(watch: Watch, monkeypatch: pytest.Mon
     monkeypatch.setattr(advisor, "LEADS", dict.fromkeys(advisor.LEADS, advisor.Advisor._stopped))
     watch.end()
     assert watch.found == {"no_advice_where_all_is_well"}
+
+
+def test_advice_is_said_as_people_write_it(watch: Watch) -> None:
+    watch.act(Verb.STOP)
+    (said,) = no_advice_where_all_is_well.rule(watch.look)
+    assert said == "for sis_a it is advised: clear sis_a"

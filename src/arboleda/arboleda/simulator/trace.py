@@ -17,6 +17,7 @@ from .disk import is_step
 from .world import World
 
 KEPT = 2000  # lines
+DECLARED = "definition"  # of a verb, which stands in the plant file
 QUIET = ("latido", "sensores")  # channels that speak all the time: hashed, but no news for people
 
 
@@ -126,6 +127,13 @@ def _sent(message: Any) -> str:
 
 
 def _fields(message: Any) -> str:
-    values = ((each.name, getattr(message, each.name)) for each in fields(message))
-    shown = [f"{name}={getattr(value, 'value', value)}" for name, value in values if value not in (None, ())]
-    return " ".join([type(message).__name__, *shown])
+    values = ((each.name, getattr(message, each.name)) for each in fields(message) if each.name != DECLARED)
+    told = [f"{name}={_plain(value)}" for name, value in values if value not in (None, ())]
+    return " ".join([type(message).__name__, *told])
+
+
+def _plain(value: Any) -> Any:
+    """A value as people read it: `to=open,speed_mm_s=400` for the arguments of a verb."""
+    if isinstance(value, tuple) and all(isinstance(each, tuple) and len(each) == 2 for each in value):
+        return ",".join(f"{name}={_plain(each)}" for name, each in value)
+    return getattr(value, "value", value)

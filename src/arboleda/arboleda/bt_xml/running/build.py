@@ -56,7 +56,7 @@ class Builder:
         make = self.controls.get(node.kind) or MAKERS.get(node.kind)
         if make is not None:
             texts = {name: attribute.value for name, attribute in node.ports.items()}
-            return make(node.name or node.kind, below, NodePorts(node.kind, texts))
+            return make(_name(node), below, NodePorts(node.kind, texts))
         found = self.leaf(node, below, scope)
         if found is None:
             raise TreeError(f"Arboleda does not run {node.kind}", node.place)
@@ -122,6 +122,12 @@ def _for_each(name: str, below: list[Node], ports: NodePorts) -> Node:
 
 def _loop(name: str, below: list[Node], ports: NodePorts) -> Node:
     return decorators.ForEach(name, below[0], ports, source="queue", out="value")
+
+
+def _name(node: Written) -> str:
+    """The name of a node; of one that fails by itself, what its note says is why."""
+    note = node.own.get("_description") if node.kind == leaves.UNNAMED else None
+    return node.name or (note.value if note is not None else "") or node.kind
 
 
 def _check(name: str, below: list[Node], ports: NodePorts, *, same: Callable[[Value, Value], bool]) -> Node:

@@ -15,6 +15,7 @@ from .ports import NodePorts
 from .scripts import Script
 
 FAILS = Phrase("step.always_failure", "{leaf}")
+UNNAMED = "AlwaysFailure"  # the name of such a leaf that has none of its own
 
 
 class Leaf(Node):

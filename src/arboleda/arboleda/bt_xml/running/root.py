@@ -20,11 +20,19 @@ from arboleda.trees.trail import failure_kept, read_failure
 
 from .controls import InSequence, TryCatch
 from .decorators import SubTree
-from .leaves import AlwaysFailure, Step
+from .leaves import UNNAMED, AlwaysFailure, Step
 from .node import FAILURE, Node, Result
 from .scripts import ScriptError
 
 FAILED = Phrase("xml.failed", "the tree {tree} has failed")
+FAILED_AT = Phrase("xml.failed_at", "the tree {tree} has failed: {leaf}")
+
+
+def _generic(tree: str, leaf: AlwaysFailure | None) -> Failure:
+    """The failure of a tree that fails as it is written: by a leaf whose name, if it has one, says why."""
+    named = leaf is not None and leaf.name != UNNAMED
+    sentence = FAILED_AT(tree=tree, leaf=leaf.name) if leaf is not None and named else FAILED(tree=tree)
+    return Failure(reason=Reason.REJECTED, sentence=sentence)
 
 
 class Forgiving(Step):
@@ -87,9 +95,8 @@ class Rescue(TryCatch):
         first = self.failures.first
         if first is not None and first.reason in NO_RESCUE:
             return
-        generic = Failure(reason=Reason.REJECTED, sentence=FAILED(tree=self.name))
         self.leaf = self.failing() if first is None else None
-        self.cause = first or (self.causes[0] if self.causes else generic)
+        self.cause = first or (self.causes[0] if self.causes else _generic(self.name, self.leaf))
         self.ends_tree = first is not None
         self._forget()
 
@@ -174,8 +181,9 @@ class Main(Node):
             self._halt_all()
             return FAILURE
         if result is FAILURE:
-            generic = Failure(reason=Reason.REJECTED, sentence=FAILED(tree=self.name))
-            self.failures.add(self.causes[0] if self.causes else generic, self._failing_leaf() or self)
+            leaf = self._failing_leaf()
+            cause = self.causes[0] if self.causes else _generic(self.name, leaf)
+            self.failures.add(cause, leaf or self)
         return result
 
     def _put_aside(self) -> Failure | None:

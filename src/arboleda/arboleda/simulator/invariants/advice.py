@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from arboleda.core import reasons
+from arboleda.core.advice import in_words
 
 from .invariant import Look, Trigger, invariant
 
@@ -27,7 +28,7 @@ def refusals_are_foretold(look: Look) -> Iterator[str]:
         (answer,) = look.record.answers
         if answer.refusal != foretold:
             verb = f"{request.verb.value} {request.scope!r}"
-            yield f"{verb} was answered with {answer.refusal!r}, foretold was {foretold!r}"
+            yield f"{verb} was answered with {answer.refusal}, foretold was {foretold}"
 
 
 @invariant(Trigger.END)
@@ -35,7 +36,10 @@ def no_advice_where_all_is_well(look: Look) -> Iterator[str]:
     """At the end nothing is advised, as every cell works."""
     for name in look.world.plant.cells:
         for advice in look.world.plant.advice(name)[:1]:
-            yield f"for {name} it is advised: {advice}"
+            if advice.refusal is None:
+                yield f"for {name} it is advised: {in_words(advice)}"
+            else:
+                yield f"for {name} it is advised: {in_words(advice)}, which is refused: {advice.refusal}"
 
 
 ADVICE = (advice_leads_out, refusals_are_foretold, no_advice_where_all_is_well)

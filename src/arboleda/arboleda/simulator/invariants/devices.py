@@ -8,6 +8,7 @@ from arboleda.dispatch.ledger import State
 from arboleda.model.commands import Command, Home, Motion, Query, Question, Stop, StopMode
 from arboleda.model.messages import Fact, OperatorRequest, Reason, Remember, TaskState, Verb
 from arboleda.model.plant_model import Evidence, MotionState, Robot
+from arboleda.wire.hop import shown
 
 from ..recorded.commands import SentCommand
 from ..truth.ended_commands import EndedCommand
@@ -239,7 +240,7 @@ def _is_offered(command: Command, request: OperatorRequest) -> bool:
 def commands_of_others_are_told(look: Look) -> Iterator[str]:
     """Of each command of another node that reaches a bridge that hears its plant, people are told."""
     for command in look.record.others.untold:
-        yield f"nobody is told of {command}, which another node gave"
+        yield f"nobody is told of {shown(command)} for {command.robot}, which another node gave"
 
 
 @invariant(Trigger.COMMANDED)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
+from arboleda.wire.hop import shown
 from arboleda.wire.payloads import JointsGoal, PathGoal, StopGoal
 
 from ..truth.arm import ArmTruth
@@ -30,7 +31,7 @@ def no_move_after_a_boot_that_was_told(look: Look) -> Iterator[str]:
     boots = look.truth.boots
     for command in look.moment.sent if boots.mute else ():
         if isinstance(command, MoveJoints | FollowPath) and boots.is_known(command.robot):
-            yield f"{command.robot} booted and was not put right since, but gets {command}"
+            yield f"{command.robot} booted and was not put right since, but gets {shown(command)}"
 
 
 @invariant(Trigger.CHANGED)

@@ -8,6 +8,7 @@ from arboleda.core import text
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.errors import TextError
 from arboleda.model.messages import Heartbeat, TaskChanged, TaskRequest, TaskState
+from arboleda.wire.hop import shown
 
 from ..recorded.tasks import SURE
 from .invariant import Look, Trigger, invariant
@@ -93,7 +94,7 @@ def nothing_moves_after_a_restart(look: Look) -> Iterator[str]:
     task to a cell that had nothing to do; but where the plant file says so and no task was at work.
     """
     for command in look.record.stirring:
-        yield f"the plant has started, and by itself sends {command}"
+        yield f"the plant has started, and by itself sends {shown(command)} to {command.robot}"
 
 
 STARTS = (

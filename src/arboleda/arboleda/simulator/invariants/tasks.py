@@ -22,6 +22,7 @@ from arboleda.model.messages import (
 from arboleda.model.plant_model import Cell, Evidence, Workspace
 from arboleda.model.sentence import Sentence
 from arboleda.recipes.storage_layout import StorageLayout
+from arboleda.wire.hop import shown
 
 from ..recorded.cells import KnownCell
 from ..recorded.robots import STOPS, StopProgress
@@ -317,7 +318,7 @@ def nothing_moves_after_an_absence(look: Look) -> Iterator[str]:
     operator gets its cell going, or where nothing was under way in it, for a task.
     """
     for command in look.record.unasked:
-        yield f"the plant was away, and by itself sends {command}"
+        yield f"the plant was away, and by itself sends {shown(command)} to {command.robot}"
 
 
 @invariant(Trigger.LATE)

@@ -13,6 +13,7 @@ from arboleda.model.by_class import nearest
 from arboleda.model.commands import Home, Motion, Stop
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.plant_model import Robot
+from arboleda.wire.hop import shown
 
 from .invariant import Look, Trigger, invariant
 
@@ -36,7 +37,7 @@ def nothing_is_told_to_move_in_manual_but_what_is_held(look: Look) -> Iterator[s
         if cells <= teachers.was.keys() & teachers.taught.keys():
             since = look.world.plant.now - teachers.held_at.get(command.robot, -math.inf)
             if since > HOLD_S + ROUNDING_S:
-                yield f"{command.robot} gets {command}, and its button was held {since:.3f} s ago"
+                yield f"{command.robot} gets {shown(command)}, and its button was held {since:.3f} s ago"
 
 
 @invariant(Trigger.TOLD)
