@@ -144,6 +144,15 @@ def test_a_machine_may_work_on_what_lies_in_it(drawn: list[DrawnDevices]) -> Non
     assert any("works_on_part=True" in text for text in texts)
 
 
+def test_two_or_three_cells_share_devices(drawn: list[DrawnDevices]) -> None:
+    sharing = [len(each.section["cells"]) for each in drawn if "shared" in each.section]
+    assert set(sharing) == {2, 3}
+    for plant in drawn:
+        cells = plant.section["cells"].values()
+        own = [device["name"] for cell in cells for device in cell["devices"].values() if "name" in device]
+        assert len(set(own)) == len(own)
+
+
 def test_cells_have_what_a_cell_can_have(drawn: list[DrawnDevices]) -> None:
     cells = [cell for each in drawn for cell in each.section["cells"].values()]
     rows = [device for cell in cells for device in cell["devices"].values()]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from copy import deepcopy
+from dataclasses import dataclass
 
 from ...chance import Dice
 from ..timing import draw_timing
@@ -13,10 +15,12 @@ from .recipes import RecipeDrawer
 from .trials import Trials
 
 SECOND = 0.35  # how often a second cell is like the first one
+THIRD = 0.4  # how often there is a third one beside these
 AS_XML = 0.4
 RECIPES = (2, 3, 4, 5)  # of a plant
 IN_PYTHON = 0.35  # how often kinds are written in Python
-BESIDE_DEG = 7.0  # half of what targets are apart
+APART_DEG = 14.0  # targets of the first cell, between which those of the others lie
+LETTERS = "bc"  # for the names of the devices of the second and of the third cell
 
 
 def draw(seed: int, attempt: int = 0) -> DrawnDevices:
@@ -39,11 +43,10 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
         section["kinds"] = declared
     if drawer.shared:
         section["shared"] = drawer.shared
-    section["cells"] = {CELL: drawer.section}
-    if alike:
-        section["cells"][f"{CELL}_2"] = _other(drawer.section)
+    others = _others(Dice(seed, "third cell", attempt)) if alike else []
+    section["cells"] = {CELL: drawer.section} | {each.name: each.like(drawer.section) for each in others}
     if drawer.zones:
-        section["zones"] = _zones(drawer.zones, alike=alike)
+        section["zones"] = _zones(drawer.zones, others)
     as_xml = dice.chance(AS_XML)
     trials = Trials(Dice(seed, "trials", attempt), layout, as_xml=as_xml)
     recipes = RecipeDrawer(dice, layout, trials, as_xml=as_xml)
@@ -64,50 +67,83 @@ def _timing(dice: Dice) -> Section:
     return draw_timing(dice) if dice.chance(0.5) else {}
 
 
-def _other(cell: Section) -> Section:
-    """The second cell: the same roles, other devices but for those that both have."""
-    made = deepcopy(cell)
-    for role, device in made["devices"].items():
-        if "shared" not in device:
-            device["name"] = f"{role}_b"
-            if "mqtt" in device:
-                device["mqtt"] = f"{device['mqtt']}_b"
-            if device["kind"] == "arm":
-                x, y = device["base"]["origin_m"]
-                device["base"]["origin_m"] = [x, y + 6]
-            if device["kind"] == "mobile":
-                x, y = device["grid"]["origin_m"]
-                device["grid"]["origin_m"] = [x, y + 6]
-    for name, target in made.get("targets", {}).items():
-        for pose in target.values() if name != "home" else ():
-            _beside(pose)
-    for group in made.get("groups", {}).values():
-        for corners in group["corners"].values() if isinstance(group, dict) else ():
-            for pose in corners:
-                _beside(pose)
+@dataclass(frozen=True, kw_only=True)
+class OtherCell:
+    """Cell like the first one: the same roles, other devices but for those that cells share.
+
+    `number` counts from 1. Cells that share an arm have no place in common: its targets here lie `beside_deg`
+    beside those there.
+    """
+
+    number: int
+    beside_deg: float
+
+    @property
+    def name(self) -> str:
+        return f"{CELL}_{self.number + 1}"
+
+    @property
+    def end(self) -> str:
+        """The end of the names of its devices, and of its zones."""
+        return f"_{LETTERS[self.number - 1]}"
+
+    def like(self, cell: Section) -> Section:
+        """The cell, made of the first one."""
+        made = deepcopy(cell)
+        for role, device in made["devices"].items():
+            if "shared" not in device:
+                self._rename(role, device)
+        for name, target in made.get("targets", {}).items():
+            for pose in target.values() if name != "home" else ():
+                self._move(pose)
+        for group in made.get("groups", {}).values():
+            for corners in group["corners"].values() if isinstance(group, dict) else ():
+                for pose in corners:
+                    self._move(pose)
+        return made
+
+    def poses(self, zone: Section) -> list[str]:
+        """The poses of a zone of the first cell, as this one has them."""
+        return [pose.replace(f"{CELL} ", f"{self.name} ", 1) for pose in zone["poses"]]
+
+    def _rename(self, role: str, device: Section) -> None:
+        device["name"] = f"{role}{self.end}"
+        if "mqtt" in device:
+            device["mqtt"] = f"{device['mqtt']}{self.end}"
+        place = {"arm": "base", "mobile": "grid"}.get(device["kind"])
+        if place is not None:
+            x, y = device[place]["origin_m"]
+            device[place]["origin_m"] = [x, y + 6 * self.number]
+
+    def _move(self, pose: Section) -> None:
+        if "deg" in pose:
+            pose["deg"][0] = round(pose["deg"][0] + self.beside_deg, 2)
+
+
+def _others(dice: Dice) -> list[OtherCell]:
+    """A second cell, and now and then a third one."""
+    count = 1 + dice.chance(THIRD)
+    return [OtherCell(number=n, beside_deg=n * APART_DEG / (count + 1)) for n in range(1, count + 1)]
+
+
+def _zones(zones: Section, others: Sequence[OtherCell]) -> Section:
+    """The zones of the first cell; one without a door is of all cells."""
+    made = deepcopy(zones)
+    for name, zone in zones.items():
+        for cell in others:
+            if "free_while" not in zone:
+                made[name]["poses"] += cell.poses(zone)
+            else:
+                made[f"{name}{cell.end}"] = _zone(zone, cell)
     return made
 
 
-def _beside(pose: Section) -> None:
-    """Move a pose of an arm, as two cells that share one have no place in common."""
-    if "deg" in pose:
-        pose["deg"][0] = round(pose["deg"][0] + BESIDE_DEG, 2)
-
-
-def _zones(zones: Section, *, alike: bool) -> Section:
-    """The zones of the first cell; one without a door is of both cells."""
-    made = deepcopy(zones)
-    for name, zone in list(made.items()):
-        if not alike:
-            continue
-        if "free_while" not in zone:
-            zone["poses"] += [pose.replace(f"{CELL} ", f"{CELL}_2 ", 1) for pose in zone["poses"]]
-            continue
-        other = deepcopy(zone)
-        other["free_while"] = {f"{role}_b": facts for role, facts in zone["free_while"].items()}
-        if "poses" in zone:
-            other["poses"] = [pose.replace(f"{CELL} ", f"{CELL}_2 ", 1) for pose in zone["poses"]]
-        if "held_while" in zone:
-            other["held_while"] = {f"{role}_b": verbs for role, verbs in zone["held_while"].items()}
-        made[f"{name}_b"] = other
+def _zone(zone: Section, cell: OtherCell) -> Section:
+    """A zone with a door, of another cell."""
+    made = deepcopy(zone)
+    if "poses" in zone:
+        made["poses"] = cell.poses(zone)
+    for key in ("free_while", "held_while"):
+        if key in zone:
+            made[key] = {f"{role}{cell.end}": words for role, words in zone[key].items()}
     return made
