@@ -506,11 +506,7 @@ class Record:
         requests = plant.zones.waiting
         if requests != self._requests:
             self._requests, robots = requests, dict(requests)
-            before = self.waiting
             self.waiting = [cell for cell in self._storage if cell.layout.arm.name in robots]
-            for cell in before:
-                if cell not in self.waiting:
-                    cell.wait_no_more()
         for cell in self.waiting if not self.away else ():
             cell.wait(plant.now - self.stepped_at, behind_work=self._is_behind_work(cell))
         moves: dict[str, list[SentCommand]] = {}

@@ -17,7 +17,7 @@ from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.trees.leaves import Act, TakeZones
 
 from .commands import SentCommand
-from .starts import turn_of, turns_of
+from .starts import turn_of
 
 LOOK_S = 1.0  # a tree that sends nothing is looked through this often
 PAUSED = (CellState.HOLDING, CellState.HELD)
@@ -68,7 +68,7 @@ class KnownCell:
         self._held_at: float | None = None
         self._lag_s = math.inf
         self._waiter: Behaviour | None = None
-        self._turns: list[int] = []  # of what repeats the waiter
+        self._asked_at: float | None = None  # the cell's time at which the waiter began
         self.wakes = self.context.time.wakes
         self.follow()
 
@@ -99,10 +99,6 @@ class KnownCell:
         now = self.context.time.now
         return any(at <= now for at in self.wakes)
 
-    def wait_no_more(self) -> None:
-        """Take in that its arm asks for no zones: when it asks again, it waits anew."""
-        self._waiter = None
-
     def wait(self, seconds: float, *, behind_work: bool) -> None:
         """Count the time that its arm waits for zones; `seconds` passed since the step before.
 
@@ -112,10 +108,11 @@ class KnownCell:
         if waiter is None or not _runs(waiter, tree):
             waiter = next((leaf for leaf in _running(tree) if isinstance(leaf, TakeZones)), None)
         recovers = isinstance(waiter, TakeZones) and waiter.recovers
-        turns = [] if waiter is None else turns_of(waiter)
+        # what repeats a step has it ask anew, maybe in the step in which it gave up; a recovery waits on
+        asked_at = waiter.began if isinstance(waiter, TakeZones) and not recovers else None
         self.behind_work = behind_work
-        if waiter is not self._waiter or turns != self._turns or (recovers and behind_work):
-            self._waiter, self._turns, self.waited_s = waiter, turns, 0.0
+        if (waiter, asked_at) != (self._waiter, self._asked_at) or (recovers and behind_work):
+            self._waiter, self._asked_at, self.waited_s = waiter, asked_at, 0.0
         elif self.state not in PAUSED:
             self.waited_s += seconds
 

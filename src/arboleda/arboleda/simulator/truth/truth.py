@@ -102,7 +102,8 @@ class Truth(RobotsTruth):
         if self.done_tasks:
             self.done_tasks = []
         super().look()
-        self.shared.look()
+        if self.world.model.shared:
+            self.shared.look()
         for booked in self.books.ended:
             self._end(booked)
         plant = self.world.plant
