@@ -23,6 +23,14 @@ from ...lengths import length
 
 LEAST = {True: 3, False: 10}  # works of each exercise that are right, and wrong ones
 QUICK = length(("query_first", "night"), ("query_first", "need", "night"))
+BOMB = (
+    "a: &a [1, 2]\n"
+    + "".join(
+        f"{name}: &{name} [{', '.join([f'*{before}'] * 9)}]\n"
+        for before, name in zip("abcdefgh", "bcdefghi", strict=True)
+    )
+    + "exercise: *i\n"
+)
 
 
 @pytest.mark.parametrize("each", catalog().values(), ids=lambda each: each.name)
@@ -88,6 +96,7 @@ def test_a_folder_has_the_works_below_it_and_the_zips(tmp_path: Path) -> None:
         ({SHEET: "exercise: wishes\n"}, "there is no exercise wishes"),
         ({SHEET: "- 1\n"}, "does not say which exercise"),
         ({SHEET: "exercise: [\n"}, "does not say which exercise"),
+        ({SHEET: BOMB}, "does not say which exercise"),
     ],
 )
 def test_a_work_that_cannot_be_judged_says_why(tmp_path: Path, files: dict[str, str], trouble: str) -> None:

@@ -58,11 +58,16 @@ def _twice(cell: Cell, node: str, role: str) -> str:
 def of_cells(cells: Sequence[Cell], own: Iterable[WrittenNode] = ()) -> dict[str, Kind]:
     """The kinds of several cells together; ConfigError if a name means different kinds in two cells."""
     found: dict[str, Kind] = {}
+    first: dict[str, str] = {}  # the cell whose kind that is
     written = tuple(own)
     for cell in cells:
         for name, kind in of_cell(cell, written).items():
             if found.setdefault(name, kind) != kind:
-                raise ConfigError((f"{name} is not the same in all cells; choose one: --cell {cell.name}",))
+                one, other = first[name], cell.name
+                raise ConfigError(
+                    (f"{name} is not the same in {one} and {other}; choose --cell {one} or --cell {other}",)
+                )
+            first.setdefault(name, cell.name)
     return found
 
 
