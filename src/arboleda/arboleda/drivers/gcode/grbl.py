@@ -121,7 +121,9 @@ class GrblMachine(Machine):
         if isinstance(work, Homing) and now - work.began_at > HOMING_S:
             self._halt(now)
             self._tell(failed=work.id, failure="homing_has_no_end")
-        if now - self._last_data_at > self._patience_s and not self._homes_unheard:
+        # GRBL answers no query before a homing has ended.
+        homes = isinstance(self._work, Homing) and self._work.is_under_way
+        if now - self._last_data_at > self._patience_s and not homes:
             self._close(
                 now, f"it has told no status for {self._patience_s:g} s; is it GRBL 1.1, at this baud?"
             )
@@ -129,17 +131,9 @@ class GrblMachine(Machine):
             self._close(now, f"it has not answered a move for {ANSWER_S:g} s")
         else:
             self._stop_unheard(now)
-            self._query(now)
-
-    @property
-    def _homes_unheard(self) -> bool:
-        """True while it homes: GRBL answers no query before that has ended."""
-        return isinstance(self._work, Homing) and self._work.is_under_way
-
-    def _query(self, now: float) -> None:
-        if now >= self._query_at:
-            self._query_at = now + self._settings.poll_s
-            self._out.append(Write(data=QUERY))
+            if now >= self._query_at:
+                self._query_at = now + self._settings.poll_s
+                self._out.append(Write(data=QUERY))
 
     def _stop_unheard(self, now: float) -> None:
         """Hold, then reset, what is silent on a new line: it homes, or waits for a reset after an alarm."""
