@@ -23,7 +23,7 @@ class Offers:
 
 def misspelled(error: AttributeError) -> str | None:
     """The sentence for a call that a cell or a device does not offer; None for any other error."""
-    if not isinstance(error.obj, Offers):
+    if not isinstance(error.obj, Offers) or error.name is None:
         return None
     offered = [name for name in dir(error.obj) if not name.startswith("_")]
     return f"{error.obj} has no step {quoted(error.name)}; {among(error.name, offered)}"
