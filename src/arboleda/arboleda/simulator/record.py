@@ -97,7 +97,8 @@ class Record:
         self.teachers = Teachers()
         world.before_asking.append(lambda: self.before_requests.look(self._cells, self.tasks, world))
         self.courses = Courses()
-        self.courses.look(world.plant, born=True)
+        self.courses.begin(run.task.id for run in world.plant.cells.values() if run.task is not None)
+        self.courses.look(world.plant)
         self.choices = Choices(self.robots, self.courses)
         world.before_asking.append(lambda: self.choices.look(world))
         self.kept: dict[Fact, dict[str, str]] = {}  # before this step
@@ -159,8 +160,12 @@ class Record:
             self._clear_news()
         if self.starts.wrong or self.starts.twice:
             self.starts.clear_news()
-        if moment.sent or moment.last_words or moment.unkept:
-            self.starts.hear((*moment.last_words, *moment.unkept, *moment.sent))
+        if moment.last_words or moment.unkept:
+            self.starts.hear((*moment.last_words, *moment.unkept))
+        if plant is not self._plant:
+            self.starts.take_stock()
+        if moment.sent:
+            self.starts.hear(moment.sent)
         for board, goal in moment.executed:
             self.starts.carries_out(board, goal)
         if moment.published:
@@ -285,6 +290,7 @@ class Record:
             self._take_last_words()
             self.times.restart(self.stepped_at, plant.now)
             self._begin(plant)
+            self.courses.begin(self.tasks.running.values())
             self._expect_rest(plant)
             self._has_begun = False
         self.begins = self.stepped and not self._has_begun
@@ -319,7 +325,7 @@ class Record:
             if take is not None:
                 take(self, message)
         self._compare(plant)
-        self.courses.look(plant, born=self.born)
+        self.courses.look(plant)
         self.stepped_at = plant.now
         if self.acts.of:
             faults, last = self.world.faults_active, self.world.last_fault_at

@@ -19,7 +19,7 @@ def accepted_is_found_again(look: Look) -> Iterator[str]:
     """Whatever was told of a task and of a stop is so for the plant that starts next."""
     starts, known = look.record.starts, look.world.plant.intake.tasks
     found = look.world.plant_process.found.tasks
-    for id, said in [*starts.changes.items()][-SURE:]:
+    for id, said in [*starts.before.items()][-SURE:]:
         row, end = found.get(id), starts.ended.get(id)
         if row is None or id not in known:
             yield f"task {id} was told to be {said.state.value}, and who starts knows nothing of it"

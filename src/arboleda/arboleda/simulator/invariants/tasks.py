@@ -239,12 +239,16 @@ def only_legal_cell_states(look: Look) -> Iterable[str]:
 
 def _illegal(look: Look) -> Iterator[str]:
     for cell, before, after in look.record.transitions:
-        by_itself = BY_ITSELF | {Cause.AWAY} if look.record.away else BY_ITSELF
-        if look.world.plant.intake.closed:  # a plant that ends in order holds what is at work
-            by_itself |= {Cause.HOLD}
-        causes = by_itself.union(*(BY_VERB.get(verb, frozenset()) for verb in _verbs(look, cell)))
-        if after not in _reachable(before, causes):
+        if after not in _reachable(before, _causes(look, cell)):
             yield f"{cell.name} went from {before.value} to {after.value}, and nobody asked for that"
+
+
+def _causes(look: Look, cell: KnownCell) -> frozenset[Cause]:
+    """The causes for which a cell may change its state in this step."""
+    by_itself = BY_ITSELF | {Cause.AWAY} if look.record.away else BY_ITSELF
+    if look.world.plant.intake.closed:  # a plant that ends in order holds what is at work
+        by_itself |= {Cause.HOLD}
+    return by_itself.union(*(BY_VERB.get(verb, frozenset()) for verb in _verbs(look, cell)))
 
 
 def _verbs(look: Look, cell: KnownCell) -> Iterator[Verb]:
@@ -289,8 +293,20 @@ def _at_birth(look: Look) -> Iterator[str]:
         state = CellState.ABORTED if uncleared else CellState.STOPPED if unreset else None
         if state is not None and cell.run.state is not state:
             yield f"{cell.name} starts {cell.run.state.value}; its stop was not over"
-        if state is None and cell.run.state not in (CellState.IDLE, CellState.HELD):
+        if state is None and cell.run.state not in _first_states(look, cell):
             yield f"{cell.name} starts {cell.run.state.value}; it was not stopped"
+
+
+def _first_states(look: Look, cell: KnownCell) -> set[CellState]:
+    """The states that a cell without a stop may have after the step in which its plant starts.
+
+    It starts at rest. Where its tasks may start by themselves, or somebody asks for something, that step
+    goes on from there, as a device may have reported already.
+    """
+    resting = {CellState.IDLE, CellState.HELD}
+    if cell.name in look.record.unattended:
+        return resting
+    return resting.union(*(_reachable(state, _causes(look, cell)) for state in resting))
 
 
 @invariant(Trigger.ASKED)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -158,25 +158,30 @@ class Courses:
     def __init__(self) -> None:
         self.ended: dict[str, TaskInProgress] = {}
         self._at_work: dict[str, TaskInProgress] = {}
+        self._began_before: frozenset[str] = frozenset()
 
     @property
     def at_work(self) -> Mapping[str, TaskInProgress]:
         """The tasks at work, by cell."""
         return self._at_work
 
-    def look(self, plant: Plant, *, born: bool) -> None:
-        """Take in what the plant did in this step; `born`: an earlier start of the plant began what runs."""
+    def begin(self, at_work: Iterable[str]) -> None:
+        """Begin with a plant that starts, and these tasks, which were at work before."""
+        self._at_work.clear()
+        self._began_before = frozenset(at_work)
+
+    def look(self, plant: Plant) -> None:
+        """Take in what the plant did in this step."""
         if self.ended:
             self.ended = {}
-        if born:
-            self._at_work.clear()
         for name, run in plant.cells.items():
             progress = self._at_work.get(name)
             if progress is not None and progress.nodes is not run.run.nodes:
                 self.ended[progress.task], progress.ended_at = self._at_work.pop(name), run.context.time.now
                 progress = None
             if progress is None and run.task is not None and run.run.nodes:
-                progress = TaskInProgress(run.task.id, run.run.nodes, run.context.time.now, whole=not born)
+                whole = run.task.id not in self._began_before
+                progress = TaskInProgress(run.task.id, run.run.nodes, run.context.time.now, whole=whole)
                 self._at_work[name] = progress
             if progress is not None and progress.rested is not run.run.rested:
                 progress.look(run.run.rested, run.context.time.now)

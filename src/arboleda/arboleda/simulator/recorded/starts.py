@@ -43,12 +43,14 @@ class Step:
 class Starts:
     """Tasks over all starts: `changes` is the last word on each accepted one, `ended` its first end told.
 
+    `before` has the last words of earlier starts, as they were when the plant started last.
     `wrong` are ends that were told again or otherwise in this step. `twice` are steps that a board has begun
     again although an earlier start had done them, or had gone on from them.
     """
 
     def __init__(self, model: PlantModel) -> None:
         self.changes: dict[str, TaskChanged] = {}
+        self.before: dict[str, TaskChanged] = {}
         self.ended: dict[str, TaskChanged] = {}
         self.wrong: list[str] = []
         self.twice: list[str] = []
@@ -64,6 +66,10 @@ class Starts:
         """Clear the findings of the step before."""
         self.wrong.clear()
         self.twice.clear()
+
+    def take_stock(self) -> None:
+        """Note what was told so far, for a plant that starts and may say something in the same step."""
+        self.before = dict(self.changes)
 
     def hear(self, messages: Iterable[object]) -> None:
         """Take in what the plant says, its last words too."""
