@@ -11,6 +11,9 @@ from typing import Any
 
 import pytest
 
+from arboleda.bt_xml import reading
+from arboleda.bt_xml.findings import Findings
+from arboleda.bt_xml.recipe import tree_recipe
 from arboleda.core import cell, operator, plant
 from arboleda.core.cell_states import CellState
 from arboleda.core.task_queue import TaskQueue
@@ -929,6 +932,41 @@ def test_zone_requests_end__anew_after_the_pause_of_a_retry(monkeypatch):
     assert [cell.name for cell in watch.record.waiting] == ["sis_a"]
     watch.wait(10)
     assert watch.found == {}
+
+
+def in_a_tree(model: PlantModel, node: str) -> PlantModel:
+    """The plant, each cell with a recipe `look` that is a tree of this node."""
+    text = f'<root BTCPP_format="4"><BehaviorTree ID="Look">{node}</BehaviorTree></root>'.encode()
+    look = tree_recipe("look", "look.xml", text, reading.read("look.xml", text, Findings()), {})
+    return replace(model, cells=tuple(replace(each, recipes=(*each.recipes, look)) for each in model.cells))
+
+
+VISIT = '<arm_visit target="pickup"><Sleep msec="1000"/></arm_visit>'
+PAUSE = '<Inverter><Sleep msec="500"/></Inverter>'
+
+
+@pytest.mark.parametrize("node", [VISIT, f"<Fallback>{VISIT}{PAUSE}</Fallback>"])
+def test_zone_requests_end__anew_at_each_try_of_a_tree(monkeypatch, node):
+    watch = Watch(in_a_tree(zoned(), f'<RetryUntilSuccessful num_attempts="4">{node}</RetryUntilSuccessful>'))
+    assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
+    monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
+    watch.task("sis_a look", wait_s=5.0)
+    assert [cell.name for cell in watch.record.waiting] == ["sis_a"]
+    watch.wait(12)
+    assert watch.found == {}
+
+
+def test_zone_requests_end__at_a_later_try_of_a_tree(monkeypatch, bites):
+    watch = Watch(
+        in_a_tree(zoned(), f'<RetryUntilSuccessful num_attempts="4">{VISIT}</RetryUntilSuccessful>')
+    )
+    assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
+    monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
+    watch.task("sis_a look", wait_s=4)
+    assert watch.found == {}
+    monkeypatch.setattr(leaves.TakeZones, "update", lambda self: self.arrived() or leaves.Status.RUNNING)
+    watch.wait(4)
+    bites(watch)
 
 
 def test_zone_requests_end__once_a_cell_that_was_held_at_that_moment_goes_on(monkeypatch):
