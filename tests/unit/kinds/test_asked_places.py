@@ -6,8 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.bt_xml.editing.drawing_kit import DrawingKit
-from arboleda.bt_xml.editing.errors import EditError
 from arboleda.core.plant import Plant
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import advance_check
@@ -135,9 +133,3 @@ def test_the_answer_of_a_place_outlives_a_start_of_the_plant(tmp_path: Path) -> 
     assert kept is not None
     restored.restore(kept)
     assert restored.answer is True
-
-
-def test_a_question_to_a_place_is_no_node_of_a_tree_in_xml(tmp_path: Path) -> None:
-    context = Plant(load(written(tmp_path)), epoch=0, now=0.0).cells["left"].context
-    with pytest.raises(EditError, match="cannot be drawn: no node in XML does this"):
-        DrawingKit(context).place("pass")

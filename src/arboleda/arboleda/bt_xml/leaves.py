@@ -1,6 +1,6 @@
-"""Nodes for the devices of a cell: an action for each verb, and conditions on their facts.
+"""Nodes of a cell: for its devices an action for each verb, and conditions on their facts; for its places.
 
-A node is named by the role of its device and the verb: `mill_run`, `loader_visit`, `mill_says`.
+A node of a device is named by its role and the verb: `mill_run`, `loader_visit`, `mill_says`.
 """
 
 from __future__ import annotations
@@ -21,6 +21,9 @@ from .nodes import MANY, Category, Kind, Port, PortDirection, by_name, children
 TYPES: Mapping[type, str] = {bool: "bool", int: "int", float: "double", str: "string"}
 ANSWER = "answer"
 TELLS = "tells"
+HAS_PART, HAS_ROOM = "place_has_part", "place_has_room"
+GETS_PART, GETS_ROOM = "place_gets_part", "place_gets_room"
+WITHIN = Port(name="at_most_s", type="double", is_needed=True, about="how long it is waited for, in s")
 
 
 def of_cell(cell: Cell, own: Iterable[WrittenNode] = ()) -> dict[str, Kind]:
@@ -30,9 +33,13 @@ def of_cell(cell: Cell, own: Iterable[WrittenNode] = ()) -> dict[str, Kind]:
         if kind.name in found:
             raise ConfigError((_twice(cell, kind.name, role),))
         found[kind.name] = kind
+    for name, kind in of_places(cell).items():
+        if name in found:
+            raise ConfigError((f"{cell.name}: its devices and its places make a node {name}; rename a role",))
+        found[name] = kind
     for node in own:
         if node.name in found:
-            raise ConfigError((f"{cell.name}: its devices make a node {node.name}; rename that in Python",))
+            raise ConfigError((f"{cell.name}: it makes a node {node.name} itself; rename that in Python",))
         found[node.name] = _of_python(cell, node)
     return found
 
@@ -60,15 +67,39 @@ def of_cells(cells: Sequence[Cell], own: Iterable[WrittenNode] = ()) -> dict[str
     found: dict[str, Kind] = {}
     first: dict[str, str] = {}  # the cell whose kind that is
     written = tuple(own)
+    with_places = [cell.name for cell in cells if cell.places]
     for cell in cells:
+        places = of_places(cell)
         for name, kind in of_cell(cell, written).items():
-            if found.setdefault(name, kind) != kind:
+            if name in places and first.get(name) in with_places:
+                found[name] = _at_either(found[name], kind)
+            elif found.setdefault(name, kind) != kind:
                 one, other = first[name], cell.name
                 raise ConfigError(
                     (f"{name} is not the same in {one} and {other}; choose --cell {one} or --cell {other}",)
                 )
             first.setdefault(name, cell.name)
     return found
+
+
+def of_places(cell: Cell) -> dict[str, Kind]:
+    """The nodes that ask for the parts at a place of a cell, or wait for them; none without places."""
+    targets = tuple(place.target for place in cell.places)
+    place = Port(name="place", type="string", is_needed=True, words=targets, about="at which place")
+    kinds = (
+        _kind(Category.CONDITION, HAS_PART, place),
+        _kind(Category.CONDITION, HAS_ROOM, place),
+        _kind(Category.ACTION, GETS_PART, place, WITHIN),
+        _kind(Category.ACTION, GETS_ROOM, place, WITHIN),
+    )
+    return {kind.name: kind for kind in kinds if targets}
+
+
+def _at_either(one: Kind, other: Kind) -> Kind:
+    """A node for the places of two cells."""
+    ports = {**(one.ports or {})}
+    words = (*ports["place"].words, *(other.ports or {})["place"].words)
+    return replace(one, ports={**ports, "place": replace(ports["place"], words=tuple(dict.fromkeys(words)))})
 
 
 def _of_device(cell: Cell, role: str, device: Robot) -> Iterator[Kind]:
@@ -109,12 +140,11 @@ def _of_verb(role: str, verb: DeviceVerb) -> Kind:
 
 def _of_facts(role: str, facts: Mapping[str, FactType]) -> Iterator[Kind]:
     ports = [_port(name, type, is_needed=False) for name, type in facts.items()]
-    within = Port(name="at_most_s", type="double", is_needed=True, about="how long it is waited for, in s")
     outputs = [replace(each, way=PortDirection.OUT) for each in ports]
     for kind in (
         _kind(Category.CONDITION, f"{role}_says", *ports),
         _kind(Category.ACTION, f"{role}_{TELLS}", *outputs),
-        _kind(Category.ACTION, f"{role}_becomes", *ports, within),
+        _kind(Category.ACTION, f"{role}_becomes", *ports, WITHIN),
     ):
         yield replace(kind, some_of=tuple(facts))
 

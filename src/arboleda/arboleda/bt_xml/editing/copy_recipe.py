@@ -26,6 +26,7 @@ from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Limits, Parameter
 from arboleda.recipes.authoring import WrittenRecipe
 from arboleda.recipes.handles import Chain, Step, usable
+from arboleda.recipes.places import PlaceQuestion
 from arboleda.trees.context import Context
 
 from . import carry
@@ -112,6 +113,8 @@ def _whole(step: Step, taken: Collection[str]) -> Drawn:
 def _drawn(step: Behaviour, answers: Mapping[int, str]) -> Drawn:
     """A step as a node; `answers`: the variable of each question that something is chosen by."""
     below = tuple(_drawn(each, answers) for each in step.children)
+    if isinstance(step, DrawnStep) and isinstance(step.real, PlaceQuestion):
+        return _asked(step, answers.get(id(step)))
     if isinstance(step, DrawnStep):
         answer = {"answer": answers[id(step)]} if id(step) in answers else {}
         by = {} if step.chosen_by is None else {"variable": answers[id(step.chosen_by)]}
@@ -123,6 +126,16 @@ def _drawn(step: Behaviour, answers: Mapping[int, str]) -> Drawn:
     if _waits_for_all(step):
         return Drawn(step.name, "Parallel", {"success_count": "-1", "failure_count": "1"}, below)
     raise refusal(step.name, f"it is a {type(step).__name__} made in Python")
+
+
+def _asked(step: DrawnStep, answer: str | None) -> Drawn:
+    """A question to a place as the condition that it is in XML, and the variable for its answer, if any."""
+    condition = Drawn(step.name, step.kind, step.attributes, ())
+    if answer is None:
+        return Drawn("ForceSuccess", "ForceSuccess", {}, (condition,))
+    codes = [f"{answer.strip('{}')} := '{shown(each)}'" for each in PlaceQuestion.answers]
+    noted = [Drawn("Script", "Script", {"code": code}, ()) for code in codes]
+    return Drawn(step.name, "IfThenElse", {}, (condition, *noted))
 
 
 def _waits_for_all(step: Step) -> bool:

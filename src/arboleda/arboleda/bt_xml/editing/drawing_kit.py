@@ -15,7 +15,6 @@ from arboleda.model.messages import Reason
 from arboleda.model.outside import quoted
 from arboleda.recipes.authoring import Kit, Making, work
 from arboleda.recipes.handles import Step, flat, question_of
-from arboleda.recipes.places import PlaceHandle
 from arboleda.trees.context import Context
 
 from .errors import EditError
@@ -70,9 +69,8 @@ class DrawingKit(Kit):
     def device(self, role: str) -> Any:
         return _DrawingHandle(role, super().device(role), self.kinds)
 
-    def place(self, target: str) -> PlaceHandle:
-        super().place(target)  # which refuses what is no place
-        raise refusal(f"place({quoted(target)})", NO_NODE)
+    def place(self, target: str) -> Any:
+        return _DrawingHandle("place", super().place(target), self.kinds, {"place": target})
 
     def using(self, roles: str | Sequence[str], *parts: Step | Sequence[Step]) -> Step:
         names = [roles] if isinstance(roles, str) else roles
@@ -137,12 +135,18 @@ class DrawingKit(Kit):
 
 
 class _DrawingHandle:
-    """A device of the cell whose steps are drawn; `real` is asked whether it has them."""
+    """A device or a place of the cell whose steps are drawn; `real` is asked whether it has them.
 
-    def __init__(self, role: str, real: Any, kinds: Mapping[str, Kind]) -> None:
+    `given`: the values that each of its nodes has.
+    """
+
+    def __init__(
+        self, role: str, real: Any, kinds: Mapping[str, Kind], given: Mapping[str, Value] | None = None
+    ) -> None:
         self._role = role
         self._real = real
         self._kinds = kinds
+        self._given = dict(given or {})
 
     def __getattr__(self, verb: str) -> Callable[..., Step]:
         method = getattr(self._real, verb)
@@ -156,7 +160,7 @@ class _DrawingHandle:
             around = verb == "visit"  # the first value is the target, all others are steps there
             outer, inner = (in_order[:1], in_order[1:]) if around else (in_order, ())
             real = method(*outer, **by_name)
-            found = dict(zip(ports, outer, strict=False)) | by_name
+            found = self._given | dict(zip(ports, outer, strict=False)) | by_name
             attributes = {key: self._text(name, key, value) for key, value in found.items()}
             below = flat(inner, "visit")
             if around and not below:

@@ -36,6 +36,7 @@ def palette(cell: Cell, own: Iterable[WrittenNode], words: Mapping[str, str]) ->
     python = [kinds[each.name] for each in written]
     groups.append(_group(PYTHON, "", python, words))
     library = [each for each in OF_LIBRARY.values() if each.name not in INSTEAD]
+    library += leaves.of_places(cell).values()
     for category, name in GROUPS.items():
         groups.append(_group(name, "", [each for each in library if each.category is category], words))
     others = [each for each in {**OF_NAV2, **OF_MOVEIT}.values() if each.name not in INSTEAD]

@@ -17,7 +17,7 @@ from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase
 from arboleda.recipes.handles import Ask, FactCheck, FactWait, Question
 from arboleda.trees.failures import Failures
-from arboleda.trees.leaves import Act
+from arboleda.trees.leaves import Act, Await, Require
 
 from . import memory
 from .memory import Scope
@@ -38,6 +38,8 @@ MADE_OF: Mapping[type[Behaviour], tuple[str, ...]] = {
     Act: ("make", "anew", "doing", "name", "title"),
     FactCheck: ("obstacle", "facts"),
     FactWait: ("arrived", "seconds", "otherwise", "facts"),
+    Require: ("obstacle", "name", "title"),
+    Await: ("arrived", "seconds", "otherwise", "name", "title"),
 }
 """The attributes of each class of step that depend on the values it was made with."""
 

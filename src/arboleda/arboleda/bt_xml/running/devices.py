@@ -1,4 +1,4 @@
-"""Leaves of a tree that command the devices of a cell."""
+"""Leaves of a tree that command the devices of a cell, or ask for the parts at its places."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ from arboleda.trees.context import Context
 from arboleda.trees.leaves import Act, Require, titled
 from arboleda.trees.steps import framed
 
+from . import places
 from .device_steps import DeviceStep, FactStep, Order, QuestionStep, can_be_renewed, example_of, value_of
 from .errors import TreeError
 from .memory import Scope
@@ -69,19 +70,32 @@ class Devices:
             return self._made(node, kind, below, scope)
 
     def _made(self, node: forest.Node, kind: Kind, below: list[Node], scope: Scope) -> Node:
+        if node.kind not in self.roles:
+            return self._built(node, kind, scope, partial(places.step, self.context, node.kind))
         role = self.roles[node.kind]
         verb = node.kind.removeprefix(f"{role}_")
         robot = self.context.cell.roles[role]
-        name = node.name or node.kind
         if verb == leaves.TELLS and not _has_verb(robot, verb):
-            return self._telling(name, node, robot.name)
-        device = handle(robot, self.context)
-        order = self._order(node, kind, scope, partial(_step, device, verb, below=below))
+            return self._telling(node.name or node.kind, node, robot.name)
+        make = partial(_step, handle(robot, self.context), verb, below=below)
+        return self._built(node, kind, scope, make, f"{robot.name} {verb}")
+
+    def _built(
+        self,
+        node: forest.Node,
+        kind: Kind,
+        scope: Scope,
+        make: Callable[[dict[str, Value]], Step],
+        words: str = "",
+    ) -> Node:
+        """The leaf whose step is made of the node's values; `words`: the name of a command without them."""
+        name = node.name or node.kind
+        order = self._order(node, kind, scope, make)
         built = self._now(order, scope)
         step = order.make(dict(built))
         unknown = [each for each in order.variables.values() if scope.get(each) is None]
         if unknown and type(step) is Act:
-            titled(step, " ".join([robot.name, verb, *order.words(built, unknown)]))
+            titled(step, " ".join([words, *order.words(built, unknown)]))
         if not can_be_renewed(step):
             self._fix(order, node, scope)
             order = replace(order, variables={})
