@@ -8,6 +8,7 @@ from enum import Enum
 
 from arboleda.bt_xml.running.leaves import FAILS
 from arboleda.bt_xml.running.root import FAILED as TREE_FAILED
+from arboleda.bt_xml.running.root import FAILED_AT as TREE_FAILED_AT
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.messages import Reason, TaskChanged, TaskState
 from arboleda.recipes.authoring import FAIL
@@ -22,6 +23,7 @@ from .world import World
 AS_WRITTEN = (FAIL.key, FAILS.key)  # steps that do nothing but fail
 UP_TO_OTHERS = (NO_PART_YET.key, NO_ROOM_YET.key)  # waits for what another task brings, or takes
 BY_PEOPLE = frozenset({Reason.STOPPED, Reason.CANCELLED, Reason.INTERRUPTED})
+BY_TREE = frozenset({TREE_FAILED.key, TREE_FAILED_AT.key})
 REFUSALS = frozenset({Reason.REJECTED, Reason.PRECONDITION})
 
 
@@ -129,7 +131,7 @@ class Findings:
     def _failed(self, recipe: str, change: TaskChanged) -> None:
         task = self._world.plant.intake.tasks[change.task]
         step = task.failed_step
-        by_itself = (step is not None and step.key in AS_WRITTEN) or change.sentence.key == TREE_FAILED.key
+        by_itself = (step is not None and step.key in AS_WRITTEN) or change.sentence.key in BY_TREE
         is_whole = change.sentence.key != RESCUE_FAILED.key
         counted = self.as_written if by_itself and is_whole and task.answers else self.found
         counted[
