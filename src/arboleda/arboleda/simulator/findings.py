@@ -11,9 +11,11 @@ from arboleda.bt_xml.running.root import FAILED as TREE_FAILED
 from arboleda.bt_xml.running.root import FAILED_AT as TREE_FAILED_AT
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.messages import Reason, TaskChanged, TaskState
+from arboleda.model.sentence import Sentence
 from arboleda.recipes.authoring import FAIL
 from arboleda.recipes.decorators import RESCUE_FAILED
 from arboleda.recipes.places import NO_PART_YET, NO_ROOM_YET
+from arboleda.trees.part_places import EMPTY, trouble_in
 
 from .record import Record
 from .storage.tasks import NAMES
@@ -140,7 +142,18 @@ class Findings:
                 recipe=recipe,
                 step="" if step is None else str(step),
                 reason="" if change.reason is None else change.reason.value,
-                sentence=str(change.sentence),
+                sentence=_advised(change.sentence),
                 task=change.text,
             )
         ] += 1
+
+
+def _advised(sentence: Sentence) -> str:
+    """The sentence, with what a recipe can do instead where a place has no part, or no room."""
+    trouble = trouble_in(sentence)
+    if trouble is None:
+        return str(sentence)
+    place = f'cell.place("{trouble.values["place"]}")'
+    if trouble.key == EMPTY.key:
+        return f"{sentence}; a recipe in Python can wait for a part there: {place}.gets_part(...)"
+    return f"{sentence}; a recipe in Python can wait for room there: {place}.gets_room(...)"
