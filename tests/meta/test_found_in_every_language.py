@@ -46,6 +46,7 @@ FILES = (
     *sorted(PACKAGE.glob("board_kit/conformance/*.py")),
     *sorted(PACKAGE.glob("playground/*.py")),
     *(file for folder in SEEING for file in sorted(PACKAGE.glob(f"simulator/{folder}/*.py"))),
+    PACKAGE / "simulator/findings.py",
     PACKAGE / "wire/strict.py",
     PACKAGE / "wire/payloads.py",
     PACKAGE / "client/http.py",

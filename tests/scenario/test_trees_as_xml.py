@@ -108,6 +108,9 @@ SKIPS = (
     '<Parallel success_count="2" failure_count="2"><AlwaysSuccess/>'
     '<AlwaysSuccess _skipIf="true"/><Sleep msec="500"/></Parallel>'
 )
+UNNAMED = '<ScriptCondition code="1 == 2"/>'
+EMPTY = UNNAMED.replace("code", 'name="not empty" code')
+EMPTY_TOO = EMPTY.replace("empty", "full")
 FAILS = '<ScriptCondition code="1 / 0 == 1"/>'
 MORE = (
     '<Script code="most := 3"/><ParallelAll max_failures="{most}"><mill_open/><AlwaysSuccess/></ParallelAll>'
@@ -127,6 +130,24 @@ MORE_PARALLEL = MORE.replace("All max_failures", " success_count").replace("All>
         ("<AlwaysFailure/>", TaskState.FAILED, "the tree tend has failed"),
         ('<AlwaysFailure name="no plate"/>', TaskState.FAILED, "the tree tend has failed: no plate"),
         ('<AlwaysFailure _description="no lid"/>', TaskState.FAILED, "the tree tend has failed: no lid"),
+        (EMPTY, TaskState.FAILED, "the tree tend has failed: not empty"),
+        (f"<Fallback>{EMPTY}{EMPTY_TOO}</Fallback>", TaskState.FAILED, "the tree tend has failed: not full"),
+        (f"<Fallback>{EMPTY}<AlwaysFailure/></Fallback>", TaskState.FAILED, "the tree tend has failed"),
+        (
+            f"<Fallback>{EMPTY}<AlwaysSuccess/></Fallback>{UNNAMED}",
+            TaskState.FAILED,
+            "the tree tend has failed",
+        ),
+        (
+            f"<Fallback>{EMPTY}<AlwaysSuccess/></Fallback><Inverter><AlwaysSuccess/></Inverter>",
+            TaskState.FAILED,
+            "the tree tend has failed",
+        ),
+        (
+            f"<TryCatch>{EMPTY}{EMPTY_TOO}</TryCatch>",
+            TaskState.FAILED,
+            "the tree TryCatch has failed: not empty",
+        ),
     ],
 )
 def test_what_takes_no_time_ends(folder: Path, body: str, ends: TaskState, why: str) -> None:

@@ -132,3 +132,38 @@ def test_nodes_of_one_name_in_two_cells_must_be_the_same() -> None:
         ConfigError, match=r"mill_says is not the same in .* and other; choose --cell .* or --cell other"
     ):
         leaves.of_cells([cell, replace(other, members=tuple(rows))])
+
+
+TWO = """
+name: lab
+uses: [bake.xml]
+kinds:
+  oven: {verbs: {run: {effect: process, with: {celsius: [40, 60]}}, open: {effect: process}}}
+  mill: {verbs: {run: {effect: process, with: {program: [1, 2]}}, open: {effect: process}}}
+cells:
+  baking: {devices: {machine: {kind: oven, name: oven}}}
+  milling: {devices: {machine: {kind: mill, name: mill}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("body", "is_good"),
+    [
+        ('<machine_run celsius="40"/>', True),
+        ('<machine_run program="2"/>', True),
+        ("<machine_open/>", True),
+        ('<machine_run celsius="50"/>', False),
+        ("<machine_close/>", False),
+    ],
+    ids=["one", "the other", "both", "neither", "no cell has the node"],
+)
+def test_a_tree_is_checked_for_the_cells_that_can_run_it(tmp_path: Path, body: str, is_good: bool) -> None:
+    (tmp_path / "plant.yaml").write_text(TWO, "utf-8")
+    (tmp_path / "bake.xml").write_text(tree("<machine_open/>"), "utf-8")
+    file = tmp_path / "tend.xml"
+    file.write_text(tree(body), "utf-8")
+    found = run("check", file, "--plant", tmp_path / "plant.yaml")
+    if is_good:
+        assert found.output == f"{file}: good: 1 nodes; trees Main\n"
+    else:
+        assert "choose --cell baking or --cell milling" in str(found.exception)

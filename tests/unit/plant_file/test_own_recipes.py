@@ -434,6 +434,43 @@ def test_one_mistake_in_a_cell_brings_no_others(tmp_path: Path, plant: str, reci
     assert "must be" in found or "there twice" in found
 
 
+BROKEN = "is no Python\n"
+ARM = "  press:\n    devices:\n      arm: {kind: arm, model: arm.yaml}\n"
+TREE = """<root BTCPP_format="4"><BehaviorTree ID="Turn"><own_step to="{to}"/></BehaviorTree><TreeNodesModel>
+<SubTree ID="Turn"><input_port name="to"/></SubTree></TreeNodesModel></root>"""
+THREE_FILES = PLANT.replace("[recipes.py]", "[recipes.py, more.py, turn.xml]")
+
+
+@pytest.mark.parametrize(
+    ("plant", "recipes"),
+    [
+        (PLANT + ARM, PALLET),
+        (PLANT.replace("[recipes.py]", "[recipes.py, more.py]"), PALLET),
+        (THREE_FILES + "    recipes: [heat, warm]\n", GOOD),
+        (THREE_FILES + "    recipes: [heat, turn]\n", GOOD),
+        (THREE_FILES + "    recipes: [heat, turn]\n", GOOD.replace('"heat"', '"turn_it"') + BROKEN),
+        (THREE_FILES + "    recipes: [heat]\n    default_recipe: warm\n", GOOD),
+        (THREE_FILES + "    recipes: [lay]\n", PALLET),
+    ],
+    ids=[
+        "targets of a cell whose model is wrong",
+        "targets of a kind of a file that is wrong",
+        "a recipe of a file that is wrong",
+        "a node of a file that is wrong",
+        "a node of a file that is wrong, and no other recipe",
+        "a default recipe of a file that is wrong",
+        "targets of a cell that names the recipe",
+    ],
+)
+def test_a_mistake_in_another_file_brings_no_others(tmp_path: Path, plant: str, recipes: str) -> None:
+    (tmp_path / "more.py").write_text(BROKEN, "utf-8")
+    (tmp_path / "turn.xml").write_text(TREE, "utf-8")
+    (tmp_path / "arm.yaml").write_text("joints: 5\n", "utf-8")
+    found = problems(tmp_path, recipes, plant)
+    assert found
+    assert all(each.startswith("arm.yaml") or "cannot be imported" in each for each in found)
+
+
 def test_a_cell_without_a_recipe_is_told_why(tmp_path: Path) -> None:
     (found,) = problems(tmp_path, GOOD, PLANT + SECOND)
     assert found.endswith(

@@ -47,6 +47,22 @@ def bake(cell):
     put = lambda at: loader.visit(at, jaw.open())
     return work(take("rack"), oven.open(), put("inside"), loader.home(), oven.close(), oven.bake())
 """
+KIND = """
+from dataclasses import dataclass
+from arboleda.kinds import Kind, kind, motion, process
+
+@dataclass(frozen=True)
+class Oven: ...
+
+@kind("oven")
+def oven(settings: Oven) -> Kind:
+    verbs = {
+        "open": motion(sets={"door": "open"}),
+        "close": motion(sets={"door": "closed"}),
+        "bake": process(takes_s=5),
+    }
+    return Kind(facts={"door": ["closed", "open"]}, verbs=verbs)
+"""
 PLACES = "lab: nothing is known of where parts lie"
 GUARD = "lab: nothing is known of who else is in the zone in_the_oven of loader"
 NEEDS = "lab: nothing is known of what bake of oven needs"
@@ -96,6 +112,14 @@ def test_an_offer_is_edits_of_which_each_alone_states_it(tmp_path: Path, number:
     for edit in offer.edits:
         file.write_text(edited({file.name: PLANT}, [edit])[file.name])
         assert offer.sentence not in unstated.unknowns(loader.load(file))
+
+
+def test_no_edit_is_offered_for_what_is_to_stand_in_another_file(tmp_path: Path) -> None:
+    oven = PLANT[PLANT.index("kinds:") : PLANT.index("cells:")]
+    file = written(tmp_path, PLANT.replace(oven, "").replace("[recipes.py]", "[recipes.py, kinds.py]"))
+    (tmp_path / "kinds.py").write_text(KIND)
+    found = offers(file.name, file.read_text(), loader.load(file))
+    assert [each.sentence for each in found] == [PLACES, GUARD]
 
 
 def test_a_simulation_says_of_what_nothing_is_known(tmp_path: Path) -> None:

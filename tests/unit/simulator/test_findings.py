@@ -119,6 +119,47 @@ def test_what_fails_or_is_refused_is_found(recipe: Any, finding: str) -> None:
     assert not result.as_written
 
 
+BENCH = """
+name: bench
+uses: [recipes.py]
+cells:
+  bench:
+    devices: {arm: {kind: arm, model: scara}, jaw: {kind: gripper, tool_of: arm}}
+    targets:
+      home: {arm: {deg: [0, 0], mm: 0}}
+      in: {arm: {deg: [60, 20], mm: 50}}
+      tray: {arm: {deg: [30, 60], mm: 50}}
+    places: {in: {supply: true}, tray: {}}
+"""
+BRINGS = """
+from arboleda.recipes import recipe, work
+
+@recipe("bring")
+def bring(cell):
+    arm, jaw = cell.devices("arm", "jaw")
+    take, put = jaw.close(width_mm=30, force_n=20), jaw.open()
+    return work(arm.visit("FROM", take), arm.visit("TO", put), arm.home())
+"""
+
+
+@pytest.mark.parametrize(
+    ("way", "advice"),
+    [
+        (("in", "tray"), '; a recipe in Python can wait for room there: cell.place("tray").gets_room(...)'),
+        (("tray", "in"), '; a recipe in Python can wait for a part there: cell.place("tray").gets_part(...)'),
+    ],
+    ids=["full", "empty"],
+)
+def test_a_recipe_without_a_part_or_room_is_told_once_how_to_wait_for_it(
+    tmp_path: Path, way: tuple[str, str], advice: str
+) -> None:
+    (tmp_path / "recipes.py").write_text(BRINGS.replace("FROM", way[0]).replace("TO", way[1]), "utf-8")
+    (tmp_path / "plant.yaml").write_text(BENCH, "utf-8")
+    simulation = Simulation(load(tmp_path / "plant.yaml"), 1, lambda minute: [], invariants=())
+    (found,) = simulation.run(cycles=3).findings
+    assert found.sentence.endswith(advice) and found.sentence.count("a recipe in Python") == 1
+
+
 def test_it_is_counted() -> None:
     (count,) = run(says, cycles=5).findings.values()
     assert count >= 5

@@ -18,6 +18,11 @@ from arboleda.recipes.nodes import Taken, WrittenNode
 from . import values
 from .nodes import MANY, Category, Kind, Port, PortDirection, by_name, children
 
+
+class NotTheSame(ConfigError):
+    """A name means different kinds of nodes in two cells."""
+
+
 TYPES: Mapping[type, str] = {bool: "bool", int: "int", float: "double", str: "string"}
 ANSWER = "answer"
 TELLS = "tells"
@@ -63,7 +68,7 @@ def _twice(cell: Cell, node: str, role: str) -> str:
 
 
 def of_cells(cells: Sequence[Cell], own: Iterable[WrittenNode] = ()) -> dict[str, Kind]:
-    """The kinds of several cells together; ConfigError if a name means different kinds in two cells."""
+    """The kinds of several cells together; NotTheSame if a name means different kinds in two cells."""
     found: dict[str, Kind] = {}
     first: dict[str, str] = {}  # the cell whose kind that is
     written = tuple(own)
@@ -75,7 +80,7 @@ def of_cells(cells: Sequence[Cell], own: Iterable[WrittenNode] = ()) -> dict[str
                 found[name] = _at_either(found[name], kind)
             elif found.setdefault(name, kind) != kind:
                 one, other = first[name], cell.name
-                raise ConfigError(
+                raise NotTheSame(
                     (f"{name} is not the same in {one} and {other}; choose --cell {one} or --cell {other}",)
                 )
             first.setdefault(name, cell.name)

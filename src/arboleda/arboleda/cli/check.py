@@ -8,6 +8,9 @@ from typing import Annotated
 
 import typer
 
+from arboleda.bt_xml.leaves import NotTheSame
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file import advance_check, loader, plant_check, tree_file, unstated
 from arboleda.plant_file.user_file import check_writable
@@ -87,8 +90,8 @@ def check(
     if tree_file.is_tree_file(file):
         if json is not None or mend:
             raise typer.BadParameter(say(FOR_PLANTS()))
-        known = None if plant is None else nodes.of_plant(loader.load(plant), cell)
-        print(finding("\n".join(tree_file.report(file, known))))
+        model = None if plant is None else loader.load(plant)
+        print(finding("\n".join(_of_trees(file, model, cell))))
         return
     if (plant is not None and is_typed(context, "plant")) or cell is not None:
         raise typer.BadParameter(say(FOR_TREES()))
@@ -96,6 +99,30 @@ def check(
         _as_data(file, json, mend=mend)
     if json is None or str(json) != TO_SCREEN:
         _in_words(file, ends=ends)
+
+
+def _of_trees(file: Path, model: PlantModel | None, cell: str | None) -> list[str]:
+    """The lines about a file of trees; where nodes are not the same in all cells, those of the cells that can
+    run it, if these are alike.
+    """
+    if model is None:
+        return tree_file.report(file)
+    try:
+        known = nodes.of_plant(model, cell)
+    except NotTheSame:
+        found = [lines for each in model.cells if (lines := _of_cell(file, model, each.name)) is not None]
+        if not found or any(lines != found[0] for lines in found):
+            raise
+        return found[0]
+    return tree_file.report(file, known)
+
+
+def _of_cell(file: Path, model: PlantModel, cell: str) -> list[str] | None:
+    """The lines about a file of trees for this cell; None if it cannot run them."""
+    try:
+        return tree_file.report(file, nodes.of_plant(model, cell))
+    except ConfigError:
+        return None
 
 
 def _as_data(file: Path, json: Path | None, *, mend: bool) -> None:

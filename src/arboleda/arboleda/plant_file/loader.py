@@ -134,7 +134,7 @@ def _parsed(
         plant = _named(document)
     else:
         plant = _plant(document, PythonUses(), _nothing)
-    document.finish()
+    document.finish(document.keys(CELLS))
     if plant is None:
         raise ConfigError((f"{document.name}: the file cannot be read as a plant",))
     return _Reading(plant, document, missed, brings)

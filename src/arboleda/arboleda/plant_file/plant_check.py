@@ -15,6 +15,7 @@ from . import (
     place_check,
     unused_steps,
 )
+from .problems import told_once
 
 CHECKS = (
     loader,
@@ -30,5 +31,6 @@ CHECKS = (
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
-    """The warnings of all checks, one sentence each."""
-    return tuple(sentence for check in CHECKS for sentence in check.warnings(plant))
+    """The warnings of all checks, one sentence each, and one for all cells of which it is the same."""
+    found = [sentence for check in CHECKS for sentence in check.warnings(plant)]
+    return told_once(found, [cell.name for cell in plant.cells])

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Collection, Iterable, Sequence
 
 from arboleda.model.errors import ConfigError
 
 from .yaml_marks import Mark
 
 Kept = Sequence[object]  # line, column and sentence
+PLACED = re.compile(r"(?P<place>[^:\n]+:\d+:\d+: )?(?P<rest>.*)", re.DOTALL)
 
 
 class Problems:
@@ -37,11 +39,43 @@ class Problems:
             self._problems[(int(str(line)), int(str(column)), str(sentence))] = None
         self._elsewhere |= dict.fromkeys(elsewhere)
 
-    def finish(self) -> None:
-        """Raise ConfigError if there is any problem, in the order of the file, those of other files last."""
+    def finish(self, cells: Collection[str] = ()) -> None:
+        """Raise ConfigError if there is any problem, in the order of the file, those of other files last.
+
+        A problem that is the same in several of these `cells` is told once.
+        """
         here = (self._line(*problem) for problem in sorted(self._problems))
-        if problems := (*here, *self._elsewhere):
+        if problems := told_once((*here, *self._elsewhere), cells):
             raise ConfigError(problems)
 
     def _line(self, line: int, column: int, sentence: str) -> str:
         return f"{self.name}:{line}:{column}: {sentence}"
+
+
+def told_once(sentences: Iterable[str], cells: Collection[str]) -> tuple[str, ...]:
+    """The sentences; of those that differ in their cell alone the first, with the names of all the cells."""
+    alike: dict[tuple[str, str], dict[str, str]] = {}  # by what is before and behind the cell: by cell
+    for sentence in sentences:
+        before, cell, behind = _at_cell(sentence, cells)
+        alike.setdefault((before, behind), {}).setdefault(cell, sentence)
+    return tuple(_of_cells(list(each), next(iter(each.values()))) for each in alike.values())
+
+
+def _at_cell(sentence: str, cells: Collection[str]) -> tuple[str, str, str]:
+    """What is before the first name of a cell, that name, and what is behind it; the place names none."""
+    place, rest = _placed(sentence)
+    found = re.search(rf"\b({'|'.join(cells)})\b", rest) if cells else None
+    if found is None:
+        return sentence, "", ""
+    return f"{place}{rest[: found.start()]}", found[0], rest[found.end() :]
+
+
+def _of_cells(cells: Sequence[str], sentence: str) -> str:
+    """The sentence, which is about the first of these cells, with the names of all of them before it."""
+    place, rest = _placed(sentence)
+    return sentence if len(cells) == 1 else f"{place}{', '.join(cells)}: {rest.removeprefix(f'{cells[0]}: ')}"
+
+
+def _placed(sentence: str) -> tuple[str, str]:
+    found = PLACED.fullmatch(sentence)
+    return (found["place"] or "", found["rest"]) if found else ("", sentence)

@@ -12,7 +12,7 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.bt_xml.findings import Place as XmlPlace
 from arboleda.bt_xml.recipe import TreeRecipe
-from arboleda.bt_xml.running.errors import TreeMistakes
+from arboleda.bt_xml.running.errors import NoDeviceError, TreeMistakes
 from arboleda.bt_xml.running.node import Node
 from arboleda.core.plant import Plant
 from arboleda.model.commands import Work
@@ -27,7 +27,7 @@ from arboleda.trees.leaves import Act
 from arboleda.trees.tree_nodes import nodes_of
 from arboleda.views import tree_view
 
-from .document import Document, Place, choice, nearest, shown
+from .document import Document, Place, choice, closest, nearest, shown
 from .lost_steps import Made
 from .own_recipes import SECTION
 from .python_uses import LONGEST, PythonUses, Spot, Watch, error_text
@@ -65,20 +65,22 @@ class Trial:
     misfits: dict[str, list[str]] = field(default_factory=dict)  # by recipe: why not
     missed: dict[str, dict[str, str]] = field(default_factory=dict)  # by cell and recipe: why not
     named: dict[str, dict[str, bool]] = field(default_factory=dict)  # by recipe and sentence: always lost
+    is_sound: bool = True  # False: there is a mistake already, in the plant file or in one that it names
 
     def run(self, cells: Sequence[Cell]) -> dict[str, list[str]]:
         """The names of the recipes that each cell offers, in their order.
 
-        Where the file has a mistake, a recipe may fit a cell that could not be read, or not whole.
+        Where there is a mistake, a recipe may fit a cell that could not be read, or not whole, and a cell may
+        name a recipe that could not be read.
         """
-        is_sound = not self.document.kept[0]
+        self.is_sound = not any(self.document.kept)
         for cell in cells:
             named = self._named(cell)
             names = list(self.used.recipes) if named is None else named
             fitting = [name for name in names if self._fits(cell, self.used.recipes[name], named is not None)]
             self.offers[cell.name] = fitting
             self._check_default(cell, fitting)
-        if is_sound:
+        if self.is_sound:
             self._check_all_fit(cells)
         return self.offers
 
@@ -117,7 +119,7 @@ class Trial:
         for index, name in enumerate(names):
             if name in names[:index]:
                 self.document.problem((*place, index), f"{shown(name)} is there twice")
-            elif name not in known and known:
+            elif name not in known and known and self._is_mistaken(name, known):
                 there = f"must be {choice(known)}"
                 self.document.problem((*place, index), f"{there}, is {shown(name)}{nearest(name, known)}")
         return [name for name in dict.fromkeys(names) if name in known]
@@ -125,16 +127,25 @@ class Trial:
     def _check_default(self, cell: Cell, offered: Sequence[str]) -> None:
         place: Place = ("cells", cell.name, "default_recipe")
         name = self.document.value(place)
-        if name is not None and name not in offered and offered:
+        if name is not None and name not in offered and offered and self._is_mistaken(name, offered):
             there = f"must be one that the cell offers: {choice(offered)}"
             self.document.problem(place, f"{there}; is {shown(name)}{nearest(name, offered)}")
 
+    def _is_mistaken(self, name: str, known: Collection[str]) -> bool:
+        """True if a recipe that is not there does not lack by a mistake that is told already."""
+        return self.is_sound or closest(name, known) is not None
+
     def _fits(self, cell: Cell, recipe: Recipe, named: bool) -> bool:
-        """True if the cell has what a recipe needs or names it; problems with building its trees are kept."""
+        """True if the cell has what a recipe needs or names it; problems with building its trees are kept.
+
+        What may follow from a mistake that is told already is not told.
+        """
         spot = self.used.spot(recipe)
         if not named and (empty := _without_value(cell, recipe)):
             self._miss(cell, recipe, empty, spot.problem(empty))
             return False
+        if not self.is_sound and _without_value(cell, recipe):
+            return True
         if unfit := _unspellable(cell, recipe):
             self._keep([spot.problem(unfit)])
             return True
@@ -146,6 +157,8 @@ class Trial:
             try:
                 found = self._look(recipe, order, context)
             except RoleError as error:
+                if isinstance(error, NoDeviceError) and not self.used.is_whole:
+                    return True
                 problem = self.used.where(error, spot).problem(f"{recipe.name}: {error}")
                 if number == 0 and not named:
                     self._miss(cell, recipe, str(error), problem)

@@ -24,6 +24,7 @@ from arboleda.trees.leaves import Act
 from .document import Place, dotted
 from .recipe_check import orders
 from .yaml_flow import flow
+from .yaml_marks import parse
 
 Facts = dict[tuple[str, str], Value]
 HOME = "home"
@@ -44,6 +45,15 @@ class Unstated:
     def offer(self) -> str:
         """The sentence with what could be written."""
         return f"{self.unknown}; {dotted(self.place)}: {' or '.join(map(flow, self.values))} would state it"
+
+    def fits(self, content: bytes) -> bool:
+        """True where a plant file of this content can state it: a kind may be one of another file."""
+        node, _ = parse(content)
+        for key in self.place[:-1]:
+            if key not in node.children:
+                return False
+            node = node.children[key]
+        return True
 
 
 def unstated(plant: PlantModel) -> tuple[Unstated, ...]:

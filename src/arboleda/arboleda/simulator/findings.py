@@ -8,11 +8,14 @@ from enum import Enum
 
 from arboleda.bt_xml.running.leaves import FAILS
 from arboleda.bt_xml.running.root import FAILED as TREE_FAILED
+from arboleda.bt_xml.running.root import FAILED_AT as TREE_FAILED_AT
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.messages import Reason, TaskChanged, TaskState
+from arboleda.model.sentence import Sentence
 from arboleda.recipes.authoring import FAIL
 from arboleda.recipes.decorators import RESCUE_FAILED
 from arboleda.recipes.places import NO_PART_YET, NO_ROOM_YET
+from arboleda.trees.part_places import EMPTY, trouble_in
 
 from .record import Record
 from .storage.tasks import NAMES
@@ -22,6 +25,7 @@ from .world import World
 AS_WRITTEN = (FAIL.key, FAILS.key)  # steps that do nothing but fail
 UP_TO_OTHERS = (NO_PART_YET.key, NO_ROOM_YET.key)  # waits for what another task brings, or takes
 BY_PEOPLE = frozenset({Reason.STOPPED, Reason.CANCELLED, Reason.INTERRUPTED})
+BY_TREE = frozenset({TREE_FAILED.key, TREE_FAILED_AT.key})
 REFUSALS = frozenset({Reason.REJECTED, Reason.PRECONDITION})
 
 
@@ -129,7 +133,7 @@ class Findings:
     def _failed(self, recipe: str, change: TaskChanged) -> None:
         task = self._world.plant.intake.tasks[change.task]
         step = task.failed_step
-        by_itself = (step is not None and step.key in AS_WRITTEN) or change.sentence.key == TREE_FAILED.key
+        by_itself = (step is not None and step.key in AS_WRITTEN) or change.sentence.key in BY_TREE
         is_whole = change.sentence.key != RESCUE_FAILED.key
         counted = self.as_written if by_itself and is_whole and task.answers else self.found
         counted[
@@ -138,7 +142,18 @@ class Findings:
                 recipe=recipe,
                 step="" if step is None else str(step),
                 reason="" if change.reason is None else change.reason.value,
-                sentence=str(change.sentence),
+                sentence=_advised(change.sentence),
                 task=change.text,
             )
         ] += 1
+
+
+def _advised(sentence: Sentence) -> str:
+    """The sentence, with what a recipe can do instead where a place has no part, or no room."""
+    trouble = trouble_in(sentence)
+    if trouble is None:
+        return str(sentence)
+    place = f'cell.place("{trouble.values["place"]}")'
+    if trouble.key == EMPTY.key:
+        return f"{sentence}; a recipe in Python can wait for a part there: {place}.gets_part(...)"
+    return f"{sentence}; a recipe in Python can wait for room there: {place}.gets_room(...)"

@@ -42,7 +42,7 @@ class Builder:
 
     def _node(self, node: Written, scope: Scope) -> Node:
         made = self._subtree(node, scope) if node.is_subtree else self._made(node, scope)
-        made.scope, made.place = scope, node.place
+        made.scope, made.place, made.said = scope, node.place, _said(node)
         made.writes = tuple(scope.place(name) for name in sorted(self._writes(node)))
         self.written.extend(made.writes)
         made.time = self.time
@@ -56,7 +56,7 @@ class Builder:
         make = self.controls.get(node.kind) or MAKERS.get(node.kind)
         if make is not None:
             texts = {name: attribute.value for name, attribute in node.ports.items()}
-            return make(_name(node), below, NodePorts(node.kind, texts))
+            return make(_said(node) or node.kind, below, NodePorts(node.kind, texts))
         found = self.leaf(node, below, scope)
         if found is None:
             raise TreeError(f"Arboleda does not run {node.kind}", node.place)
@@ -124,10 +124,10 @@ def _loop(name: str, below: list[Node], ports: NodePorts) -> Node:
     return decorators.ForEach(name, below[0], ports, source="queue", out="value")
 
 
-def _name(node: Written) -> str:
-    """The name of a node; of one that fails by itself, what its note says is why."""
-    note = node.own.get("_description") if node.kind == leaves.UNNAMED else None
-    return node.name or (note.value if note is not None else "") or node.kind
+def _said(node: Written) -> str:
+    """The name of a node, if it has one; else the note of a node that fails by itself, which says why."""
+    note = node.own.get("_description") if node.kind == "AlwaysFailure" else None
+    return node.name or (note.value if note is not None else "")
 
 
 def _check(name: str, below: list[Node], ports: NodePorts, *, same: Callable[[Value, Value], bool]) -> Node:

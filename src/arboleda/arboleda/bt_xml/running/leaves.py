@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import ClassVar
 
 from py_trees.behaviour import Behaviour
@@ -15,13 +14,13 @@ from .ports import NodePorts
 from .scripts import Script
 
 FAILS = Phrase("step.always_failure", "{leaf}")
-UNNAMED = "AlwaysFailure"  # the name of such a leaf that has none of its own
 
 
 class Leaf(Node):
     """Node without children."""
 
     frame = False
+    is_leaf = True
 
 
 class ConstantLeaf(Leaf):
@@ -36,17 +35,11 @@ class ConstantLeaf(Leaf):
 
 
 class AlwaysFailure(ConstantLeaf):
-    """Leaf that always fails; `note` is told of it, where given."""
+    """Leaf that always fails."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name, FAILURE)
         self.title = FAILS(leaf=name)
-        self.note: Callable[[AlwaysFailure], None] | None = None
-
-    def work(self) -> Result:
-        if self.note is not None:
-            self.note(self)
-        return super().work()
 
 
 class RunScript(Leaf):

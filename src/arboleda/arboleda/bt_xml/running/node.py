@@ -59,11 +59,13 @@ class Node(Keeps, Behaviour):
 
     `forget_failures`: called once it has succeeded, where steps in it have failed, for that is answered then.
     `place`: where it stands in a file. `writes`: the variables that it may give a value, or take it from.
+    `said`: its name in the file, or what else stands there for people. `blamed`: the leaf for which it fails.
     """
 
     counts: ClassVar[tuple[str, ...]] = ()
     sign: ClassVar[str] = "step"  # the word of drawings and of the page for it
     frame = True  # screens name the step in it while it runs
+    is_leaf: ClassVar[bool] = False
 
     def __init__(self, name: str, children: Sequence[Node] = ()) -> None:
         super().__init__(name)
@@ -73,6 +75,8 @@ class Node(Keeps, Behaviour):
         self.after: Mapping[str, Script] = {}
         self.forget_failures: Callable[[], None] | None = None
         self.place: Place | None = None
+        self.said = ""
+        self.blamed: Node | None = None
         self.rests_until: float | None = None
         self.writes: tuple[tuple[Scope, str], ...] = ()
         for child in children:
@@ -102,11 +106,19 @@ class Node(Keeps, Behaviour):
                 self.forget_failures()
             self.forget_failures = None
         if result in ENDED:
+            if result is FAILURE:
+                self.blame(self if self.is_leaf else self.blamed)
+            self.blamed = None
             self._run({SUCCESS: "_onSuccess", FAILURE: "_onFailure"}[result])
             self._run("_post")
         if result is not SKIPPED:
             self.status = STATUSES[result]
         return result
+
+    def blame(self, leaf: Node | None) -> None:
+        """Name to the parent the leaf for which it fails too, unless it has an answer to that."""
+        if isinstance(self.parent, Node):
+            self.parent.blamed = leaf
 
     def halt(self) -> None:
         """Halt the node if it runs, with all nodes that run below it."""

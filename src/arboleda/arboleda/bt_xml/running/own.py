@@ -7,14 +7,14 @@ from collections.abc import Iterator, Mapping
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.model.messages import Failure, Reason
+from arboleda.model.messages import Failure
 from arboleda.recipes.nodes import WrittenNode
 from arboleda.trees.failures import Failures
 
 from .device_steps import Order, as_variable
 from .leaves import Leaf
 from .node import FAILURE, SUCCESS, Node, Result
-from .root import FAILED
+from .root import generic
 
 
 class WrapperNode(Node):
@@ -36,8 +36,7 @@ class WrapperNode(Node):
         self.begin()
         result = self.below[0].execute()
         if result is FAILURE and self.failures.first is None:
-            generic = Failure(reason=Reason.REJECTED, sentence=FAILED(tree=self.name))
-            self.failures.add(self.causes[0] if self.causes else generic, self)
+            self.failures.add(self.causes[0] if self.causes else generic(self.name, self.blamed), self)
         return result
 
 

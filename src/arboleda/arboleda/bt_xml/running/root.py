@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from typing import Any
@@ -20,7 +20,7 @@ from arboleda.trees.trail import failure_kept, read_failure
 
 from .controls import InSequence, TryCatch
 from .decorators import SubTree
-from .leaves import UNNAMED, AlwaysFailure, Step
+from .leaves import AlwaysFailure, Step
 from .node import FAILURE, Node, Result
 from .scripts import ScriptError
 
@@ -28,10 +28,10 @@ FAILED = Phrase("xml.failed", "the tree {tree} has failed")
 FAILED_AT = Phrase("xml.failed_at", "the tree {tree} has failed: {leaf}")
 
 
-def _generic(tree: str, leaf: AlwaysFailure | None) -> Failure:
+def generic(tree: str, leaf: Node | None) -> Failure:
     """The failure of a tree that fails as it is written: by a leaf whose name, if it has one, says why."""
-    named = leaf is not None and leaf.name != UNNAMED
-    sentence = FAILED_AT(tree=tree, leaf=leaf.name) if leaf is not None and named else FAILED(tree=tree)
+    said = leaf.said if leaf is not None else ""
+    sentence = FAILED_AT(tree=tree, leaf=said) if said else FAILED(tree=tree)
     return Failure(reason=Reason.REJECTED, sentence=sentence)
 
 
@@ -73,10 +73,7 @@ def _bring_back(causes: list[Failure], before: list[Failure]) -> None:
 
 
 class Rescue(TryCatch):
-    """TryCatch of a plant: the cause for which a child failed stays, whatever becomes of the last one.
-
-    `failing` tells which leaf has failed in this tick as it is written, `note` that it ends the tree.
-    """
+    """TryCatch of a plant: the cause for which a child failed stays, whatever becomes of the last one."""
 
     def __init__(
         self, name: str, children: Sequence[Node], failures: Failures, causes: list[Failure]
@@ -86,17 +83,15 @@ class Rescue(TryCatch):
         self.causes = causes
         self.cause: Failure | None = None
         self.ends_tree = False  # with its cause
-        self.leaf: AlwaysFailure | None = None  # that is all the cause there is
-        self.failing: Callable[[], AlwaysFailure | None] = lambda: None
-        self.note: Callable[[AlwaysFailure], None] = lambda leaf: None
+        self.leaf: Node | None = None  # for which the child failed
 
     def caught(self) -> None:
         """Put the cause aside, unless the task may not go on at all."""
         first = self.failures.first
         if first is not None and first.reason in NO_RESCUE:
             return
-        self.leaf = self.failing() if first is None else None
-        self.cause = first or (self.causes[0] if self.causes else _generic(self.name, self.leaf))
+        self.leaf = self.blamed if first is None else None
+        self.cause = first or (self.causes[0] if self.causes else generic(self.name, self.leaf))
         self.ends_tree = first is not None
         self._forget()
 
@@ -112,6 +107,7 @@ class Rescue(TryCatch):
         """Bring back the cause of the node that is left: it came first."""
         super().halt()
         if self.cause is not None:
+            self.blame(self.leaf)
             self._bring_back(self.cause)
 
     def _forget(self) -> None:
@@ -122,8 +118,7 @@ class Rescue(TryCatch):
         self.causes[:] = [cause]
         if self.ends_tree or self.failures.first is not None:
             self.failures.bring_back(cause)
-        if self.leaf is not None:
-            self.note(self.leaf)
+        self.blamed = self.leaf
         self.cause, self.leaf, self.ends_tree = None, None, False
 
     def kept(self) -> Mapping[str, Any] | None:
@@ -146,29 +141,14 @@ class Main(Node):
         self.failures = failures
         self.causes = causes
         self.scope = tree.scope
-        self._failing: tuple[AlwaysFailure, list[Failure]] | None = None  # of this tick, and the causes then
-        for node in tree.iterate():
-            if isinstance(node, AlwaysFailure):
-                node.note = self._note
-            elif isinstance(node, Rescue):
-                node.failing, node.note = self._failing_leaf, self._note
 
     @property
     def parameters(self) -> Mapping[str, Any]:
         """The variables of the tree, for screens."""
         return dict(self.scope.values)
 
-    def _note(self, leaf: AlwaysFailure) -> None:
-        self._failing = leaf, self.causes[:]
-
-    def _failing_leaf(self) -> AlwaysFailure | None:
-        """The leaf that has failed in this tick as it is written, with no cause after it."""
-        leaf, causes = self._failing or (None, [])
-        return leaf if causes == self.causes else None
-
     def work(self) -> Result:
         self.begin()
-        self._failing = None
         try:
             result = self.below[0].execute()
         except ScriptError as error:
@@ -181,9 +161,8 @@ class Main(Node):
             self._halt_all()
             return FAILURE
         if result is FAILURE:
-            leaf = self._failing_leaf()
-            cause = self.causes[0] if self.causes else _generic(self.name, leaf)
-            self.failures.add(cause, leaf or self)
+            cause = self.causes[0] if self.causes else generic(self.name, self.blamed)
+            self.failures.add(cause, self.blamed if isinstance(self.blamed, AlwaysFailure) else self)
         return result
 
     def _put_aside(self) -> Failure | None:

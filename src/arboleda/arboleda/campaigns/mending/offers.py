@@ -30,7 +30,7 @@ class Offer:
 
 def offers(file: str, text: str, model: PlantModel) -> tuple[Offer, ...]:
     """The offers for a plant file, whose text this is; one without an edit is for kinds of another file."""
-    found = [(each, tuple(_edits(file, text, each))) for each in unstated(model)]
+    found = [(each, tuple(_edits(file, text, each))) for each in unstated(model) if each.fits(text.encode())]
     return tuple(Offer(sentence=each.unknown, edits=edits) for each, edits in found if edits)
 
 

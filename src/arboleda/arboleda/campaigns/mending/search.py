@@ -24,7 +24,7 @@ from ..plants import Plant
 from ..proof.calm import calm_run
 from ..proof.scenario import Scenario, scenarios
 from .candidate import Candidate
-from .clues import Clues, clues_of
+from .clues import Clues, clues_of, words_of
 from .finding import Checked, Finding, Source, checked, run_findings
 from .mend import Mend, Texts, edit_of, edited
 from .plant_edits import plant_candidates
@@ -182,7 +182,7 @@ def _used(text: str) -> Sequence[str]:
 
 
 def _cells(model: PlantModel, clues: Clues) -> Sequence[Cell]:
-    named = [each for each in model.cells if each.name in clues.text.replace(":", " ").split()]
+    named = [each for each in model.cells if each.name in words_of(clues.text)]
     return named or model.cells
 
 
