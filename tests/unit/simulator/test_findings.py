@@ -145,8 +145,14 @@ def bring(cell):
 @pytest.mark.parametrize(
     ("way", "advice"),
     [
-        (("in", "tray"), '; a recipe in Python can wait for room there: cell.place("tray").gets_room(...)'),
-        (("tray", "in"), '; a recipe in Python can wait for a part there: cell.place("tray").gets_part(...)'),
+        (
+            ("in", "tray"),
+            '; a recipe can wait for room there: cell.place("tray").gets_room(...), in XML place_gets_room',
+        ),
+        (
+            ("tray", "in"),
+            '; a recipe can wait for a part there: cell.place("tray").gets_part(...), in XML place_gets_part',
+        ),
     ],
     ids=["full", "empty"],
 )
@@ -157,7 +163,7 @@ def test_a_recipe_without_a_part_or_room_is_told_once_how_to_wait_for_it(
     (tmp_path / "plant.yaml").write_text(BENCH, "utf-8")
     simulation = Simulation(load(tmp_path / "plant.yaml"), 1, lambda minute: [], invariants=())
     (found,) = simulation.run(cycles=3).findings
-    assert found.sentence.endswith(advice) and found.sentence.count("a recipe in Python") == 1
+    assert found.sentence.endswith(advice) and found.sentence.count("a recipe can wait") == 1
 
 
 def test_it_is_counted() -> None:

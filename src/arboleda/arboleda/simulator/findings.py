@@ -155,5 +155,7 @@ def _advised(sentence: Sentence) -> str:
         return str(sentence)
     place = f'cell.place("{trouble.values["place"]}")'
     if trouble.key == EMPTY.key:
-        return f"{sentence}; a recipe in Python can wait for a part there: {place}.gets_part(...)"
-    return f"{sentence}; a recipe in Python can wait for room there: {place}.gets_room(...)"
+        return (
+            f"{sentence}; a recipe can wait for a part there: {place}.gets_part(...), in XML place_gets_part"
+        )
+    return f"{sentence}; a recipe can wait for room there: {place}.gets_room(...), in XML place_gets_room"
