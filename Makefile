@@ -79,7 +79,7 @@ kilted-test:  ## run the tests of ROS 2 on the wheels of Kilted, in an environme
 
 newest-test:  ## run the drivers' tests with the newest release of each of their libraries, in an environment of their own, .newest; NEWEST_TESTS=... for others
 	@scripts/install newest
-	.newest/bin/python -m pytest -p tests.second_tries $(NEWEST_TESTS) $(INTEGRATION_ARGS)
+	ARBOLEDA_REQUIRE= .newest/bin/python -m pytest -p tests.second_tries $(NEWEST_TESTS) $(INTEGRATION_ARGS) # programs that `make test-tools` installs are in .venv alone
 
 wheel-check:  ## ask the package index whether all that a wheel needs is there for each system and Python
 	@scripts/install tools
