@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -58,3 +59,9 @@ def test_a_warning_of_a_recipe_is_told_once_for_its_cells(tmp_path: Path) -> Non
 )
 def test_what_differs_in_more_than_the_cell_is_told_of_each(sentences: tuple[str, ...]) -> None:
     assert told_once(sentences, ["hall", "yard"]) == sentences
+
+
+def test_what_a_file_has_in_place_of_a_cells_name_is_taken_as_it_is_written() -> None:
+    names: list[Any] = ["a[", 1, ".*"]
+    sentences = ("a[: it is dark", "1: it is dark", "hall: it is light")
+    assert told_once(sentences, names) == sentences

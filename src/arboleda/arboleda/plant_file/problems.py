@@ -64,7 +64,8 @@ def told_once(sentences: Iterable[str], cells: Collection[str]) -> tuple[str, ..
 def _at_cell(sentence: str, cells: Collection[str]) -> tuple[str, str, str]:
     """What is before the first name of a cell, that name, and what is behind it; the place names none."""
     place, rest = _placed(sentence)
-    found = re.search(rf"\b({'|'.join(cells)})\b", rest) if cells else None
+    names = "|".join(re.escape(str(each)) for each in cells)  # whatever the file has in place of a name
+    found = re.search(rf"\b({names})\b", rest) if names else None
     if found is None:
         return sentence, "", ""
     return f"{place}{rest[: found.start()]}", found[0], rest[found.end() :]
