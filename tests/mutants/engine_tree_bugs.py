@@ -137,14 +137,14 @@ OF_PLACES = (
     bug(
         PLACES,
         "A full place takes one more.",
-        "if parts < self._places[here].holds:",
-        "if parts <= self._places[here].holds:",
+        "return self.parts(target) < self._places[target].holds",
+        "return self.parts(target) <= self._places[target].holds",
     ),
     bug(
         PLACES,
         "An empty place gives a part.",
-        "known = here in self._places and not self.parts(here)",
-        "known = here in self._places and self.parts(here) < 0",
+        "return self.parts(target) > 0",
+        "return self.parts(target) >= 0",
     ),
     bug(
         PLACES,

@@ -215,8 +215,8 @@ XML_BUGS = (
     bug(
         ROOT,
         "A tree that fails names no cause.",
-        "self.failures.add(self.causes[0] if self.causes else generic, self._failing_leaf() or self)",
-        "self.failures.add(generic, self._failing_leaf() or self)",
+        "cause = self.causes[0] if self.causes else generic(self.name, self.blamed)",
+        "cause = generic(self.name, self.blamed)",
     ),
     bug(
         ROOT,

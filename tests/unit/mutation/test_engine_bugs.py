@@ -21,7 +21,6 @@ def text_of(file: str) -> str:
     return (ROOT / PACKAGE / file).read_text(encoding="utf-8")
 
 
-@pytest.mark.sampled(6)
 @pytest.mark.parametrize("planted", ENGINE_BUGS, ids=lambda planted: planted.about[:60])
 def test_a_bug_is_an_edit_of_what_stands_there(planted: EngineBug) -> None:
     text = text_of(planted.file)
