@@ -24,6 +24,7 @@ from arboleda.trees.context import Context
 from arboleda.trees.leaves import Act
 
 from .recipe_check import orders
+from .walkthrough import in_order
 
 MOST_NAMED = 3  # commands in one sentence
 
@@ -58,7 +59,7 @@ class _Tree:
 
     @cached_property
     def nodes(self) -> list[Behaviour]:
-        return list(_in_order(self.tree))
+        return list(in_order(self.tree))
 
     def found(self, cell: Cell, ends: set[str]) -> Iterator[tuple[Node, str]]:
         for node in self.nodes:
@@ -95,10 +96,10 @@ class _Tree:
 
     def _later(self, node: Behaviour) -> list[Behaviour]:
         """The nodes that begin after a node has ended; of a loop around it all."""
-        last = list(_in_order(node))[-1]
+        last = list(in_order(node))[-1]
         later = self.nodes[self.nodes.index(last) + 1 :]
         around = [each for each in _above(node) if isinstance(each, Loop)]
-        return [*later, *(each for loop in around for each in _in_order(loop))]
+        return [*later, *(each for loop in around for each in in_order(loop))]
 
     def _leads_to_failure(self, node: Behaviour) -> bool:
         """True where the task is not done after it: in a rescue, or before a node that always fails."""
@@ -109,15 +110,6 @@ class _Tree:
             if any(isinstance(each, ConstantLeaf) and each.result is FAILURE for each in behind):
                 return True
         return False
-
-
-def _in_order(node: Behaviour) -> Iterator[Behaviour]:
-    """The node and all below it, each before its children."""
-    rest = [node]
-    while rest:
-        each = rest.pop()
-        yield each
-        rest += reversed(each.children)
 
 
 def _above(node: Behaviour) -> list[Behaviour]:
@@ -136,7 +128,7 @@ def _needs_all(node: Parallel) -> bool:
 
 
 def _commands(node: Behaviour) -> list[Command]:
-    return [each.make(id="") for each in _in_order(node) if isinstance(each, Act)]
+    return [each.make(id="") for each in in_order(node) if isinstance(each, Act)]
 
 
 def _grips(node: Behaviour, *, grips: bool) -> Sequence[Switch]:

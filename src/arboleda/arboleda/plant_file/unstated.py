@@ -23,6 +23,7 @@ from arboleda.trees.leaves import Act
 
 from .document import Place, dotted
 from .recipe_check import orders
+from .walkthrough import in_order
 from .yaml_flow import flow
 from .yaml_marks import parse
 
@@ -92,7 +93,7 @@ class _Seen:
     def follow(self, tree: Behaviour) -> None:
         at, facts = dict[str, str](), Facts()
         hands = {space.hand.name: space.robot.name for space in self.cell.spaces if space.hand.held_fact}
-        for command in (node.make(id="") for node in _in_order(tree) if isinstance(node, Act)):
+        for command in (node.make(id="") for node in in_order(tree) if isinstance(node, Act)):
             if isinstance(command, Motion) and command.robot in self.cell.reach:
                 poses = self.cell.reach[command.robot].targets
                 goal = next((name for name, pose in poses.items() if pose.q in command.way[-1:]), None)
@@ -179,11 +180,3 @@ def _moved(cell: Cell, name: str) -> dict[str, list[Value]]:
 def _verbs(device: Any) -> dict[str, DeviceVerb]:
     """The verbs of a device by their names; empty for a kind without verbs."""
     return dict(device.kind.verbs) if device.verb_names else {}
-
-
-def _in_order(node: Behaviour) -> Iterator[Behaviour]:
-    rest = [node]
-    while rest:
-        each = rest.pop()
-        yield each
-        rest += reversed(each.children)

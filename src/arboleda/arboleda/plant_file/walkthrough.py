@@ -146,3 +146,12 @@ def few(scenes: Iterable[Scene]) -> tuple[Scene, ...]:
         return all_of_them
     distinct = tuple({scene.mark: scene for scene in all_of_them}.values())
     return distinct if len(distinct) <= MOST_SCENES else common(distinct)
+
+
+def in_order(node: Behaviour) -> Iterator[Behaviour]:
+    """The node and all below it, each before its children."""
+    rest = [node]
+    while rest:
+        each = rest.pop()
+        yield each
+        rest += reversed(each.children)
