@@ -33,7 +33,7 @@ COMMANDS = (
     mutant(
         "no_command_to_unfit",
         "A robot that is not homed takes any command, not only to home.",
-        edit(Dispatcher._obstacle_to, "isinstance(command, Home) and obstacle", "obstacle"),
+        edit(Dispatcher._obstacle_to, "led_out = isinstance(command, Home) and ", "led_out = "),
         likely=5,
     ),
     mutant(
