@@ -9,11 +9,12 @@ import pytest
 from arboleda.core import advisor
 from arboleda.core.cell_states import CellState
 from arboleda.core.operator import Operator
-from arboleda.model.messages import Verb
+from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.simulator.invariants.advice import ADVICE, ENOUGH, no_advice_where_all_is_well
 from arboleda.simulator.invariants.invariant import Judges, Look
 from arboleda.simulator.people import Attendant
 from arboleda.simulator.record import Record
+from arboleda.simulator.recorded.acts import Acts
 from arboleda.simulator.truth.truth import Truth
 from arboleda.simulator.world import World
 from arboleda.testing import shipped
@@ -126,3 +127,15 @@ def test_advice_is_said_as_people_write_it(watch: Watch) -> None:
     watch.act(Verb.STOP)
     (said,) = no_advice_where_all_is_well.rule(watch.look)
     assert said == "for sis_a it is advised: clear sis_a"
+
+
+def test_a_refused_act_counts_only_where_it_was_done_before(watch: Watch) -> None:
+    cells, acts = [watch.look.record.cells["sis_a"]], Acts()
+    stop, retry = (OperatorRequest(at=0.0, verb=verb, scope="sis_a") for verb in (Verb.STOP, Verb.RETRY))
+    acts.take(stop, cells, is_refused=True)
+    assert acts.of == {}
+    acts.take(stop, cells, is_refused=False)
+    acts.take(retry, cells, is_refused=True)
+    assert acts.of == {"sis_a": ["stop sis_a"]}
+    acts.take(stop, cells, is_refused=True)
+    assert acts.of == {"sis_a": ["stop sis_a", "stop sis_a"]}

@@ -635,8 +635,7 @@ class Record:
     def _on_answer(self, answer: OperatorAnswer) -> None:
         self.answers.append(answer)
         request = self._unanswered.popleft()
-        if answer.refusal is None:  # what is refused is no act
-            self.acts.take(request, self._acted_on(request))
+        self.acts.take(request, self._acted_on(request), is_refused=answer.refusal is not None)
         if answer.refusal is None and answer.verb in GETS_GOING:
             self._attend(answer.scope)
         done = DONE.get(answer.verb)

@@ -29,19 +29,23 @@ class Acts:
         for name in [name for name in self.of if self._works(cells[name])]:
             del self.of[name]
 
-    def take(self, request: OperatorRequest, cells: Iterable[KnownCell]) -> None:
+    def take(self, request: OperatorRequest, cells: Iterable[KnownCell], *, is_refused: bool) -> None:
         """Note that somebody asks for something on these cells.
 
         An answer is none of them: it ends its question, and a recipe may ask any number of them. Nor is what
-        begins and ends manual mode.
+        begins and ends manual mode. A refused act counts where it was done before: advice that is given again
+        and again leads nowhere.
         """
         if request.verb is Verb.ANSWER or request.verb.row.mode:
             return
+        of = as_text(request.verb, request.scope, request.arguments)
+        line = f"{request.verb.value} {of}{' --by-hand' if request.by_hand else ''}"
         for cell in cells:
-            if cell.name not in self.of:
+            known = self.of.get(cell.name)
+            if is_refused and line not in (known or ()):
+                continue
+            if known is None:
                 self._had[cell.name] = cell.run.task
-            of = as_text(request.verb, request.scope, request.arguments)
-            line = f"{request.verb.value} {of}{' --by-hand' if request.by_hand else ''}"
             self.of.setdefault(cell.name, []).append(line)
 
     def _works(self, cell: KnownCell) -> bool:
