@@ -34,7 +34,7 @@ from arboleda.plant_file import recipe_trial
 from arboleda.testing.domains import Domain
 
 from . import tried_here
-from .dealing import dealt
+from .dealing import dealt, share
 from .lengths import length
 from .patience import PATIENCE_S
 from .ports import unused_port
@@ -161,7 +161,7 @@ def import_share(config: pytest.Config) -> None:
     number, workers = int(worker["workerid"].removeprefix("gw")), worker["workercount"]
     folders = [folder for folder in map(Path.absolute, map(Path, config.args)) if folder.is_relative_to(HERE)]
     files = [file for folder in folders for file in sorted(folder.rglob("test_*.py"))]
-    for file in files[len(files) * number // workers : len(files) * (number + 1) // workers]:
+    for file in share(files, number, workers):
         with suppress(Exception, pytest.skip.Exception):  # of which collecting tells
             import_module(".".join(file.relative_to(HERE.parent).with_suffix("").parts))
 

@@ -29,3 +29,9 @@ def _hand(groups: Sequence[list[T]], computing: Sequence[T], *, computes_first: 
         begin, end = (n * len(computing) // len(groups) for n in (number, number + 1))
         between = computing[begin:end]
         yield from (*between, *group) if computes_first else (*group, *between)
+
+
+def share(items: Sequence[T], number: int, workers: int) -> Sequence[T]:
+    """The items of a worker, by its number from 0; those of all workers are all items in their order."""
+    begin, end = (n * len(items) // workers for n in (number, number + 1))
+    return items[begin:end]

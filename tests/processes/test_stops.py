@@ -111,10 +111,11 @@ def test_an_act_that_has_happened_says_so_though_the_disk_hangs(plant, gate, sto
     plant.start()
     hang_before(gate, store, "sync", monkeypatch)
     gate.shut = True
-    said = plant.operate(Verb.LOAD, "sis_b", arguments=(("place", "station_4"),)).result(SOON_S)
+    answer = plant.operate(Verb.LOAD, "sis_b", arguments=(("place", "station_4"),))
+    assert gate.reached.wait(SOON_S)
+    said = answer.result(SOON_S)
     assert isinstance(said, Unkept) and "load sis_b is done, and the plant has not kept it" in str(said.why)
     assert gate.hangs
-    gate.open()
 
 
 def test_whoever_asks_a_plant_that_is_free_hears_that_the_stop_is_kept(plant, robots, store) -> None:
