@@ -31,7 +31,7 @@ from arboleda.store.postgres.memory import PostgresMemory
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import History, TaskHistory, TaskQuery
 
-from ..unit.store.told import FOUND, ODD, ended, queued, tell_of_four
+from ..unit.store.memory_samples import FOUND, ODD, ended, queued, tell_of_four
 
 Deed = Callable[[PlantMemory], object]
 

@@ -10,7 +10,7 @@ from arboleda.core.plant import Plant
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import advance_check
 from arboleda.plant_file.loader import load
-from arboleda.recipes.places import PlaceHandle, PlaceQuestion
+from arboleda.recipes.place_questions import PlaceHandle, PlaceQuestion
 from arboleda.simulator.judged_world import JudgedWorld
 from arboleda.simulator.run import Simulation
 

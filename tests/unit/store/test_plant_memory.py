@@ -27,7 +27,7 @@ from arboleda.store.plant_memory import PRUNED
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery, answers_of, course_of
 
-from .told import ACT, FOUND, LATCH, ODD, ended, queued, tell_of_four
+from .memory_samples import ACT, FOUND, LATCH, ODD, ended, queued, tell_of_four
 
 
 class Site:

@@ -27,7 +27,7 @@ from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery, choice_of, course_of, unchecked_of
 
 from ...lengths import length, sample
-from .told import ACT, LATCH, ended, queued
+from .memory_samples import ACT, LATCH, ended, queued
 
 
 @pytest.fixture

@@ -90,7 +90,7 @@ class Findings:
 
 
 def _more(rest: Sequence[tuple[Place, str]]) -> str:
-    """How many warnings of the same kind follow in the file, and on which lines."""
+    """The number of further warnings of this kind in the file, and their lines."""
     lines = list(dict.fromkeys(str(place.mark.line) for place, _ in rest))
     shown = ", ".join([*lines[:MOST_LINES], *(["..."] if len(lines) > MOST_LINES else [])])
     return f"; {len(rest)} more like it: line {shown}" if rest else ""

@@ -43,7 +43,7 @@ def warnings(plant: PlantModel) -> tuple[str, ...]:
 
 
 def _of_recipe(cell: Cell, recipe: TreeRecipe, context: Context) -> Iterator[tuple[Node, str]]:
-    """What is found with any parameters, which change the values of a tree and not its nodes."""
+    """Nodes and sentences found with any parameters, which change a tree's values and not its nodes."""
     for order in orders(cell, recipe):
         tree = _Tree(tree=recipe.build(order, context).children[0])
         if not any(isinstance(node, ResultDecorator | Parallel) for node in tree.nodes):

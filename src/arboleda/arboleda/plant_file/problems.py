@@ -62,7 +62,7 @@ def told_once(sentences: Iterable[str], cells: Collection[str]) -> tuple[str, ..
 
 
 def _at_cell(sentence: str, cells: Collection[str]) -> tuple[str, str, str]:
-    """What is before the first name of a cell, that name, and what is behind it; the place names none."""
+    """The text before the first name of a cell, that name, and the text behind it; the place names none."""
     place, rest = _placed(sentence)
     names = "|".join(re.escape(str(each)) for each in cells)  # whatever the file has in place of a name
     found = re.search(rf"\b({names})\b", rest) if names else None

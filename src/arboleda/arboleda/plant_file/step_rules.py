@@ -16,7 +16,7 @@ from arboleda.model.facts import Value
 from arboleda.recipes.authoring import FAIL, IS, NO_OTHER
 from arboleda.recipes.decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
 from arboleda.recipes.handles import FactCheck, FactWait
-from arboleda.recipes.places import PlaceQuestion
+from arboleda.recipes.place_questions import PlaceQuestion
 from arboleda.trees.leaves import Act, Approach, Leaf, Require, Unless, title_of
 from arboleda.trees.steps import HOME_AGAIN
 

@@ -1,4 +1,4 @@
-"""What a plant file could state, and does not: where parts lie, who else is in a zone, what work needs.
+"""Rules that a plant file could state, and does not: of parts, of devices in a zone, of what work needs.
 
 Nobody can judge what nobody has stated. Where it matters is read off the recipes. What is right there, a
 person knows: a recipe may be wrong, so each value of a fact is offered.
@@ -82,7 +82,7 @@ def unknowns(plant: PlantModel) -> tuple[str, ...]:
 
 @dataclass(kw_only=True)
 class _Seen:
-    """What the tasks of a cell do, in the order of their steps: which ways there are is left aside."""
+    """Acts of the tasks of a cell, in the order of their steps; alternatives count as if all were done."""
 
     cell: Cell
     taken: set[str] = field(default_factory=set)  # targets
@@ -131,7 +131,7 @@ def _places(seen: _Seen) -> Iterator[Unstated]:
 
 
 def _kept(*, is_taken: bool, is_put: bool) -> dict[str, bool]:
-    """How people keep a place: full where parts are only taken, empty where they are only put."""
+    """The keys of a place: people fill it where parts are only taken, empty it where they are only put."""
     return {} if is_taken and is_put else {"supply": True} if is_taken else {"output": True}
 
 

@@ -11,7 +11,7 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.bt_xml.running.node import Node
 from arboleda.model.by_class import nearest
-from arboleda.recipes.places import PlaceQuestion
+from arboleda.recipes.place_questions import PlaceQuestion
 from arboleda.trees.leaves import Act
 
 from .foresight import Foresight, Key, Scene, common

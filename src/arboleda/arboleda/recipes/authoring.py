@@ -36,7 +36,7 @@ from .errors import Offers, RecipeError, RoleError
 from .handles import Question, Step, chain, flat, handle, is_list, named, question_of, usable, value_text
 from .holding import WORK, held
 from .parameters import parameter
-from .places import PlaceHandle
+from .place_questions import PlaceHandle
 from .sharing import check_at_once, using
 
 RETURNS = "a recipe returns a step, e.g. work(...)"

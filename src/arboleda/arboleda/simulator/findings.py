@@ -14,7 +14,7 @@ from arboleda.model.messages import Reason, TaskChanged, TaskState
 from arboleda.model.sentence import Sentence
 from arboleda.recipes.authoring import FAIL
 from arboleda.recipes.decorators import RESCUE_FAILED
-from arboleda.recipes.places import NO_PART_YET, NO_ROOM_YET
+from arboleda.recipes.place_questions import NO_PART_YET, NO_ROOM_YET
 from arboleda.trees.part_places import EMPTY, trouble_in
 
 from .record import Record

@@ -26,7 +26,7 @@ from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Limits, Parameter
 from arboleda.recipes.authoring import WrittenRecipe
 from arboleda.recipes.handles import Chain, Step, usable
-from arboleda.recipes.places import PlaceQuestion
+from arboleda.recipes.place_questions import PlaceQuestion
 from arboleda.trees.context import Context
 
 from . import carry

@@ -24,7 +24,7 @@ from arboleda.trees.context import Context
 from arboleda.trees.leaves import Act, Require, titled
 from arboleda.trees.steps import framed
 
-from . import places
+from . import place_steps
 from .device_steps import DeviceStep, FactStep, Order, QuestionStep, can_be_renewed, example_of, value_of
 from .errors import TreeError
 from .memory import Scope
@@ -71,7 +71,7 @@ class Devices:
 
     def _made(self, node: forest.Node, kind: Kind, below: list[Node], scope: Scope) -> Node:
         if node.kind not in self.roles:
-            return self._built(node, kind, scope, partial(places.step, self.context, node.kind))
+            return self._built(node, kind, scope, partial(place_steps.step, self.context, node.kind))
         role = self.roles[node.kind]
         verb = node.kind.removeprefix(f"{role}_")
         robot = self.context.cell.roles[role]

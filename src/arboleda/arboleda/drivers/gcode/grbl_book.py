@@ -19,7 +19,7 @@ UNDER_WAY = (State.RUN, State.JOG, State.HOLD, State.DOOR)
 
 
 class Book:
-    """What is known of the place of a machine on one line."""
+    """Book about one machine, from the opening of its line to its loss."""
 
     def __init__(self, robot: Jointed, settings: Settings) -> None:
         self.homed = self.has_jumped = False

@@ -141,7 +141,7 @@ def parsed(text: str) -> Line | None:
 
 
 def _lock_sign(name: str, value: str) -> LockSign:
-    """What a setting or a line of `$I` says: FluidNC can be told not to lock, and does not show that."""
+    """The sign of a lock in a setting, or in a line of `$I`; that of FluidNC does not count."""
     if name == "VER":
         locks = value.startswith("1.1") and "FluidNC" not in value
     else:

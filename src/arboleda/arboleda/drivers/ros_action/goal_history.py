@@ -90,7 +90,7 @@ class GoalHistory:
         self.leave_behind()
 
     def leave_behind(self) -> None:
-        """What the server had before is cancelled, or replaced: it may list that for a while."""
+        """Take earlier goals of the server for cancelled or replaced: it may list them for a while."""
         self._looks_back = self.has_earlier_goal = False
 
     def list(self, goals: Sequence[ListedGoal]) -> None:

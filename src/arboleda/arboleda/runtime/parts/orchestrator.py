@@ -548,8 +548,9 @@ class Orchestrator:
                 self._not_sent(command, CommandOvertaken(command))
         if self.stops.ahead and (away := self.stops.stepped(messages)) is not None:
             stops = [*stops, away]
-        if OperatorAnswer in map(type, messages) and self._store is not None and self._leads_for_certain:
-            stops = [*stops, ActsDone(done_at_once(messages))]
+        keeps = self._store is not None and self._leads_for_certain
+        if keeps and OperatorAnswer in map(type, messages) and (acts := done_at_once(messages)):
+            stops = [*stops, ActsDone(acts)]
         if stops or Remember in map(type, messages):
             return [*stops, *_bundled(messages), COMMANDS_LEFT]
         return messages

@@ -9,7 +9,7 @@ from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase
 from arboleda.recipes.handles import Step
-from arboleda.recipes.places import HAS_PART, HAS_ROOM, PlaceHandle
+from arboleda.recipes.place_questions import HAS_PART, HAS_ROOM, PlaceHandle
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Require
 from arboleda.trees.part_places import Places
