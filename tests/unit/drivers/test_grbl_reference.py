@@ -160,3 +160,13 @@ def test_nobody_hears_that_it_is_not_homed_before_it_was_asked() -> None:
     before = len(rig.reports)
     rig.until(state=STILL, homed=True)
     assert not [each for each in rig.reports[before:] if each.homed is False]
+
+
+def test_a_move_that_stood_still_for_a_while_goes_on_from_there_and_is_no_leap() -> None:
+    rig = GrblRig()
+    rig.faults.switch("stall", on=True)
+    id = rig.move(-250, 0, 0)
+    rig.wait(8.0)
+    assert abs(rig.grbl.place[0] + 125) < 5, "it stands half way"
+    rig.faults.switch("stall", on=False)
+    rig.until(done=id)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection
+from dataclasses import replace
 
 from .machine import Path, Place, VirtualMachine, words_of
 
@@ -93,7 +94,12 @@ class VirtualGrbl(VirtualMachine):
     def _travel(self, now: float, path: Path) -> list[str]:
         half = now >= path.half_way_at
         if "stall" in self.faults and half:
+            self._path = replace(path, stalled_at=min(path.stalled_at, now))
             return []
+        if path.stalled_at < now:  # it goes on from where it stands
+            path = replace(path, began_at=path.began_at + now - path.stalled_at, stalled_at=math.inf)
+            self._path = path
+            self._hold_at = max(self._hold_at, now)
         if self._held:
             self.place = path.at(min(now, self._hold_at))
             return []

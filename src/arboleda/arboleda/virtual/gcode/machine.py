@@ -15,12 +15,13 @@ Place = tuple[float, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Path:
-    """Straight way at one speed, from a time on."""
+    """Straight way at one speed, from a time on; `stalled_at`: when it stood still, if it does."""
 
     start: Place
     goal: Place
     began_at: float
     mm_s: float
+    stalled_at: float = math.inf
 
     @property
     def length(self) -> float:
