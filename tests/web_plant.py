@@ -14,10 +14,10 @@ from arboleda.core.text import alternatives, spelled
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.verbs import Arguments
-from arboleda.store.oee_rows import OeeQuery
+from arboleda.oee.figures import KeptFigures, Oee, Run, Work, oee
+from arboleda.oee.rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.testing import shipped
-from arboleda.views.oee import KeptFigures, Oee, Run, Work, oee
 from arboleda.web.access.auth import Role
 
 QUEUED = {"id": "t-1", "text": "sis_a 0b 7", "cell": "sis_a", "state": "queued", "sentence": ""}

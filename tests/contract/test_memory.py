@@ -24,7 +24,7 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.sentence import OWN
-from arboleda.store.oee_rows import OeeQuery
+from arboleda.oee.rows import OeeQuery, figures
 from arboleda.store.plant_memory import PRUNED, PlantMemory
 from arboleda.store.postgres.history import PostgresHistory
 from arboleda.store.postgres.memory import PostgresMemory
@@ -61,7 +61,7 @@ class Places:
                 "facts": [memory.facts(fact) for fact in Fact],
                 "journal": memory.entries(),
                 "tasks": [replace(row, number=0) for row in memory.tasks(TaskQuery(limit=None))],
-                "figures": history.oee(OeeQuery(since_s=0.0, until_s=1000.0)),
+                "figures": figures(history, OeeQuery(since_s=0.0), 1000.0),
             }
 
     def close(self) -> None:

@@ -19,10 +19,10 @@ import pytest
 from asyncua import Client, Node, ua
 
 from arboleda.model.plant_model import OpcUaView
+from arboleda.oee.figures import Oee
 from arboleda.runtime.build import Options, build
 from arboleda.runtime.parts.opcua_view import OpcUaViewOptions, OpcUaViewPart
 from arboleda.testing import shipped
-from arboleda.views.oee import Oee
 
 from ..conftest import need_tool
 from ..patience import PATIENCE_S

@@ -11,10 +11,11 @@ from arboleda.core.readiness import Readiness
 from arboleda.dispatch import evidence
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.oee import figures as oee
 from arboleda.recipes.parameters import Slot
 from arboleda.trees import steps
 from arboleda.trees.cell_zones import CellZones
-from arboleda.views import oee, view
+from arboleda.views import view
 from arboleda.wire import status
 from arboleda.wire.board import Board
 from arboleda.wire.bridge import Bridge

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.errors import ArboledaError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import draft_process
 from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.draft_process import CheckProcess
-from arboleda.recorder.preamble import PlantFiles
 
 FOLDER = Path(__file__).parents[2] / "examples/own_tree"
 CONTENTS = {name: (FOLDER / name).read_bytes() for name in ("plant.yaml", "tend.xml")}

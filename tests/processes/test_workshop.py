@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 import pytest
 
 from arboleda.model.errors import ArboledaError
-from arboleda.recorder.preamble import PlantFiles
+from arboleda.model.plant_files import PlantFiles
 from arboleda.runtime.make.workshop import ENDING, Workshop
 from arboleda.web.desks.draft import DraftRefused
 from arboleda.web.languages import texts

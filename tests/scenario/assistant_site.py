@@ -30,6 +30,7 @@ from arboleda.model.messages import (
 )
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.verbs import Arguments
+from arboleda.oee.rows import OeeQuery
 from arboleda.plant_file import draft_check, loader
 from arboleda.runtime import at_work
 from arboleda.runtime.parts.orchestrator import PutToWork
@@ -37,7 +38,6 @@ from arboleda.runtime.plant_folder import PlantFolder
 from arboleda.runtime.proposals.desk import ProposalDesk
 from arboleda.runtime.proposals.tasks import AssistantTasks
 from arboleda.runtime.version_desk import VersionDesk
-from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
 from arboleda.testing import Rig
 from arboleda.views import view

@@ -14,8 +14,8 @@ from typing import Any
 import pytest
 
 from arboleda.dashboard.shell import assets
-from arboleda.dashboard.twin import bodies
-from arboleda.dashboard.twin.parts import PART_HEIGHT_M
+from arboleda.geometry import bodies
+from arboleda.geometry.part_size import PART_HEIGHT_M
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import PlantModel, Robot

@@ -38,8 +38,7 @@ from arboleda.drivers.ros_action.machine import Machine
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
-
-from .health import HealthLink
+from arboleda_ros.health import HealthLink
 
 with suppress(ImportError):
     # Drivers start in threads of their own, and two threads that import rclpy at once both fail.
@@ -94,7 +93,7 @@ class ActionClientDriver:
         self._hear, self._clock = hear, clock
         self._machine = self.machine(devices)
         self._action = action_type(self.package, self.type_name)
-        from .link import connect
+        from arboleda_ros.link import connect
 
         self._link = connect(lan=self.settings.lan)
         self._join(self._link.node(f"{devices[0].name}_driver"))

@@ -22,11 +22,10 @@ from arboleda.wire import epochs, rejections
 from arboleda.wire.hop import HEARTBEAT, PLAIN, FromPlant, without_id
 from arboleda.wire.rejections import ForeignCommand, Rejection
 from arboleda.wire.status import ERROR, OK, WARN
-
-from . import convert, qos, statuses
-from .port import Port
-from .robot_publisher import RobotPublisher
-from .senders import Senders
+from arboleda_ros import convert, qos, statuses
+from arboleda_ros.port import Port
+from arboleda_ros.robot_publisher import RobotPublisher
+from arboleda_ros.senders import Senders
 
 NEWS_S = 10.0  # time for which `/diagnostics` warns of somebody else's command
 

@@ -12,7 +12,7 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.serialization import serialize_message
 
-from . import statuses
+from arboleda_ros import statuses
 
 Diagnostic = tuple[str, str, int, str, Mapping[str, str]]  # name, hardware id, level, message, values
 _ENCAPSULATION = 4  # bytes before a serialised message, which are not counted where CDR aligns to 4

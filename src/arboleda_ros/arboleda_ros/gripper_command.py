@@ -10,9 +10,8 @@ from arboleda.drivers.gripper_command.settings import Settings
 from arboleda.drivers.port import driver
 from arboleda.drivers.ros_action.machine import Machine
 from arboleda.model.plant_model import Robot
-
-from .action_client import ActionClientDriver
-from .joint_states import listen_to_joints
+from arboleda_ros.action_client import ActionClientDriver
+from arboleda_ros.joint_states import listen_to_joints
 
 TYPES = {"single": "GripperCommand", "parallel": "ParallelGripperCommand"}
 

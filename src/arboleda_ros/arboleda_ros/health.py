@@ -20,7 +20,7 @@ class HealthLink:
 
     def __init__(self, node: Any, health: Health, take: Take) -> None:
         """Subscribe, and make the clients of all calls; raises DriverError if a type is missing."""
-        from .qos import SENSOR, VIEW
+        from arboleda_ros.qos import SENSOR, VIEW
 
         self._take, self._field = take, attrgetter(health.field)
         message = _type(health.type)

@@ -6,15 +6,14 @@ from collections.abc import Callable
 from typing import Any
 
 from arboleda.drivers.ros_action.joints import JointStateEvent
-
-from .action_client import stamp_of
+from arboleda_ros.action_client import stamp_of
 
 
 def listen_to_joints(node: Any, topic: str, see: Callable[[JointStateEvent], None]) -> None:
     """Subscribe to a topic of joint states, and pass each one on."""
     from sensor_msgs.msg import JointState
 
-    from .qos import SENSOR
+    from arboleda_ros.qos import SENSOR
 
     def hear(message: Any) -> None:
         names, positions = tuple(message.name), tuple(message.position)

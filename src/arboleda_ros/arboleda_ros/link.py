@@ -18,12 +18,11 @@ from arboleda.model.errors import StartError
 from arboleda.model.messages import Event
 from arboleda.model.plant_model import PlantModel
 from arboleda.wire.hop import FromPlant
-
-from .bridge import BridgePort
-from .orchestrator import OrchestratorPort
-from .port import Port
-from .ros_log import QUIET, RosLog
-from .standby import StandbyVoice
+from arboleda_ros.bridge import BridgePort
+from arboleda_ros.orchestrator import OrchestratorPort
+from arboleda_ros.port import Port
+from arboleda_ros.ros_log import QUIET, RosLog
+from arboleda_ros.standby import StandbyVoice
 
 LOG = logging.getLogger("arboleda.ros")
 

@@ -13,8 +13,7 @@ from arboleda.drivers.nav2.settings import ToPose, Waypoints
 from arboleda.drivers.port import driver
 from arboleda.drivers.ros_action.machine import Machine
 from arboleda.model.plant_model import Robot
-
-from .action_client import ActionClientDriver, stamp_of
+from arboleda_ros.action_client import ActionClientDriver, stamp_of
 
 
 class _Nav2(ActionClientDriver):
@@ -26,7 +25,7 @@ class _Nav2(ActionClientDriver):
         from geometry_msgs.msg import PoseWithCovarianceStamped
         from nav_msgs.msg import Odometry
 
-        from .qos import SENSOR, VIEW
+        from arboleda_ros.qos import SENSOR, VIEW
 
         node.create_subscription(Odometry, self.settings.odometry, self._count, SENSOR)
         if self.settings.localisation:

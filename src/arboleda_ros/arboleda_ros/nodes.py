@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from .missing_libraries import sentence
+from arboleda_ros.missing_libraries import sentence
 
 NAMES = ("orchestrator", "mqtt_bridge", "virtual_devices")
 
@@ -27,7 +27,7 @@ def virtual_devices() -> int:
 def main(name: str) -> int:
     """Run the node `name` until a signal; 0 at a clean end, 1 where it cannot start."""
     try:
-        from .running import run
+        from arboleda_ros.running import run
 
         return run(name)
     except KeyboardInterrupt:

@@ -37,20 +37,19 @@ from arboleda.runtime import view_text
 from arboleda.views import view
 from arboleda.wire import rejections
 from arboleda.wire.hop import HEARTBEAT, PLAIN, kind_of
-
-from . import convert, qos, statuses
-from .diagnostics import Diagnostic, Diagnostics
-from .overhear import OwnTopic
-from .plain_reports import PlainReports
-from .plant_queries import Asker
-from .port import NAMED, Port
-from .senders import Senders
-from .speakers import Speakers
-from .verbs import VerbServices
+from arboleda_ros import convert, qos, statuses
+from arboleda_ros.diagnostics import Diagnostic, Diagnostics
+from arboleda_ros.overhear import OwnTopic
+from arboleda_ros.plain_reports import PlainReports
+from arboleda_ros.plant_queries import Asker
+from arboleda_ros.port import NAMED, Port
+from arboleda_ros.senders import Senders
+from arboleda_ros.speakers import Speakers
+from arboleda_ros.verbs import VerbServices
 
 if TYPE_CHECKING:  # they are there only where the types of their messages are built
-    from .snapshot_streams import SnapshotStreams
-    from .typed.offer import Offer
+    from arboleda_ros.snapshot_streams import SnapshotStreams
+    from arboleda_ros.typed.offer import Offer
 
 LOG = logging.getLogger("arboleda.ros")
 UNHEARD = qos.TASK_STATUS.depth // 2
@@ -165,7 +164,7 @@ class OrchestratorPort(Port):
     def _offered(self, cells: Iterable[str]) -> Offer | None:
         """The services and topics in our own types; None, with a line in the log, if those are not built."""
         try:
-            from .typed.offer import Offer
+            from arboleda_ros.typed.offer import Offer
         except ModuleNotFoundError as error:
             if (error.name or "").partition(".")[0] != TYPES:
                 raise
@@ -178,7 +177,7 @@ class OrchestratorPort(Port):
     def _streamed(self, cells: Iterable[str]) -> SnapshotStreams | None:
         """The streams of py_trees_ros; None, with a line in the log, if its types are not installed."""
         try:
-            from .snapshot_streams import SnapshotStreams
+            from arboleda_ros.snapshot_streams import SnapshotStreams
         except ModuleNotFoundError as error:
             if (error.name or "").partition(".")[0] != STREAM_TYPES:
                 raise

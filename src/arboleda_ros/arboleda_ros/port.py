@@ -19,10 +19,9 @@ from arboleda.adapters.rate_limit import RateLimit
 from arboleda.model.errors import PayloadError
 from arboleda.runtime.host_claim import node_claim
 from arboleda.wire.status import ERROR, OK, WARN
-
-from . import qos, statuses
-from .exclusive_topics import DISCOVERY_S, ExclusiveTopics
-from .speakers import Speakers
+from arboleda_ros import qos, statuses
+from arboleda_ros.exclusive_topics import DISCOVERY_S, ExclusiveTopics
+from arboleda_ros.speakers import Speakers
 
 NAMED = "arboleda: "  # prefix of the names of all our statuses
 _DIAGNOSTICS_S = 1.0

@@ -19,9 +19,9 @@ from arboleda.adapters.broker_login import login
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.plant_model import Link as LinkKind
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.recording import Recording
 from arboleda.plant_file.loader import load_recorded
 from arboleda.plant_file.versions import Versions
-from arboleda.recorder.preamble import Recording
 from arboleda.runtime.alarm_options import alarm_options
 from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.log_file import LogFile
@@ -29,10 +29,9 @@ from arboleda.runtime.log_queue import log_to
 from arboleda.runtime.waiting import raise_at_signals
 from arboleda.runtime.web_options import WebOptions
 from arboleda.web.access.names import LOCAL
-
-from . import missing_libraries
-from .link import Link, connect
-from .ros_log import RosLog
+from arboleda_ros import missing_libraries
+from arboleda_ros.link import Link, connect
+from arboleda_ros.ros_log import RosLog
 
 LOG = logging.getLogger("arboleda.ros")
 STDERR = 2

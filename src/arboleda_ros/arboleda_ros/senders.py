@@ -7,8 +7,7 @@ from collections.abc import Callable
 from rclpy.node import Node
 
 from arboleda.wire.hop import HEARTBEAT
-
-from .exclusive_topics import full_name
+from arboleda_ros.exclusive_topics import full_name
 
 _FRESH_S = 1.0  # a flood of messages must not ask the graph for each of them
 _SHOWN = 3

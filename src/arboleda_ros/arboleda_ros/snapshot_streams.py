@@ -20,8 +20,7 @@ from rclpy.publisher import Publisher
 from unique_identifier_msgs.msg import UUID
 
 from arboleda.viewers import py_trees_tree
-
-from . import qos
+from arboleda_ros import qos
 
 MOST = 20  # streams at a time
 DESERTED_S = 60.0  # life of a stream without listeners

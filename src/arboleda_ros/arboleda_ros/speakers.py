@@ -12,9 +12,8 @@ from arboleda.model.messages import Event, Interference, Report
 from arboleda.model.plant_model import MotionState
 from arboleda.model.sentence import Sentence
 from arboleda.wire.speaker import Speaker
-
-from . import qos
-from .exclusive_topics import UNNAMED, full_name
+from arboleda_ros import qos
+from arboleda_ros.exclusive_topics import UNNAMED, full_name
 
 LOG = logging.getLogger("arboleda.ros.speakers")
 Known = tuple[int, int, frozenset[tuple[int, ...]]]  # how many ever came, how many are there, and who

@@ -9,8 +9,8 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.context import Context
 from rclpy.node import Node
 
-from . import qos, statuses
-from .port import NAMED
+from arboleda_ros import qos, statuses
+from arboleda_ros.port import NAMED
 
 
 class StandbyVoice:

@@ -8,8 +8,7 @@ from rclpy.node import Node
 from std_srvs.srv import Trigger
 
 from arboleda.model.messages import Verb
-
-from .plant_queries import Asker
+from arboleda_ros.plant_queries import Asker
 
 
 class VerbServices:

@@ -25,8 +25,8 @@ from arboleda.campaigns.proof.scenario import alone, scenarios
 from arboleda.campaigns.proof.single_faults import single_faults
 from arboleda.campaigns.request import shared
 from arboleda.cli.prove import seconds_of
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder.preamble import PlantFiles
 from arboleda.testing import shipped
 
 AT = Instant(at=2.0, side=Side.BEFORE, what="the request", commits=2)

@@ -10,10 +10,10 @@ import pytest
 from arboleda.campaigns import plants
 from arboleda.campaigns.draft import noticing, simulating, tryout
 from arboleda.model.errors import ArboledaError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load_with_files
 from arboleda.recorder import reader
-from arboleda.recorder.preamble import PlantFiles
 
 PLANT = """name: lab
 uses: [shine.xml]

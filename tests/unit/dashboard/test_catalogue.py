@@ -26,6 +26,7 @@ TOLD_BY = (
     "recipes",
     "drivers",
     "views",
+    "oee",
     "bt_xml",
     "recorder",
     "wire",

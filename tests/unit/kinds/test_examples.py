@@ -19,7 +19,7 @@ import arboleda.kinds
 import arboleda.recipes
 from arboleda.cli.main import cli
 from arboleda.core.text import parse
-from arboleda.dashboard.twin import bodies, kinematics
+from arboleda.geometry import bodies, kinematics
 from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.declared import Device, MotionCall, VerbCall
 from arboleda.kinds.joints import MoveJoints

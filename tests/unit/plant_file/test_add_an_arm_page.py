@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
-from arboleda.dashboard.twin import bodies, kinematics
+from arboleda.geometry import bodies, kinematics
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
 from arboleda.plant_file.own_models import ENDINGS, FULL_SPEED_S, LEAST_STEP, MOST_JOINTS, STEP_DEG, STEP_MM

@@ -12,9 +12,9 @@ import pytest
 from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
-from arboleda.dashboard.twin import bodies, kinematics
-from arboleda.dashboard.twin.bodies import Body
-from arboleda.dashboard.twin.kinematics import Point
+from arboleda.geometry import bodies, kinematics
+from arboleda.geometry.bodies import Body
+from arboleda.geometry.kinematics import Point
 from arboleda.model.plant_model import MotionState, PlantModel
 from arboleda.plant_file import layout_check, loader
 from arboleda.plant_file.robot_models import arm_models

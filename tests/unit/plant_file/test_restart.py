@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.changes import changes
 from arboleda.plant_file.restart import needing_restart
-from arboleda.recorder.preamble import PlantFiles
 
 BEFORE = """\
 name: a

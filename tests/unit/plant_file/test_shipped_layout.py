@@ -10,9 +10,9 @@ from itertools import combinations, permutations, product
 import pytest
 
 from arboleda.core import text
-from arboleda.dashboard.twin import bodies, kinematics
-from arboleda.dashboard.twin.parts import PART_HEIGHT_M, PART_RADIUS_M
-from arboleda.dashboard.twin.scene import deck
+from arboleda.geometry import bodies, kinematics
+from arboleda.geometry.kinematics import deck
+from arboleda.geometry.part_size import PART_HEIGHT_M, PART_RADIUS_M
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.joints import Joint
 from arboleda.kinds.mobile import Mobile

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.errors import ConfigError, StartError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.changes import changes
 from arboleda.plant_file.versions import FACTS, FOLDER, Version, Versions, version_of, whole
-from arboleda.recorder.preamble import PlantFiles
 
 from ...cuts import each_cut
 

@@ -14,11 +14,12 @@ from arboleda.cli import logs, replay
 from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskRequest
+from arboleda.model.plant_files import PlantFiles
+from arboleda.model.recording import Limits
 from arboleda.plant_file import loader
 from arboleda.playback import recorded_plant
 from arboleda.recorder import copying, files, reader
 from arboleda.recorder.errors import NoRecord
-from arboleda.recorder.preamble import Limits, PlantFiles
 from arboleda.recorder.simulated_recorder import SimulatedRecorder
 from arboleda.recorder.steps import TOPIC
 from arboleda.recorder.tape import SECOND

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.dashboard.twin import bodies
+from arboleda.geometry import bodies
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.playground import plants
 from arboleda.playground.session import Session

@@ -9,9 +9,11 @@ from typing import Any, Protocol
 import pytest
 
 from arboleda.core.plant import Plant
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.recording import Limits
 from arboleda.recorder.files import FOLDER, parts_in
-from arboleda.recorder.preamble import Beginning, Limits, PlantFiles
+from arboleda.recorder.preamble import Beginning
 from arboleda.recorder.ros_log import RosLog
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import Step

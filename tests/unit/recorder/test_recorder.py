@@ -13,10 +13,10 @@ import pytest
 from mcap.reader import make_reader
 
 from arboleda.core.plant import Plant
+from arboleda.model.recording import Limits
 from arboleda.recorder import files, reader, recorder, writing
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import PartFile, parts_in, prune
-from arboleda.recorder.preamble import Limits
 from arboleda.recorder.recorder import Recorder
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import Step

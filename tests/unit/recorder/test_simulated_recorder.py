@@ -6,9 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from arboleda.model.messages import Jog, Verb
+from arboleda.model.recording import Limits
 from arboleda.recorder import reader
 from arboleda.recorder.files import parts_in
-from arboleda.recorder.preamble import Limits
 from arboleda.recorder.replay import plant_of, replayed
 from arboleda.recorder.simulated_recorder import SimulatedRecorder
 from arboleda.recorder.tape import SECOND

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from arboleda.model.plant_files import PlantFiles
 from arboleda.recorder.copying import as_mcap
 from arboleda.recorder.errors import NoRecord
-from arboleda.recorder.preamble import PlantFiles
 from arboleda.recorder.reader import alone
 from arboleda.recorder.version_files import VersionFiles, versions_in
 from arboleda.recorder.writing import Writing

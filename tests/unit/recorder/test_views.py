@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 
 from arboleda.model.messages import Verb
+from arboleda.model.recording import Limits
 from arboleda.model.sentence import Sentence
 from arboleda.recorder import channels, copying, files, reader, writing
 from arboleda.recorder.errors import NoRecord
-from arboleda.recorder.preamble import Limits
 from arboleda.recorder.steps import TOPIC
 from arboleda.recorder.view_log import DIGEST_S
 from arboleda.recorder.views import Views

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from arboleda.recorder.preamble import PlantFiles
+from arboleda.model.plant_files import PlantFiles
 from arboleda.runtime import at_work
 
 from ...cuts import each_cut

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.errors import ConfigError
+from arboleda.model.plant_files import PlantFiles
+from arboleda.model.recording import Recording
 from arboleda.plant_file.versions import MARK, Versions, version_of
-from arboleda.recorder.preamble import PlantFiles, Recording
 from arboleda.runtime.standby.changed_files import is_changed, read_again
 from arboleda.testing import shipped
 

@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import versions
 from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.versions import Version, Versions, version_of
-from arboleda.recorder.preamble import PlantFiles
 from arboleda.runtime import at_work
 from arboleda.runtime.draft_desk import DraftDesk
 from arboleda.runtime.draft_file import DAMAGED, FILE, FOLDER, MEANT, OPENED

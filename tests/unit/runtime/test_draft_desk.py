@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 from arboleda.model.errors import StartError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.versions import Version, Versions
-from arboleda.recorder.preamble import PlantFiles
 from arboleda.runtime import at_work
 from arboleda.runtime.draft_desk import DraftDesk
 from arboleda.runtime.plant_folder import PlantFolder

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.errors import ArboledaError
-from arboleda.recorder.preamble import PlantFiles
+from arboleda.model.plant_files import PlantFiles
 from arboleda.runtime.make.errands import ENDING, ErrandRun, Work
 
 

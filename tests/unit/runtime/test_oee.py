@@ -14,15 +14,15 @@ from arboleda.cli.main import cli
 from arboleda.core.cell_states import CellState
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskChanged, TaskState, Verb
+from arboleda.oee.figures import SEEN_S, Oee
+from arboleda.oee.rows import OeeQuery, figures
 from arboleda.runtime.build import Options, build
 from arboleda.runtime.parts.cell_times import CellTimes
 from arboleda.runtime.state import STORE
-from arboleda.store.oee_rows import OeeQuery
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
-from arboleda.views.oee import SEEN_S
 
 BEGAN = 1_000_000.0  # Unix time of the rig's first second
 
@@ -52,9 +52,9 @@ def rig(store: Store) -> Rig:
     return rig
 
 
-def figures(store: Store, rig: Rig):  # type: ignore[no-untyped-def]
+def of_cell(store: Store, rig: Rig) -> Oee:
     query = OeeQuery(since_s=BEGAN, until_s=BEGAN + rig.now)
-    (found,) = TaskHistory(store.path).oee(query, ["sis_a"])
+    (found,) = figures(TaskHistory(store.path), query, BEGAN + rig.now, ["sis_a"])
     return found
 
 
@@ -69,7 +69,7 @@ def test_performance_is_the_shortest_of_the_times_that_the_history_has_to_all_of
 ) -> None:
     for task in "abc":
         done(rig, task)
-    found = figures(store, rig)
+    found = of_cell(store, rig)
     took = [row.ended_s - row.started_s for row in store.tasks(TaskQuery())]
     assert found.done == found.timed == len(took) == 3
     assert found.performance == pytest.approx(3 * min(took) / sum(took), rel=1e-6)
@@ -81,7 +81,7 @@ def test_performance_is_the_shortest_of_the_times_that_the_history_has_to_all_of
 def test_a_hold_is_down_time_and_no_slow_work(rig: Rig, store: Store) -> None:
     for task in "abc":
         done(rig, task)
-    before = figures(store, rig)
+    before = of_cell(store, rig)
     rig.submit("sis_a 0B 7 #d")
     rig.wait(5.0)
     rig.operate(Verb.HOLD, "sis_a")
@@ -89,7 +89,7 @@ def test_a_hold_is_down_time_and_no_slow_work(rig: Rig, store: Store) -> None:
     rig.wait(1000.0)
     rig.operate(Verb.RESUME, "sis_a")
     assert rig.wait(600.0, lambda: rig.outcomes()["d"].state is TaskState.DONE)
-    found = figures(store, rig)
+    found = of_cell(store, rig)
     assert found.planned_s - found.worked_s == pytest.approx(1000.0, abs=10.0)
     assert found.performance == pytest.approx(before.performance, abs=0.1)
 

@@ -14,9 +14,9 @@ import pytest
 
 from arboleda.model.assistants import AssistantLimits, Assistants, hours
 from arboleda.model.messages import RevisionAnswer
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.versions import Versions
-from arboleda.recorder.preamble import PlantFiles
 from arboleda.runtime import at_work
 from arboleda.runtime.plant_folder import PlantFolder
 from arboleda.runtime.proposals.desk import MOST_OPEN, ProposalDesk

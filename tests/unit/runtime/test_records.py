@@ -9,9 +9,10 @@ from typing import Any
 
 import pytest
 
+from arboleda.model.plant_files import PlantFiles
+from arboleda.model.recording import Limits
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import part_path
-from arboleda.recorder.preamble import Limits, PlantFiles
 from arboleda.recorder.simulated_recorder import SimulatedRecorder
 from arboleda.runtime.parts import records
 from arboleda.runtime.parts.records import Records

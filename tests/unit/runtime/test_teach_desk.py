@@ -13,12 +13,12 @@ import pytest
 import yaml
 
 from arboleda.core.plant import Plant
-from arboleda.dashboard.twin import bodies, kinematics
+from arboleda.geometry import bodies, kinematics
 from arboleda.model.messages import Jog, Verb
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.urdf import robot_urdf
-from arboleda.recorder.preamble import PlantFiles
 from arboleda.runtime import at_work, tool_path
 from arboleda.runtime.draft_desk import DraftDesk
 from arboleda.runtime.plant_folder import PlantFolder

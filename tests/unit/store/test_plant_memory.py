@@ -22,7 +22,7 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.sentence import OWN
-from arboleda.store.oee_rows import OeeQuery
+from arboleda.oee.rows import OeeQuery, figures
 from arboleda.store.plant_memory import PRUNED
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery, answers_of, course_of
@@ -268,5 +268,5 @@ def test_figures_are_made_of_what_was_kept(site):
         store.stands("sis_a", "held", 940.0)
         store.stands("sis_a", None, 950.0)
         store.note_run(1000.0, ended=True)
-        (figures,) = site.history().oee(OeeQuery(since_s=900.0, until_s=1000.0))
-    assert (figures.cell, figures.done, figures.failed) == ("sis_a", 1, 0)
+        (found,) = figures(site.history(), OeeQuery(since_s=900.0, until_s=1000.0), 1000.0)
+    assert (found.cell, found.done, found.failed) == ("sis_a", 1, 0)

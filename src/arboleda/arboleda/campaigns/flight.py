@@ -10,9 +10,9 @@ from tempfile import TemporaryDirectory
 
 from arboleda.model.counting import counted
 from arboleda.model.errors import ArboledaError
+from arboleda.model.recording import Limits
 from arboleda.recorder import copying, reader
 from arboleda.recorder.files import parts_in
-from arboleda.recorder.preamble import Limits
 from arboleda.recorder.simulated_recorder import RecordNotWritten, SimulatedRecorder
 from arboleda.recorder.tape import SECOND
 from arboleda.simulator.world import START_S

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from arboleda.dashboard.twin import bodies, kinematics
+from arboleda.geometry import bodies, kinematics
 from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import shown
 from arboleda.model.plant_model import PlantModel

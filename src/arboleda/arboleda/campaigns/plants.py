@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Protocol
 
+from arboleda.model.plant_files import NO_FILES, PlantFiles
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.plant_file.unstated import unknowns
-from arboleda.recorder.preamble import NO_FILES, PlantFiles
 from arboleda.simulator.plants.devices import DrawnDevices
 
 ELSEWHERE = (Link.ROS, Link.NONE, Link.DRIVER)  # robots without a board on MQTT, which get a virtual one

@@ -12,9 +12,9 @@ from typing import Any
 import yaml
 
 from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import loader
 from arboleda.plant_file.robot_models import arm_models, mobile_models
-from arboleda.recorder.preamble import PlantFiles
 from arboleda.simulator import plants
 from arboleda.simulator.chance import Dice
 from arboleda.simulator.plants import devices

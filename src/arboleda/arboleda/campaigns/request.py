@@ -12,9 +12,9 @@ from itertools import count
 from pathlib import Path
 
 from arboleda.model.errors import ConfigError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
-from arboleda.recorder.preamble import PlantFiles
 from arboleda.simulator.checks import BadFaults
 from arboleda.simulator.levels import LEVELS
 

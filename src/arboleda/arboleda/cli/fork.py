@@ -9,6 +9,7 @@ from pathlib import Path, PurePosixPath
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file import user_file
@@ -25,7 +26,7 @@ from arboleda.playback.recorded_plant import (
     versions_of,
     with_content,
 )
-from arboleda.recorder.preamble import Beginning, PlantFiles
+from arboleda.recorder.preamble import Beginning
 from arboleda.recorder.reader import Record
 
 from .language import say

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Sequence
 from datetime import datetime
 from typing import Annotated
@@ -14,8 +15,8 @@ from rich.text import Text
 
 from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase
-from arboleda.store.oee_rows import OeeQuery
-from arboleda.views.oee import Oee
+from arboleda.oee.figures import Oee
+from arboleda.oee.rows import OeeQuery, figures
 
 from . import plant_options
 from .language import say
@@ -60,7 +61,7 @@ def oee(
     Exit status: 0 printed, 1 the plant's memory cannot be read, 2 bad input.
     """
     query = OeeQuery(cell=cell, since_s=moment(since), until_s=moment(until))
-    rows = plant_options.history(plant, state, store).oee(query)
+    rows = figures(plant_options.history(plant, state, store), query, time.time())
     if as_json:
         for row in rows:
             print(json.dumps(row.data(), ensure_ascii=False))

@@ -16,10 +16,10 @@ from arboleda.adapters.broker_login import login
 from arboleda.core import text
 from arboleda.model.errors import ConfigError, StartError, TextError
 from arboleda.model.plant_model import Link, PlantModel
+from arboleda.model.recording import Recording
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file import loader
 from arboleda.plant_file.versions import Versions
-from arboleda.recorder.preamble import Recording
 from arboleda.runtime import invocation
 from arboleda.runtime.alarm_options import alarm_options
 from arboleda.runtime.state import find_running, holder

@@ -9,7 +9,7 @@ from typing import Any
 from arboleda.bt_xml import reading
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.forest import Node
-from arboleda.recorder.preamble import PlantFiles
+from arboleda.model.plant_files import PlantFiles
 
 from .document import Place, dotted
 from .tree_file import ENDING

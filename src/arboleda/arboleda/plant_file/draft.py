@@ -10,7 +10,7 @@ from typing import Any
 
 from arboleda.bt_xml.markup import LARGEST as LARGEST_TREES
 from arboleda.model.outside import quoted
-from arboleda.recorder.preamble import PlantFiles
+from arboleda.model.plant_files import PlantFiles
 
 from .changes import Change, changes
 from .document import Place

@@ -10,8 +10,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from arboleda.model.errors import ConfigError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder.preamble import PlantFiles
 
 from . import loader, plant_check
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from arboleda.host.limits import give_way
 from arboleda.model.errors import ArboledaError
-from arboleda.recorder.preamble import PlantFiles
+from arboleda.model.plant_files import PlantFiles
 
 from . import draft_check
 from .draft_check import CheckResult

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from xml.etree.ElementTree import Element, SubElement, tostring
 
-from arboleda.dashboard.twin import bodies, kinematics, stand_in
+from arboleda.geometry import bodies, kinematics, stand_in
 from arboleda.kinds.joints import Joint
 
 from .robot_models import millimetres

@@ -7,12 +7,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
-from arboleda.dashboard.twin import bodies, kinematics
-from arboleda.dashboard.twin.bodies import Body
-from arboleda.dashboard.twin.hull import hull
-from arboleda.dashboard.twin.kinematics import Matrix, Point
-from arboleda.dashboard.twin.parts import PART_HEIGHT_M, PART_RADIUS_M
-from arboleda.dashboard.twin.scene import deck
+from arboleda.geometry import bodies, kinematics
+from arboleda.geometry.bodies import Body
+from arboleda.geometry.hull import hull
+from arboleda.geometry.kinematics import Matrix, Point, deck
+from arboleda.geometry.part_size import PART_HEIGHT_M, PART_RADIUS_M
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.floor import Placement
 from arboleda.kinds.joints import Joint

@@ -12,6 +12,7 @@ from typing import NamedTuple
 from arboleda.drivers.port import DriverSpec
 from arboleda.model.assistants import Assistants
 from arboleda.model.errors import ConfigError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import (
     Cell,
     ForeignCommands,
@@ -22,8 +23,8 @@ from arboleda.model.plant_model import (
     Timing,
 )
 from arboleda.model.recipe import Recipe
+from arboleda.model.recording import Limits, Recording
 from arboleda.recipes.storage import RECIPES
-from arboleda.recorder.preamble import Limits, PlantFiles, Recording
 from arboleda.store.address import has_password, is_address
 
 from . import drivers, own_kinds, own_recipes, user_file

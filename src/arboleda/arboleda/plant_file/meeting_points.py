@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from arboleda.dashboard.twin import bodies, kinematics
-from arboleda.dashboard.twin.kinematics import Point
+from arboleda.geometry import bodies, kinematics
+from arboleda.geometry.kinematics import Point
 from arboleda.kinds.arm import Arm
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import Cell, PlantModel, Pose, Workspace

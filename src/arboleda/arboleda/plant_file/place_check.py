@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import Any
 
-from arboleda.dashboard.twin import bodies, kinematics
+from arboleda.geometry import bodies, kinematics
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import DeviceVerb, Effect
 from arboleda.model.errors import ArboledaError

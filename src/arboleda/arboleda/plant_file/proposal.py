@@ -12,7 +12,7 @@ from hashlib import sha256
 from typing import Any
 
 from arboleda.model.errors import ConfigError
-from arboleda.recorder.preamble import PlantFiles
+from arboleda.model.plant_files import PlantFiles
 
 from .document import Place
 from .draft import Draft

@@ -13,7 +13,7 @@ from arboleda.kinds.declared import Effect
 from arboleda.model.assistants import AssistantLimits, hours
 from arboleda.model.commands import OnStop
 from arboleda.model.plant_model import Cell, Evidence, OpcUaView, PlantModel, Retry, Teach, Timing
-from arboleda.recorder.preamble import Limits
+from arboleda.model.recording import Limits
 
 from .robot_models import Number, Pair, Positive, Shape, Triple
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from arboleda.host.files import sync_folder
 from arboleda.model.errors import ConfigError, StartError
-from arboleda.recorder.preamble import PlantFiles
+from arboleda.model.plant_files import PlantFiles
 
 from .draft_check import root_of
 from .tree_file import ENDING

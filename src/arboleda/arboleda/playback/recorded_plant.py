@@ -8,10 +8,11 @@ from tempfile import TemporaryDirectory
 
 from arboleda.campaigns.plants import ELSEWHERE
 from arboleda.model.errors import ConfigError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.plant_file import loader
 from arboleda.recorder.errors import NoRecord
-from arboleda.recorder.preamble import Beginning, PlantFiles
+from arboleda.recorder.preamble import Beginning
 from arboleda.recorder.reader import Record
 from arboleda.recorder.version_files import versions_in
 from arboleda.runtime.rate import at_rate

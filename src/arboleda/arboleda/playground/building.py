@@ -10,8 +10,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from arboleda.campaigns.plants import Plant
-from arboleda.dashboard.twin import bodies
-from arboleda.dashboard.twin.bodies import Body
+from arboleda.geometry import bodies
+from arboleda.geometry.bodies import Body
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader

@@ -10,9 +10,9 @@ from arboleda.core.advice import Hand
 from arboleda.dashboard import outcomes
 from arboleda.dashboard.faces import Face
 from arboleda.dashboard.outcomes import Said
-from arboleda.dashboard.twin.bodies import Body
 from arboleda.dashboard.twin.twin import Twin
 from arboleda.dashboard.wording import words
+from arboleda.geometry.bodies import Body
 from arboleda.model.messages import OperatorAnswer, Outcome, TaskChanged, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.climate import Climate

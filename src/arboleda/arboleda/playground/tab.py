@@ -10,7 +10,7 @@ from typing import Any
 
 from arboleda.campaigns.request import Request
 from arboleda.dashboard.findings import findings
-from arboleda.dashboard.twin.bodies import Body
+from arboleda.geometry.bodies import Body
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import in_json

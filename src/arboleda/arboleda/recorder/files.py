@@ -13,9 +13,10 @@ from mcap.writer import CompressionType, Writer
 
 from arboleda import __version__
 from arboleda.host.files import sync_data, sync_folder
+from arboleda.model.recording import DAY_S, MEGABYTE, Limits
 
 from .channels import OURS, Channel, register
-from .preamble import DAY_S, FORMAT, MEGABYTE, Beginning, Limits
+from .preamble import FORMAT, Beginning
 
 FOLDER = "record"
 NAME = re.compile(r"([0-9]{1,10})-([0-9]{4,9})\.mcap")

@@ -4,50 +4,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from arboleda.model.messages import Fact, KeptTask
+from arboleda.model.plant_files import NO_FILES, PlantFiles
 
 from .errors import NoRecord
 from .plain_data import Memory, kept_from, memory_from, plain
 
 FORMAT = 2  # of what is in a file; a higher one is of a newer version
-DAY_S = 86_400.0
-MEGABYTE = 1_000_000
-
-
-@dataclass(frozen=True, kw_only=True)
-class Limits:
-    """Limits of all records of a plant together: at most so many `megabytes` and `days`."""
-
-    megabytes: float = 1000.0
-    days: float = 30.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class PlantFiles:
-    """Plant file under its name, and every file that it uses, by their paths."""
-
-    plant: str
-    contents: Mapping[str, bytes] = field(default_factory=dict)
-
-
-NO_FILES = PlantFiles(plant="plant.yaml")  # of a plant that no file describes
-
-
-@dataclass(frozen=True, kw_only=True)
-class Recording:
-    """Settings of the recording of one start: the plant's files, the limits, and options.
-
-    `virtual`: its devices with drivers of their own had virtual boards instead. `reports`: a report of each
-    task that fails is written.
-    """
-
-    files: PlantFiles
-    virtual: bool = False
-    limits: Limits = field(default_factory=Limits)
-    reports: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from arboleda.core.plant import Plant
+from arboleda.model.plant_files import PlantFiles
 
-from .preamble import PlantFiles
 from .state import state_of
 from .steps import Step
 from .version_files import VersionFiles

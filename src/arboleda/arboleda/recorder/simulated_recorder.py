@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.core.plant import Plant
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.recording import Limits
 from arboleda.views import twin_view, view
 
-from .preamble import Limits, PlantFiles
 from .ros_log import RosLog
 from .steps import Step
 from .tape import SECOND, RecordingPlant

@@ -8,9 +8,10 @@ from typing import Any
 from arboleda import __version__
 from arboleda.core.plant import Plant
 from arboleda.model.messages import Event
+from arboleda.model.plant_files import NO_FILES, PlantFiles
 from arboleda.model.plant_model import PlantModel
 
-from .preamble import NO_FILES, Beginning, PlantFiles
+from .preamble import Beginning
 from .state import state_of
 from .steps import RecordedStep, Step, hash_of, outcome
 

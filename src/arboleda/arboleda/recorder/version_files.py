@@ -14,9 +14,10 @@ from mcap.opcode import Opcode
 from mcap.records import Attachment
 from mcap.writer import MCAP0_MAGIC as MAGIC
 
+from arboleda.model.plant_files import PlantFiles
+
 from .errors import NoRecord
 from .files import VERSION
-from .preamble import PlantFiles
 from .reader import HEAD, KNOWN, TORN
 
 

@@ -8,9 +8,11 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Protocol
 
+from arboleda.model.recording import Limits
+
 from .channels import OURS, Channel
 from .files import DIGEST, PartFile, part_bytes, part_path, prune
-from .preamble import Beginning, Limits
+from .preamble import Beginning
 from .steps import TOPIC, Step, as_json
 from .version_files import VersionFiles
 from .view_log import Message, ViewLog, ViewSnapshot

@@ -7,9 +7,9 @@ from contextlib import suppress
 from pathlib import Path
 
 from arboleda.model.errors import StartError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import versions
 from arboleda.plant_file.versions import Version, version_of
-from arboleda.recorder.preamble import PlantFiles
 
 FOLDER, FRESH = "at_work", "at_work.new"  # the second for a moment only, in which the first may be gone
 

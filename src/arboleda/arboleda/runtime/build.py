@@ -24,10 +24,11 @@ from arboleda.core.plant import Plant
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import TaskChanged
 from arboleda.model.plant_model import Link, MqttVersion, PlantModel
+from arboleda.model.recording import Recording
 from arboleda.model.sentence import OWN, Sentence, from_data
+from arboleda.oee.rows import OeeQuery, figures
 from arboleda.plant_file.draft_process import CheckProcess
-from arboleda.recorder.preamble import Beginning, Recording
-from arboleda.store.oee_rows import OeeQuery
+from arboleda.recorder.preamble import Beginning
 from arboleda.store.plant_memory import JournalEntry, PlantMemory, Superseded
 from arboleda.web.access.names import other_address
 
@@ -260,7 +261,7 @@ class App:
         cells = [cell.name for cell in model.cells]
         return OpcUaViewPart(
             OpcUaViewOptions(host=options.web.address, port=view.port, plant=model.name, folders=view.isa95),
-            lambda: self._history.oee(OeeQuery(), cells),
+            lambda: figures(self._history, OeeQuery(), time.time(), cells),
         )
 
     def watch(self, watcher: Callable[[dict[str, Any]], None]) -> None:

@@ -12,6 +12,7 @@ from typing import Any, Protocol
 
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain, quoted
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.changes import changes
 from arboleda.plant_file.draft import Draft, draft_of
 from arboleda.plant_file.draft_check import CheckResult, root_of
@@ -20,7 +21,6 @@ from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.versions import Version, Versions, version_of
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.plant_file.yaml_marks import parse
-from arboleda.recorder.preamble import PlantFiles
 from arboleda.web.desks.draft import DraftApi, DraftRefused, Place, State
 
 from . import at_work

@@ -16,10 +16,10 @@ from typing import Any
 from arboleda.host.files import sync_folder
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import versions
 from arboleda.plant_file.draft import Draft, draft_of
 from arboleda.plant_file.draft_process import from_texts, texts
-from arboleda.recorder.preamble import PlantFiles
 
 from .state import replace_file
 

@@ -9,8 +9,8 @@ from typing import Any, Protocol, TypeVar
 
 from arboleda.adapters import clock
 from arboleda.core.plant import Plant
-from arboleda.dashboard.twin import bodies
-from arboleda.dashboard.twin.bodies import Body
+from arboleda.geometry import bodies
+from arboleda.geometry.bodies import Body
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Jog
 from arboleda.model.plant_model import PlantModel, Robot

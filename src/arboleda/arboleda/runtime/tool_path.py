@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.dashboard.twin import kinematics
-from arboleda.dashboard.twin.bodies import Body
-from arboleda.dashboard.twin.kinematics import Matrix
+from arboleda.geometry import kinematics
+from arboleda.geometry.bodies import Body
+from arboleda.geometry.kinematics import Matrix
 
 AXES = {"x": 0, "y": 1, "z": 2}
 NUDGE = 1e-5  # rad or m

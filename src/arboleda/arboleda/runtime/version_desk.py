@@ -15,6 +15,7 @@ from arboleda.core.plant import Plant
 from arboleda.model.errors import ArboledaError, ConfigError, StartError
 from arboleda.model.messages import RevisionAnswer
 from arboleda.model.outside import plain
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.revision import RevisionName
 from arboleda.plant_file import loader
@@ -23,7 +24,6 @@ from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.proposal import Proposal
 from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.versions import Version, Versions, version_of, whole
-from arboleda.recorder.preamble import PlantFiles
 from arboleda.web.desks.draft import DraftRefused, State
 from arboleda.web.desks.versions import VersionsApi
 

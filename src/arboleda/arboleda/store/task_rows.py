@@ -7,22 +7,20 @@ import json
 import re
 import sqlite3
 import threading
-import time
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import astuple, dataclass, fields
 from io import StringIO
 from pathlib import Path
+from typing import Any, Protocol, TypeVar
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Check, Course, Reason, TaskAnswer, TaskState
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import OWN, Sentence, retold
-from arboleda.views.oee import KeptFigures, Oee, oee
 
 from .memory_file import VERSION, explained, read_only, refuse_damage, refuse_other, refuse_version, version
-from .oee_rows import Database, OeeQuery, kept
 
 COMMAND, PAGE, HTTP, ROS, DEMO = "command", "page", "http", "ros2", "demo"  # the ways by which a task comes
 ASSISTANT = "assistant"  # one more, whose tasks are bound to what was approved
@@ -205,6 +203,15 @@ def table(rows: Iterable[TaskRow], *, names: bool = True) -> str:
     return text.getvalue()
 
 
+Answer = TypeVar("Answer")
+
+
+class Database(Protocol):
+    """Database connection that runs a query, with a value for each `?`, and returns its rows."""
+
+    def execute(self, statement: str, values: tuple[object, ...] = ..., /) -> Iterable[tuple[Any, ...]]: ...
+
+
 class History(ABC):
     """Reads the tasks of a plant, from any thread, while it runs or not; opened when it is first asked."""
 
@@ -218,20 +225,12 @@ class History(ABC):
 
     def select(self, query: TaskQuery) -> list[TaskRow]:
         """The tasks of a query, the last accepted first; none if nothing is stored yet."""
-        with self._reading() as db:
-            return [] if db is None else [to_row(row) for row in db.execute(*selection(query))]
+        return self.read(lambda db: [to_row(row) for row in db.execute(*selection(query))]) or []
 
-    def oee(self, query: OeeQuery, cells: Sequence[str] | None = None) -> list[Oee]:
-        """The OEE of these cells, or of all that had a task, up to now at the latest."""
-        since_s, until_s = query.span(time.time())
-        found = KeptFigures(works=[], runs=[], downs=[], shortest={})
+    def read(self, ask: Callable[[Database], Answer]) -> Answer | None:
+        """The answer of `ask`, which reads what it needs; None if nothing is stored yet."""
         with self._reading() as db:
-            if db is not None:
-                found = kept(db, since_s, until_s)
-        if cells is None:
-            cells = sorted({work.cell for work in found.works})
-        wanted = [cell for cell in cells if query.cell in ("", cell)]
-        return [oee(cell, found, since_s, until_s) for cell in wanted]
+            return None if db is None else ask(db)
 
 
 class TaskHistory(History):

@@ -15,10 +15,10 @@ from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.verbs import Arguments
-from arboleda.store.oee_rows import OeeQuery
+from arboleda.oee.figures import Oee
+from arboleda.oee.rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.views import forms, view
-from arboleda.views.oee import Oee
 
 from .desks.draft import DraftApi
 from .desks.faults import FaultsApi

@@ -15,8 +15,8 @@ from rclpy.node import Node
 
 from arboleda.model.messages import Reason, TaskChanged, TaskState
 from arboleda.model.sentence import as_sentence
+from arboleda_ros.plant_queries import Asker
 
-from ..plant_queries import Asker
 from . import values
 from .goals import Goal, GoalServer
 

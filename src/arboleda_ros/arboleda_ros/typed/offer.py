@@ -8,8 +8,8 @@ from typing import Any
 from rclpy.node import Node
 
 from arboleda.model.messages import TaskChanged
+from arboleda_ros.plant_queries import Asker
 
-from ..plant_queries import Asker
 from .execute_task import ExecuteTaskAction
 from .services import Services
 from .topics import Speak, Topics

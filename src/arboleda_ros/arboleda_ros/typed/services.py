@@ -12,8 +12,8 @@ from arboleda.core.advice import BY_HAND
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.outside import quoted
 from arboleda.views import view
+from arboleda_ros.plant_queries import Asker, NoAnswer
 
-from ..plant_queries import Asker, NoAnswer
 from . import values
 
 LOG = logging.getLogger("arboleda.ros")

@@ -9,7 +9,8 @@ from arboleda_interfaces.msg import CellState, TaskList
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 
-from .. import qos
+from arboleda_ros import qos
+
 from . import values
 
 Speak = Callable[..., Publisher]

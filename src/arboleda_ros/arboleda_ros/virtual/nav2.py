@@ -11,8 +11,8 @@ from arboleda.drivers.ros_action.events import GoalResult, Measurement
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.nav2.machine import BaseBody, Drive
 from arboleda.virtual.ros_action.machine import VirtualServer
+from arboleda_ros.nav2 import fill, pose_of
 
-from ..nav2 import fill, pose_of
 from .server import ActionController, Protocol
 
 
@@ -70,7 +70,7 @@ def _sensors(node: Any, odometry: str, localisation: str, frame: str) -> Callabl
     from geometry_msgs.msg import PoseWithCovarianceStamped
     from nav_msgs.msg import Odometry
 
-    from ..qos import VIEW
+    from arboleda_ros.qos import VIEW
 
     counted = node.create_publisher(Odometry, odometry, 10)
     localised = node.create_publisher(PoseWithCovarianceStamped, localisation, VIEW)

@@ -13,8 +13,7 @@ from arboleda.drivers.port import DriverError
 from arboleda.drivers.ros_action.events import GoalAnswer, GoalResult, Measurement, Status
 from arboleda.model.errors import StartError
 from arboleda.virtual.ros_action.machine import CancelDecision, CancelRequest, GoalRequest, VirtualServer
-
-from ..action_client import action_type
+from arboleda_ros.action_client import action_type
 
 STEP_S = 0.002
 OFF_S = 0.05
@@ -54,7 +53,7 @@ class ActionController:
         """Start; raises StartError if its messages are missing."""
         import os
 
-        from ..link import limit_discovery
+        from arboleda_ros.link import limit_discovery
 
         try:
             self._type = action_type(self._protocol.package, self._protocol.type_name)

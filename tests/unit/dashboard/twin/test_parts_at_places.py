@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from arboleda.dashboard.twin import bodies, kinematics
-from arboleda.dashboard.twin.bodies import Body
 from arboleda.dashboard.twin.twin import Twin
+from arboleda.geometry import bodies, kinematics
+from arboleda.geometry.bodies import Body
 from arboleda.model.plant_model import Place
 from arboleda.model.verbs import Verb
 from arboleda.plant_file.urdf import robot_urdf

@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.dashboard.twin import kinematics
-from arboleda.dashboard.twin.bodies import Body
-from arboleda.dashboard.twin.hull import hull
 from arboleda.dashboard.twin.scene import MARGIN, scene
+from arboleda.geometry import kinematics
+from arboleda.geometry.bodies import Body
+from arboleda.geometry.hull import hull
 from arboleda.model.plant_model import Cell, Crossing, PlantModel, Pose, Workspace
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped

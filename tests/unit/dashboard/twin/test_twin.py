@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from arboleda.core.plant import Plant
-from arboleda.dashboard.twin import kinematics
-from arboleda.dashboard.twin.bodies import Body
 from arboleda.dashboard.twin.twin import Twin
+from arboleda.geometry import kinematics
+from arboleda.geometry.bodies import Body
 from arboleda.model.messages import Report, TaskRequest, Verb
 from arboleda.model.plant_model import Cell, Evidence, MotionState, PlantModel
 from arboleda.recipes.storage_layout import StorageLayout

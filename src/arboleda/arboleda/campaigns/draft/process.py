@@ -13,11 +13,11 @@ from typing import Any
 
 from arboleda.host.limits import give_way
 from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import in_json
 from arboleda.plant_file import draft_check, loader
 from arboleda.plant_file.draft_check import Shade
-from arboleda.recorder.preamble import PlantFiles
 
 KINDNESS = 10  # that of `nice`: whatever the plant does comes first
 

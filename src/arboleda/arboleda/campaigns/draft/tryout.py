@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.core import text
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.plant_file.urdf import robot_urdf
-from arboleda.recorder.preamble import PlantFiles
 from arboleda.simulator.faults import KINDS, Fault
 from arboleda.views import view
 

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from arboleda.model.errors import ArboledaError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import loader
 from arboleda.plant_file.draft_check import shaded
 from arboleda.recipes.authoring import WrittenRecipe
-from arboleda.recorder.preamble import PlantFiles
 
 from ..plants import Plant
 from ..proof.changed_recipe import noticed_with

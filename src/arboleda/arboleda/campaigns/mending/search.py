@@ -15,10 +15,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from arboleda.model.errors import ArboledaError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.plant_file.draft_check import shaded
 from arboleda.plant_file.yaml_marks import YamlFault, parse
-from arboleda.recorder.preamble import PlantFiles
 
 from ..plants import Plant
 from ..proof.calm import calm_run

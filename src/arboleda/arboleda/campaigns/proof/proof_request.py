@@ -7,8 +7,8 @@ from functools import cached_property
 from pathlib import Path
 
 from arboleda.model.errors import ConfigError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import loader
-from arboleda.recorder.preamble import PlantFiles
 
 from ..plants import Plant
 from .single_faults import possible_kinds

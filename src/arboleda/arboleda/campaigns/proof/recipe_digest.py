@@ -10,8 +10,8 @@ from typing import Any
 import yaml
 
 from arboleda import __version__
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder.preamble import PlantFiles
 
 from .proof_tally import RecipeKey
 from .scenario import alone

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from arboleda.views.oee import Oee
+from arboleda.oee.figures import Oee
 
 from ..wording import Words
 from . import Face

@@ -6,15 +6,11 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from . import kinematics
-from .bodies import Body
+from arboleda.geometry import kinematics
+from arboleda.geometry.bodies import Body
 
 Row = dict[str, Any]
 NEAR = 0.02  # rad and m: a motor step or two
-PART_RADIUS_M, PART_HEIGHT_M = (
-    0.012,
-    0.04,
-)  # of the part that is drawn, and that `arboleda check` reckons with
 
 
 class Part:

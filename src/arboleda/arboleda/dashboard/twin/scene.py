@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from . import bodies, kinematics
-from .bodies import Body
-from .hull import hull
-from .parts import PART_HEIGHT_M, PART_RADIUS_M
+from arboleda.geometry import bodies, kinematics
+from arboleda.geometry.bodies import Body
+from arboleda.geometry.hull import hull
+from arboleda.geometry.part_size import PART_HEIGHT_M, PART_RADIUS_M
 
 Row = dict[str, Any]
 MARGIN = 0.08  # m around what is known to lie in a zone
@@ -35,21 +35,14 @@ def scene(places: Row, drawings: Mapping[str, Body]) -> Row:
     }
 
 
-def deck(body: Body) -> float:
-    """The height of a mobile's uppermost face, m."""
-    frames = kinematics.place(body, (0.0, 0.0))
-    tops = [
-        kinematics.at(frames[link["link"]])[2] + shape["xyz"][2] + shape["size"][2] / 2
-        for link in bodies.links(body)
-        for shape in link["shapes"]
-        if shape["kind"] == "box"
-    ]
-    return max(tops, default=0.0)
-
-
 def _robot(robot: Row, body: Body) -> Row:
     kept = {key: robot[key] for key in ("name", "cell", "kind", "at", "reference")}
-    return {**kept, "body": body, "tip": bodies.tip(body), "deck": deck(body) if "nodes" in robot else 0.0}
+    return {
+        **kept,
+        "body": body,
+        "tip": bodies.tip(body),
+        "deck": kinematics.deck(body) if "nodes" in robot else 0.0,
+    }
 
 
 def _cell(cell: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) -> Row:

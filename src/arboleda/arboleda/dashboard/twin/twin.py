@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from .bodies import Body
+from arboleda.geometry.bodies import Body
+
 from .parts import Part
 from .scene import scene
 from .track import Track

@@ -9,11 +9,11 @@ from typing import Any, Protocol
 
 from fastapi import FastAPI, Request, Response
 
+from arboleda.geometry import bodies
 from arboleda.model.errors import ArboledaError
 from arboleda.web.access.auth import require
 
 from ..toolkit import Client, GenericEventArguments, ui
-from . import bodies
 from .show import Show
 from .twin import Twin
 

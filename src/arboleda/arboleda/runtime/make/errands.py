@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.model.errors import ArboledaError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.recipe_trial import PATH
-from arboleda.recorder.preamble import PlantFiles
 
 START = PATH + "from arboleda.campaigns.draft import {module}; {module}.main()"
 ENDING = "nothing is begun any more: the plant ends"

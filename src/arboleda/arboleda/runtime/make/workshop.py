@@ -13,8 +13,8 @@ from typing import Any
 
 from arboleda.bt_xml.editing.operations import Operation
 from arboleda.model.errors import ArboledaError
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.recipe_trial import PATH
-from arboleda.recorder.preamble import PlantFiles
 from arboleda.web.desks.draft import DraftRefused
 
 START = PATH + "from arboleda.runtime.make import workshop_process; workshop_process.main()"

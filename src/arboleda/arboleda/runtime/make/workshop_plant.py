@@ -17,11 +17,11 @@ from arboleda.dashboard.findings import findings
 from arboleda.drivers.port import DriverSpec
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.outside import quoted
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.model.recipe import Recipe
 from arboleda.plant_file import draft_check, driver_forms, loader
 from arboleda.recipes.authoring import WrittenRecipe
-from arboleda.recorder.preamble import PlantFiles
 from arboleda.simulator.faults import ON_ONE_HOST
 from arboleda.views import forms, tree_view
 

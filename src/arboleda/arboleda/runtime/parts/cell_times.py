@@ -10,8 +10,8 @@ from functools import partial
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.model.errors import ArboledaError
+from arboleda.oee.figures import SEEN_S
 from arboleda.store.plant_memory import PlantMemory
-from arboleda.views.oee import SEEN_S
 
 LOG = logging.getLogger(__name__)
 DAY_S = 86_400.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
@@ -13,10 +14,10 @@ from arboleda.model.errors import QueueFull
 from arboleda.model.messages import Event, OperatorAnswer, TaskChanged, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.verbs import Arguments
-from arboleda.store.oee_rows import OeeQuery
+from arboleda.oee.figures import Oee
+from arboleda.oee.rows import OeeQuery, figures
 from arboleda.store.task_rows import History, TaskQuery, TaskRow
 from arboleda.views import view
-from arboleda.views.oee import Oee
 from arboleda.web.desks.draft import DraftApi
 from arboleda.web.desks.faults import FaultsApi
 from arboleda.web.desks.make import MakeApi
@@ -111,7 +112,7 @@ class LocalPlant(PlantApi):
         return self._report(task)
 
     def oee(self, query: OeeQuery) -> list[Oee]:
-        return self._history.oee(query, [cell.name for cell in self.model.cells])
+        return figures(self._history, query, time.time(), [cell.name for cell in self.model.cells])
 
     def submit(self, text: str, asked_by: str, choice: str = "", version: str = "") -> Future[dict[str, Any]]:
         plain: Future[dict[str, Any]] = Future()

@@ -11,8 +11,8 @@ from typing import Any
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import ENDED, TaskChanged, TaskState
+from arboleda.oee.figures import Oee
 from arboleda.viewers.packml import Counts, Tag, tags
-from arboleda.views.oee import Oee
 from arboleda.web.access.names import is_loopback
 
 from .viewer_process import Snapshot, ViewerProcess

@@ -54,11 +54,11 @@ from arboleda.model.messages import (
     Undelivered,
     Verb,
 )
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.revision import RevisionName
 from arboleda.model.sentence import Phrase, Sentence, as_sentence
 from arboleda.model.verbs import Arguments
-from arboleda.recorder.preamble import PlantFiles
 from arboleda.store.plant_memory import PlantMemory, Superseded
 from arboleda.store.task_rows import COMMAND, ROS, History, TaskQuery
 from arboleda.views import diagnostics, twin_view, view

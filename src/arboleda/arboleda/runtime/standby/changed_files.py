@@ -7,9 +7,9 @@ from pathlib import Path
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.recording import Recording
 from arboleda.plant_file.draft_check import root_of
 from arboleda.plant_file.versions import Versions
-from arboleda.recorder.preamble import Recording
 
 Read = tuple[PlantModel, Recording | None]
 ReadAgain = Callable[[], Read]

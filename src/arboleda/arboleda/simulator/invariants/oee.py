@@ -8,7 +8,7 @@ from itertools import pairwise
 from operator import attrgetter
 
 from arboleda.model.messages import ENDED, TaskState
-from arboleda.views.oee import ENOUGH, LATE_S, TIMES, KeptFigures, Oee, Run, Shortest, Work, oee
+from arboleda.oee.figures import ENOUGH, LATE_S, TIMES, KeptFigures, Oee, Run, Shortest, Work, oee
 
 from ..recorded.tasks import KnownTask
 from .invariant import Look, Trigger, invariant

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from arboleda.core.cell_states import CellState
-from arboleda.views.oee import Downtime, Run
+from arboleda.oee.figures import Downtime, Run
 
 from .cells import KnownCell
 

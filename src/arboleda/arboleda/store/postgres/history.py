@@ -10,8 +10,7 @@ from typing import Any
 
 from arboleda.model.errors import ArboledaError
 
-from ..oee_rows import Database
-from ..task_rows import History
+from ..task_rows import Database, History
 from .schema import VERSION, exists, refuse_newer, schema_of, version
 from .server import Impatient, checked, connected, explained, plain_values, translated
 

@@ -7,7 +7,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
-from arboleda.store.oee_rows import OeeQuery
+from arboleda.oee.rows import OeeQuery
 
 from ..plant_api import PlantApi
 from ..schema.bodies import ResponseModel

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
 
 from arboleda.model.errors import ArboledaError
-from arboleda.views.oee import Downtime, KeptFigures, Run, Shortest, Work
+from arboleda.store.task_rows import Database, History
+
+from .figures import Downtime, KeptFigures, Oee, Run, Shortest, Work, oee
 
 DAY_S = 86_400.0
+NOTHING = KeptFigures(works=[], runs=[], downs=[], shortest={})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,13 +28,20 @@ class OeeQuery:
         return (until_s - DAY_S if self.since_s is None else self.since_s), until_s
 
 
-class Database(Protocol):
-    """Database connection that runs a query, with a value for each `?`, and returns its rows."""
+def figures(history: History, query: OeeQuery, now_s: float, cells: Sequence[str] | None = None) -> list[Oee]:
+    """The OEE of these cells, or of all that had a task, up to `now_s` at the latest.
 
-    def execute(self, statement: str, values: tuple[object, ...] = ..., /) -> Iterable[tuple[Any, ...]]: ...
+    Raises ArboledaError where the memory cannot be read.
+    """
+    since_s, until_s = query.span(now_s)
+    found = history.read(lambda db: _kept(db, since_s, until_s)) or NOTHING
+    if cells is None:
+        cells = sorted({work.cell for work in found.works})
+    wanted = [cell for cell in cells if query.cell in ("", cell)]
+    return [oee(cell, found, since_s, until_s) for cell in wanted]
 
 
-def kept(db: Database, since_s: float, until_s: float) -> KeptFigures:
+def _kept(db: Database, since_s: float, until_s: float) -> KeptFigures:
     """The tasks, runs and downtimes that the memory has of this time, in s."""
     begun = "started_s IS NOT NULL AND ended_s > started_s"
     works = db.execute(

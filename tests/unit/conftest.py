@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.dashboard.twin import bodies
-from arboleda.dashboard.twin.bodies import Body
+from arboleda.geometry import bodies
+from arboleda.geometry.bodies import Body
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.testing import shipped
 

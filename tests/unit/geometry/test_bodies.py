@@ -6,8 +6,8 @@ import re
 
 import pytest
 
-from arboleda.dashboard.twin import bodies, kinematics
-from arboleda.dashboard.twin.bodies import Body
+from arboleda.geometry import bodies, kinematics
+from arboleda.geometry.bodies import Body
 from arboleda.plant_file.urdf import root_link
 from arboleda.testing import shipped
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from .bodies import Body, tip
+from .bodies import Body, links, tip
 
 Matrix = tuple[tuple[float, ...], ...]
 Point = tuple[float, float, float]
@@ -21,6 +21,18 @@ def place(body: Body, q: Sequence[float], base: Matrix | None = None) -> dict[st
 def tool(body: Body, q: Sequence[float], base: Matrix | None = None) -> Matrix:
     """The frame of the last link."""
     return place(body, q, base)[tip(body)]
+
+
+def deck(body: Body) -> float:
+    """The height of a mobile's uppermost face, m."""
+    frames = place(body, (0.0, 0.0))
+    tops = [
+        at(frames[link["link"]])[2] + shape["xyz"][2] + shape["size"][2] / 2
+        for link in links(body)
+        for shape in link["shapes"]
+        if shape["kind"] == "box"
+    ]
+    return max(tops, default=0.0)
 
 
 def floor(at: Sequence[float]) -> Matrix:

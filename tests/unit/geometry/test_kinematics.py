@@ -7,12 +7,12 @@ from collections.abc import Sequence
 
 import pytest
 
-from arboleda.dashboard.twin import kinematics
-from arboleda.dashboard.twin.bodies import Body, links
+from arboleda.geometry import kinematics
+from arboleda.geometry.bodies import Body, links
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.testing import shipped
 
-from ...description import drawn
+from ..description import drawn
 
 ACCURACY = 1e-9  # m, and of unit vectors
 HALF = math.pi / 2

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.views.oee import (
+from arboleda.oee.figures import (
     FEW_TIMES,
     LATE_S,
     NEVER_RAN,

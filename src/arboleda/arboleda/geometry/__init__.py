@@ -1,0 +1,1 @@
+"""Geometry of robots: bodies out of their URDF, and where their links are. Pure."""

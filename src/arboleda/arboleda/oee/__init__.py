@@ -1,0 +1,1 @@
+"""OEE of cells: its figures, and the rows of a plant's memory that they are made of."""
