@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 import arboleda
+import arboleda.dashboard.toolkit  # its library starts a process as it is imported, and no test here may
 from arboleda.dashboard.wording import LANGUAGES, tree_of, words
 from arboleda.model.sentence import Phrase, Sentence
 
