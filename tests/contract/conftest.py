@@ -19,7 +19,7 @@ from arboleda.adapters.broker_login import CA, CERTIFICATE, KEY, Address
 from arboleda.adapters.mqtt import MqttClient
 from arboleda.wire.transport import Connection, Delivery
 
-from ..conftest import need_tool
+from ..shared import need_tool
 from ..patience import PATIENCE_S
 
 MESSAGES = all(map(find_spec, ("control_msgs", "nav2_msgs")))  # no wheels have them

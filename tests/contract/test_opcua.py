@@ -26,7 +26,7 @@ from arboleda.drivers.opcua.settings import Sequence, Settings, Verb
 from arboleda.kinds.declared import Device
 from arboleda.plant_file.loader import load
 
-from ..conftest import need_tool
+from ..shared import need_tool
 from ..patience import PATIENCE_S
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("asyncua")]

@@ -19,7 +19,7 @@ from arboleda.drivers.opcua.settings import Sequence, Settings, Verb
 from arboleda.kinds.declared import Device
 from arboleda.plant_file.loader import load
 
-from ..conftest import need_tool
+from ..shared import need_tool
 from ..lengths import sample
 from .test_opcua import EXAMPLE, certificate, driven, is_heard, is_lost, told
 

@@ -24,7 +24,7 @@ from arboleda.runtime.build import Options, build
 from arboleda.runtime.parts.opcua_view import OpcUaViewOptions, OpcUaViewPart
 from arboleda.testing import shipped
 
-from ..conftest import need_tool
+from ..shared import need_tool
 from ..patience import PATIENCE_S
 from .test_groot2 import children
 from .test_opcua_node import PACKAGES

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from ..conftest import about
+from ..shared import about
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ import yaml
 from arboleda.model.plant_model import Evidence
 
 from ..chromium import browsers
-from ..conftest import need_tool
+from ..shared import need_tool
 from ..patience import PATIENCE_S
 from ..postgres import Server
 from ..workers import shared_between_workers

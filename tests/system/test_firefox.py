@@ -10,7 +10,7 @@ import pytest
 from arboleda.playground.tab import Tab
 from arboleda.web.languages import contents
 
-from ..conftest import need_tool
+from ..shared import need_tool
 from ..exercises.works import samples
 from ..firefox import Page, firefox
 from ..lengths import length

@@ -9,7 +9,7 @@ from typing import Any
 
 from arboleda.runtime.build import App, Options, build
 
-from ...conftest import need_tool
+from ...shared import need_tool
 from .bench import Bench, Device
 from .press import CODES, NAME, STOPS, Order, Press, Words, plant
 

@@ -49,6 +49,7 @@ settings.register_profile(
 settings.load_profile("arboleda")
 
 HERE = Path(__file__).parent
+ROOT = HERE.parent
 YOUNG = 200_000  # objects before a collection
 BESIDE = (  # what tests that move time by hand have none of
     (threading.Thread, "start", "a thread"),
@@ -86,18 +87,19 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def folder(item: pytest.Item | pytest.Module) -> str:
-    """The folder below this one that the test is in, or nothing."""
-    return item.path.relative_to(HERE).parts[0] if item.path.is_relative_to(HERE) else ""
+    """The folder below `tests`, here or in a package, that the test is in; else nothing."""
+    below = item.path.relative_to(ROOT).parts if item.path.is_relative_to(ROOT) else ()
+    return below[below.index("tests") + 1] if "tests" in below else ""
 
 
 def by_hand(item: pytest.Item | pytest.Module) -> bool:
     """Whether the test moves time by hand, in this thread alone."""
-    return folder(item) in {"unit", "scenario", "meta"}
+    return folder(item) in {"fast", "unit", "scenario", "meta"}
 
 
 def is_real(item: pytest.Item | pytest.Module) -> bool:
     """Whether the test is of real parts, which have threads of their own."""
-    return folder(item) in {"processes", "contract", "system", "tutorial", ""}
+    return folder(item) in {"real", "processes", "contract", "system", "tutorial", ""}
 
 
 def find_tool(name: str) -> str | None:
@@ -159,11 +161,11 @@ def import_share(config: pytest.Config) -> None:
     """
     worker = getattr(config, "workerinput", {"workerid": "gw0", "workercount": 1})
     number, workers = int(worker["workerid"].removeprefix("gw")), worker["workercount"]
-    folders = [folder for folder in map(Path.absolute, map(Path, config.args)) if folder.is_relative_to(HERE)]
+    folders = [folder for folder in map(Path.absolute, map(Path, config.args)) if folder.is_relative_to(ROOT)]
     files = [file for folder in folders for file in sorted(folder.rglob("test_*.py"))]
     for file in share(files, number, workers):
         with suppress(Exception, pytest.skip.Exception):  # of which collecting tells
-            import_module(".".join(file.relative_to(HERE.parent).with_suffix("").parts))
+            import_module(".".join(file.relative_to(ROOT).with_suffix("").parts))
 
 
 @pytest.hookimpl(wrapper=True)

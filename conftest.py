@@ -1,0 +1,3 @@
+"""Tests in `tests/` and in `packages/*/tests` share fixtures and hooks."""
+
+pytest_plugins = ["tests.shared"]
