@@ -19,8 +19,8 @@ from arboleda.adapters.broker_login import CA, CERTIFICATE, KEY, Address
 from arboleda.adapters.mqtt import MqttClient
 from arboleda.wire.transport import Connection, Delivery
 
-from ..shared import need_tool
 from ..patience import PATIENCE_S
+from ..shared import need_tool
 
 MESSAGES = all(map(find_spec, ("control_msgs", "nav2_msgs")))  # no wheels have them
 collect_ignore = [] if MESSAGES else ["test_virtual_actions.py"]

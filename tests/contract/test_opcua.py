@@ -26,8 +26,8 @@ from arboleda.drivers.opcua.settings import Sequence, Settings, Verb
 from arboleda.kinds.declared import Device
 from arboleda.plant_file.loader import load
 
-from ..shared import need_tool
 from ..patience import PATIENCE_S
+from ..shared import need_tool
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("asyncua")]
 

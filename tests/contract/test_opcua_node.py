@@ -19,8 +19,8 @@ from arboleda.drivers.opcua.settings import Sequence, Settings, Verb
 from arboleda.kinds.declared import Device
 from arboleda.plant_file.loader import load
 
-from ..shared import need_tool
 from ..lengths import sample
+from ..shared import need_tool
 from .test_opcua import EXAMPLE, certificate, driven, is_heard, is_lost, told
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("node", "asyncua")]

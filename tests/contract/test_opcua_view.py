@@ -24,8 +24,8 @@ from arboleda.runtime.build import Options, build
 from arboleda.runtime.parts.opcua_view import OpcUaViewOptions, OpcUaViewPart
 from arboleda.testing import shipped
 
-from ..shared import need_tool
 from ..patience import PATIENCE_S
+from ..shared import need_tool
 from .test_groot2 import children
 from .test_opcua_node import PACKAGES
 

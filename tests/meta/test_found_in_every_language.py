@@ -10,11 +10,12 @@ from pathlib import Path
 from string import Formatter
 
 import pytest
+from tests.packages import PACKAGES
 
-from arboleda.board_kit.conformance.judge import CHECKS, DEVICE_CHECKS
 from arboleda.dashboard.findings import findings
 from arboleda.simulator.faults import KINDS
 from arboleda.web.languages import FIRST, LANGUAGES, contents
+from arboleda_boards.conformance.judge import CHECKS, DEVICE_CHECKS
 
 PACKAGE = Path(__file__).parents[2] / "src/arboleda/arboleda"
 WORDS = PACKAGE / "web/languages"
@@ -43,7 +44,7 @@ FILES = (
     *sorted(PACKAGE.glob("campaigns/*.py")),
     *sorted(PACKAGE.glob("campaigns/proof/*.py")),
     PACKAGE / "campaigns/exercises/trial_run.py",
-    *sorted(PACKAGE.glob("board_kit/conformance/*.py")),
+    *sorted(PACKAGES["arboleda_boards"].glob("conformance/*.py")),
     *sorted(PACKAGE.glob("playground/*.py")),
     *(file for folder in SEEING for file in sorted(PACKAGE.glob(f"simulator/{folder}/*.py"))),
     PACKAGE / "simulator/findings.py",
@@ -200,10 +201,10 @@ def test_sentences_are_found() -> None:
 @pytest.mark.parametrize("language", [each for each in LANGUAGES if each != FIRST])
 def test_no_sentence_is_said_in_two_ways(language: str) -> None:
     """Of two rows with the same English YAML silently takes the last."""
-    findings, reasons = (
-        (WORDS / language / f"{part}.yaml").read_text(encoding="utf-8") for part in ("findings", "reasons")
-    )
-    text = "\n".join((findings.partition("\nsentences:")[2], reasons))
+    folders = (WORDS, *(code / "languages" for code in PACKAGES.values()))
+    files = [folder / language / f"{part}.yaml" for folder in folders for part in ("findings", "reasons")]
+    texts = [file.read_text(encoding="utf-8") for file in files if file.exists()]
+    text = "\n".join(each.partition("\nsentences:")[2] or each for each in texts)
     rows = re.findall(r'^ *("(?:[^"\\]|\\.)*"):', text, re.MULTILINE)
     assert len(rows) > 1000
     assert [each for each, count in Counter(rows).items() if count > 1] == []

@@ -18,7 +18,7 @@ from arboleda.plant_file.registry import COME_WITH_IT
 
 ROOT = Path(arboleda.__file__).parent
 ENGINE = ("model", "dispatch", "trees", "core")
-ABOVE = ("cli", "playback", "board_kit", "site", "campaigns", "runtime", "plant_file", "web", "store")
+ABOVE = ("cli", "playback", "site", "campaigns", "runtime", "plant_file", "web", "store")
 PACKAGES = (*ENGINE, *ABOVE, "wire", "views", "adapters", "sim", "simulator", "dashboard", "testing")
 NAMED_AS_ROLES = {
     "plant_file/robot_models.py",  # of the files of models that come with it

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from tests.packages import PACKAGES
 
 CLI = Path(__file__).parents[2] / "src/arboleda/arboleda/cli"
 NO_SENTENCES = {"mosquitto_files.py", "service_unit.py"}  # they write files for other programs
@@ -50,12 +51,15 @@ def _texts(of: ast.expr) -> Iterator[str]:
             yield from _texts(each) if isinstance(each, ast.expr) else ()
 
 
-FILES = sorted(path.name for path in CLI.glob("*.py") if path.name not in NO_SENTENCES)
+FILES = [
+    *sorted(path for path in CLI.glob("*.py") if path.name not in NO_SENTENCES),
+    *(path for code in PACKAGES.values() for path in sorted(code.rglob("command.py"))),
+]
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_a_command_prints_phrases_and_no_sentences_of_its_own(name: str) -> None:
-    assert list(said(CLI / name)) == [], "make a Phrase of each, and say it: cli/language.py"
+@pytest.mark.parametrize("file", FILES, ids=lambda file: f"{file.parent.name}-{file.stem}")
+def test_a_command_prints_phrases_and_no_sentences_of_its_own(file: Path) -> None:
+    assert list(said(file)) == [], "make a Phrase of each, and say it: cli/language.py"
 
 
 def test_a_sentence_is_found(tmp_path: Path) -> None:

@@ -21,7 +21,9 @@ def version_in(path: Path) -> str:
 
 
 def test_every_package_names_the_version_of_pyproject() -> None:
-    packages = sorted(path.parent for path in ROOT.glob("src/*/package.xml"))
+    packages = sorted(
+        path.parent for path in (*ROOT.glob("src/*/package.xml"), *ROOT.glob("packages/*/package.xml"))
+    )
     files = [
         path for folder in packages for path in (folder / "package.xml", folder / "setup.py") if path.exists()
     ]

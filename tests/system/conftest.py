@@ -24,9 +24,9 @@ import yaml
 from arboleda.model.plant_model import Evidence
 
 from ..chromium import browsers
-from ..shared import need_tool
 from ..patience import PATIENCE_S
 from ..postgres import Server
+from ..shared import need_tool
 from ..workers import shared_between_workers
 from .playground_site import playground as playground
 from .two_hosts import Hosts

@@ -10,10 +10,10 @@ import pytest
 from arboleda.playground.tab import Tab
 from arboleda.web.languages import contents
 
-from ..shared import need_tool
 from ..exercises.works import samples
 from ..firefox import Page, firefox
 from ..lengths import length
+from ..shared import need_tool
 
 pytestmark = [
     pytest.mark.system,

@@ -2,18 +2,43 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
-from arboleda.cli.commands import COMMANDS, LoadedCommands
+import arboleda.cli.commands as command_table
+from arboleda.cli.commands import OF_PACKAGES, Command, LoadedCommands, commands
+from arboleda.model.errors import StartError
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.shipped import shipped_name
 
 
-@pytest.mark.parametrize("name", list(COMMANDS))
+@pytest.mark.parametrize("name", list(commands()))
 def test_the_overview_has_the_sentence_of_each_command(name: str) -> None:
     command = LoadedCommands()[name]
     said = command.get_short_help_str(1000)
-    assert COMMANDS[name].brief == said
+    assert commands()[name].brief == said
+
+
+def test_a_command_of_a_package_that_is_not_installed_is_named_with_the_line_that_installs_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(command_table, "commands", lambda: command_table.OURS)
+    with pytest.raises(StartError, match=r"conformance .* -m pip install 'arboleda\[boards\]'"):
+        LoadedCommands()["conformance"]
+
+
+def test_every_package_that_is_missed_is_one_of_this_repository() -> None:
+    installed = {name: each.module.split(".")[0] for name, each in commands().items() if "." in each.module}
+    assert installed == {name: f"arboleda_{package}" for name, package in OF_PACKAGES.items()}
+
+
+def test_of_two_commands_with_one_name_ours_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    other = {"up": Command("acme.up", "Up."), "lift": Command("acme.lift", "Lift.", "Lifts")}
+    point = SimpleNamespace(load=lambda: other)
+    monkeypatch.setattr(command_table, "entry_points", lambda _group: [point])
+    found = command_table.commands.__wrapped__()
+    assert (found["up"].module, found["lift"].section) == ("up", "Lifts")
 
 
 def test_the_name_of_the_shipped_plant_is_that_of_its_model_which_has_no_database() -> None:

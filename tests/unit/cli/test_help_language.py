@@ -71,11 +71,6 @@ def test_every_section_has_its_twin(language: str) -> None:
     assert list(contents(language, "cli")["sections"]) == list(SECTIONS)
 
 
-def test_every_command_is_in_a_section_once() -> None:
-    names = [name for section in SECTIONS.values() for name in section]
-    assert sorted(names) == sorted(name.split()[1] for name in EVERY if len(name.split()) == 2)
-
-
 @pytest.fixture
 def spanish(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ARBOLEDA_LANG", "es")

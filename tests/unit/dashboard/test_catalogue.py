@@ -13,6 +13,7 @@ from types import ModuleType
 from typing import Any
 
 import pytest
+from tests.packages import PACKAGES
 
 import arboleda
 import arboleda.dashboard.toolkit  # its library starts a process as it is imported, and no test here may
@@ -41,8 +42,8 @@ OTHERS = LANGUAGES[1:]
 
 
 def modules() -> Iterator[ModuleType]:
-    for name in TOLD_BY:
-        package = importlib.import_module(f"arboleda.{name}")
+    for name in (*(f"arboleda.{room}" for room in TOLD_BY), *PACKAGES):
+        package = importlib.import_module(name)
         for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             yield importlib.import_module(found.name)
 

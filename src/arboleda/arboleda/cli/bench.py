@@ -12,8 +12,7 @@ from arboleda.model.errors import StartError
 
 GROUP = "arboleda.bench"
 MISSING = "the benchmarks are not installed here; `make install` in Arboleda's own folder brings them"
-HELP = """Measure this machine: our figures beside the least that the same run can take, so that two
-machines can be compared.
+HELP = """Measure this machine: our figures beside the least that the same run can take.
 
 \b
 arboleda bench                   all of them, about twenty minutes

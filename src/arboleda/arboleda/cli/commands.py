@@ -1,27 +1,48 @@
 """Commands of `arboleda`: the module that has each, which is loaded when the command is called, and its
-sentence in the overview."""
+sentence in the overview.
+
+A package adds its own: its entry point of the group `arboleda.commands` names a mapping from the name of each
+command to its `Command`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import cache
 from importlib import import_module
 from typing import Any, NamedTuple
 
 import typer
 
+from arboleda.host.packages import entry_points
+from arboleda.model.errors import StartError
+from arboleda.model.sentence import Phrase
+from arboleda.runtime import invocation
 from arboleda.views.verb_words import ABOUT
 
 from .loading import loading
 
+GROUP = "arboleda.commands"
+NOT_INSTALLED = Phrase(
+    "cli.not_installed",
+    "{command} is part of a package that is not installed: {python} -m pip install 'arboleda[{package}]'",
+)
+OF_PACKAGES = {"conformance": "boards", "firmware-config": "boards"}  # extras of `arboleda`, by command
+
 
 class Command(NamedTuple):
-    """Command: the name of a module of this room, whose `add_to` adds it, and what it does in a sentence."""
+    """Command: the module whose `add_to` adds it, and what it does in a sentence.
+
+    A module without a dot is of this room. `section` is the heading of the overview under which a package has
+    its command.
+    """
 
     module: str
     brief: str
+    section: str = "Make it yours"
 
 
-COMMANDS: Mapping[str, Command] = {
+OURS: Mapping[str, Command] = {
     "up": Command(
         "up", "Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or ROS 2 (/task_request)."
     ),
@@ -41,17 +62,8 @@ COMMANDS: Mapping[str, Command] = {
         "Run whole plants under virtual time, with faults drawn from a seed, and judge every step.",
     ),
     "prove": Command("prove", "Try every single fault at every moment of every recipe, and judge each run."),
-    "conformance": Command(
-        "conformance",
-        "Test the board of an arm or of a declared kind against the contract, and say which level "
-        "it reaches.",
-    ),
-    "firmware-config": Command(
-        "firmware_config",
-        "Write the header with which the boards' firmware becomes a device of a declared kind.",
-    ),
     "bench": Command(
-        "bench", "Measure this machine: our figures beside the least that the same run can take, so that two"
+        "bench", "Measure this machine: our figures beside the least that the same run can take."
     ),
     **{verb.value: Command("verbs", words.brief) for verb, words in ABOUT.items()},
     "check": Command(
@@ -124,6 +136,15 @@ COMMANDS: Mapping[str, Command] = {
 }
 
 
+@cache
+def commands() -> Mapping[str, Command]:
+    """The commands of Arboleda and of other packages, by name; of two with one name ours is taken."""
+    found: dict[str, Command] = {}
+    for each in entry_points(GROUP):
+        found = {**each.load(), **found}
+    return {**found, **OURS}
+
+
 class LoadedCommands(Mapping[str, Any]):
     """Commands by name; the module of each is loaded when it is looked up."""
 
@@ -132,17 +153,25 @@ class LoadedCommands(Mapping[str, Any]):
 
     def __getitem__(self, name: str) -> Any:
         if name not in self._loaded:
-            self._loaded |= _commands_of(COMMANDS[name].module)
+            self._loaded |= _commands_of(_known(name).module)
         return self._loaded[name]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(COMMANDS)
+        return iter(commands())
 
     def __len__(self) -> int:
-        return len(COMMANDS)
+        return len(commands())
 
     def __contains__(self, name: object) -> bool:
-        return name in COMMANDS
+        return name in commands() or name in OF_PACKAGES
+
+
+def _known(name: str) -> Command:
+    """A command; StartError if its package is not installed, KeyError if there is no such command."""
+    if name not in commands() and name in OF_PACKAGES:
+        package = OF_PACKAGES[name]
+        raise StartError(NOT_INSTALLED(command=name, python=invocation.python(), package=package))
+    return commands()[name]
 
 
 def _commands_of(module: str) -> Mapping[str, Any]:
@@ -150,11 +179,11 @@ def _commands_of(module: str) -> Mapping[str, Any]:
     cli = typer.Typer(add_completion=False, rich_markup_mode=None)
     cli.callback()(_nothing)  # typer makes a group only of what has one, or several commands
     with loading():
-        loaded = import_module(f".{module}", __package__)
+        loaded = import_module(module if "." in module else f".{module}", __package__)
     loaded.add_to(cli)
     group: Any = typer.main.get_command(cli)
-    commands: Mapping[str, Any] = group.commands
-    return commands
+    found: Mapping[str, Any] = group.commands
+    return found
 
 
 def _nothing() -> None:

@@ -11,7 +11,7 @@ from typer.core import TyperGroup
 
 from arboleda.model.verbs import Verb
 
-from .commands import COMMANDS, LoadedCommands
+from .commands import LoadedCommands, commands
 from .help_language import WrongUse, complain, first_sentence, speaking, translated
 from .language import help_words
 
@@ -31,8 +31,6 @@ SECTIONS: Mapping[str, tuple[str, ...]] = {
             "nodes",
             "urdf",
             "virtual",
-            "firmware-config",
-            "conformance",
             "certs",
         ),
     ),
@@ -83,14 +81,19 @@ class Overview(WholeSentences):
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Names of all commands."""
-        return list(COMMANDS)
+        return list(commands())
 
     def sections(self, ctx: Any) -> Mapping[str, Sequence[str]]:
-        return SECTIONS
+        listed = {name for names in SECTIONS.values() for name in names}
+        sections = dict(SECTIONS)
+        for name, command in commands().items():
+            if name not in listed:
+                sections[command.section] = (*sections.get(command.section, ()), name)
+        return sections
 
     def _what(self, ctx: Any, name: str) -> str:
         """The sentence of a command; in another language the first of the paragraph that begins with it."""
-        brief, known = COMMANDS[name].brief, help_words("help")
+        brief, known = commands()[name].brief, help_words("help")
         if brief in known or not known:
             return translated(brief)
         return first_sentence(next((text for text in known if text.startswith(f"{brief} ")), brief))

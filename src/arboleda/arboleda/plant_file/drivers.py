@@ -10,13 +10,13 @@ from typing import Any
 from pydantic.errors import PydanticSchemaGenerationError
 
 from arboleda.drivers.port import DriverSpec, FitsDevice, spec_of
+from arboleda.host.packages import entry_points
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import DriverUse, Link, PlantModel, Robot
 from arboleda.recipes.storage_layout import ARM, MOBILE
 
 from . import settings
 from .document import Document, Place, choice, nearest, shown
-from .packages import entry_points
 from .python_uses import LONGEST, PythonUses, Spot, error_text, refused
 from .shared import SECTION as SHARED
 

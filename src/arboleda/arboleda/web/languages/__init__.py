@@ -1,14 +1,24 @@
-"""Languages: a folder each, with the words of page, nodes, login, waiting room, reports and proofs."""
+"""Languages: a folder each, with the words of page, nodes, login, waiting room, reports and proofs.
+
+A package adds what it says itself: its entry point of the group `arboleda.languages` names a Python package
+with a folder `languages`, in which each language has files of the same names.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib import resources
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import yaml
 
+from arboleda.host.packages import entry_points
+
+if TYPE_CHECKING:
+    from importlib.abc import Traversable  # where Python 3.10 has it, and 3.14 no more
+
+GROUP = "arboleda.languages"
 FIRST = "en"  # in which is said what another language has no words for
 
 
@@ -24,9 +34,25 @@ LANGUAGES = _found()
 @cache
 def contents(language: str, part: str) -> dict[str, Any]:
     """The file of a part of a language: page, nodes, login and so on; without what it does not say."""
-    file = resources.files(__package__) / language / f"{part}.yaml"
-    found: dict[str, Any] = yaml.safe_load(file.read_text(encoding="utf-8")) if file.is_file() else {}
+    found: dict[str, Any] = {}
+    for folder in _folders():
+        file = folder / language / f"{part}.yaml"
+        if file.is_file():
+            found = _joined(found, yaml.safe_load(file.read_text(encoding="utf-8")))
     return found
+
+
+def _folders() -> Iterator[Traversable]:
+    """The folders of languages: first this one, then those of other packages."""
+    yield resources.files(__package__)
+    for each in entry_points(GROUP):
+        yield resources.files(each.module) / "languages"
+
+
+def _joined(ours: dict[str, Any], theirs: dict[str, Any]) -> dict[str, Any]:
+    """Both together, group by group; of what is in both, ours."""
+    both = {key: _joined(ours[key], theirs[key]) for key in ours if isinstance(theirs.get(key), dict)}
+    return theirs | ours | both
 
 
 @cache

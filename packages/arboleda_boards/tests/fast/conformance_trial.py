@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 
-from arboleda.board_kit.conformance.bench import Jostle, Send
-from arboleda.board_kit.conformance.judge import Judge
+from arboleda_boards.conformance.bench import Jostle, Send
+from arboleda_boards.conformance.judge import Judge
+
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device
 from arboleda.sim.board import Board

@@ -7,17 +7,16 @@ from typing import Annotated, cast
 
 import typer
 
-from arboleda.board_kit.firmware_config.header import header
-from arboleda.board_kit.firmware_config.resolving import tables
+from arboleda.cli.language import allowed, say
+from arboleda.cli.new import WROTE
+from arboleda.cli.plant_options import PlantFile
 from arboleda.kinds.declared import Device
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Link, PlantModel, Robot
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file import loader
-
-from .language import allowed, say
-from .new import WROTE
-from .plant_options import PlantFile
+from arboleda_boards.firmware_config.header import header
+from arboleda_boards.firmware_config.resolving import tables
 
 HELP = """Write the header with which the boards' firmware becomes a device of a declared kind.
 

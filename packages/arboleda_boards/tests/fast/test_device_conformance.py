@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from arboleda_boards.conformance.judge import DEVICE_CHECKS, Judge
 
-from arboleda.board_kit.conformance.judge import DEVICE_CHECKS, Judge
 from arboleda.kinds.declared import Device
 from arboleda.model.plant_model import Evidence
 from arboleda.plant_file.loader import load
@@ -21,7 +21,7 @@ from arboleda.wire.transport import Delivery
 
 from .conformance_trial import Trial, wrong
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
+EXAMPLES = Path(__file__).parents[4] / "examples"
 
 
 @cache

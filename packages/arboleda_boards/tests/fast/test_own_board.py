@@ -18,7 +18,7 @@ from arboleda.wire.payloads import Telemetry, decode
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 EXAMPLE = ROOT / "examples/own_board"
 HEARD = ("orden", "paro", "latido")
 BOOT = 7

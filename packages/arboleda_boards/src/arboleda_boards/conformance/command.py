@@ -9,17 +9,16 @@ from rich.console import Console
 from rich.text import Text
 
 from arboleda.adapters.broker_login import MQTT_PORT, Credentials, address, login
+from arboleda.cli.language import allowed, finding, say, say_error
+from arboleda.cli.plant_options import PlantFile
 from arboleda.model.errors import StartError
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.plant_file import loader
 
-from .language import allowed, finding, say, say_error
-from .plant_options import PlantFile
-
 if TYPE_CHECKING:
-    from arboleda.board_kit.conformance.judge import Finding, Judge
+    from arboleda_boards.conformance.judge import Finding, Judge
 
 PASSED, FAILED = 0, 1
 HELP = """Test the board of an arm or of a declared kind against the contract, and say which level it reaches.
@@ -99,9 +98,9 @@ def _deeds(robot: Robot) -> Sentence:
 
 
 def _try(robot: Robot, broker: str, credentials: Credentials | None) -> int:
-    from arboleda.board_kit.conformance.broker_bench import (
-        Trial,
-    )  # it takes a while to load, and only this command needs it
+    from arboleda_boards.conformance.broker_bench import (
+        Trial,  # it takes a while to load, and only this command needs it
+    )
 
     console = Console(highlight=False)
     try:
@@ -138,7 +137,7 @@ def _result(of: Sentence) -> str:
 
 
 def _verdict(robot: Robot, judge: Judge) -> Text:
-    from arboleda.board_kit.conformance.judge import LEVELS
+    from arboleda_boards.conformance.judge import LEVELS
 
     wrong = tuple(found.check.name for found in judge.findings if found.wrong)
     if judge.reached is None:

@@ -7,12 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-
-from arboleda.board_kit.conformance.judge import CHECKS, DEVICE_CHECKS
+from arboleda_boards.conformance.judge import CHECKS, DEVICE_CHECKS
 
 pytestmark = pytest.mark.system
 
-PRESS = Path(__file__).parents[2] / "examples/press_board/plant.yaml"
+PRESS = Path(__file__).parents[4] / "examples/press_board/plant.yaml"
 
 
 def test_the_firmwares_board_of_an_arm_passes_at_the_top(

@@ -8,8 +8,8 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from arboleda_boards.conformance.judge import CHECKS, Judge
 
-from arboleda.board_kit.conformance.judge import CHECKS, Judge
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.joints import Joint
 from arboleda.model.commands import StopMode
