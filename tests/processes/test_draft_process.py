@@ -12,7 +12,7 @@ import pytest
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file import draft_process
+from arboleda.plant_file import draft_check, draft_process
 from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.draft_process import CheckProcess
 
@@ -25,6 +25,7 @@ def test_it_says_what_check_says_and_what_it_read() -> None:
     process, plant = CheckProcess(), FOLDER / "plant.yaml"
     found = process.check(FILES, plant)
     assert found.problems == () and found.read is not None and found.read.contents == CONTENTS
+    assert found.unstated == draft_check.check(FILES, plant).unstated != ()
     wrong = {**CONTENTS, "plant.yaml": CONTENTS["plant.yaml"].replace(b"model: scara", b"model: scora")}
     found = process.check(PlantFiles(plant="plant.yaml", contents=wrong), plant)
     assert found.problems[0].startswith(f"{plant}:") and "scora" in found.problems[0]

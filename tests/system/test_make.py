@@ -52,6 +52,7 @@ DOOR = """      door:
     targets:
 """
 REST = '<root BTCPP_format="4"><BehaviorTree ID="Rest"><loader_home/></BehaviorTree></root>\n'
+TAKES = '<loader_visit target="feed"><jaw_close width_mm="30" force_n="20"/></loader_visit>'
 LAPTOP = {"viewport": {"width": 1366, "height": 900}, "locale": "en"}
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "locale": "es"}
 PANELS = ("draft", "cells", "try", "prove", "device")
@@ -63,6 +64,15 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "plant.yaml").write_text(PLANT)
     (tmp_path / "rest.xml").write_text(REST)
     return tmp_path
+
+
+@pytest.fixture
+def unsaid(folder: Path) -> Path:
+    """The plant, whose recipe takes a part of which nobody says where it lies."""
+    jaw = "      jaw: {kind: gripper, tool_of: loader}\n    targets:\n"
+    (folder / "plant.yaml").write_text(PLANT.replace("    targets:\n", jaw))
+    (folder / "rest.xml").write_text(REST.replace("<loader_home/>", TAKES))
+    return folder
 
 
 @pytest.fixture
@@ -245,13 +255,16 @@ def test_a_new_device_with_a_driver_is_reached_before_it_is_added(
     assert DOOR % wire.port in (folder / "plant.yaml").read_text()
 
 
-def test_the_second_person_sees_who_edits_and_takes_over_and_asks_for_a_restart(
-    browser: Any, address: str
+def test_the_second_person_sees_who_edits_and_takes_over_and_takes_an_offer_and_asks_for_a_restart(
+    browser: Any, unsaid: Path, address: str
 ) -> None:
+    offer = "#make-problems button:text-is('cells.cell.places: {feed: {supply: true}}')"
     ana = {"editor": "test-of-ana", "name": "Ana"}
     httpx.post(f"{address}/api/draft/take", json=ana, timeout=PATIENCE_S).raise_for_status()
     me = Person(browser, address, **LAPTOP)
     me.sees("#make-who", "Ana edits the draft since")
+    me.page.wait_for_selector(f"{offer}:disabled", timeout=LONG_MS)
+    me.sees("#make-problems", "cell: nothing is known of where parts lie")
     me.panel("cells")
     me.write(".make-target-name", "tray")
     me.press("[data-new-target=cell]")
@@ -262,6 +275,13 @@ def test_the_second_person_sees_who_edits_and_takes_over_and_asks_for_a_restart(
     me.page.wait_for_selector("[aria-label='tray loader']")
     me.press("[data-make=undo]")
     me.page.wait_for_selector("[aria-label='tray loader']", state="detached")
+    me.panel("draft")
+    me.press(offer)
+    me.sees("#make-changes", "cells.cell.places: new, {feed: {supply: true}}")
+    me.sees("#make-problems", "rest ends with a part that jaw still holds")
+    assert "nothing is known" not in me.page.text_content("#make-problems")
+    made = httpx.get(f"{address}/api/draft", timeout=PATIENCE_S).json()["values"]
+    assert made["cells"]["cell"]["places"] == {"feed": {"supply": True}}
     httpx.post(
         f"{address}/api/cells/cell/teach", json={"teacher": "Ana"}, timeout=PATIENCE_S
     ).raise_for_status()  # a restart waits for her

@@ -57,6 +57,12 @@ def test_each_sentence_has_the_values_of_its_english() -> None:
             "debe hacerse",
         ),
         (
+            "zones.nest.free_while: new, {oven: {door: open}}: who is in a zone is not counted anew "
+            "while the plant runs",
+            "zones.nest.free_while: nuevo, {oven: {door: open}}: mientras la planta está en marcha no se "
+            "vuelve a contar quién está en una zona",
+        ),
+        (
             "in cell lab: home lies in zone centre",
             "en la celda lab: home está en la zona centre",
         ),

@@ -142,8 +142,11 @@ def test_the_report_of_a_task_is_waited_for(client: Client, plant: Plant) -> Non
 def test_the_draft_is_edited_under_one_id(client: Client, plant: Any) -> None:
     steps: list[tuple[Any, ...]] = []
     state = {"file": "plant.yaml", "editor": None, "changes": [], "waiting": [], "undo": 0, "redo": 0}
-    state |= {"values": {}, "trees": [], "restart": [], "is_ours": True, "set_aside": []}
+    state |= {"values": {}, "trees": [], "restart": [], "is_ours": True, "set_aside": [], "digest": "4f"}
+    choice = {"text": "zones.nest.free_while: {oven: {door: open}}", "value": {"oven": {"door": "open"}}}
+    offer = {"sentence": "nobody knows", "place": ["zones", "nest", "free_while"], "choices": [choice]}
     applied = {"problems": [], "warnings": [], "version": 3, "cells": {"lab": "now"}, "cancelled": []}
+    applied |= {"offers": [offer]}
 
     class Desk:
         def __getattr__(self, name: str) -> Any:
@@ -153,13 +156,17 @@ def test_the_draft_is_edited_under_one_id(client: Client, plant: Any) -> None:
     draft = client.draft("ana-12345")
     assert draft.state().file == "plant.yaml" and draft.take("Ana").is_ours
     draft.set(["cells", "lab", "targets", 0], [1, {"b": None}])
-    assert draft.apply("why").cells == {"lab": "now"} and draft.check().problems == []
+    assert draft.apply("why").cells == {"lab": "now"}
+    found = draft.check()
+    (offered,) = found.offers
+    draft.set(offered.place, offered.choices[0].value, of=found.digest)
     assert steps == [
         ("state",),
         ("take", "ana-12345", "Ana"),
-        ("set", "ana-12345", ("cells", "lab", "targets", 0), [1, {"b": None}]),
+        ("set", "ana-12345", ("cells", "lab", "targets", 0), [1, {"b": None}], None),
         ("apply", "ana-12345", "why"),
         ("check",),
+        ("set", "ana-12345", ("zones", "nest", "free_while"), {"oven": {"door": "open"}}, "4f"),
     ]
     with pytest.raises(WrongRequest, match="place"):
         client.draft().remove([])

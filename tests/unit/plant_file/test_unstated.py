@@ -12,7 +12,9 @@ from arboleda.campaigns.mending.mend import edited
 from arboleda.campaigns.mending.offers import offers
 from arboleda.campaigns.plants import Plant, notes
 from arboleda.cli.main import cli
-from arboleda.plant_file import loader, unstated
+from arboleda.plant_file import draft_check, loader, unstated
+from arboleda.plant_file.draft import draft_of
+from arboleda.recorder.preamble import PlantFiles
 
 PLANT = """
 name: lab
@@ -114,12 +116,24 @@ def test_an_offer_is_edits_of_which_each_alone_states_it(tmp_path: Path, number:
         assert offer.sentence not in unstated.unknowns(loader.load(file))
 
 
+@pytest.mark.parametrize("number", range(3))
+def test_an_offer_for_a_draft_is_a_step_of_it(tmp_path: Path, number: int) -> None:
+    file = written(tmp_path, PLANT)
+    draft = draft_of(PlantFiles(plant=file.name, contents={file.name: file.read_bytes()}))
+    offer = draft_check.check(draft.files, file).unstated[number]
+    for value in offer.values:
+        found = draft_check.check(draft.with_value(offer.place, value).files, file)
+        assert found.problems == () and offer.unknown not in [each.unknown for each in found.unstated]
+
+
 def test_no_edit_is_offered_for_what_is_to_stand_in_another_file(tmp_path: Path) -> None:
     oven = PLANT[PLANT.index("kinds:") : PLANT.index("cells:")]
     file = written(tmp_path, PLANT.replace(oven, "").replace("[recipes.py]", "[recipes.py, kinds.py]"))
     (tmp_path / "kinds.py").write_text(KIND)
     found = offers(file.name, file.read_text(), loader.load(file))
     assert [each.sentence for each in found] == [PLACES, GUARD]
+    of_draft = draft_check.check(PlantFiles(plant=file.name, contents={file.name: file.read_bytes()}), file)
+    assert [each.unknown for each in of_draft.unstated] == [PLACES, GUARD]
 
 
 def test_a_simulation_says_of_what_nothing_is_known(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ import pytest
 from arboleda.model.errors import StartError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.draft_check import CheckResult
+from arboleda.plant_file.unstated import Unstated
 from arboleda.plant_file.versions import Version, Versions
 from arboleda.runtime import at_work
 from arboleda.runtime.draft_desk import DraftDesk
@@ -124,6 +125,42 @@ def test_a_kept_draft_is_in_the_files_and_a_version_and_waits_for_the_next_start
     started, kept = Versions(plant).all()
     assert started.files.contents["plant.yaml"] == TEXT and [*started.others] == ["r.py"]
     assert (kept.by, kept.note, kept.changes) == ("ana", "slower", ("timing.dwell_s: from 1 to 2",))
+
+
+def unsaid(files: PlantFiles, plant_file: Path) -> CheckResult:
+    return CheckResult(
+        read=files, unstated=(Unstated(unknown="nobody knows", place=DWELL, values=({"s": 2},)),)
+    )
+
+
+def test_what_the_check_offers_to_state_is_a_value_for_the_draft_that_was_checked(open_desk: Open) -> None:
+    desk = open_desk(unsaid)
+    found = desk.check()
+    (offer,) = found["offers"]
+    assert offer["sentence"] == "nobody knows" and offer["place"] == [*DWELL]
+    assert offer["choices"] == [{"text": "timing.dwell_s: {s: 2}", "value": {"s": 2}}]
+    state = desk.set(ANA, offer["place"], offer["choices"][0]["value"], found["digest"])
+    assert state["values"]["timing"] == {"dwell_s": {"s": 2}} and state["digest"] != found["digest"]
+
+
+def test_an_offer_for_another_draft_than_the_one_that_there_is_changes_nothing(open_desk: Open) -> None:
+    desk = open_desk(unsaid)
+    found = desk.check()
+    changed = desk.set(ANA, DWELL, 3)
+    with pytest.raises(
+        DraftRefused, match="has changed since its check, and nothing was set; check it again"
+    ):
+        desk.set(ANA, DWELL, {"s": 2}, found["digest"])
+    assert desk.state() == changed
+    assert desk.undo(ANA)["digest"] == found["digest"]
+
+
+def test_an_offer_is_of_the_files_as_they_are_by_hand_too(open_desk: Open, plant: Path) -> None:
+    desk = open_desk(unsaid)
+    found = desk.check()
+    plant.write_bytes(TEXT.replace(b"1", b"4"))
+    with pytest.raises(DraftRefused, match="check it again"):
+        desk.set(ANA, DWELL, {"s": 2}, found["digest"])
 
 
 def test_what_the_check_refuses_changes_nothing(open_desk: Open, plant: Path) -> None:

@@ -15,7 +15,10 @@ STATE |= {"values": {}}
 EDITOR = {"editor": "ana-12345"}
 STEPS = {
     "take": (EDITOR | {"name": "Ana"}, ("take", "ana-12345", "Ana")),
-    "set": (EDITOR | {"place": ["a", 0], "value": VALUE}, ("set", "ana-12345", ("a", 0), VALUE)),
+    "set": (
+        EDITOR | {"place": ["a", 0], "value": VALUE, "of": "4f"},
+        ("set", "ana-12345", ("a", 0), VALUE, "4f"),
+    ),
     "remove": (EDITOR | {"place": ["a"]}, ("remove", "ana-12345", ("a",))),
     "undo": (EDITOR, ("undo", "ana-12345")),
     "redo": (EDITOR, ("redo", "ana-12345")),
@@ -87,6 +90,7 @@ def test_a_refusal_is_a_conflict_with_its_sentence(web: Any, draft: Draft) -> No
         ("take", EDITOR | {"name": ""}),
         ("set", EDITOR | {"place": [], "value": 1}),
         ("set", EDITOR | {"place": ["a"]}),
+        ("set", EDITOR | {"place": ["a"], "value": 1, "of": 1}),
         ("set", EDITOR | {"place": [True], "value": 1}),
         ("set", EDITOR | {"place": [-1], "value": 1}),
         ("set", EDITOR | {"place": ["a"] * 21, "value": 1}),

@@ -408,6 +408,7 @@ class DraftState:
     """State of the draft of the plant's files."""
 
     file: str
+    digest: str
     editor: Editing | None
     changes: list[str]
     waiting: list[str]
@@ -426,6 +427,31 @@ class DraftCheck:
 
     problems: list[str]
     warnings: list[str]
+
+
+@dataclass(frozen=True, kw_only=True)
+class DraftChoice:
+    """Value that the plant file could have, and what would stand there."""
+
+    text: str
+    value: dict[str, Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class DraftOffer:
+    """Offer to state what nobody knows: one of these values at this place of the plant file."""
+
+    sentence: str
+    place: list[str]
+    choices: list[DraftChoice]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckedDraft(DraftCheck):
+    """Findings of `arboleda check` on the draft with this digest, and what its plant file could state."""
+
+    digest: str
+    offers: list[DraftOffer]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,10 +13,10 @@ from .answers import (
     AppliedDraft,
     AssistantLevel,
     CellOee,
+    CheckedDraft,
     DecidedProposal,
     Done,
     DraftCells,
-    DraftCheck,
     DraftState,
     Drawn,
     DriverRow,
@@ -361,8 +361,9 @@ class DraftSteps(Side):
         """Begin to edit in somebody's name, or take over."""
 
     @route("POST", "/api/draft/set", DraftState, by_editor=True)
-    def set(self, place: Sequence[str | int], value: Any) -> None:
-        """Set a value of the plant file, as at `["cells", "lab", "targets", "nest"]`."""
+    def set(self, place: Sequence[str | int], value: Any, of: str | None = None) -> None:
+        """Set a value of the plant file, as at `["cells", "lab", "targets", "nest"]`; in no other draft than
+        `of`, its digest."""
 
     @route("POST", "/api/draft/remove", DraftState, by_editor=True)
     def remove(self, place: Sequence[str | int]) -> None:
@@ -392,7 +393,7 @@ class DraftSteps(Side):
     def discard(self) -> None:
         """Forget all of the draft."""
 
-    @route("POST", "/api/draft/check", DraftCheck, within_s=CHECKED_S)
+    @route("POST", "/api/draft/check", CheckedDraft, within_s=CHECKED_S)
     def check(self) -> None:
         """The findings of `arboleda check` on the draft."""
 

@@ -14,19 +14,22 @@ from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 
 from . import loader, plant_check
+from .unstated import Unstated, unstated
 
 
 @dataclass(frozen=True, kw_only=True)
 class CheckResult:
     """Result of checking files: the plant, None where there are `problems`; lines with file, line and column.
 
-    `read`: all files that the plant was made of, by paths as those that were checked have.
+    `read`: all files that the plant was made of, by paths as those that were checked have. `unstated`: what
+    this plant file could state, and does not.
     """
 
     plant: PlantModel | None = None
     read: PlantFiles | None = None
     problems: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    unstated: tuple[Unstated, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,11 +71,16 @@ def check(files: PlantFiles, plant_file: Path) -> CheckResult:
     with shaded(files, plant_file) as shade:
         try:
             plant, read = loader.load_with_files(shade.plant_file)
-            warnings = plant_check.warnings(plant)
+            warnings, lacks = plant_check.warnings(plant), unstated(plant)
         except ConfigError as error:
             return CheckResult(problems=tuple(map(shade.renamed, error.problems)))
         named = read if read.plant == files.plant else None  # absolute paths have other names here
-        return CheckResult(plant=plant, read=named, warnings=tuple(map(shade.renamed, warnings)))
+        return CheckResult(
+            plant=plant,
+            read=named,
+            warnings=tuple(map(shade.renamed, warnings)),
+            unstated=tuple(each for each in lacks if each.fits(files.contents[files.plant])),
+        )
 
 
 def root_of(files: PlantFiles, plant_file: Path) -> Path:

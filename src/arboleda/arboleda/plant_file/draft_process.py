@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from arboleda.model.plant_files import PlantFiles
 from . import draft_check
 from .draft_check import CheckResult
 from .recipe_trial import PATH
+from .unstated import Unstated
 
 START = PATH + "from arboleda.plant_file import draft_process; draft_process.main()"
 AT_MOST_S = 300.0
@@ -82,7 +84,8 @@ def main() -> None:
     files = PlantFiles(plant=request["plant"], contents=from_texts(request["contents"]))
     found = draft_check.check(files, Path(request["plant_file"]))
     read = None if found.read is None else texts(found.read.contents)
-    answer = {"problems": found.problems, "warnings": found.warnings, "read": read}
+    lacks = [asdict(each) for each in found.unstated]
+    answer = {"problems": found.problems, "warnings": found.warnings, "unstated": lacks, "read": read}
     print(f"\n{json.dumps(answer)}", flush=True)
     os._exit(0)  # whatever threads the plant's Python has started
 
@@ -95,10 +98,15 @@ def _answer(output: bytes, plant: str) -> CheckResult:
         return CheckResult(
             problems=tuple(found["problems"]),
             warnings=tuple(found["warnings"]),
+            unstated=tuple(map(_lack, found["unstated"])),
             read=None if read is None else PlantFiles(plant=plant, contents=from_texts(read)),
         )
     except (ValueError, KeyError, IndexError, TypeError) as error:
         raise ArboledaError(NO_ANSWER) from error
+
+
+def _lack(found: Mapping[str, Any]) -> Unstated:
+    return Unstated(unknown=found["unknown"], place=tuple(found["place"]), values=tuple(found["values"]))
 
 
 def texts(contents: Mapping[str, bytes]) -> dict[str, str]:

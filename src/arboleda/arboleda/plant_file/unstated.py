@@ -47,6 +47,12 @@ class Unstated:
         """The sentence with what could be written."""
         return f"{self.unknown}; {dotted(self.place)}: {' or '.join(map(flow, self.values))} would state it"
 
+    @property
+    def plain(self) -> dict[str, Any]:
+        """The same for JSON: each value with what it would be in the file."""
+        choices = [{"text": f"{dotted(self.place)}: {flow(each)}", "value": each} for each in self.values]
+        return {"sentence": self.unknown, "place": list(self.place), "choices": choices}
+
     def fits(self, content: bytes) -> bool:
         """True where a plant file of this content can state it: a kind may be one of another file."""
         node, _ = parse(content)

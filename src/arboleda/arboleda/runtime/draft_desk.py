@@ -38,6 +38,7 @@ NO_PLANT = "no plant runs in this process that could take it"
 NO_TREES = "{file} is no file of trees of this plant"
 OURS = "these files are your own already, and can be changed"
 MEANWHILE = "the draft was changed while it was checked; try again"
+SINCE = "the draft has changed since its check, and nothing was set; check it again"
 WorkBy = Callable[[Version, CheckResult, str], State]
 
 
@@ -100,8 +101,13 @@ class DraftDesk(DraftApi):
                 LOG.info("the draft is taken over by %s from %s", plain(name), plain(before.name))
             return self._shown()
 
-    def set(self, editor: str, place: Place, value: Any) -> State:
-        return self._step(editor, lambda draft: draft.with_value(tuple(place), value))
+    def set(self, editor: str, place: Place, value: Any, of: str | None = None) -> State:
+        def step(draft: Draft) -> Draft:
+            if of is not None and of != _digest(draft):
+                raise EditRefused(SINCE)
+            return draft.with_value(tuple(place), value)
+
+        return self._step(editor, step)
 
     def set_all(self, editor: str, values: Sequence[tuple[Place, Any]]) -> State:
         """The same as `set` for several values, in one step."""
@@ -126,9 +132,11 @@ class DraftDesk(DraftApi):
 
     def check(self) -> State:
         with self._turns:
-            files = self._opened().files
-        found = self._process.check(files, self._folder.ours)
-        return {"problems": found.problems, "warnings": found.warnings}
+            draft = self._opened()
+        found = self._process.check(draft.files, self._folder.ours)
+        offers = [each.plain for each in found.unstated]
+        answer = {"problems": found.problems, "warnings": found.warnings, "offers": offers}
+        return answer | {"digest": _digest(draft)}
 
     def keep(self, editor: str, note: str) -> State:
         found, version = self._checked_and_kept(editor, note)
@@ -257,6 +265,7 @@ class DraftDesk(DraftApi):
         contents = draft.files.contents
         return {
             "file": draft.files.plant.rpartition("/")[2],
+            "digest": _digest(draft),
             "editor": None if editor is None else {"name": editor.name, "since": editor.since},
             "changes": [each.words for each in draft.changes],
             "waiting": [each.words for each in changes(self._started().files, self._on_disk())],
@@ -318,6 +327,11 @@ def _is_in(draft: Draft, files: PlantFiles) -> bool:
     """True where each file that a draft knows is as the draft has it; one that it removes is gone."""
     names = {*draft.base.contents, *draft.files.contents}
     return all(files.contents.get(name) == draft.files.contents.get(name) for name in names)
+
+
+def _digest(draft: Draft) -> str:
+    """The digest of the files of a draft, which another step makes another."""
+    return version_of(draft.files, at="").digest
 
 
 def _now() -> str:

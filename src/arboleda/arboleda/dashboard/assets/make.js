@@ -15,7 +15,7 @@ const WAIT_MS = 1500; // while another check is under way, or too many wait
 const PANEL = "arboleda_make_panel"; // where this browser tab was last, also before it looked at a record
 const FIRST = "draft";
 let shown = false;
-let checked = null; // the changes that were checked last
+let checked = null; // the digest of the draft that was checked last
 let checking = false; // this page has asked, and waits
 let timer = null;
 
@@ -84,8 +84,8 @@ function drawn() {
   if (state.changes.length) tell("changes");
   else lines("changes", [words.make_no_change]);
   for (const name of ["set_aside", "restart", "waiting"]) tell(name), (box(`${name}-box`).hidden = !state[name].length);
-  const now = state.changes.join("\n");
-  if (now === checked) return;
+  bar();
+  if (state.digest === checked) return;
   clearTimeout(timer);
   timer = setTimeout(check, CHECK_MS);
   lines("problems", [words.make_checking]);
@@ -106,14 +106,44 @@ const lines = (id, rows) => box(id).replaceChildren(...rows.map((text) => elemen
 async function check() {
   clearTimeout(timer);
   if (checking) return void (timer = setTimeout(check, WAIT_MS));
-  const now = draft.state.changes.join("\n");
   checking = true;
   const found = await spoken(await ask("/api/draft/check", {}, () => {}));
   checking = false;
   if (!found) return void (timer = setTimeout(check, WAIT_MS));
-  checked = now;
+  checked = found.digest;
   draft.problems = found.problems;
   marks(found);
+  box("problems").append(...found.offers.map((offer) => offered(offer, found.digest)));
+  bar();
+}
+
+// What the plant file could state and does not, with a button for each value; which one is so, a person knows.
+function offered({ sentence, place, choices }, of) {
+  const line = element("li", fill(words.make_offer, { sentence }), { "data-mark": "offer" });
+  const acts = element("div", "", { class: "draw-acts" });
+  for (const { text, value } of choices) {
+    const made = element("button", text, { type: "button", class: "act" });
+    made.addEventListener("click", () => stated(text, { place, value, of }));
+    acts.append(made);
+  }
+  line.append(acts);
+  return line;
+}
+
+const offerButtons = () => all("#make-problems button");
+
+// Only who may change the draft can press what it offers.
+function bar() {
+  const { is_ours: isOurs, editor: who } = draft.state;
+  offerButtons().forEach((each) => (each.disabled = !isOurs || (who !== null && !isMine())));
+}
+
+// An offer of another draft than the one that there is now is refused: then that one is checked.
+async function stated(text, setting) {
+  offerButtons().forEach((each) => (each.disabled = true));
+  if (!(await step("set", setting))) return void (await look());
+  say(fill(words.make_added, { name: text }));
+  await reread();
 }
 
 export function marks({ problems, warnings }) {
@@ -141,6 +171,7 @@ async function keep() {
   marks(kept);
   say(kept.version === null ? words.make_not_kept : await applied(kept));
   if (kept.version === null) open("draft");
+  else checked = null; // its offers are not in this answer
   await look();
   if (kept.restart.length) await offerRestart();
 }

@@ -86,7 +86,7 @@ export async function spoken(answer, ...more) {
   const each = (value, key, done) => {
     if (typeof value === "string") return keys.has(key) ? done(value) : value;
     if (Array.isArray(value)) return value.map((one) => each(one, key, done));
-    if (!value || typeof value !== "object" || key === "answers") return value; // their keys are of a recipe
+    if (!value || typeof value !== "object" || ["answers", "value"].includes(key)) return value; // their keys are of a recipe, or a plant file
     return Object.fromEntries(Object.entries(value).map(([name, one]) => [name, each(one, name, done)]));
   };
   const texts = [];

@@ -31,8 +31,8 @@ class DraftApi(Protocol):
         """Begin to edit, or take over from whoever edits; `name` is shown to others."""
 
     @abstractmethod
-    def set(self, editor: str, place: Place, value: Any) -> State:
-        """Set a plain value of the plant file."""
+    def set(self, editor: str, place: Place, value: Any, of: str | None = None) -> State:
+        """Set a plain value of the plant file; `of` is the digest of the only draft in which to set it."""
 
     @abstractmethod
     def remove(self, editor: str, place: Place) -> State:
@@ -52,7 +52,10 @@ class DraftApi(Protocol):
 
     @abstractmethod
     def check(self) -> State:
-        """`problems` and `warnings` of the draft, as `arboleda check` has them; it waits for seconds."""
+        """`problems`, `warnings` and `offers` of the draft as `arboleda check` has them, and its `digest`.
+
+        It waits for seconds.
+        """
 
     @abstractmethod
     def keep(self, editor: str, note: str) -> State:

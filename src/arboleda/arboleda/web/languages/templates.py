@@ -7,6 +7,7 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import islice
 from string import Formatter
 
 from . import FIRST, contents
@@ -178,10 +179,11 @@ class Templates:
             return
         pieces = text.split(joint)
         tries_all = joint == SENTENCE_JOINT and len(pieces) <= MOST_SENTENCES
-        for end in range(1, len(pieces) if tries_all else min(len(pieces), 2)):
+        ends = (end for end in range(1, len(pieces)) if _is_outside_braces(joint.join(pieces[:end])))
+        for end in ends if tries_all else islice(ends, 1):
             first, rest = joint.join(pieces[:end]), joint.join(pieces[end:])
-            if "{" in first or (joint == SUBJECT_JOINT and not SUBJECT.fullmatch(first)):
-                return  # what stands in braces is one thing
+            if joint == SUBJECT_JOINT and not SUBJECT.fullmatch(first):
+                return
             one = Translation(text=first) if joint == SUBJECT_JOINT else self._best(first, depth + 1)
             other = self._best(rest, depth + 1)
             yield Translation(
@@ -201,6 +203,11 @@ def heading(language: str, text: str) -> str:
 def _pieces(text: str) -> list[tuple[str, str]]:
     """Each literal of a template with the slot that follows it, if one does."""
     return [(words, slot or "") for words, slot, *_ in Formatter().parse(text)]
+
+
+def _is_outside_braces(text: str) -> bool:
+    """True if all braces of the text are closed: what stands in braces is one thing."""
+    return text.count("{") <= text.count("}")
 
 
 def _whole_words(pieces: Sequence[tuple[str, str]]) -> set[str]:

@@ -55,6 +55,11 @@ class Removal(_Request):
 
 class Setting(Removal):
     value: Any = Field(description="A plain value of the plant file.")
+    of: str | None = Field(
+        default=None,
+        max_length=64,
+        description="Digest of the only draft in which to set it; refused if the draft has changed since.",
+    )
 
 
 RecipeName = Annotated[
@@ -83,6 +88,7 @@ class DraftState(ResponseModel):
     """State of the draft."""
 
     file: str = Field(description="The plant file's name.")
+    digest: str = Field(description="Of the files of the draft: another step makes it another.")
     editor: Editing | None
     changes: list[str] = Field(description="What the draft would change in the files, a line each.")
     waiting: list[str] = Field(description="What the files have and only the next start of the plant takes.")
@@ -102,6 +108,22 @@ class DraftState(ResponseModel):
 class DraftCheck(ResponseModel):
     problems: list[str] = Field(description="With file, line and column; none where it is good.")
     warnings: list[str]
+
+
+class DraftChoice(ResponseModel):
+    text: str = Field(description="What would stand in the plant file.")
+    value: dict[str, Any] = Field(description="The value to set.")
+
+
+class DraftOffer(ResponseModel):
+    sentence: str = Field(description="What nobody knows, as the plant file does not state it.")
+    place: list[str] = Field(description="Where in the plant file it would stand.")
+    choices: list[DraftChoice] = Field(description="Of these one is so; a person knows which.")
+
+
+class CheckedDraft(DraftCheck):
+    digest: str = Field(description="Of the files that were checked, for `of` of the step that sets a value.")
+    offers: list[DraftOffer] = Field(description="What the plant file could state, and does not.")
 
 
 class KeptDraft(DraftCheck):
@@ -143,7 +165,7 @@ def _look(api: APIRouter, side: PlantApi) -> None:
         draft = _draft(side, request)
         return await _answered(lambda: draft.trees(file))
 
-    @api.post("/check", response_model=DraftCheck, responses=REFUSED)
+    @api.post("/check", response_model=CheckedDraft, responses=REFUSED)
     async def check(request: Request) -> JSONResponse:
         """The findings of `arboleda check` on the draft; from a process of its own, within seconds."""
         return await _answered(_draft(side, request).check)
@@ -161,7 +183,12 @@ def _edit(api: APIRouter, side: PlantApi) -> None:
         api.post(path, response_model=DraftState, name=path.strip("/"), **wanted)(step)
 
     route("/take", Taking, "Begin to edit, or take over.", lambda each, to: each.take(to.editor, to.name))
-    route("/set", Setting, "Set a value.", lambda each, to: each.set(to.editor, tuple(to.place), to.value))
+    route(
+        "/set",
+        Setting,
+        "Set a value.",
+        lambda each, to: each.set(to.editor, tuple(to.place), to.value, to.of),
+    )
     route("/remove", Removal, "Remove a key.", lambda each, to: each.remove(to.editor, tuple(to.place)))
     route(
         "/set_trees",
