@@ -12,9 +12,9 @@ from arboleda.campaigns.mending.mend import edited
 from arboleda.campaigns.mending.offers import offers
 from arboleda.campaigns.plants import Plant, notes
 from arboleda.cli.main import cli
+from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import draft_check, loader, unstated
 from arboleda.plant_file.draft import draft_of
-from arboleda.recorder.preamble import PlantFiles
 
 PLANT = """
 name: lab

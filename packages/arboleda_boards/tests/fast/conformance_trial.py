@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 
-from arboleda_boards.conformance.bench import Jostle, Send
-from arboleda_boards.conformance.judge import Judge
-
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device
 from arboleda.sim.board import Board
 from arboleda.wire.topics import topic
 from arboleda.wire.transport import Delivery
+from arboleda_boards.conformance.bench import Jostle, Send
+from arboleda_boards.conformance.judge import Judge
 
 LONGEST_S = 600.0
 

@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from arboleda_boards.conformance.judge import CHECKS, Judge
 
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.joints import Joint
@@ -21,6 +20,7 @@ from arboleda.sim.body import BodyReport
 from arboleda.testing import shipped
 from arboleda.wire.payloads import Beat, EffectorGoal, Goal, HomeGoal, JointsGoal, StopGoal, Telemetry
 from arboleda.wire.transport import Delivery
+from arboleda_boards.conformance.judge import CHECKS, Judge
 
 from .conformance_trial import Trial, wrong
 

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from arboleda_boards.conformance.judge import DEVICE_CHECKS, Judge
 
 from arboleda.kinds.declared import Device
 from arboleda.model.plant_model import Evidence
@@ -18,6 +17,7 @@ from arboleda.sim.board import Board
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import Goal, OrderGoal, StopGoal
 from arboleda.wire.transport import Delivery
+from arboleda_boards.conformance.judge import DEVICE_CHECKS, Judge
 
 from .conformance_trial import Trial, wrong
 

@@ -6,15 +6,15 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from arboleda_boards.firmware_config.header import header
-from arboleda_boards.firmware_config.resolving import tables
-from arboleda_boards.firmware_config.tables import Tables
 from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file.loader import load
+from arboleda_boards.firmware_config.header import header
+from arboleda_boards.firmware_config.resolving import tables
+from arboleda_boards.firmware_config.tables import Tables
 
 ROOT = Path(__file__).parents[4]
 PRESS = ROOT / "examples/press_board"

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
 from arboleda_boards.conformance.judge import CHECKS, DEVICE_CHECKS
 
 pytestmark = pytest.mark.system
