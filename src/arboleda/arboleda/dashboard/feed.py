@@ -13,12 +13,11 @@ from typing import Any
 from arboleda.store.task_rows import TaskRow
 
 from .faces import Face
-from .frames import Frames, Viewer
+from .frames import BEAT_S, Frames, Viewer
 from .page_api import PageApi
 from .page_state import PageState
 
 FRAMES_HZ = 10.0
-BEAT_S = 1.0  # without news for so long, the plant is asked, and pages learn that it answers
 WAITING = 200  # snapshots between two frames; past that the oldest are dropped
 
 log = logging.getLogger(__name__)
@@ -78,9 +77,11 @@ class Feed:
             quiet = not self._news.is_set()
             self._news.clear()
             try:
-                if quiet and self._frames.languages:
+                if (
+                    quiet and self._frames.languages
+                ):  # one that does not answer raises, and no page gets a beat
                     self._snapshots.append((time.time(), self._plant.snapshot()))
-                self.turn(beat=quiet)
+                self.turn(time.monotonic())
             except Exception:  # one frame that cannot be made does not end the page
                 log.exception("a frame of the page failed")
             await asyncio.sleep(1 / FRAMES_HZ)
@@ -90,8 +91,8 @@ class Feed:
             self._unwatch()
             self._unwatch = None
 
-    def turn(self, *, beat: bool = False) -> None:
-        """Take in the plant's news, send each viewer what it lacks; with `beat` also an empty frame."""
+    def turn(self, now_s: float) -> None:
+        """Take in the plant's news, and send each viewer what it lacks, or that nothing is new."""
         story = self._story
         if story is None:
             return
@@ -99,7 +100,7 @@ class Feed:
         languages = self._frames.languages
         links = self._plant.links() if languages else {}
         for language in languages:
-            self._frames.send(language, story.face(language, links), beat=beat)
+            self._frames.send(language, story.face(language, links), now_s)
 
     def _take_in(self) -> None:
         while self._snapshots and self._story is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import math
 from collections.abc import Callable, Coroutine
 from typing import Any, Protocol
 
@@ -12,6 +13,7 @@ from arboleda.views.changes import changed
 from .faces import Face
 
 AGAIN_S = 0.5
+BEAT_S = 1.0  # a page that was sent nothing for so long is sent an empty frame: what it shows is still so
 BEHIND = 30  # frames that a browser may not have seen yet; it gets no more before it has
 
 
@@ -33,6 +35,7 @@ class ViewerProgress:
     def __init__(self) -> None:
         self.whole = True  # the next frame has everything
         self.sent = 0
+        self.sent_s = -math.inf
         self.shown = 0
 
 
@@ -61,8 +64,8 @@ class Frames:
         if known is not None and 0 <= number <= known.sent:
             known.shown = max(known.shown, number)
 
-    def send(self, language: str, face: Face, *, beat: bool) -> None:
-        """Send each viewer of a language the changes since its last frame; with `beat` even none."""
+    def send(self, language: str, face: Face, now_s: float) -> None:
+        """Send each viewer of a language the changes since its last frame, and every BEAT_S even none."""
         self._shown = {each: self._shown.get(each, {}) for each in self.languages}
         patch = changed(self._shown[language], face)
         self._shown[language] = face
@@ -72,9 +75,10 @@ class Frames:
                 continue
             if progress.whole:
                 everything = everything or json.dumps(face)
-            elif not patch and not beat:
+            elif not patch and now_s - progress.sent_s < BEAT_S:
                 continue
             progress.sent += 1
+            progress.sent_s = now_s
             viewer.show(progress.sent, everything if progress.whole else text)
             progress.whole = False
 

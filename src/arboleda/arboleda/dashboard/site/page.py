@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import time
 from contextlib import suppress
 
 from fastapi import FastAPI, Request
@@ -28,7 +29,6 @@ from .face import face
 from .side import RequestOutcome, SiteSide
 
 FRAME_S = 0.5
-BEAT = 2  # frames after which pages are told that the site is there
 COLUMNS = ("state", "plant", "why", "tasks", "ended", "oee")
 LOG = logging.getLogger(__name__)
 
@@ -135,12 +135,10 @@ class Desk(OpenPage):
 
 def _keep_running(site: SiteSide, frames: Frames, opened: asyncio.Event) -> None:
     async def run() -> None:
-        number = 0
         while True:
-            number += 1
             try:
                 for language in frames.languages:
-                    frames.send(language, face(site.plants(), words(language)), beat=number % BEAT == 0)
+                    frames.send(language, face(site.plants(), words(language)), time.monotonic())
             except Exception:  # one frame that cannot be made does not end the page
                 LOG.exception("a frame of the page failed")
             opened.clear()
