@@ -88,6 +88,23 @@ def test_trees_have_the_nodes_and_scripts_that_only_xml_has(drawn: list[DrawnDev
     assert set(SCRIPTS) <= {name for node in nodes for name in node.attrib}
 
 
+def test_the_words_of_no_failure_are_lost_between_two_inverters(drawn: list[DrawnDevices]) -> None:
+    trees = [text for each in drawn if each.form is Form.XML for text in each.beside.values()]
+    nodes = [
+        node for text in trees if text.startswith("<root") for node in ElementTree.fromstring(text).iter()
+    ]
+    twice = [node for node in nodes if node.tag == "Inverter" and node[0].tag == "Inverter"]
+    assert twice and not any("name" in each.attrib for node in twice for each in node.iter("AlwaysFailure"))
+
+
+def test_a_rescue_fails_on_purpose_where_one_of_its_ways_does() -> None:
+    ways = (("yes", steps.Work()), ("no", steps.Fail(sentence="it says no")))
+    rescue = steps.Work(steps=(steps.Choose(answer="a1", ways=ways),))
+    step = steps.Recover(work=steps.Fail(sentence="so"), rescue=rescue)
+    one = steps.Recipe(name="do_1", parameters=(), step=step)
+    assert DrawnDevices(section={}, recipes=(one,), form=Form.PYTHON).failing_rescues == ("it says no",)
+
+
 @pytest.mark.parametrize(
     ("node", "work"),
     [

@@ -140,8 +140,8 @@ class SpellingWriter(Writer):
         ]
         if not self._again:
             ways.append(self._of("RunOnce", step))
-        # Between two Inverters a failed rescue has succeeded, and its words are lost.
-        if not any(isinstance(each, Recover) for each in walk(step)):
+        # Between two Inverters what failed has succeeded, and the words of a failure or a rescue are lost.
+        if not any(isinstance(each, Fail | Recover) for each in walk(step)):
             ways.append(self._of("Inverter", self._of("Inverter", step)))
         return ways
 
