@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import get_args
@@ -18,7 +19,7 @@ from arboleda.campaigns.setting import Setting
 from arboleda.plant_file import loader
 from arboleda.simulator.plants import devices
 from arboleda.simulator.plants.devices import DrawnDevices, Form, steps
-from arboleda.simulator.plants.devices.kinds import SPARE, Span
+from arboleda.simulator.plants.devices.kinds import NEEDY, SPARE, Span
 
 pytestmark = pytest.mark.long
 
@@ -202,6 +203,32 @@ def test_carts_that_tell_nodes_without_the_command_drive_through_zones(drawn: li
         targets = [cell["targets"].get(pose.removeprefix("cell "), {}) for pose in inside]
         found += [target for target in targets if by_joints & target.keys()]
     assert found
+
+
+def test_a_recipe_says_how_it_leaves_a_device_that_cells_share_and_keeps_that_while_it_shrinks(
+    drawn: list[DrawnDevices],
+) -> None:
+    plant = next(each for each in drawn if each.recipes[0].ends and each.form is Form.XML)
+    python = replace(plant, form=Form.PYTHON).beside["recipes.py"]
+    assert all("ends_with=" in text for text in (plant.beside["do_1.xml"], python))
+    less = [each.recipes[0] for each in devices.smaller(plant)]
+    assert any(each.ends and each.step != plant.recipes[0].step for each in less)
+    assert any(not each.ends and each.step == plant.recipes[0].step for each in less)
+    assert any(not each.ends and each.step != plant.recipes[0].step for each in less)
+
+
+def test_recipes_wait_for_a_part_and_for_room_in_both_forms(drawn: list[DrawnDevices]) -> None:
+    texts = {form: "".join(t for p in drawn if p.form is form for t in p.beside.values()) for form in Form}
+    assert ").gets_part(" in texts[Form.PYTHON] and ").gets_room(" in texts[Form.PYTHON]
+    assert "<place_gets_part " in texts[Form.XML] and "<place_gets_room " in texts[Form.XML]
+
+
+def test_a_switch_that_needs_what_is_not_so_stands_after_work_that_may_be_late(
+    drawn: list[DrawnDevices],
+) -> None:
+    found = [each for plant in drawn for recipe in plant.recipes for each in steps.walk(recipe.step)]
+    ends = [each.steps[-1] for each in found if isinstance(each, steps.Fallback)]
+    assert NEEDY in {each.verb for each in ends if isinstance(each, steps.Tell) and each.refused}
 
 
 def test_both_forms_of_recipes_are_drawn_and_read_by_the_ordinary_reader(tmp_path: Path) -> None:

@@ -8,13 +8,17 @@ from dataclasses import dataclass
 
 from ...chance import Dice
 from ..timing import draw_timing
+from .asked_places import AskedPlaces
 from .cells import CELL, CellDrawer
 from .drawn import DrawnDevices, Form, can_be_xml
+from .late_work import LateWork
 from .layout import Section
-from .recipes import RecipeDrawer
+from .recipes import Beside, RecipeDrawer
+from .shared_ends import SharedEnds
 from .trials import Trials
 
 SECOND = 0.35  # how often a second cell is like the first one
+SHARED_HAND = 0.12  # how often cells share an arm whose hand moves their parts
 THIRD = 0.4  # how often there is a third one beside these
 AS_XML = 0.4
 RECIPES = (2, 3, 4, 5)  # of a plant
@@ -50,8 +54,13 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
         section["zones"] = _zones(drawer.zones, others)
     _be_odd(Dice(seed, "odd plants of devices", attempt), section)
     as_xml = dice.chance(AS_XML)
-    trials = Trials(Dice(seed, "trials", attempt), layout, as_xml=as_xml)
-    recipes = RecipeDrawer(dice, layout, trials, as_xml=as_xml)
+    beside = Beside(
+        trials=Trials(Dice(seed, "trials", attempt), layout, as_xml=as_xml),
+        late=LateWork(Dice(seed, "late work", attempt), layout),
+        places=layout.parts and AskedPlaces(Dice(seed, "asked places", attempt), layout, layout.parts),
+        ends=SharedEnds(Dice(seed, "ends", attempt), layout),
+    )
+    recipes = RecipeDrawer(dice, layout, beside, as_xml=as_xml)
     drawn = tuple(recipes.draw(number) for number in range(1, 1 + dice.pick(RECIPES)))
     form = Form.XML if as_xml and all(map(can_be_xml, drawn)) else Form.PYTHON
     return DrawnDevices(

@@ -366,7 +366,8 @@ def _variables(step: Step) -> list[str]:
     found: dict[str, None] = {}
     for each in walk(step):
         answer = getattr(each, "answer", "")
-        given = [value for _, value in getattr(each, "values", ())] + [getattr(each, "target", None)]
+        given = [value for _, value in getattr(each, "values", ())]
+        given += [getattr(each, name, None) for name in ("target", "place")]
         found |= {answer: None} if answer else {}
         found |= {value.name: None for value in given if isinstance(value, Param)}
     return list(found)
