@@ -16,10 +16,16 @@ from arboleda.bt_xml.running.node import Node, Result
 from arboleda.campaigns.plants import Plant
 from arboleda.campaigns.random_plants import RandomPlants, keep, loaded, of_devices
 from arboleda.campaigns.setting import Setting
+from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.plant_file import loader
+from arboleda.recipes.place_questions import PlaceHandle
+from arboleda.simulator.invariants.part_places import done_tasks_leave_nothing_behind
 from arboleda.simulator.plants import devices
 from arboleda.simulator.plants.devices import DrawnDevices, Form, steps
 from arboleda.simulator.plants.devices.kinds import NEEDY, SPARE, Span
+from arboleda.simulator.truth.shared_devices import SharedDevicesTruth
+
+from ...mutants.mutant import Edit, edit
 
 pytestmark = pytest.mark.long
 
@@ -205,6 +211,19 @@ def test_carts_that_tell_nodes_without_the_command_drive_through_zones(drawn: li
     assert found
 
 
+def test_cells_share_a_hand_that_moves_parts_beside_a_recipe_that_does_not_touch_it(
+    drawn: list[DrawnDevices],
+) -> None:
+    found = []
+    for plant in drawn:
+        cell = plant.section["cells"]["cell"]
+        arm = next((name.removesuffix("_racks") for name in cell.get("places", {})), "")
+        if "shared" in cell["devices"].get(arm, {}):
+            roles = [{getattr(each, "role", "") for each in steps.walk(one.step)} for one in plant.recipes]
+            found.append({arm in each for each in roles})
+    assert {True, False} in found
+
+
 def test_a_recipe_says_how_it_leaves_a_device_that_cells_share_and_keeps_that_while_it_shrinks(
     drawn: list[DrawnDevices],
 ) -> None:
@@ -229,6 +248,49 @@ def test_a_switch_that_needs_what_is_not_so_stands_after_work_that_may_be_late(
     found = [each for plant in drawn for recipe in plant.recipes for each in steps.walk(recipe.step)]
     ends = [each.steps[-1] for each in found if isinstance(each, steps.Fallback)]
     assert NEEDY in {each.verb for each in ends if isinstance(each, steps.Tell) and each.refused}
+
+
+BUGS = {
+    "a command passes over a need of late work": (
+        26,
+        edit(Dispatcher._obstacle_to, "obstacle = None  # its last", "return None  # its last"),
+    ),
+    "a task answers for the part in a hand that another cell has": (
+        16,
+        edit(
+            done_tasks_leave_nothing_behind.rule,
+            "name in model.shared and not _was_commanded(look, name, cell, since=began)",
+            "False",
+        ),
+    ),
+    "a task ends with a shared device as that is at last": (
+        16,
+        edit(SharedDevicesTruth.as_left_by, "return own.facts", "return self._facts_of(device)"),
+    ),
+    "a wait for a part is over at once": (
+        49,
+        edit(PlaceHandle._is_filled, "self._context.places.is_filled(self._target)", "True"),
+    ),
+    "a tree's wait for a part is over at once": (
+        60,
+        edit(PlaceHandle._is_filled, "self._context.places.is_filled(self._target)", "True"),
+    ),
+    "a wait for room is over at once": (
+        55,
+        edit(PlaceHandle._is_free, "self._context.places.is_free(self._target)", "True"),
+    ),
+}
+
+
+@pytest.mark.parametrize(("seed", "bug"), BUGS.values(), ids=BUGS)
+def test_a_bug_is_found_by_what_is_drawn_for_it(
+    monkeypatch: pytest.MonkeyPatch, seed: int, bug: Edit
+) -> None:
+    rates = {"rates": {"ends_late": 12.0}} if bug.function is Dispatcher._obstacle_to else None
+    setting = Setting(plants=OfDevices(), cycles=12, level="none", faults_data=rates)
+    bug.make(monkeypatch)
+    result = setting.run(seed)
+    assert result.broken or (result.findings and not rates)
 
 
 def test_both_forms_of_recipes_are_drawn_and_read_by_the_ordinary_reader(tmp_path: Path) -> None:

@@ -31,10 +31,11 @@ LETTERS = "bc"  # for the names of the devices of the second and of the third ce
 def draw(seed: int, attempt: int = 0) -> DrawnDevices:
     """The plant of a seed; `arboleda check` may refuse it, and another `attempt` draws another one."""
     dice = Dice(seed, "plant of devices", attempt)
-    alike = dice.chance(SECOND)
+    has_shared_hand = Dice(seed, "shared hand", attempt).chance(SHARED_HAND)
+    alike = dice.chance(SECOND) or has_shared_hand
     are_written = Dice(seed, "kinds in Python", attempt).chance(IN_PYTHON)
     spare = Dice(seed, "spare verbs", attempt)
-    drawer = CellDrawer(dice, spare, alike=alike, are_written=are_written)
+    drawer = CellDrawer(dice, spare, alike=alike, has_shared_hand=has_shared_hand, are_written=are_written)
     layout = drawer.draw()
     section: Section = {"name": f"drawn_{seed}"}
     if dice.chance(0.3):
