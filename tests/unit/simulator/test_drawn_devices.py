@@ -17,7 +17,7 @@ from arboleda.campaigns.plants import Plant
 from arboleda.campaigns.random_plants import RandomPlants, keep, loaded, of_devices
 from arboleda.campaigns.setting import Setting
 from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.plant_file import loader
+from arboleda.plant_file import loader, meeting_points
 from arboleda.recipes.place_questions import PlaceHandle
 from arboleda.simulator.invariants.part_places import done_tasks_leave_nothing_behind
 from arboleda.simulator.plants import devices
@@ -248,6 +248,15 @@ def test_a_switch_that_needs_what_is_not_so_stands_after_work_that_may_be_late(
     found = [each for plant in drawn for recipe in plant.recipes for each in steps.walk(recipe.step)]
     ends = [each.steps[-1] for each in found if isinstance(each, steps.Fallback)]
     assert NEEDY in {each.verb for each in ends if isinstance(each, steps.Tell) and each.refused}
+
+
+def test_check_says_where_arms_on_one_base_can_meet(drawn: list[DrawnDevices]) -> None:
+    def bases(plant: DrawnDevices) -> list[str]:
+        cells = plant.section["cells"].values()
+        return [str(row["base"]) for cell in cells for row in cell["devices"].values() if "base" in row]
+
+    plant = next(each for each in drawn if len(bases(each)) > len(set(bases(each))))
+    assert any(" can meet at " in each for each in meeting_points.warnings(loaded(plant).model))
 
 
 BUGS = {

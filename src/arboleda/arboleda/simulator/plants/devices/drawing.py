@@ -74,14 +74,20 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
 
 
 def _be_odd(dice: Dice, section: Section) -> None:
-    """Now and then, have cells try again at once, and carts among zones tell nodes without the command."""
+    """Now and then, have cells try again at once, carts among zones tell nodes without the command, and arms
+    stand on one base.
+    """
     tries_at_once, by_joints = dice.chance(0.15), "zones" in section and dice.chance(0.5)
+    on_one_base = dice.chance(0.75)
     for cell in section["cells"].values():
         if tries_at_once:
             cell["retry"] = dict(AT_ONCE)
         for device in cell["devices"].values() if by_joints else ():
             if device.get("kind") == "mobile":
                 device["evidence"] = "joints"
+        for device in cell["devices"].values() if on_one_base else ():
+            if device.get("kind") == "arm":
+                device["base"] = {"origin_m": [0.0, 0]}
 
 
 def _timing(dice: Dice) -> Section:
