@@ -55,10 +55,11 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
         section["zones"] = _zones(drawer.zones, others)
     _be_odd(Dice(seed, "odd plants of devices", attempt), section)
     as_xml = dice.chance(AS_XML)
+    asked = Dice(seed, "asked places", attempt)
     beside = Beside(
         trials=Trials(Dice(seed, "trials", attempt), layout, as_xml=as_xml),
         late=LateWork(Dice(seed, "late work", attempt), layout),
-        places=layout.parts and AskedPlaces(Dice(seed, "asked places", attempt), layout, layout.parts),
+        places=None if layout.parts is None else AskedPlaces(asked, layout, layout.parts),
         ends=SharedEnds(Dice(seed, "ends", attempt), layout),
     )
     recipes = RecipeDrawer(dice, layout, beside, as_xml=as_xml)
