@@ -55,6 +55,24 @@ FOUND = {
                 palletizing: {pick: station 0, place: pickup}
         """,
     ),
+    "an arm whose place is told late rose at rest, where it picks up, as if work had failed there": Found(
+        seed=930005,
+        seconds=44.0,
+        faults=(),
+        file="""
+            name: drawn_930005
+            timing: {dwell_s: 0.01}
+            stations: {columns_q1_deg: [5.8, 10.3, -17.7], rows_q2_deg: [18.6, 14.9], mm: 5.7}
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: ros, evidence: state}
+                mobile: {name: mobile_1, link: mqtt, evidence: ids}
+                home: {deg: [-26.0, 63.0], mm: 11.9}
+                pickup: {deg: [-26.0, 63.0], mm: 11.9, approach_mm: 11.8}
+                paths: {yc: [4, 1, 0, 1, 2, 1]}
+                drive_to_start: false
+        """,
+    ),
     "the first step, tried again, was taken for the second where a cell rests at its pick-up": Found(
         seed=78,
         faults=(Fault(kind="stuck_bit", at=12.5, seconds=4.0, target="arm_1", word="q2_mov"),),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import get_args
@@ -15,10 +16,16 @@ from arboleda.bt_xml.running.node import Node, Result
 from arboleda.campaigns.plants import Plant
 from arboleda.campaigns.random_plants import RandomPlants, keep, loaded, of_devices
 from arboleda.campaigns.setting import Setting
-from arboleda.plant_file import loader
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.plant_file import loader, meeting_points
+from arboleda.recipes.place_questions import PlaceHandle
+from arboleda.simulator.invariants.part_places import done_tasks_leave_nothing_behind
 from arboleda.simulator.plants import devices
 from arboleda.simulator.plants.devices import DrawnDevices, Form, steps
-from arboleda.simulator.plants.devices.kinds import SPARE, Span
+from arboleda.simulator.plants.devices.kinds import NEEDY, SPARE, Span
+from arboleda.simulator.truth.shared_devices import SharedDevicesTruth
+
+from ...mutants.mutant import Edit, edit
 
 pytestmark = pytest.mark.long
 
@@ -86,6 +93,23 @@ def test_trees_have_the_nodes_and_scripts_that_only_xml_has(drawn: list[DrawnDev
     ]
     assert set(ONLY_IN_XML) <= {node.tag for node in nodes}
     assert set(SCRIPTS) <= {name for node in nodes for name in node.attrib}
+
+
+def test_the_words_of_no_failure_are_lost_between_two_inverters(drawn: list[DrawnDevices]) -> None:
+    trees = [text for each in drawn if each.form is Form.XML for text in each.beside.values()]
+    nodes = [
+        node for text in trees if text.startswith("<root") for node in ElementTree.fromstring(text).iter()
+    ]
+    twice = [node for node in nodes if node.tag == "Inverter" and node[0].tag == "Inverter"]
+    assert twice and not any("name" in each.attrib for node in twice for each in node.iter("AlwaysFailure"))
+
+
+def test_a_rescue_fails_on_purpose_where_one_of_its_ways_does() -> None:
+    ways = (("yes", steps.Work()), ("no", steps.Fail(sentence="it says no")))
+    rescue = steps.Work(steps=(steps.Choose(answer="a1", ways=ways),))
+    step = steps.Recover(work=steps.Fail(sentence="so"), rescue=rescue)
+    one = steps.Recipe(name="do_1", parameters=(), step=step)
+    assert DrawnDevices(section={}, recipes=(one,), form=Form.PYTHON).failing_rescues == ("it says no",)
 
 
 @pytest.mark.parametrize(
@@ -185,6 +209,97 @@ def test_carts_that_tell_nodes_without_the_command_drive_through_zones(drawn: li
         targets = [cell["targets"].get(pose.removeprefix("cell "), {}) for pose in inside]
         found += [target for target in targets if by_joints & target.keys()]
     assert found
+
+
+def test_cells_share_a_hand_that_moves_parts_beside_a_recipe_that_does_not_touch_it(
+    drawn: list[DrawnDevices],
+) -> None:
+    found = []
+    for plant in drawn:
+        cell = plant.section["cells"]["cell"]
+        arm = next((name.removesuffix("_racks") for name in cell.get("places", {})), "")
+        if "shared" in cell["devices"].get(arm, {}):
+            roles = [{getattr(each, "role", "") for each in steps.walk(one.step)} for one in plant.recipes]
+            found.append({arm in each for each in roles})
+    assert {True, False} in found
+
+
+def test_a_recipe_says_how_it_leaves_a_device_that_cells_share_and_keeps_that_while_it_shrinks(
+    drawn: list[DrawnDevices],
+) -> None:
+    plant = next(each for each in drawn if each.recipes[0].ends and each.form is Form.XML)
+    python = replace(plant, form=Form.PYTHON).beside["recipes.py"]
+    assert all("ends_with=" in text for text in (plant.beside["do_1.xml"], python))
+    less = [each.recipes[0] for each in devices.smaller(plant)]
+    assert any(each.ends and each.step != plant.recipes[0].step for each in less)
+    assert any(not each.ends and each.step == plant.recipes[0].step for each in less)
+    assert any(not each.ends and each.step != plant.recipes[0].step for each in less)
+
+
+def test_recipes_wait_for_a_part_and_for_room_in_both_forms(drawn: list[DrawnDevices]) -> None:
+    texts = {form: "".join(t for p in drawn if p.form is form for t in p.beside.values()) for form in Form}
+    assert ").gets_part(" in texts[Form.PYTHON] and ").gets_room(" in texts[Form.PYTHON]
+    assert "<place_gets_part " in texts[Form.XML] and "<place_gets_room " in texts[Form.XML]
+
+
+def test_a_switch_that_needs_what_is_not_so_stands_after_work_that_may_be_late(
+    drawn: list[DrawnDevices],
+) -> None:
+    found = [each for plant in drawn for recipe in plant.recipes for each in steps.walk(recipe.step)]
+    ends = [each.steps[-1] for each in found if isinstance(each, steps.Fallback)]
+    assert NEEDY in {each.verb for each in ends if isinstance(each, steps.Tell) and each.refused}
+
+
+def test_check_says_where_arms_on_one_base_can_meet(drawn: list[DrawnDevices]) -> None:
+    def bases(plant: DrawnDevices) -> list[str]:
+        cells = plant.section["cells"].values()
+        return [str(row["base"]) for cell in cells for row in cell["devices"].values() if "base" in row]
+
+    plant = next(each for each in drawn if len(bases(each)) > len(set(bases(each))))
+    assert any(" can meet at " in each for each in meeting_points.warnings(loaded(plant).model))
+
+
+BUGS = {
+    "a command passes over a need of late work": (
+        26,
+        edit(Dispatcher._obstacle_to, "obstacle = None  # its last", "return None  # its last"),
+    ),
+    "a task answers for the part in a hand that another cell has": (
+        16,
+        edit(
+            done_tasks_leave_nothing_behind.rule,
+            "name in model.shared and not _was_commanded(look, name, cell, since=began)",
+            "False",
+        ),
+    ),
+    "a task ends with a shared device as that is at last": (
+        16,
+        edit(SharedDevicesTruth.as_left_by, "return own.facts", "return self._facts_of(device)"),
+    ),
+    "a wait for a part is over at once": (
+        49,
+        edit(PlaceHandle._is_filled, "self._context.places.is_filled(self._target)", "True"),
+    ),
+    "a tree's wait for a part is over at once": (
+        60,
+        edit(PlaceHandle._is_filled, "self._context.places.is_filled(self._target)", "True"),
+    ),
+    "a wait for room is over at once": (
+        55,
+        edit(PlaceHandle._is_free, "self._context.places.is_free(self._target)", "True"),
+    ),
+}
+
+
+@pytest.mark.parametrize(("seed", "bug"), BUGS.values(), ids=BUGS)
+def test_a_bug_is_found_by_what_is_drawn_for_it(
+    monkeypatch: pytest.MonkeyPatch, seed: int, bug: Edit
+) -> None:
+    rates = {"rates": {"ends_late": 12.0}} if bug.function is Dispatcher._obstacle_to else None
+    setting = Setting(plants=OfDevices(), cycles=12, level="none", faults_data=rates)
+    bug.make(monkeypatch)
+    result = setting.run(seed)
+    assert result.broken or (result.findings and not rates)
 
 
 def test_both_forms_of_recipes_are_drawn_and_read_by_the_ordinary_reader(tmp_path: Path) -> None:

@@ -79,7 +79,7 @@ class CellRobots:
 
         Who stands at a target without an approach, as home, leaves it as it is, whatever else lies there.
         """
-        space, here = self._cell.reach[robot], self.position(robot)
+        space, here = self._cell.reach[robot], self._stands_at(robot)
         lifted = [(pose, pose.above) for pose in space.poses if pose.above is not None]
         level = [pose.q for pose in space.poses if pose.above is None]
         motion = space.robot.motion
@@ -87,6 +87,12 @@ class CellRobots:
             return False
         down = [pose for pose, above in lifted if motion.is_between(here, pose.q, above)]
         return bool(down) and goal not in down
+
+    def _stands_at(self, robot: str) -> Position | None:
+        """The place of a robot that stands: at `state` the end of its last move, which may be told late."""
+        if self.as_planned is not None or self._dispatcher.beliefs[robot].supervised:
+            return self.position(robot)
+        return self._dispatcher.reached.get(robot) or self.position(robot)
 
     def risen(self, robot: str) -> Position:
         """The position of a robot, lifted as high as its highest approach; home where it is unknown."""

@@ -21,10 +21,13 @@ CELL = "cell"
 class CellDrawer:
     """Draws a layout; `section` is the cell in its plant file, `kinds` and `zones` beside it."""
 
-    def __init__(self, dice: Dice, spare: Dice, *, alike: bool, are_written: bool) -> None:
+    def __init__(
+        self, dice: Dice, spare: Dice, *, alike: bool, has_shared_hand: bool, are_written: bool
+    ) -> None:
         self._dice = dice
         self._spare = spare  # for the verbs that only trials tell
         self._alike = alike  # a second cell will have the same roles
+        self._has_shared_hand = has_shared_hand
         self._are_written = are_written  # the kinds, in Python
         self.kinds: dict[str, Kind] = {}
         self.zones: Section = {}
@@ -37,14 +40,18 @@ class CellDrawer:
         devices = self._devices()
         people = tuple(PEOPLE[: dice.pick((0, 0, 1, 1, 2))])
         robots = RobotDrawer(dice, devices, are_written=self._are_written)
-        robots.draw(dice.pick((0, 0, 1, 1, 1, 2)))
+        robots.draw(dice.pick((0, 0, 1, 1, 1, 2)), has_hand=self._has_shared_hand)
         devices = [*self._working(devices, robots), *robots.tools]
         needs = self._needs(devices)
         on_grid = {each.role for each in robots.robots if each.section["kind"] == "mobile"}
         found = [each if each.tool_of in on_grid else self._shared(each) for each in devices]
-        for device in [each for each in found if each.tool_of]:
-            carrier = robots.named(device.tool_of)
-            robots.replace(replace(carrier, is_shared=device.is_shared))
+        hand = robots.parts.robot if self._has_shared_hand and robots.parts is not None else ""
+        found = [
+            replace(each, is_shared=True) if each.tool_of and each.tool_of == hand else each for each in found
+        ]
+        carriers = {each.tool_of for each in found if each.is_shared} | {hand}
+        for robot in robots.robots:
+            robots.replace(replace(robot, is_shared=robot.role in carriers))
         self._zones(found, robots, needs)
         layout = Layout(
             devices=tuple(found),

@@ -8,13 +8,17 @@ from dataclasses import dataclass
 
 from ...chance import Dice
 from ..timing import draw_timing
+from .asked_places import AskedPlaces
 from .cells import CELL, CellDrawer
 from .drawn import DrawnDevices, Form, can_be_xml
+from .late_work import LateWork
 from .layout import Section
-from .recipes import RecipeDrawer
+from .recipes import Beside, RecipeDrawer
+from .shared_ends import SharedEnds
 from .trials import Trials
 
 SECOND = 0.35  # how often a second cell is like the first one
+SHARED_HAND = 0.12  # how often cells share an arm whose hand moves their parts
 THIRD = 0.4  # how often there is a third one beside these
 AS_XML = 0.4
 RECIPES = (2, 3, 4, 5)  # of a plant
@@ -27,10 +31,11 @@ LETTERS = "bc"  # for the names of the devices of the second and of the third ce
 def draw(seed: int, attempt: int = 0) -> DrawnDevices:
     """The plant of a seed; `arboleda check` may refuse it, and another `attempt` draws another one."""
     dice = Dice(seed, "plant of devices", attempt)
-    alike = dice.chance(SECOND)
+    has_shared_hand = Dice(seed, "shared hand", attempt).chance(SHARED_HAND)
+    alike = dice.chance(SECOND) or has_shared_hand
     are_written = Dice(seed, "kinds in Python", attempt).chance(IN_PYTHON)
     spare = Dice(seed, "spare verbs", attempt)
-    drawer = CellDrawer(dice, spare, alike=alike, are_written=are_written)
+    drawer = CellDrawer(dice, spare, alike=alike, has_shared_hand=has_shared_hand, are_written=are_written)
     layout = drawer.draw()
     section: Section = {"name": f"drawn_{seed}"}
     if dice.chance(0.3):
@@ -50,8 +55,14 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
         section["zones"] = _zones(drawer.zones, others)
     _be_odd(Dice(seed, "odd plants of devices", attempt), section)
     as_xml = dice.chance(AS_XML)
-    trials = Trials(Dice(seed, "trials", attempt), layout, as_xml=as_xml)
-    recipes = RecipeDrawer(dice, layout, trials, as_xml=as_xml)
+    asked = Dice(seed, "asked places", attempt)
+    beside = Beside(
+        trials=Trials(Dice(seed, "trials", attempt), layout, as_xml=as_xml),
+        late=LateWork(Dice(seed, "late work", attempt), layout),
+        places=None if layout.parts is None else AskedPlaces(asked, layout, layout.parts),
+        ends=SharedEnds(Dice(seed, "ends", attempt), layout),
+    )
+    recipes = RecipeDrawer(dice, layout, beside, as_xml=as_xml)
     drawn = tuple(recipes.draw(number) for number in range(1, 1 + dice.pick(RECIPES)))
     form = Form.XML if as_xml and all(map(can_be_xml, drawn)) else Form.PYTHON
     return DrawnDevices(
@@ -64,14 +75,20 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
 
 
 def _be_odd(dice: Dice, section: Section) -> None:
-    """Now and then, have cells try again at once, and carts among zones tell nodes without the command."""
+    """Now and then, have cells try again at once, carts among zones tell nodes without the command, and arms
+    stand on one base.
+    """
     tries_at_once, by_joints = dice.chance(0.15), "zones" in section and dice.chance(0.5)
+    on_one_base = dice.chance(0.75)
     for cell in section["cells"].values():
         if tries_at_once:
             cell["retry"] = dict(AT_ONCE)
         for device in cell["devices"].values() if by_joints else ():
             if device.get("kind") == "mobile":
                 device["evidence"] = "joints"
+        for device in cell["devices"].values() if on_one_base else ():
+            if device.get("kind") == "arm":
+                device["base"] = {"origin_m": [0.0, 0]}
 
 
 def _timing(dice: Dice) -> Section:

@@ -46,8 +46,8 @@ class DrawnDevices:
     def failing_rescues(self) -> tuple[str, ...]:
         """The words of the rescues that fail on purpose."""
         steps = (each for recipe in self.recipes for each in walk(recipe.step))
-        rescues = [each.rescue for each in steps if isinstance(each, Recover)]
-        return tuple({each.sentence: None for each in rescues if isinstance(each, Fail)})
+        inner = (step for each in steps if isinstance(each, Recover) for step in walk(each.rescue))
+        return tuple({each.sentence: None for each in inner if isinstance(each, Fail)})
 
     @property
     def file(self) -> Section:

@@ -39,6 +39,7 @@ SPANS = (Span(lower=0, upper=9), Span(lower=-40, upper=125), Span(lower=0.5, upp
 TIMES_S = (0, 0, 0.05, 0.2, 0.5, 1, 2, 4)
 LONG_S = (6, 12, 25)
 SPARE = "settle"
+NEEDY = "vent"
 SETTERS = ("put", "make", "bring", "move")
 WORKS = ("run", "press", "spin", "rinse", "blow", "heat_up", "feed")
 QUERIES = ("look", "scan", "weigh", "feel", "ask")
@@ -72,7 +73,7 @@ class Verb:
 class Kind:
     """A kind: its facts in an order in which verbs that set one need only those before it.
 
-    `spare` are verbs that set two facts at once, which only trials tell.
+    `spare` are a verb that sets two facts at once and a switch that needs a fact, which only trials tell.
     """
 
     name: str
@@ -251,7 +252,9 @@ class _KindDrawer:
 
 
 def with_spare(dice: Dice, kind: Kind) -> Kind:
-    """The kind with a verb that sets two of its facts at once, where it has two that can be set."""
+    """The kind with a verb that sets two of its facts at once, and a switch of a fact that needs another one,
+    where it has two that can be set.
+    """
     settable = list(kind.is_settable)
     if len(settable) < 2:
         return kind
@@ -259,9 +262,9 @@ def with_spare(dice: Dice, kind: Kind) -> Kind:
     second = dice.pick([each for each in settable if each != first])
     sets = tuple((each, value_of(dice, kind.type_of(each))) for each in (first, second))
     effect = dice.pick(("switch", "switch", "process", "motion"))
-    return replace(
-        kind, spare=(Verb(name=SPARE, effect=effect, sets=sets, takes_s=dice.pick((0.2, 0.5, 1))),)
-    )
+    settle = Verb(name=SPARE, effect=effect, sets=sets, takes_s=dice.pick((0.2, 0.5, 1)))
+    vent = Verb(name=NEEDY, effect="switch", sets=sets[1:], needs=sets[:1], takes_s=0.2)
+    return replace(kind, spare=(settle, vent))
 
 
 def value_of(dice: Dice, type: Type) -> Value:
@@ -277,6 +280,13 @@ def value_of(dice: Dice, type: Type) -> Value:
     if type == "number":
         return dice.pick((0.0, 0.5, -1.25, 3.0, 80.1))
     return dice.pick(TEXTS)
+
+
+def another_value(dice: Dice, type: Type, value: Value) -> Value:
+    """A value of a type that is not this one."""
+    while (found := value_of(dice, type)) == value:
+        pass
+    return found
 
 
 def shipped(name: str) -> Kind:

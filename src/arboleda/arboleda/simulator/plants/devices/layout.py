@@ -105,6 +105,14 @@ class Layout:
         return (*(each.role for each in self.members if each.is_shared), *self.shared_people)
 
     @property
+    def shared_hand(self) -> frozenset[str]:
+        """The arm that cells share, and its tool, where it moves their parts."""
+        robot = self.robot(self.parts.robot) if self.parts is not None else None
+        return frozenset(
+            {robot.role, robot.tool or robot.role} if robot is not None and robot.is_shared else ()
+        )
+
+    @property
     def members(self) -> tuple[Device | Robot, ...]:
         """All that is in the cell but people."""
         return (*self.devices, *self.robots)

@@ -12,6 +12,7 @@ from .steps import (
     Fail,
     Fallback,
     Follow,
+    Gets,
     Given,
     Go,
     Grip,
@@ -60,7 +61,8 @@ def _recipe(recipe: Recipe) -> str:
     roles = dict.fromkeys(str(each.role) for each in walk(recipe.step) if hasattr(each, "role"))
     lines = [f"    {role} = cell.device({role!r})" for role in roles]
     lines += [f"    {each.answer} = {_call(each)}" for each in calls if isinstance(each, Ask | Tell)]
-    head = f"@recipe({recipe.name!r})\ndef {recipe.name}({given}):\n"
+    ends = f", ends_with={dict(recipe.ends)!r}" if recipe.ends else ""
+    head = f"@recipe({recipe.name!r}{ends})\ndef {recipe.name}({given}):\n"
     return head + "\n".join([*lines, f"    return {_text(_whole(recipe.step), 1)}"])
 
 
@@ -141,6 +143,8 @@ def _call(step: Step) -> str:
         return f"{step.role}.says({_facts(step)})"
     if isinstance(step, Becomes):
         return f"{step.role}.becomes({_facts(step)}, at_most_s={step.at_most_s})"
+    if isinstance(step, Gets):
+        return f"cell.place({_value(step.place)}).gets_{step.what}(at_most_s={step.at_most_s})"
     if isinstance(step, Go):
         return f"{step.role}.go({_value(step.target)})"
     if isinstance(step, Home):

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ...chance import Dice
+from .asked_places import AskedPlaces
 from .blocks import Blocks
 from .durations import usual_s
 from .hands import Hand
+from .late_work import LateWork
 from .layout import Layout
+from .shared_ends import SharedEnds
 from .steps import (
     Choice,
     Home,
@@ -31,12 +34,22 @@ LONGEST_TASK_S = 100.0  # as a rule
 PHASES = (1, 2, 2, 3, 4)
 
 
+@dataclass(frozen=True, kw_only=True)
+class Beside:
+    """What recipes have beside their own steps, each with dice of its own."""
+
+    trials: Trials
+    late: LateWork
+    places: AskedPlaces | None  # None without parts
+    ends: SharedEnds
+
+
 class RecipeDrawer:
     """Draws recipes one after the other; each may run those before it."""
 
-    def __init__(self, dice: Dice, layout: Layout, trials: Trials, *, as_xml: bool) -> None:
+    def __init__(self, dice: Dice, layout: Layout, beside: Beside, *, as_xml: bool) -> None:
         self._dice = dice
-        self._trials = trials
+        self._beside = beside
         self._layout = layout
         self._as_xml = as_xml  # only what a tree as XML can say
         self._usual_s: dict[str, float] = {}  # by recipe
@@ -51,9 +64,10 @@ class RecipeDrawer:
             took_s = usual_s(made.step, self._layout, self._usual_s)
             if took_s <= LONGEST_TASK_S:
                 break
-        tried = self._trials.draw()
-        if not carries and (moved := self._trials.of_parts()):
+        tried = self._beside.trials.draw()
+        if not carries and (moved := self._beside.trials.of_parts()):
             tried, carries = [*tried, *moved], True
+        tried += self._beside.late.draw()
         if tried:
             made = replace(made, step=Work(steps=(made.step, *tried)))
         self._drawn.append(made)
@@ -66,17 +80,25 @@ class RecipeDrawer:
         carried: list[Step] = []
         self._parameters = []
         blocks = Blocks(self._dice, self._layout, self._parameter)
-        blocks.apart_from = self._using()
+        hand = self._layout.shared_hand
+        blocks.apart_from = frozenset() if hand else self._using()
+        blocks.resting = hand if number % 2 else frozenset()  # every second recipe is beside it
         steps: list[Step] = []
         for _ in range(self._dice.pick(PHASES)):
             steps += self._phase(blocks)
-        if self._layout.parts is not None and self._dice.chance(0.6) and not blocks.apart_from:
+        if self._carries(blocks, often=1.0 if hand else 0.6):
             carried = self._carry(blocks)
             steps += carried
         if not steps:
             steps += self._phase(blocks)
-        made = Recipe(name=f"do_{number}", parameters=tuple(self._parameters), step=Work(steps=tuple(steps)))
+        steps, ends = self._beside.ends.around(steps, blocks.apart_from)
+        name, parameters = f"do_{number}", tuple(self._parameters)
+        made = Recipe(name=name, parameters=parameters, step=Work(steps=tuple(steps)), ends=ends)
         return made, bool(carried)
+
+    def _carries(self, blocks: Blocks, *, often: float) -> bool:
+        may_move = self._layout.parts is not None and not blocks.resting
+        return may_move and self._dice.chance(often) and not blocks.apart_from
 
     def _using(self) -> frozenset[str]:
         """The shared roles that this recipe holds by `using`, and tells nothing outside of it."""
@@ -115,13 +137,15 @@ class RecipeDrawer:
         assert parts is not None
         hand = Hand(self._layout, parts.robot, self._dice)
         source = self._source(blocks)
+        places = self._beside.places
+        assert places is not None
         if not parts.nest or self._dice.chance(0.3):
-            return self._moved(blocks, hand, source, parts.goal) or []
+            return places.from_source(source, self._moved(blocks, hand, source, parts.goal) or [])
         before = blocks.state
         there = self._moved(blocks, hand, source, parts.nest)
         if there is None:
             blocks.state = before
-            return self._moved(blocks, hand, source, parts.goal) or []
+            return places.from_source(source, self._moved(blocks, hand, source, parts.goal) or [])
         blocks.resting = frozenset({parts.robot, *([hand.tool] if hand.tool else [])})
         meanwhile = [blocks.draw(2)] if self._dice.chance(0.7) else []
         meanwhile += blocks.work_on_part(parts.machine) if parts.machine else []
@@ -130,7 +154,8 @@ class RecipeDrawer:
         if back is None:
             blocks.state = before
             return []
-        return [*there, *meanwhile, *back, Home(role=parts.robot)]
+        there = places.from_source(source, places.to_nest(there))
+        return [*there, *meanwhile, *places.from_nest(back), Home(role=parts.robot)]
 
     def _source(self, blocks: Blocks) -> str | Param:
         parts = self._layout.parts

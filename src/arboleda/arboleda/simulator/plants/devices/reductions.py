@@ -8,7 +8,7 @@ from dataclasses import fields, replace
 from typing import Any
 
 from .drawn import DrawnDevices
-from .steps import Choose, Param, Recipe, Run, Step, Work, children, walk
+from .steps import Choose, Param, Recipe, Run, Step, Tell, Value, Work, children, walk
 
 KEEP = frozenset({"name", "kind", "model", "effect", "home", "cells", "devices", "evidence_"})
 
@@ -18,7 +18,10 @@ def smaller(drawn: DrawnDevices) -> Iterator[DrawnDevices]:
     yield from _fewer_recipes(drawn)
     for number, recipe in enumerate(drawn.recipes):
         for step in _smaller_steps(recipe.step):
-            made = _trimmed(replace(recipe, step=step))
+            made = _trimmed(replace(recipe, step=step, ends=_ends_of(recipe, step)))
+            yield replace(drawn, recipes=(*drawn.recipes[:number], made, *drawn.recipes[number + 1 :]))
+        for end in range(len(recipe.ends)):
+            made = replace(recipe, ends=(*recipe.ends[:end], *recipe.ends[end + 1 :]))
             yield replace(drawn, recipes=(*drawn.recipes[:number], made, *drawn.recipes[number + 1 :]))
     for place in sorted(_places(drawn.section), key=len):
         section = deepcopy(drawn.section)
@@ -69,11 +72,28 @@ def _changed(step: Step, name: str, value: object) -> Step:
     return changed
 
 
+def _ends_of(recipe: Recipe, step: Step) -> tuple[tuple[str, Value], ...]:
+    """The ends of a recipe that are those of a smaller step, too: of devices that it tells what it told."""
+    told, now = _told(recipe.step), _told(step)
+    return tuple(each for each in recipe.ends if told.get(role := each[0].partition(".")[0]) == now.get(role))
+
+
+def _told(step: Step) -> dict[str, list[Tell]]:
+    """What a step tells each device, in its order."""
+    found: dict[str, list[Tell]] = {}
+    for each in walk(step):
+        if isinstance(each, Tell):
+            found.setdefault(each.role, []).append(each)
+    return found
+
+
 def _trimmed(recipe: Recipe) -> Recipe:
     """The recipe without parameters that nothing takes."""
     used: set[str] = set()
     for step in walk(recipe.step):
-        given = [value for _, value in getattr(step, "values", ())] + [getattr(step, "target", None)]
+        given = [value for _, value in getattr(step, "values", ())] + [
+            getattr(step, name, None) for name in ("target", "place")
+        ]
         used |= {value.name for value in given if isinstance(value, Param)}
     return replace(recipe, parameters=tuple(each for each in recipe.parameters if each.name in used))
 

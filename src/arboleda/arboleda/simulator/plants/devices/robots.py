@@ -36,14 +36,16 @@ class RobotDrawer:
     def replace(self, robot: Robot) -> None:
         self.robots = [robot if each.role == robot.role else each for each in self.robots]
 
-    def draw(self, count: int) -> None:
-        for number in range(count):
-            kind = "arm" if self._dice.chance(0.7) else "mobile"
-            if self._are_written and self._dice.chance(0.4):
+    def draw(self, count: int, *, has_hand: bool) -> None:
+        """Draw so many robots; `has_hand`: the first one is an arm whose hand moves parts."""
+        for number in range(max(count, has_hand)):
+            is_hand = has_hand and not number
+            kind = "arm" if is_hand or self._dice.chance(0.7) else "mobile"
+            if self._are_written and not is_hand and self._dice.chance(0.4):
                 kind = TURNTABLE
             role = ROLES[kind][number]
             tool = self._tool(role, is_arm=kind == "arm")
-            self._targets(role, tool, kind)
+            self._targets(role, tool, kind, moves_parts=is_hand)
 
     def _tool(self, role: str, *, is_arm: bool) -> str | None:
         dice = self._dice
@@ -57,7 +59,7 @@ class RobotDrawer:
         self.tools.append(Device(role=name, kind=shipped(sort), tool_of=role, section=section))
         return name
 
-    def _targets(self, role: str, tool: str | None, kind: str) -> None:
+    def _targets(self, role: str, tool: str | None, kind: str, *, moves_parts: bool) -> None:
         dice, is_arm = self._dice, kind == "arm"
         poses = POSES[kind](dice)
         targets = self.section.setdefault("targets", {})
@@ -73,7 +75,7 @@ class RobotDrawer:
             self.section.setdefault("groups", {})[f"{role}_racks"] = list(racks)
         self.groups[f"{role}_racks"] = racks
         rest = [name for name in names if name not in racks]
-        if tool is not None and self.parts is None and rest and dice.chance(0.6):
+        if tool is not None and self.parts is None and rest and (moves_parts or dice.chance(0.6)):
             self._places(role, racks, rest)
         section = self._section(role, kind)
         paths = () if kind != "mobile" or section.get("evidence") == "state" else self._paths(role)

@@ -65,6 +65,15 @@ class Becomes:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Gets:
+    """A wait for a part at a place, or for room there; `what` is "part" or "room"."""
+
+    place: str | Param
+    what: str
+    at_most_s: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Go:
     """A robot goes to a target, and stays there where that is in no zone."""
 
@@ -226,6 +235,7 @@ Step = (
     | Ask
     | Says
     | Becomes
+    | Gets
     | Go
     | Home
     | Visit
@@ -286,11 +296,12 @@ Parameter = Choice | Limits | OfGroup | OfPaths
 
 @dataclass(frozen=True, kw_only=True)
 class Recipe:
-    """Recipe by its name: its parameters and its step."""
+    """Recipe by its name: its parameters, its step, and what it says is so at its end, as `lamp.lit`."""
 
     name: str
     parameters: tuple[Parameter, ...]
     step: Step
+    ends: tuple[tuple[str, Value], ...] = ()
 
 
 def walk(step: Step) -> Iterator[Step]:

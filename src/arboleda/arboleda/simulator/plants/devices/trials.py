@@ -12,7 +12,7 @@ from functools import partial
 from ...chance import Dice
 from .blocks import Blocks
 from .hands import Hand
-from .kinds import Type, Verb, value_of
+from .kinds import SPARE, Verb, another_value, value_of
 from .layout import Device, Layout, Parts
 from .state import Planner, State
 from .steps import (
@@ -103,10 +103,10 @@ class Trials:
 
     def _both_at_once(self, device: Device) -> list[Step]:
         """A verb that sets two facts, of which one is so already; then a check of both."""
-        (verb,) = device.kind.spare
+        verb = device.kind.verb(SPARE)
         sets = list(verb.sets)
         so, other = sets if self._dice.chance(0.5) else reversed(sets)
-        wrong = _another(self._dice, device.kind.type_of(other[0]), other[1])
+        wrong = another_value(self._dice, device.kind.type_of(other[0]), other[1])
         before = [(device.role, *so), (device.role, other[0], wrong)]
         made = self._planner.establish(State(), before)
         if made is None or not self._may(made[0]):
@@ -157,7 +157,7 @@ class Trials:
         made = self._planner.establish(State(), [(device.role, *each) for each in facts.items()])
         if made is None or not self._may(made[0]):
             return []
-        other = _another(dice, kind.type_of(second), facts[second])
+        other = another_value(dice, kind.type_of(second), facts[second])
         right, wrong = [*facts.items()], [(first, facts[first]), (second, other)]
         if dice.chance(0.5):
             wrong.reverse()
@@ -240,10 +240,3 @@ def _has_two(device: Device) -> bool:
 def _is_free(verb: Verb) -> bool:
     """True for a verb that can be told at any time, as often as one likes."""
     return verb.effect != "query" and not verb.holds and not verb.works_on
-
-
-def _another(dice: Dice, type: Type, value: Value) -> Value:
-    """A value of a type that is not this one."""
-    while (found := value_of(dice, type)) == value:
-        pass
-    return found

@@ -140,8 +140,8 @@ class SpellingWriter(Writer):
         ]
         if not self._again:
             ways.append(self._of("RunOnce", step))
-        # Between two Inverters a failed rescue has succeeded, and its words are lost.
-        if not any(isinstance(each, Recover) for each in walk(step)):
+        # Between two Inverters what failed has succeeded, and the words of a failure or a rescue are lost.
+        if not any(isinstance(each, Fail | Recover) for each in walk(step)):
             ways.append(self._of("Inverter", self._of("Inverter", step)))
         return ways
 
@@ -366,7 +366,8 @@ def _variables(step: Step) -> list[str]:
     found: dict[str, None] = {}
     for each in walk(step):
         answer = getattr(each, "answer", "")
-        given = [value for _, value in getattr(each, "values", ())] + [getattr(each, "target", None)]
+        given = [value for _, value in getattr(each, "values", ())]
+        given += [getattr(each, name, None) for name in ("target", "place")]
         found |= {answer: None} if answer else {}
         found |= {value.name: None for value in given if isinstance(value, Param)}
     return list(found)

@@ -11,6 +11,7 @@ from .steps import (
     Choose,
     Fail,
     Fallback,
+    Gets,
     Go,
     Grip,
     Home,
@@ -62,8 +63,16 @@ def xml_of(recipe: Recipe, others: Mapping[str, Recipe], writer: Writer) -> str:
     model = SubElement(SubElement(root, "TreeNodesModel"), "SubTree", {"ID": main})
     for parameter in recipe.parameters:
         SubElement(model, "input_port", {"name": parameter.name})
+    if recipe.ends:
+        ends = "; ".join(f"{what}: {_end(value)}" for what, value in recipe.ends)
+        SubElement(SubElement(model, "MetadataFields"), "Metadata", {"ends_with": ends})
     indent(root)
     return tostring(root, encoding="unicode") + "\n"
+
+
+def _end(value: Value) -> str:
+    """A value in metadata: a text in quotes, so that it is read as no number."""
+    return f"'{value}'" if isinstance(value, str) else text_of(value)
 
 
 def _together(recipe: Recipe, others: Mapping[str, Recipe]) -> list[Recipe]:
@@ -84,7 +93,7 @@ def _id(name: str) -> str:
 
 def _node(step: Step) -> tuple[str, dict[str, str], Sequence[Step]]:
     """The name of a node, its attributes and the steps below it."""
-    if isinstance(step, Tell | Ask | Says | Becomes | Go | Home | Grip | LetGo | Visit):
+    if isinstance(step, Tell | Ask | Says | Becomes | Gets | Go | Home | Grip | LetGo | Visit):
         return _leaf(step)
     if isinstance(step, Choose) and len(step.ways) == 1:
         return "Sequence", {}, [step.ways[0][1]]
@@ -135,6 +144,12 @@ def _leaf(step: Step) -> tuple[str, dict[str, str], Sequence[Step]]:
         return f"{step.role}_says", _facts(step), ()
     if isinstance(step, Becomes):
         return f"{step.role}_becomes", {**_facts(step), "at_most_s": text_of(step.at_most_s)}, ()
+    if isinstance(step, Gets):
+        return (
+            f"place_gets_{step.what}",
+            {"place": text_of(step.place), "at_most_s": text_of(step.at_most_s)},
+            (),
+        )
     if isinstance(step, Visit):
         return f"{step.role}_visit", {"target": text_of(step.target)}, (step.body,)
     if isinstance(step, Go):
