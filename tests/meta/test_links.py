@@ -9,10 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from ..scripts import load
+from ..documents import SITE
 
 ROOT = Path(__file__).parents[2]
-SITE = load("docs_links.py")
 CODE = re.compile(r"^```.*?^```$|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 TARGET = re.compile(r"\]\((?!\w+:)([^)#\s]*)(?:#([^)\s]+))?\)")
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
