@@ -81,6 +81,12 @@ def test_a_readme_is_read_in_five_minutes(name: str) -> None:
     assert len(texts()[name].splitlines()) <= 200
 
 
+def test_the_changelog_has_a_page_for_each_version() -> None:
+    unreleased, *versions = re.split(r"^## ", texts()["CHANGELOG.md"], flags=re.MULTILINE)[1:]
+    assert unreleased.startswith("[Unreleased]\n") and versions
+    assert [version for version in versions if len(version.splitlines()) > 80] == []
+
+
 def test_the_picture_of_the_readme_moves_and_is_small() -> None:
     file = ROOT / "docs/images/task.webp"
     assert all(f"docs/images/{file.name}" in texts()[name] for name in ("README.md", "README.es.md"))

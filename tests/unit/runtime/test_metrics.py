@@ -160,7 +160,7 @@ def expressions(place: str) -> list[str]:
             *asked,
             *(each["definition"] for each in board()["templating"]["list"] if "definition" in each),
         ]
-    text = (DOCS / "metrics.md").read_text()
+    text = (DOCS / "watch.md").read_text()
     rules = [line.partition("expr:")[2] for line in text.splitlines() if "expr:" in line]
     return rules + re.findall(r"\| `([^`]*\([^`]*)` \|", text)
 
@@ -182,7 +182,7 @@ def told(metrics: Metrics, snapshot: dict[str, Any]) -> dict[str, set[str]]:
     return found
 
 
-@pytest.mark.parametrize(("place", "least"), [("grafana.json", 15), ("metrics.md", 10)])
+@pytest.mark.parametrize(("place", "least"), [("grafana.json", 15), ("watch.md", 10)])
 def test_each_metric_and_label_that_is_asked_for_exists(
     told: dict[str, set[str]], place: str, least: int
 ) -> None:
