@@ -17,7 +17,6 @@ import typer
 from arboleda.host.packages import entry_points
 from arboleda.model.errors import StartError
 from arboleda.model.sentence import Phrase
-from arboleda.runtime import invocation
 from arboleda.views.verb_words import ABOUT
 
 from .loading import loading
@@ -169,6 +168,8 @@ class LoadedCommands(Mapping[str, Any]):
 def _known(name: str) -> Command:
     """A command; StartError if its package is not installed, KeyError if there is no such command."""
     if name not in commands() and name in OF_PACKAGES:
+        from arboleda.runtime import invocation
+
         package = OF_PACKAGES[name]
         raise StartError(NOT_INSTALLED(command=name, python=invocation.python(), package=package))
     return commands()[name]
