@@ -26,7 +26,11 @@ NOT_INSTALLED = Phrase(
     "cli.not_installed",
     "{command} is part of a package that is not installed: {python} -m pip install 'arboleda[{package}]'",
 )
-OF_PACKAGES = {"conformance": "boards", "firmware-config": "boards"}  # extras of `arboleda`, by command
+OF_PACKAGES = {
+    "conformance": "boards",
+    "exercise": "class",
+    "firmware-config": "boards",
+}  # extras of `arboleda`, by command
 
 
 class Command(NamedTuple):
@@ -131,7 +135,6 @@ OURS: Mapping[str, Command] = {
     "virtual": Command(
         "virtual", "Play the controller of another maker over its own protocol, with motion and with faults."
     ),
-    "exercise": Command("exercise", "Exercises with a judge: cells that are not right yet, to be put right."),
 }
 
 
