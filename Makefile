@@ -126,7 +126,7 @@ mutants:  ## plant 400 small bugs in core and wire, see which of them tests and 
 
 exercises:  ## judge every right and wrong work of the exercises; minutes
 	@scripts/install test
-	$(BIN)/python -m pytest tests/exercises $(PYTEST_ARGS)
+	$(BIN)/python -m pytest packages/arboleda_class/tests/exercises $(PYTEST_ARGS)
 
 cost:  ## count the Python calls of pinned scenarios; fails where there are more than 2 % more; COST=--pin writes the table anew
 	@scripts/install test

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from arboleda.testing import World
+from arboleda_class.notebook import World
 
 PLANT = Path(__file__).parent / "plants" / "workshop.yaml"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import degrees
 from pathlib import Path
 
-from arboleda.testing import World
+from arboleda_class.notebook import World
 
 PLANT = Path(__file__).parent / "plants" / "own_arm.yaml"
 

@@ -16,10 +16,10 @@ from typing import Any
 import markdown2
 from docs_links import LANGUAGE, LINK
 
-from arboleda.campaigns.exercises.exercise import PLANT, catalog
-from arboleda.playground import plants
-from arboleda.playground.markup import PlayWords
 from arboleda.web.languages import LANGUAGES, texts
+from arboleda_class.exercises.exercise import PLANT, catalog
+from arboleda_class.playground import plants
+from arboleda_class.playground.markup import PlayWords
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES, EXAMPLES = ROOT / "docs/tutorial", ROOT / "examples"

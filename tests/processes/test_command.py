@@ -60,13 +60,14 @@ OF_A_PLANT = {"asyncio", "fastapi", "httpx", "nicegui", "paho", "rclpy", "ssl", 
 OF_OTHER_COMMANDS = {
     "arboleda.bt_xml",
     "arboleda.campaigns",
-    "arboleda.exercises",
     "arboleda.plant_file.loader",
     "arboleda.plant_file.plant_check",
     "arboleda.playback",
     "arboleda.sim",
     "arboleda.simulator",
     "arboleda.virtual",
+    "arboleda_class.exercises",
+    "arboleda_class.playground",
 }
 OF_ANY_PLANT = {
     "arboleda.client",

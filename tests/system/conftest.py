@@ -28,7 +28,6 @@ from ..patience import PATIENCE_S
 from ..postgres import Server
 from ..shared import need_tool
 from ..workers import shared_between_workers
-from .playground_site import playground as playground
 from .two_hosts import Hosts
 
 collect_ignore = [] if find_spec("control_msgs") else ["test_mixed_ros2.py"]  # no wheels have it

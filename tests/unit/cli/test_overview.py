@@ -9,6 +9,7 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 from arboleda.cli import overview
+from arboleda.cli.commands import OURS
 from arboleda.cli.main import cli
 
 
@@ -17,6 +18,11 @@ def test_each_command_is_listed_below_one_heading() -> None:
         name for names in overview.Overview(name="arboleda").sections(None).values() for name in names
     )
     assert listed == Counter(list(get_command(cli).commands))  # type: ignore[attr-defined]
+
+
+def test_a_heading_whose_package_is_not_installed_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(overview, "commands", lambda: OURS)
+    assert "Learn it" not in overview.Overview(name="arboleda").sections(None)
 
 
 @pytest.mark.parametrize("group", [(), ("virtual",), ("record",), ("service",)])

@@ -35,7 +35,7 @@ SECTIONS: Mapping[str, tuple[str, ...]] = {
         ),
     ),
     "Put it to the test": ("simulate", "prove", "fault", "bench"),
-    "Learn it": ("exercise",),
+    "Learn it": (),  # of packages alone, which have their place here
     "Look back": ("logs", "record", "replay", "report", "backup", "restore"),
 }
 BAD_INPUT = 2
@@ -89,7 +89,7 @@ class Overview(WholeSentences):
         for name, command in commands().items():
             if name not in listed:
                 sections[command.section] = (*sections.get(command.section, ()), name)
-        return sections
+        return {title: names for title, names in sections.items() if names}
 
     def _what(self, ctx: Any, name: str) -> str:
         """The sentence of a command; in another language the first of the paragraph that begins with it."""

@@ -1,0 +1,13 @@
+"""Commands of the command line that this package adds."""
+
+from __future__ import annotations
+
+from arboleda.cli.commands import Command
+
+COMMANDS = {
+    "exercise": Command(
+        "arboleda_class.exercises.command",
+        "Exercises with a judge: cells that are not right yet, to be put right.",
+        section="Learn it",
+    ),
+}
