@@ -177,6 +177,11 @@ class App:
             raise
 
     @property
+    def parts(self) -> tuple[Part, ...]:
+        """The parts of this process in the order in which they start; they end in the opposite one."""
+        return tuple(self._parts)
+
+    @property
     def notes(self) -> list[str]:
         """The lines that a person should read about this start."""
         notes = [*self._notes, *(self._link.notes if self._link else ())]
