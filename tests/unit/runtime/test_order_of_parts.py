@@ -11,8 +11,10 @@ import pytest
 
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.plant_file import loader
-from arboleda.runtime import build as building
+from arboleda.runtime import holdings
+from arboleda.runtime.alarm_options import AlarmOptions
 from arboleda.runtime.build import OF_BOARDS, PARTS, Options, build
+from arboleda.runtime.demo_options import DemoOptions
 from arboleda.store.plant_memory import PlantMemory
 
 ALL = frozenset(PARTS)
@@ -104,18 +106,18 @@ def test_a_plant_that_keeps_no_record_has_no_reports_and_no_drafts(tmp_path: Pat
 
 
 def test_a_demonstration_comes_after_the_page(tmp_path: Path) -> None:
-    assert names(tmp_path, demo=True)[-6:] == ["WebPart", *MADE, "DemoPart", "HangUpPart"]
+    assert names(tmp_path, of_parts=(DemoOptions(),))[-6:] == ["WebPart", *MADE, "DemoPart", "HangUpPart"]
 
 
 def test_views_for_other_programs_come_between_the_page_and_a_demonstration(tmp_path: Path) -> None:
     model = replace(SHIPPED, groot2_port=0)
     model = replace(model, opcua_view=SimpleNamespace(port=0, isa95=()))
-    found = names(tmp_path, model=model, demo=True)
+    found = names(tmp_path, model=model, of_parts=(DemoOptions(),))
     assert found[-5:] == ["ProposalDesk", "Groot2Part", "OpcUaViewPart", "DemoPart", "HangUpPart"]
 
 
 def test_alarms_start_right_before_the_plant(tmp_path: Path) -> None:
-    found = names(tmp_path, alarms=building.AlarmOptions(topic="arboleda/alarms"))
+    found = names(tmp_path, of_parts=(AlarmOptions(topic="arboleda/alarms"),))
     assert found[found.index("Orchestrator") - 2 :][:2] == ["CellTimes", "AlarmsPart"]
 
 
@@ -131,15 +133,15 @@ def test_drivers_start_before_what_keeps_the_plant(tmp_path: Path) -> None:
 def test_who_shares_a_memory_keeps_the_lead_before_a_device_is_reached(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    memory_of = building.memory_of
+    memory_of = holdings.memory_of
 
     def leased(*about: Any) -> PlantMemory:
         memory = memory_of(*about)
         memory.renew_s = 1.0
         return memory
 
-    monkeypatch.setattr(building, "memory_of", leased)
-    found = names(tmp_path, demo=True)
+    monkeypatch.setattr(holdings, "memory_of", leased)
+    found = names(tmp_path, of_parts=(DemoOptions(),))
     assert found[:3] == ["OwnBroker", "LeasePart", "BridgePart"]
     assert found[-3:] == ["DemoPart", "CellResumption", "HangUpPart"]
 

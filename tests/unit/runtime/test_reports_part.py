@@ -8,7 +8,8 @@ import pytest
 
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
-from arboleda.runtime.parts.reports import MOST_WAITING, NoReport, ReportsPart
+from arboleda.runtime.parts.reports import MOST_WAITING, ReportsPart
+from arboleda.web.desks.reports import NoReport
 
 SHIPPED = loader.load_recorded()[1]
 

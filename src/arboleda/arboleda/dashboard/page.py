@@ -12,6 +12,8 @@ from fastapi.responses import JSONResponse, Response
 from arboleda.oee.rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
 from arboleda.web.access.auth import Role
+from arboleda.web.desks.oee import OeeApi
+from arboleda.web.desks.versions import VersionsApi
 
 from . import (
     demo,
@@ -153,11 +155,12 @@ def _serve_tasks(server: FastAPI, plant: PageApi, feed: Feed) -> None:
 
     async def figures(request: Request, hours: Hours = 24.0) -> JSONResponse:
         query = OeeQuery(since_s=time.time() - hours * 3600)
-        rows = await run_in_threadpool(plant.oee, query)
+        desk = plant.ask(OeeApi)
+        rows = [] if desk is None else await run_in_threadpool(desk.oee, query)
         return JSONResponse(oee.face(rows, words(language_of(request))))
 
     async def versions_kept(request: Request) -> Response:
-        desk = plant.versions
+        desk = plant.ask(VersionsApi)
         listed = None if desk is None else await run_in_threadpool(desk.listed)
         if listed is None:
             return Response(status_code=404)

@@ -10,6 +10,7 @@ from fastapi.responses import HTMLResponse, Response
 
 from arboleda.model.errors import ArboledaError
 from arboleda.web.access import login
+from arboleda.web.desks.reports import NO_RECORD, NoReport, ReportsApi
 
 from .page_api import PageApi
 from .shell import language_of
@@ -30,7 +31,10 @@ def serve(server: FastAPI, plant: PageApi) -> None:
     async def report(request: Request, task: str = "") -> Response:
         wording = words(language_of(request))
         try:
-            content = await run_in_threadpool(plant.report, task)
+            desk = plant.ask(ReportsApi)
+            if desk is None:
+                raise NoReport(NO_RECORD())
+            content = await run_in_threadpool(desk.report, task)
         except ArboledaError as error:
             return _note(wording, task, wording.say(error.sentence), status=404)
         if content is None:

@@ -9,12 +9,12 @@ from enum import Enum
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
+from arboleda.adapters.packages import entry_points
 from arboleda.drivers.port import DriverSpec, spec_of
 from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain, quoted
 
 from .drivers import GROUP, OF_DEVICES
-from .packages import entry_points
 from .python_uses import LONGEST, error_text
 from .yaml_flow import flow
 from .yaml_marks import YamlFault, parse

@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic.errors import PydanticSchemaGenerationError
 
+from arboleda.adapters.packages import entry_points
 from arboleda.drivers.port import DriverSpec, FitsDevice, spec_of
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import DriverUse, Link, PlantModel, Robot
@@ -16,7 +17,6 @@ from arboleda.recipes.storage_layout import ARM, MOBILE
 
 from . import settings
 from .document import Document, Place, choice, nearest, shown
-from .packages import entry_points
 from .python_uses import LONGEST, PythonUses, Spot, error_text, refused
 from .shared import SECTION as SHARED
 

@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import create_model
 from pydantic.errors import PydanticSchemaGenerationError
 
+from arboleda.adapters.packages import entry_points
 from arboleda.kinds import KindError, WrittenKind
 from arboleda.kinds.declared import DeviceKind
 from arboleda.model.errors import ArboledaError
@@ -20,7 +21,6 @@ from arboleda.wire import mqtt_limits
 from .document import Document, Place, shown
 from .kinds import OF_FACTS, OF_STEPS, name_objection
 from .moving_kinds import as_read
-from .packages import entry_points
 from .python_uses import LONGEST, KindInPython, PythonUses, Spot, error_text, refused
 from .registry import COME_WITH_IT, IN_PYTHON, RESERVED
 from .robot_kind import RobotKind

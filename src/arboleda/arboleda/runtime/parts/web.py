@@ -81,8 +81,11 @@ class WebPart:
             notes.append(CLEAR.format(host=self._options.host))
         return notes
 
+    @property
+    def port(self) -> int:
+        return self._port
+
     def address_of(self, cell: str, task: str | None) -> str | None:
-        """The address at which a browser shows a cell, or a task of it; None if there is no page."""
         if not self._shows_page:
             return None
         place = {"tab": "cells", "cell": cell} if task is None else {"tab": "tasks", "task": task}

@@ -14,6 +14,7 @@ from starlette.exceptions import HTTPException
 
 from arboleda.model.errors import ArboledaError
 
+from ..desks.reports import NO_RECORD, NoReport, ReportsApi
 from ..plant_api import PlantApi
 from ..schema.bodies import ResponseModel, Sentence
 from ..schema.plain_json import PlainJson
@@ -121,7 +122,10 @@ def routes(side: PlantApi) -> APIRouter:
     async def report(task_id: str) -> JSONResponse:
         """Why a task failed: cause and evidence. The first answer may be 202, until it is written."""
         try:
-            content = await run_in_threadpool(side.report, task_id)
+            desk = side.ask(ReportsApi)
+            if desk is None:
+                raise NoReport(NO_RECORD())
+            content = await run_in_threadpool(desk.report, task_id)
         except ArboledaError as error:
             raise HTTPException(404, str(error.sentence)) from None
         if content is None:

@@ -9,7 +9,7 @@ from unittest import mock
 
 import pytest
 
-from arboleda.plant_file import packages
+from arboleda.adapters import packages
 
 GROUP = "arboleda.test_of_packages"
 

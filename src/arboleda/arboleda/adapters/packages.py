@@ -1,0 +1,48 @@
+"""Installed packages: what they register for others, read again only where something was installed since."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from functools import lru_cache
+from importlib import metadata
+from typing import Any
+
+from arboleda.model.sentence import Phrase
+
+MISSING = Phrase(
+    "package.missing",
+    "{what} needs the package {package}, which is not installed here: type pip install 'arboleda[{package}]'",
+)
+Folders = tuple[tuple[str, int], ...]  # each with the time of its last change
+
+
+def entry_points(group: str) -> metadata.EntryPoints:
+    """The entry points of a group; who installs or removes a package changes the folder that it is in."""
+    found: metadata.EntryPoints = _all(tuple((each, _changed_at(each)) for each in sys.path)).select(
+        group=group
+    )
+    return found
+
+
+def registered(group: str, shipped: Mapping[str, str]) -> list[metadata.EntryPoint]:
+    """What is registered under a group, by name: the `shipped` rows, which are no packages of their own yet,
+    and the entry points of installed packages. Nothing of it is loaded."""
+    rows = [metadata.EntryPoint(name, value, group) for name, value in shipped.items()]
+    others = [each for each in entry_points(group) if each.name not in shipped]
+    return sorted((*rows, *others), key=lambda each: each.name)
+
+
+@lru_cache(maxsize=1)
+def _all(_: Folders) -> Any:
+    """Every entry point: reading those of one group reads the files of all packages as well."""
+    return metadata.entry_points()
+
+
+def _changed_at(folder: str) -> int:
+    """In nanoseconds; 0 if there is no such folder."""
+    try:
+        return os.stat(folder or os.curdir).st_mtime_ns
+    except OSError:
+        return 0
