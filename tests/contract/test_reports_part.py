@@ -13,8 +13,7 @@ import pytest
 
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.runtime.parts import reports
-from arboleda.runtime.parts.reports import MOST_KEPT, MOST_WAITING, ReportsPart
-from arboleda.web.desks.reports import NoReport
+from arboleda.runtime.parts.reports import MOST_KEPT, MOST_WAITING, NoReport, ReportsPart
 
 from ..patience import PATIENCE_S
 

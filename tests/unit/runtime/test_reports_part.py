@@ -8,8 +8,7 @@ import pytest
 
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
-from arboleda.runtime.parts.reports import MOST_WAITING, ReportsPart
-from arboleda.web.desks.reports import NoReport
+from arboleda.runtime.parts.reports import MOST_WAITING, NoReport, ReportsPart
 
 SHIPPED = loader.load_recorded()[1]
 

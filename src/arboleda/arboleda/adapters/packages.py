@@ -9,12 +9,6 @@ from functools import lru_cache
 from importlib import metadata
 from typing import Any
 
-from arboleda.model.sentence import Phrase
-
-MISSING = Phrase(
-    "package.missing",
-    "{what} needs the package {package}, which is not installed here: type pip install 'arboleda[{package}]'",
-)
 Folders = tuple[tuple[str, int], ...]  # each with the time of its last change
 
 
@@ -32,6 +26,11 @@ def registered(group: str, shipped: Mapping[str, str]) -> list[metadata.EntryPoi
     rows = [metadata.EntryPoint(name, value, group) for name, value in shipped.items()]
     others = [each for each in entry_points(group) if each.name not in shipped]
     return sorted((*rows, *others), key=lambda each: each.name)
+
+
+def package_of(point: metadata.EntryPoint) -> str:
+    """The package that registers this, under its own name or as PACKAGE.WHAT."""
+    return point.name.partition(".")[0]
 
 
 @lru_cache(maxsize=1)

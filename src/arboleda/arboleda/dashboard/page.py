@@ -9,11 +9,13 @@ from fastapi import FastAPI, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse, Response
 
+from arboleda.model.packages import FLEET
 from arboleda.oee.rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
 from arboleda.web.access.auth import Role
 from arboleda.web.desks.oee import OeeApi
 from arboleda.web.desks.versions import VersionsApi
+from arboleda.web.missing import missing
 
 from . import (
     demo,
@@ -156,7 +158,9 @@ def _serve_tasks(server: FastAPI, plant: PageApi, feed: Feed) -> None:
     async def figures(request: Request, hours: Hours = 24.0) -> JSONResponse:
         query = OeeQuery(since_s=time.time() - hours * 3600)
         desk = plant.ask(OeeApi)
-        rows = [] if desk is None else await run_in_threadpool(desk.oee, query)
+        if desk is None:
+            raise missing(FLEET)
+        rows = await run_in_threadpool(desk.oee, query)
         return JSONResponse(oee.face(rows, words(language_of(request))))
 
     async def versions_kept(request: Request) -> Response:

@@ -9,8 +9,10 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, Response
 
 from arboleda.model.errors import ArboledaError
+from arboleda.model.packages import PROOFS
 from arboleda.web.access import login
-from arboleda.web.desks.reports import NO_RECORD, NoReport, ReportsApi
+from arboleda.web.desks.reports import ReportsApi
+from arboleda.web.missing import missing
 
 from .page_api import PageApi
 from .shell import language_of
@@ -33,7 +35,7 @@ def serve(server: FastAPI, plant: PageApi) -> None:
         try:
             desk = plant.ask(ReportsApi)
             if desk is None:
-                raise NoReport(NO_RECORD())
+                raise missing(PROOFS)
             content = await run_in_threadpool(desk.report, task)
         except ArboledaError as error:
             return _note(wording, task, wording.say(error.sentence), status=404)

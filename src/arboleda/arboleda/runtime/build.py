@@ -104,6 +104,7 @@ class App:
             epoch=self._holdings.lead(began) if self._has_plant else began,
             crash=self._crash,
             end=self.end,
+            leave_out=self._parts.leave_out,
         )
 
     @property

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from arboleda.adapters.packages import MISSING
 from arboleda.model.errors import StartError
+from arboleda.model.packages import FLEET, MISSING
 from arboleda.model.sentence import Phrase
 
 from .registry import Assembly
 
-FLEET = "fleet"
 LEAD = Phrase("package.lead", "Leading a plant whose database several hosts reach")
 OPCUA = Phrase("package.opcua_view", "`opcua_view` of the plant file")
 

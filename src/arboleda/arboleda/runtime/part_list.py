@@ -43,7 +43,7 @@ class PartList:
 
     def make(self, assembly: Assembly, own: Iterable[Factory]) -> None:
         """Make all parts, of the runner's `own` factories and of packages, in the order of their phases."""
-        known = [*(("", each) for each in own), *packaged(self._leave_out)]
+        known = [*(("", each) for each in own), *packaged(self.leave_out)]
         for package, factory in sorted(known, key=lambda each: each[1].phase):
             if package not in self._left_out:
                 with self._sparing(package):
@@ -63,6 +63,13 @@ class PartList:
             with self._sparing(package):
                 part.stop()
 
+    def leave_out(self, package: str, error: BaseException) -> None:
+        """Note that a package breaks, and make no other part of it."""
+        LOG.debug("the package %s broke", package, exc_info=error)
+        self._left_out.add(package)
+        self.notes.append(LEFT_OUT.format(package=plain(package), why=plain(error_text(error), LONGEST)))
+        LOG.warning("%s", self.notes[-1])
+
     @contextmanager
     def _sparing(self, package: str) -> Iterator[None]:
         """Leave a package out that breaks, and go on; an error of the runner itself is raised."""
@@ -73,10 +80,4 @@ class PartList:
         except Exception as error:
             if not package:
                 raise
-            self._leave_out(package, error)
-
-    def _leave_out(self, package: str, error: BaseException) -> None:
-        LOG.debug("the package %s broke", package, exc_info=error)
-        self._left_out.add(package)
-        self.notes.append(LEFT_OUT.format(package=plain(package), why=plain(error_text(error), LONGEST)))
-        LOG.warning("%s", self.notes[-1])
+            self.leave_out(package, error)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import IntEnum
 
-from arboleda.adapters.packages import registered
+from arboleda.adapters.packages import package_of, registered
 from arboleda.model.plant_model import PlantModel
 from arboleda.web.offers import Offers
 
@@ -54,8 +54,9 @@ class Assembly(Offers):
     """One start of a plant while it is put together: what it is made of, and what its parts offer each other.
 
     `parts` says which ones this process has, `began` is the Unix time of the start, `epoch` its number.
-    `crash` ends the plant because a part broke down, `end` because somebody wants it to. `notes` gives the
-    lines that a person should read about the start, once everything runs.
+    `crash` ends the plant because a part broke down, `end` because somebody wants it to;
+    `leave_out` is told of a package that breaks. `notes` gives the lines that a person should read about the
+    start, once everything runs.
     """
 
     model: PlantModel
@@ -66,6 +67,7 @@ class Assembly(Offers):
     epoch: int
     crash: Crash
     end: Callable[[], None]
+    leave_out: Callable[[str, BaseException], None]
     links: Links = field(default_factory=Links)
     notes: list[Callable[[], Iterable[str]]] = field(default_factory=list)
 
@@ -81,6 +83,6 @@ def packaged(leave_out: Callable[[str, BaseException], None]) -> Iterator[tuple[
             if not all(isinstance(each, Factory) for each in factories):
                 raise TypeError(f"{point.value} is no sequence of factories of parts")
         except (Exception, SystemExit) as error:  # noqa: BLE001 - whatever a package does, the plant runs
-            leave_out(point.name, error)
+            leave_out(package_of(point), error)
             continue
-        yield from ((point.name, each) for each in factories)
+        yield from ((package_of(point), each) for each in factories)

@@ -7,8 +7,6 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from typing import Any, Protocol, TypeVar
 
-from arboleda.bt_xml.editing import desk
-from arboleda.bt_xml.editing.operations import Operation
 from arboleda.core.plant import Plant
 from arboleda.core.text import spelled
 from arboleda.model.facts import Value
@@ -18,7 +16,6 @@ from arboleda.model.verbs import Arguments
 from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.views import forms, view
 
-from .languages import spoken, texts
 from .offers import Thing
 
 Snapshot = dict[str, Any]
@@ -67,23 +64,6 @@ class PlantApi(Protocol):
     @abstractmethod
     def history(self, query: TaskQuery) -> list[TaskRow]:
         """Tasks of this and earlier starts; waits for the disk."""
-
-    def tree_files(self) -> list[dict[str, Any]]:
-        """The files of trees that are recipes of this plant: `recipe`, `file`, `cells`, `text`."""
-        return desk.tree_files(self.model)
-
-    def palette(self, cell: str, language: str) -> list[dict[str, Any]]:
-        """The nodes that a tree can have in a cell; raises PayloadError where there is no such cell."""
-        return desk.palette(self.model, cell, texts(spoken([language]), "nodes"))
-
-    def drawn(self, cell: str, text: str, operation: Operation | None = None) -> dict[str, Any]:
-        """A file of trees as an editor shows it in a cell, after an operation on it; raises EditError where
-        that cannot be done. It computes a while, and asks nothing of the plant that runs."""
-        return desk.drawn(self.model, cell, text, operation)
-
-    def copied(self, cell: str, recipe: str, name: str) -> str:
-        """A recipe in Python as the text of a tree `name`, as `drawn` raises and computes."""
-        return desk.copied(self.model, cell, recipe, name)
 
     def promises(self, text: str) -> list[dict[str, Any]]:
         """The promise of each cell that a task text names; raises TextError or QueueFull."""

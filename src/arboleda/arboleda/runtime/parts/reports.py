@@ -14,10 +14,11 @@ from pathlib import Path
 
 from arboleda.core.text import ID
 from arboleda.host.limits import BEHIND
+from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.outside import plain, quoted
 from arboleda.model.sentence import Phrase
-from arboleda.web.desks.reports import NO_RECORD, NoReport, ReportsApi
+from arboleda.web.desks.reports import ReportsApi
 
 LOG = logging.getLogger(__name__)
 FOLDER = "reports"
@@ -25,6 +26,7 @@ MOST_WAITING = 20  # a plant in which everything fails has one report after the 
 MOST_KEPT = 100
 AFTER_S = 12.0  # so long after a failure: by then its record is on the disk, with what came right after it
 AT_MOST_S = 600.0
+NO_RECORD = Phrase("report.no_record", "this plant writes no record, of which reports are made")
 NO_TASK = Phrase("report.no_task", "{task} is not the id of a task")
 TOO_MANY = Phrase("report.too_many", "{most} other reports wait; try again in some minutes")
 SAID = Phrase("report.said", "{said}")
@@ -33,6 +35,10 @@ SAID = Phrase("report.said", "{said}")
 def _command(task: str, state: Path, target: Path) -> Sequence[str]:
     where = ["--state", str(state), "--output", str(target)]
     return [sys.executable, "-c", BEHIND, "report", *where, "--", task]
+
+
+class NoReport(ArboledaError):
+    """There is no report of a task; the sentence says why."""
 
 
 class NoReports(ReportsApi):

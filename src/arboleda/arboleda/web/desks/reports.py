@@ -5,15 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import Protocol
 
-from arboleda.model.errors import ArboledaError
-from arboleda.model.sentence import Phrase
-
-NO_RECORD = Phrase("report.no_record", "this plant writes no record, of which reports are made")
-
-
-class NoReport(ArboledaError):
-    """There is no report of a task; the sentence says why."""
-
 
 class ReportsApi(Protocol):
     """Reports of one plant."""
