@@ -11,7 +11,7 @@ from arboleda.web.desks.reports import ReportsApi
 
 from .demo_options import DemoOptions
 from .factories.plant import RecordPart
-from .parts.devices import DevicesPart
+from .parts.devices import DeviceBench, DevicesPart
 from .parts.orchestrator import Orchestrator
 from .parts.part import Part
 from .registry import Assembly, Factory, Phase
@@ -33,6 +33,15 @@ def reports(assembly: Assembly) -> Iterator[Part]:
     if wanted.reports:
         plant.listeners.append(part.changed)
     yield part
+
+
+def bench(assembly: Assembly) -> Iterator[Part]:
+    """The bench of virtual devices, at which faults begin and end."""
+    if "devices" in assembly.parts:
+        from arboleda.simulator.fault_bench import FaultBench
+
+        assembly.offer(DeviceBench, FaultBench)
+    yield from ()
 
 
 def faults(assembly: Assembly) -> Iterator[Part]:
@@ -67,6 +76,7 @@ def demonstration(assembly: Assembly) -> Iterator[Part]:
 
 
 FACTORIES = (
+    Factory(phase=Phase.LINKS, make=bench),
     Factory(phase=Phase.REPORTS, make=reports),
     Factory(phase=Phase.PLANT, make=faults),
     Factory(phase=Phase.VIEWS, make=demonstration),

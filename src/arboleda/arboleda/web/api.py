@@ -22,10 +22,9 @@ from starlette.routing import BaseRoute, Match
 from starlette.types import Receive, Scope, Send
 
 from arboleda import __version__
-from arboleda.bt_xml.editing.errors import EditError
 from arboleda.client.protocol import COMMAND_LINE
 from arboleda.core.leaving import Unkept
-from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, TextError
+from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, Refused, TextError
 from arboleda.model.messages import Outcome, Verb
 from arboleda.model.outside import plain, quoted
 from arboleda.model.packages import PackageMissing
@@ -35,8 +34,6 @@ from arboleda.store.task_rows import COMMAND, HTTP, TaskRow, answers_of, choice_
 from . import limits, stream
 from .access import login
 from .access.auth import SUBMIT, Forbidden, require
-from .desks.draft import DraftRefused
-from .desks.faults import FaultRefused
 from .limits import LATER_S
 from .missing import refuse_path
 from .plant_api import PlantApi
@@ -103,15 +100,7 @@ Where the plant is open to a network every request carries a token (Authorizatio
 that stands by for the plant answers 307 with the address of the one that leads it, to which a client shows
 its token itself, or 503 with Retry-After. Who names a plant in a header Arboleda-Plant is refused with 421
 where another one answers. The stop is a stop in software and no safety function."""
-STATUS = {
-    TextError: 422,
-    PayloadError: 422,
-    EditError: 422,
-    Forbidden: 403,
-    DraftRefused: 409,
-    FaultRefused: 409,
-    PackageMissing: 501,
-}
+STATUS = {TextError: 422, PayloadError: 422, Forbidden: 403, Refused: 409, PackageMissing: 501}
 OTHERS: Answers = {
     "default": {"model": Sentence, "description": "401 without a token, 413 too long, 429 too often, ..."}
 }
@@ -366,7 +355,7 @@ async def refuse(_request: Request, error: Exception) -> JSONResponse:
     if isinstance(error, HTTPException):
         return JSONResponse({"sentence": error.detail}, status_code=error.status_code, headers=error.headers)
     headers = {"retry-after": LATER_S} if isinstance(error, QueueFull) else None
-    status = STATUS.get(type(error), 503) if isinstance(error, ArboledaError) else 503
+    status = next((STATUS[each] for each in type(error).__mro__ if each in STATUS), 503)
     body = {"sentence": error.sentence if isinstance(error, ArboledaError) else str(error)}
     return PlainJson(explained(body), status_code=status, headers=headers)
 

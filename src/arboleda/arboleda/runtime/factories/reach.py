@@ -12,7 +12,7 @@ from arboleda.model.plant_model import MqttVersion, PlantModel
 from ..options import Options
 from ..parts.bridge import BridgePart
 from ..parts.broker import OtherBroker, OwnBroker
-from ..parts.devices import DevicesPart
+from ..parts.devices import DeviceBench, DevicesPart
 from ..parts.drivers import DriversPart
 from ..parts.linux_boards import LinuxBoards, on_linux
 from ..parts.part import Broker, Part
@@ -89,6 +89,7 @@ def boards(assembly: Assembly) -> Iterator[Part]:
         scout=scout,
         joined=_nothing if waiting is None else waiting.join,
         elsewhere=[robot.name for robot in robots],
+        bench=assembly.ask(DeviceBench),
     )
     assembly.offer(DevicesPart, virtual)
     yield virtual
