@@ -16,6 +16,7 @@ from arboleda.model.messages import Outcome, Verb
 from arboleda.model.sentence import in_json
 from arboleda.store.task_rows import PAGE
 from arboleda.web.access.auth import SUBMIT, allowed
+from arboleda.web.desks.demonstration import DemonstrationApi
 from arboleda.web.desks.faults import FaultsApi
 
 from . import demo, fault_form, outcomes
@@ -53,7 +54,9 @@ class Desk(OpenPage):
         elif act == SUBMIT:
             await self._submit(of)
         elif act == demo.END:
-            self._plant.end_demo()
+            demonstration = self._plant.ask(DemonstrationApi)
+            if demonstration is not None:
+                demonstration.end()
             self.say(self._words("demo.ended"), good=True)
         elif act in (fault_form.BEGIN, fault_form.END):
             await self._provoke(act, of, more)

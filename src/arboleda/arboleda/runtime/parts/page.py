@@ -27,7 +27,6 @@ if TYPE_CHECKING:  # slow to load, and only needed for a record
     from arboleda.dashboard.past.side import Start
 
     from .records import Records
-    from .tried import TriedPlant, TriedPlants
 
 NOT_YET = Phrase("record.not_yet", "There is no record of this start yet; try again in some seconds.")
 
@@ -37,7 +36,8 @@ class PagePlant(LocalPlant):
 
     def __init__(self, plant: Orchestrator, assembly: Assembly) -> None:
         super().__init__(plant, assembly.holdings.history, assembly)
-        self._drawn: tuple[PlantModel | None, dict[str, Any]] = None, {}
+        self._drawn: PlantModel | None = None
+        self._offered: tuple[bool, ...] = ()
         self._layout: dict[str, Any] = {}
         self._past_acts = assembly.holdings.past_acts
         is_recorded = assembly.options.recording is not None
@@ -56,21 +56,18 @@ class PagePlant(LocalPlant):
 
     def layout(self) -> dict[str, Any]:
         model, faults = self.model, self.ask(FaultsApi)
-        beside = {
-            "recorded": self._recorded_in is not None,
-            "demo": self.ask(DemonstrationApi) is not None,
-            "draft": self.ask(MakeApi) is not None,
-            "faults": [] if faults is None else [asdict(each) for each in faults.offers()],
-        }
-        drawn, shown = self._drawn
-        if drawn is not model or shown != beside:  # parts that are made after the page offer more
-            self._drawn, self._layout = (model, beside), view.layout(model) | beside
+        demo, make = self.ask(DemonstrationApi), self.ask(MakeApi)
+        offered = demo is not None, make is not None, faults is not None
+        if self._drawn is not model or self._offered != offered:  # parts made after the page offer more
+            beside = {
+                "recorded": self._recorded_in is not None,
+                "demo": demo is not None,
+                "draft": make is not None,
+                "faults": [] if faults is None else [asdict(each) for each in faults.offers()],
+            }
+            self._drawn, self._offered = model, offered
+            self._layout = view.layout(model) | beside
         return self._layout
-
-    def end_demo(self) -> None:
-        demonstration = self.ask(DemonstrationApi)
-        if demonstration is not None:
-            demonstration.end()
 
     def past(self, epoch: int | None = None) -> Past:
         return self._recorded.past(epoch)
@@ -82,32 +79,19 @@ class PagePlant(LocalPlant):
     def _recorded(self) -> Records:
         from .records import Records
 
-        return Records(self._own, self.layout())
-
-    def tried(self) -> TriedPlant:
-        make = self.ask(MakeApi)
-        return self._tried.last(None if make is None else make.tried())
-
-    @cached_property
-    def _tried(self) -> TriedPlants:
-        from .tried import TriedPlants
-
-        return TriedPlants()
-
-    def proof(self) -> str | None:
-        make = self.ask(MakeApi)
-        file = None if make is None else make.proof_page()
-        return None if file is None else file.read_text("utf-8")
-
-    def _own(self) -> Path:
-        from arboleda.recorder import files
-
-        state, epoch = self._recorded_in, self.snapshot()["epoch"]
-        found = files.parts_in(state / files.FOLDER) if state else []
-        parts = [part for part in found if part.epoch == epoch]
-        if not parts:
-            raise NoRecord(NOT_YET())
-        return parts[-1].path
+        state = self._recorded_in
+        return Records(lambda: _own_record(state, self.snapshot()["epoch"]), self.layout())
 
     def urdf(self, robot: str) -> str:
         return robot_urdf(self.model, robot)
+
+
+def _own_record(state: Path | None, epoch: int) -> Path:
+    """The last file of the record of this start; NoRecord where there is none yet."""
+    from arboleda.recorder import files
+
+    found = files.parts_in(state / files.FOLDER) if state else []
+    parts = [part for part in found if part.epoch == epoch]
+    if not parts:
+        raise NoRecord(NOT_YET())
+    return parts[-1].path
