@@ -293,7 +293,6 @@ def _run(
     patience_s: float | None = None,
 ) -> None:
     from arboleda.runtime.build import OF_BOARDS, PARTS, build
-    from arboleda.runtime.standby.process import take_over
 
     from . import session
 
@@ -322,6 +321,7 @@ def _run(
     )
     parts, console = set(PARTS) - left_out, Console(highlight=False)
     if standby:
+        from arboleda.runtime.standby.process import take_over  # what waits to lead, no other start needs
 
         def again() -> tuple[PlantModel, Recording | None]:
             read = loader.load_recorded(options.plant_file)

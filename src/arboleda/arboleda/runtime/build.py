@@ -18,6 +18,7 @@ from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import TaskChanged
 from arboleda.model.plant_model import PlantModel
 from arboleda.store.plant_memory import Superseded
+from arboleda.web.offers import Offers
 
 from . import at_work
 from .alarm_options import AlarmOptions
@@ -113,7 +114,7 @@ class App:
         return tuple(self._parts)
 
     @property
-    def offers(self) -> Assembly:
+    def offers(self) -> Offers:
         """What the parts of this process offer."""
         return self._assembly
 
