@@ -19,6 +19,8 @@ from arboleda.oee.rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.testing import shipped
 from arboleda.web.access.auth import Role
+from arboleda.web.desks.oee import OeeApi
+from arboleda.web.desks.reports import ReportsApi
 
 QUEUED = {"id": "t-1", "text": "sis_a 0b 7", "cell": "sis_a", "state": "queued", "sentence": ""}
 PROMISE = {"hindrance": None, "full": False}
@@ -63,7 +65,7 @@ class Plant:
     """Answers each text with what was prepared for it."""
 
     def __init__(self) -> None:
-        self.teach: Any = None
+        self.offered: dict[type, Any] = {OeeApi: self, ReportsApi: self}
         self.reports: Iterator[str | None] = iter(())
         self.texts: list[str] = []
         self.choices: list[str] = []
@@ -103,6 +105,9 @@ class Plant:
     def history(self, query: TaskQuery) -> list[TaskRow]:
         self.queries.append(query)
         return [row for row in KEPT if query.cell in ("", row.cell)]
+
+    def ask(self, kind: type) -> Any:
+        return self.offered.get(kind)
 
     def report(self, task: str) -> str | None:
         return next(self.reports)

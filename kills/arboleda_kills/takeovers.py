@@ -28,7 +28,7 @@ import psycopg
 from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.plant_file import loader
 from arboleda.store.postgres.history import PostgresHistory
-from arboleda.store.postgres.leadership import Leadership
+from arboleda.store.postgres.leadership import PostgresLeadership
 from arboleda.store.task_rows import TaskQuery
 from arboleda_bench.result import percentile
 
@@ -53,7 +53,7 @@ class Takeovers:
         cells = [cell for cell in loader.load(None).cells if cell.handover]
         self.customers = Customers(cells, self._dice, f"s{seed}-{int(time.time())}")
         self.attendant = Attendant(self.boards)
-        self._others = Leadership(store, NAME)
+        self._others = PostgresLeadership(store, NAME)
         self._cells = [cell.name for cell in cells]
         self._starts = 0
         self.seconds: dict[str, list[float]] = {KILL: [], FREEZE: [], HANDOVER: []}

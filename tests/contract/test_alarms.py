@@ -19,6 +19,7 @@ from arboleda.runtime.alarm_options import AlarmOptions
 from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.parts.alarms import OnTopic
 from arboleda.runtime.parts.broker import OtherBroker
+from arboleda.runtime.parts.part import Broker
 from arboleda.testing import shipped
 
 from ..patience import PATIENCE_S
@@ -93,7 +94,7 @@ def running(hooked: Hooked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     patient = partial(Webhook, timeout_s=2 * PATIENCE_S)
     monkeypatch.setattr("arboleda.runtime.parts.alarms.Webhook", patient)
     alarms = AlarmOptions(hook=hooked.hook(), topic="arboleda/alarms")
-    options = Options(state_dir=tmp_path / "state", page=False, rate=10.0, alarms=alarms)
+    options = Options(state_dir=tmp_path / "state", page=False, rate=10.0, of_parts=(alarms,))
     app = build(shipped("sis_a"), {"broker", "devices", "bridge", "orchestrator", "web"}, options)
     app.start()
     yield app
@@ -112,7 +113,7 @@ def at(app: App, state: str) -> None:
 def test_a_stop_of_a_plant_that_runs_arrives_by_both_ways(
     running: App, hooked: Hooked, peer: Callable[..., Any]
 ) -> None:
-    address = running._broker.address
+    address = running.offers.need(Broker).address
     reader = peer("reader", address, subscriptions=["arboleda/alarms"]).up()
     at(running, "idle")
     running.plant.submit("sis_a 0B 7 #t1").result(PATIENCE_S)

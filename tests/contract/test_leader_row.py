@@ -14,7 +14,7 @@ from arboleda.model.messages import Fact, Remember
 from arboleda.simulator.hosts.database import LeaderRow
 from arboleda.store.plant_memory import Superseded
 from arboleda.store.postgres.leader_row import END_LEASE, LAST_SEEN
-from arboleda.store.postgres.leadership import Leadership
+from arboleda.store.postgres.leadership import PostgresLeadership
 from arboleda.store.postgres.memory import LEAD, PostgresMemory
 
 from ..lengths import length
@@ -33,7 +33,7 @@ class Both:
     def __init__(self, server: Server, address: str, plant: str, dice: random.Random) -> None:
         self._dice = dice
         self.row = LeaderRow(epoch=0)
-        self.others = Leadership(address, plant)
+        self.others = PostgresLeadership(address, plant)
         self.processes: list[tuple[PostgresMemory, int]] = []
         self._server, self._address, self._plant = server, address, plant
         self.others.prepare()

@@ -19,8 +19,8 @@ from arboleda.model.messages import Fact, Journal, Remember, TaskChanged, TaskSt
 from arboleda.model.sentence import OWN
 from arboleda.store.plant_memory import Standby, Superseded
 from arboleda.store.postgres.history import PostgresHistory
-from arboleda.store.postgres.leaders import Leaders
-from arboleda.store.postgres.leadership import Leadership
+from arboleda.store.postgres.leaders import PostgresLeaders
+from arboleda.store.postgres.leadership import PostgresLeadership
 from arboleda.store.postgres.memory import PostgresMemory
 from arboleda.store.task_rows import TaskQuery
 
@@ -132,7 +132,7 @@ def _renewing(memory: PostgresMemory) -> tuple[threading.Thread, threading.Event
 
 
 def test_who_was_ended_gives_the_plant_back_and_numbers_only_grow(database: str, plant: str) -> None:
-    numbers, others = [], Leadership(database, plant)
+    numbers, others = [], PostgresLeadership(database, plant)
     for wanted in (1000, 5, 2000):
         with PostgresMemory(database, plant) as memory:
             numbers.append(memory.lead(wanted))
@@ -147,7 +147,7 @@ def test_plants_that_share_a_database_are_found_and_know_nothing_of_each_other(
     second = f"{plant}_b"
     with leading(database, plant) as one, PostgresMemory(database, second) as other:
         one.announce("http://10.0.0.1:8080")
-        leaders = Leaders(database)
+        leaders = PostgresLeaders(database)
         found = {name: (each.leads, each.url) for name, each in leaders.all().items()}
         leaders.close()
         assert (found[plant], found[second]) == ((True, "http://10.0.0.1:8080"), (False, ""))
@@ -237,7 +237,7 @@ def test_tables_of_an_older_arboleda_are_brought_up_with_what_they_have(
 
 
 def test_others_see_who_leads_who_waits_and_what_was_left_at_work(database: str, plant: str) -> None:
-    others = Leadership(database, plant)
+    others = PostgresLeadership(database, plant)
     others.prepare()
     assert not others.leader().leads
     with leading(database, plant) as first:
@@ -298,7 +298,7 @@ def test_a_server_that_is_away_is_one_sentence(postgres: Server, database: str, 
 def test_a_server_that_says_nothing_counts_as_away_and_is_heard_again(
     postgres: Server, database: str, plant: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    others = Leadership(database, plant)
+    others = PostgresLeadership(database, plant)
     with leading(database, plant) as memory, closing(others):
         memory.renew()
         epoch = others.leader().epoch

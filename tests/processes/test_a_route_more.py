@@ -1,4 +1,4 @@
-"""A route is added by its module and a method of `PlantApi`, which is answered by the plant that runs."""
+"""A route is added by its module, its row, and a method of `PlantApi` that the plant answers which runs."""
 
 from __future__ import annotations
 
@@ -69,11 +69,12 @@ print(json.dumps({
 """
 
 
-def test_a_route_takes_two_files_and_answers_of_the_plant(tmp_path: Path) -> None:
+def test_a_route_takes_a_file_a_row_and_a_method_and_answers_of_the_plant(tmp_path: Path) -> None:
     tree = CopiedTree(tmp_path)
     tree.add("web/routes/waiting.py", ROUTE)
+    tree.insert("web/routes/__init__.py", '"promises",', '"waiting", ')
     tree.insert("web/plant_api.py", "    def promises(self, text: str)", METHOD)
-    assert len(tree.changed) == 2
+    assert len(tree.changed) == 3
     seen = tree.run(LOOK)
     assert seen["answer"] == {"waiting": 2}
     assert seen["wrong"] == [405, "GET"]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.runtime import build as building
+from arboleda.runtime import holdings
 from arboleda.runtime.build import Options, build
 from arboleda.runtime.parts.page import PagePlant
 from arboleda.store.plant_memory import OtherLeader, PlantMemory
@@ -16,7 +16,7 @@ from arboleda.testing import shipped
 def test_it_has_made_no_page_of_which_a_process_has_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    pages, memory_of = [], building.memory_of
+    pages, memory_of = [], holdings.memory_of
 
     def led_by_another(*about: object) -> PlantMemory:
         memory: PlantMemory = memory_of(*about)
@@ -26,7 +26,7 @@ def test_it_has_made_no_page_of_which_a_process_has_one(
     def refuse(epoch: int) -> int:
         raise OtherLeader("another process leads")
 
-    monkeypatch.setattr(building, "memory_of", led_by_another)
+    monkeypatch.setattr(holdings, "memory_of", led_by_another)
     monkeypatch.setattr(PagePlant, "mount", lambda page, app: pages.append(page))
     for _ in range(2):
         with pytest.raises(OtherLeader):

@@ -30,7 +30,6 @@ from arboleda.model.messages import (
 )
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.verbs import Arguments
-from arboleda.oee.rows import OeeQuery
 from arboleda.plant_file import draft_check, loader
 from arboleda.runtime import at_work
 from arboleda.runtime.parts.orchestrator import PutToWork
@@ -134,9 +133,8 @@ class Site(PlantApi):
     def model(self) -> PlantModel:
         return self.rig.plant.model
 
-    @property
-    def proposals(self) -> ProposalsApi:
-        return self.desk
+    def ask(self, kind: type[Any]) -> Any:
+        return self.desk if kind is ProposalsApi else None
 
     def read(self, look: Callable[[Plant], Any]) -> Any:
         with self.turns:
@@ -179,12 +177,6 @@ class Site(PlantApi):
 
     def find(self, task: str) -> dict[str, Any] | None:
         return None
-
-    def report(self, task: str) -> str | None:
-        return None
-
-    def oee(self, query: OeeQuery) -> list[Any]:
-        return []
 
     def watch(self, callback: Callable[[Snapshot], None]) -> Callable[[], None]:
         return lambda: None

@@ -12,8 +12,9 @@ from typing import Any
 
 from arboleda.model.errors import ArboledaError
 from arboleda.plant_file import loader
+from arboleda.store.leadership import Leader
 from arboleda.store.postgres.history import PostgresHistory
-from arboleda.store.postgres.leadership import Leader, Leadership
+from arboleda.store.postgres.leadership import PostgresLeadership
 from arboleda.store.postgres.schema import schema_of
 from arboleda.store.task_rows import TaskQuery, TaskRow
 
@@ -50,7 +51,7 @@ class Run:
         self._cells = [cell.name for cell in cells]
         self.network = Network(HOSTS, folder)
         self.cast = Cast(self.network, folder, rate, list(model.robots))
-        self._others = Leadership(STORE, NAME)
+        self._others = PostgresLeadership(STORE, NAME)
         self.customers = Customers(cells, self._dice, f"s{seed}")
         self.attendant = Attendant(self.cast.boards)
         self.seconds: dict[str, list[float]] = {}

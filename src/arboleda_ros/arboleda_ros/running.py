@@ -131,7 +131,7 @@ def _app(link: Link, name: str) -> App:
         link=link,
         broker=None if "broker" in parts else values["broker"] or None,
         credentials=login(),
-        alarms=alarm_options(),
+        of_parts=(alarm_options(),),
         rate=values["rate"],
         page="web" in parts,
         log_name="arboleda.log" if name == "orchestrator" else f"{name}.log",

@@ -8,7 +8,7 @@ import pytest
 
 import arboleda.cli.commands as command_table
 from arboleda.cli.commands import OF_PACKAGES, Command, LoadedCommands, commands
-from arboleda.model.errors import StartError
+from arboleda.model.packages import PackageMissing
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.shipped import shipped_name
 
@@ -24,7 +24,7 @@ def test_a_command_of_a_package_that_is_not_installed_is_named_with_the_line_tha
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(command_table, "commands", lambda: command_table.OURS)
-    with pytest.raises(StartError, match=r"conformance .* -m pip install 'arboleda\[boards\]'"):
+    with pytest.raises(PackageMissing, match=r"conformance needs .* pip install 'arboleda\[boards\]'"):
         LoadedCommands()["conformance"]
 
 
@@ -39,6 +39,18 @@ def test_of_two_commands_with_one_name_ours_is_taken(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(command_table, "entry_points", lambda _group: [point])
     found = command_table.commands.__wrapped__()
     assert (found["up"].module, found["lift"].section) == ("up", "Lifts")
+
+
+def test_a_package_that_does_not_load_is_named_and_the_other_commands_are_there(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def load() -> None:
+        raise ImportError("no module acme")
+
+    broken = SimpleNamespace(name="acme", load=load)
+    monkeypatch.setattr(command_table, "entry_points", lambda _group: [broken])
+    assert command_table.commands.__wrapped__() == command_table.OURS
+    assert "acme" in capsys.readouterr().err
 
 
 def test_the_name_of_the_shipped_plant_is_that_of_its_model_which_has_no_database() -> None:

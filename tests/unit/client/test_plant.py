@@ -29,6 +29,7 @@ from arboleda.runtime.standby.leader import LeaderInfo
 from arboleda.runtime.standby.waiting_room import WaitingRoom
 from arboleda.runtime.web_options import WebOptions
 from arboleda.web.access.auth import Role
+from arboleda.web.desks.draft import DraftApi
 
 from ...guarded_plant import guarded
 from ...in_process import ORIGIN, Machine
@@ -152,7 +153,7 @@ def test_the_draft_is_edited_under_one_id(client: Client, plant: Any) -> None:
         def __getattr__(self, name: str) -> Any:
             return lambda *told: steps.append((name, *told)) or applied | state
 
-    plant.draft = Desk()
+    plant.offered[DraftApi] = Desk()
     draft = client.draft("ana-12345")
     assert draft.state().file == "plant.yaml" and draft.take("Ana").is_ours
     draft.set(["cells", "lab", "targets", 0], [1, {"b": None}])

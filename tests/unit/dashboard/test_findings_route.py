@@ -32,7 +32,7 @@ class Make:
 def page(role: Role, make: Make | None) -> Caller:
     app = FastAPI()
     answer_in_sentences(app)
-    side: Any = SimpleNamespace(make=make)
+    side: Any = SimpleNamespace(ask=lambda _kind: make)
     findings_route.serve(app, side)
 
     async def as_role(scope: Scope, receive: Receive, send: Send) -> None:

@@ -26,7 +26,7 @@ def browser(monkeypatch: pytest.MonkeyPatch) -> Caller:
         return CONTENT if task == "lot" else None
 
     app = FastAPI()
-    side: Any = SimpleNamespace(report=report)
+    side: Any = SimpleNamespace(ask=lambda _kind: SimpleNamespace(report=report))
     reports.serve(app, side)
     return Caller(app)
 

@@ -144,6 +144,8 @@ def test_a_store_is_the_address_of_a_database_without_its_password() -> None:
     assert loader.parse("plant.yaml", content).store == ""
     with pytest.raises(ConfigError, match="store: must be postgresql://USER@HOST:PORT/DATABASE"):
         parsed("plants.sqlite")
+    with pytest.raises(ConfigError, match="keeps a memory at shelf://; there are postgres, postgresql"):
+        parsed("shelf://me@db.example/plants")
     with pytest.raises(ConfigError, match="store: has a password in it; leave it to PGPASSWORD") as refused:
         parsed("postgresql://me:hidden@db.example/plants")
     assert "hidden" not in str(refused.value)

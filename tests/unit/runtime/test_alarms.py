@@ -290,7 +290,7 @@ def test_a_topic_of_a_board_is_refused(
 
 @pytest.fixture
 def options(tmp_path: Any) -> Callable[..., Options]:
-    return lambda: Options(state_dir=tmp_path / "state", page=False, alarms=alarm_options())
+    return lambda: Options(state_dir=tmp_path / "state", page=False, of_parts=(alarm_options(),))
 
 
 def test_that_the_plant_was_away_names_the_cells_that_go_on_by_themselves(told: Told) -> None:

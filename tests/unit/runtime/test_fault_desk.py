@@ -34,8 +34,8 @@ class Virtual:
             if hasattr(each, "number"):
                 self.noted(each)
 
-    def begun(self) -> tuple[float, list[Any]]:
-        return self.now, list(self.bench.begun.values())
+    def read(self, look: Any) -> tuple[float, Any]:
+        return self.now, look(self.bench)
 
 
 class Desk:
@@ -120,10 +120,10 @@ def test_what_cannot_be_is_refused_with_what_can(asked: tuple[Any, ...], said: s
 def test_a_fault_that_is_over_by_itself_just_when_it_is_ended_is_over() -> None:
     made = Desk()
     begun = made.desk.begin("cut_link", "ra1", 3.0)
-    seen = made.devices.begun()
+    seen = made.devices.read(lambda bench: list(bench.begun.values()))
     made.devices.now = 3.0
     made.devices.befall()
-    made.devices.begun = lambda: seen  # as it was just before
+    made.devices.read = lambda _look: seen  # as it was just before
     assert [each.number for each in made.desk.end("ra1")] == [begun.number]
     assert [each.is_over for each in made.told] == [False, True]
 

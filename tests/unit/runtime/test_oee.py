@@ -23,6 +23,7 @@ from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
+from arboleda.web.desks.oee import OeeApi
 
 BEGAN = 1_000_000.0  # Unix time of the rig's first second
 
@@ -131,7 +132,7 @@ def test_the_command_and_a_plant_that_runs_say_the_same(rig: Rig, store: Store, 
         done(rig, task)
     store.close()
     app = build(shipped("sis_a"), {"orchestrator"}, Options(state_dir=tmp_path, page=False))
-    (running,) = app.local.oee(OeeQuery(since_s=BEGAN, until_s=BEGAN + rig.now))
+    (running,) = app.offers.need(OeeApi).oee(OeeQuery(since_s=BEGAN, until_s=BEGAN + rig.now))
     app.stop()
     said = json.loads(typed(tmp_path, "--since", when(BEGAN), "--until", when(BEGAN + rig.now), "--json"))
     known = running.data()

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from arboleda.web.access.auth import Role
-from arboleda.web.desks.draft import DraftRefused
+from arboleda.web.desks.draft import DraftApi, DraftRefused
 
 VALUE = [1, {"b": None}]
 STATE = {"file": "plant.yaml", "editor": None, "changes": [], "waiting": [], "undo": 0, "redo": 0}
@@ -51,8 +51,8 @@ class Draft:
 
 @pytest.fixture
 def draft(plant: Any) -> Draft:
-    plant.draft = Draft()
-    return plant.draft
+    plant.offered[DraftApi] = made = Draft()
+    return made
 
 
 @pytest.mark.parametrize("step", STEPS)
@@ -115,7 +115,7 @@ def test_a_value_that_is_too_long_is_not_read(web: Any, draft: Draft) -> None:
 
 
 def test_the_shipped_plant_has_no_draft(web: Any, plant: Any) -> None:
-    plant.draft = None
+    plant.offered.pop(DraftApi, None)
     answer = web.get("/api/draft")
     assert answer.status_code == 404 and "arboleda new" in answer.json()["sentence"]
 

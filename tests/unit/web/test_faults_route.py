@@ -63,7 +63,7 @@ def ask(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> Ask:
     def go(
         path: str, body: dict[str, Any], *, role: Role = Role.OPERATOR, at: Desk | None = desk
     ) -> httpx.Response:
-        monkeypatch.setattr(PRESENT, "plant", SimpleNamespace(faults=at))
+        monkeypatch.setattr(PRESENT, "plant", SimpleNamespace(ask=lambda _kind: at))
 
         async def as_role(scope: Any, receive: Any, send: Any) -> None:
             await shared_app()({**scope, "arboleda.role": role}, receive, send)

@@ -10,6 +10,7 @@ import pytest
 from arboleda.bt_xml.editing.errors import EditError
 from arboleda.web.access.auth import Role
 from arboleda.web.desks.draft import DraftRefused
+from arboleda.web.desks.make import MakeApi
 
 STATE = {"file": "plant.yaml", "editor": None, "changes": [], "waiting": [], "undo": 0, "redo": 0}
 STATE |= {"values": {}}
@@ -85,8 +86,8 @@ class Make:
 @pytest.fixture
 def make(plant: Any, tmp_path: Path) -> Make:
     (tmp_path / "result.json").write_text('{"runs": 3}')
-    plant.make = Make(tmp_path / "result.json")
-    return plant.make
+    plant.offered[MakeApi] = made = Make(tmp_path / "result.json")
+    return made
 
 
 def test_cells_are_told_with_their_problems(web: Any, make: Make) -> None:
@@ -191,6 +192,6 @@ def test_a_viewer_may_do_nothing(open_to_all: Any, make: Make, path: str) -> Non
 
 
 def test_the_shipped_plant_has_none(web: Any, plant: Any) -> None:
-    plant.make = None
+    plant.offered.pop(MakeApi, None)
     answer = web.get("/api/make/cells")
     assert answer.status_code == 404 and "arboleda new" in answer.json()["sentence"]

@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.web import limits
 from arboleda.web.access.auth import Role
-from arboleda.web.desks.teach import Along, Button, Target, TeachRefused
+from arboleda.web.desks.teach import Along, Button, Target, TeachApi, TeachRefused
 
 STATE = {"cell": "sis_a", "teaching": None, "refusal": None, "devices": [], "targets": [], "drafts": True}
 PRESSED = {"teaching": None, "robot": {"name": "ra1"}}
@@ -43,8 +43,8 @@ class Desk:
 
 @pytest.fixture
 def desk(plant: Any) -> Desk:
-    plant.teach = Desk()
-    return plant.teach
+    plant.offered[TeachApi] = made = Desk()
+    return made
 
 
 def test_a_cell_is_looked_at(web: Any, desk: Desk) -> None:

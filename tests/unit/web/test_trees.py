@@ -12,7 +12,7 @@ from arboleda.bt_xml.editing.errors import EditError
 from arboleda.plant_file import loader
 from arboleda.web import limits
 from arboleda.web.access.auth import Role
-from arboleda.web.plant_api import PlantApi
+from arboleda.web.routes import trees
 
 from ...in_process import Caller
 from ...web_plant import Plant
@@ -24,12 +24,6 @@ class TreePlant(Plant):
     """Plant with a tree, which answers about trees as every plant does."""
 
     model = loader.load(OWN_TREE)
-    tree_files, palette, drawn = PlantApi.tree_files, PlantApi.palette, PlantApi.drawn
-
-    def copied(self, cell: str, recipe: str, name: str) -> str:
-        if name == recipe:
-            raise EditError(f"there is a recipe '{name}' already")
-        return f"{name} does in {cell} what {recipe} does"
 
 
 @pytest.fixture
@@ -108,7 +102,13 @@ def test_text_that_is_no_tree_and_a_cell_that_is_not_there_are_told(web: Caller,
     assert answer.status_code == 422 and "there are cell" in answer.json()["sentence"]
 
 
-def test_a_recipe_in_python_is_given_as_a_tree(web: Caller) -> None:
+def test_a_recipe_in_python_is_given_as_a_tree(web: Caller, monkeypatch: pytest.MonkeyPatch) -> None:
+    def copied(_model: object, cell: str, recipe: str, name: str) -> str:
+        if name == recipe:
+            raise EditError(f"there is a recipe '{name}' already")
+        return f"{name} does in {cell} what {recipe} does"
+
+    monkeypatch.setattr(trees.desk, "copied", copied)
     copy = {"cell": "hall", "recipe": "fetch"}
     made = post(web, "copy", **copy, name="by_tree").json()
     assert made == {"text": "by_tree does in hall what fetch does"}

@@ -8,6 +8,7 @@ import pytest
 
 from arboleda.web.access.auth import Role
 from arboleda.web.desks.draft import DraftRefused
+from arboleda.web.desks.versions import VersionsApi
 
 LIST = {"at_work": {"number": None, "at": "2026"}, "versions": [], "cells": []}
 LIST |= {"restart": {"by": "", "can": True}}
@@ -39,8 +40,8 @@ class Kept:
 
 @pytest.fixture
 def kept(plant: Any) -> Kept:
-    plant.versions = Kept()
-    return plant.versions
+    plant.offered[VersionsApi] = made = Kept()
+    return made
 
 
 def test_they_are_listed_also_for_viewers(open_to_all: Any, kept: Kept) -> None:
@@ -78,5 +79,5 @@ def test_a_wrong_request_is_refused(web: Any, kept: Kept, number: str, body: dic
 
 
 def test_a_plant_without_a_file_has_none(web: Any, plant: Any) -> None:
-    plant.versions = None
+    plant.offered.pop(VersionsApi, None)
     assert web.get("/api/versions").status_code == 404

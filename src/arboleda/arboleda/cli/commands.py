@@ -15,16 +15,17 @@ from typing import Any, NamedTuple
 import typer
 
 from arboleda.host.packages import entry_points
-from arboleda.model.errors import StartError
+from arboleda.model.outside import quoted
+from arboleda.model.packages import MISSING, PackageMissing
 from arboleda.model.sentence import Phrase
 from arboleda.views.verb_words import ABOUT
 
+from .language import say
 from .loading import loading
 
 GROUP = "arboleda.commands"
-NOT_INSTALLED = Phrase(
-    "cli.not_installed",
-    "{command} is part of a package that is not installed: {python} -m pip install 'arboleda[{package}]'",
+LEFT_OUT = Phrase(
+    "cli.left_out", "the commands of the installed package {package} are left out, as it does not load: {why}"
 )
 OF_PACKAGES = {
     "conformance": "boards",
@@ -143,7 +144,10 @@ def commands() -> Mapping[str, Command]:
     """The commands of Arboleda and of other packages, by name; of two with one name ours is taken."""
     found: dict[str, Command] = {}
     for each in entry_points(GROUP):
-        found = {**each.load(), **found}
+        try:
+            found = {**each.load(), **found}
+        except Exception as error:  # noqa: BLE001 - whatever a package does, the other commands are there
+            typer.echo(say(LEFT_OUT(package=each.name, why=quoted(str(error)))), err=True)
     return {**found, **OURS}
 
 
@@ -169,12 +173,9 @@ class LoadedCommands(Mapping[str, Any]):
 
 
 def _known(name: str) -> Command:
-    """A command; StartError if its package is not installed, KeyError if there is no such command."""
+    """A command; PackageMissing if its package is not installed, KeyError if there is no such command."""
     if name not in commands() and name in OF_PACKAGES:
-        from arboleda.runtime import invocation
-
-        package = OF_PACKAGES[name]
-        raise StartError(NOT_INSTALLED(command=name, python=invocation.python(), package=package))
+        raise PackageMissing(MISSING(what=name, package=OF_PACKAGES[name]))
     return commands()[name]
 
 

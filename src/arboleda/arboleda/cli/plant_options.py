@@ -18,7 +18,7 @@ from .remote_plant import RemotePlant
 
 if TYPE_CHECKING:
     from arboleda.model.plant_model import PlantModel
-    from arboleda.store.postgres.leadership import Leadership
+    from arboleda.store.leadership import Leadership
     from arboleda.store.task_rows import History
 
 LONGEST = 500  # characters of a line

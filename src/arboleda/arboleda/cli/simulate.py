@@ -11,7 +11,7 @@ from rich.text import Text
 from arboleda.campaigns.defaults import CYCLES, LEVEL, SEED, SEEDS
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_new, check_writable
-from arboleda.runtime.stores import refuse_without_library
+from arboleda.runtime.standby.postgres import refuse_without_library
 from arboleda.simulator.levels import CRASHES, LEVELS
 
 from .language import language, say

@@ -9,7 +9,7 @@ import typer
 
 from arboleda.model.errors import StartError
 from arboleda.runtime.state import state_root
-from arboleda.runtime.stores import refuse_without_library
+from arboleda.runtime.stores import leaders_of
 from arboleda.runtime.web_options import WebOptions
 from arboleda.web.access.names import listen_address, public_origin
 
@@ -129,10 +129,7 @@ def _find(addresses: list[str], store: str, file: Path | None) -> Find:
     known = {} if file is None else endpoints.tokens_of(file)
     found = [endpoints.named(addresses)] if addresses else []
     if store:
-        refuse_without_library()
-        from arboleda.store.postgres.leaders import Leaders
-
-        found.append(endpoints.of_database(Leaders(store)))
+        found.append(endpoints.of_database(leaders_of(store)))
     if not found:
         found.append(endpoints.of_this_machine)
     return endpoints.with_tokens(lambda: [place for find in found for place in find()], known)

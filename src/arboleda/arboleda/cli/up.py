@@ -22,6 +22,7 @@ from arboleda.plant_file import loader
 from arboleda.plant_file.versions import Versions
 from arboleda.runtime import invocation
 from arboleda.runtime.alarm_options import alarm_options
+from arboleda.runtime.demo_options import DemoOptions
 from arboleda.runtime.state import find_running, holder
 from arboleda.runtime.web_options import WebOptions
 from arboleda.web.access.names import DEFAULT_PORT
@@ -126,7 +127,8 @@ def up(
         usual_port=before or DEFAULT_PORT,
     )
     options = _options(broker, broker_host, broker_users, shown, rate, state, store, web, recording)
-    options = replace(options, groot2=groot2, demo=demo, plant_file=plant)
+    wanted = (*options.of_parts, DemoOptions()) if demo else options.of_parts
+    options = replace(options, groot2=groot2, of_parts=wanted, plant_file=plant)
     _run(model, tasks or [], options, boards=boards, ros=ros, lan=ros_lan, stay=True, standby=standby)
 
 
@@ -269,7 +271,7 @@ def _options(
         broker_tls=shown.by_broker,
         notes=shown.notes,
         credentials=login(),
-        alarms=alarm_options(),
+        of_parts=(alarm_options(),),
         rate=rate,
         state_dir=state,
         store=store,
@@ -291,14 +293,13 @@ def _run(
     patience_s: float | None = None,
 ) -> None:
     from arboleda.runtime.build import OF_BOARDS, PARTS, build
-    from arboleda.runtime.standby.process import take_over
 
     from . import session
 
     boards = boards or (Boards.REAL if options.broker_users else Boards.VIRTUAL)
     if boards is not Boards.VIRTUAL and options.rate != 1.0:
         raise typer.BadParameter(say(RATE_IS_VIRTUAL()))
-    if boards is not Boards.VIRTUAL and options.demo:
+    if boards is not Boards.VIRTUAL and options.of(DemoOptions) is not None:
         raise typer.BadParameter(say(DEMO_IS_VIRTUAL()))
     is_virtual = boards in (Boards.VIRTUAL, Boards.LINUX)
     if is_virtual:
@@ -320,6 +321,7 @@ def _run(
     )
     parts, console = set(PARTS) - left_out, Console(highlight=False)
     if standby:
+        from arboleda.runtime.standby.process import take_over  # what waits to lead, no other start needs
 
         def again() -> tuple[PlantModel, Recording | None]:
             read = loader.load_recorded(options.plant_file)

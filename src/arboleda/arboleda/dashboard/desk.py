@@ -16,6 +16,8 @@ from arboleda.model.messages import Outcome, Verb
 from arboleda.model.sentence import in_json
 from arboleda.store.task_rows import PAGE
 from arboleda.web.access.auth import SUBMIT, allowed
+from arboleda.web.desks.demonstration import DemonstrationApi
+from arboleda.web.desks.faults import FaultsApi
 
 from . import demo, fault_form, outcomes
 from .feed import Feed
@@ -52,7 +54,9 @@ class Desk(OpenPage):
         elif act == SUBMIT:
             await self._submit(of)
         elif act == demo.END:
-            self._plant.end_demo()
+            demonstration = self._plant.ask(DemonstrationApi)
+            if demonstration is not None:
+                demonstration.end()
             self.say(self._words("demo.ended"), good=True)
         elif act in (fault_form.BEGIN, fault_form.END):
             await self._provoke(act, of, more)
@@ -65,7 +69,7 @@ class Desk(OpenPage):
 
     async def _provoke(self, act: str, of: str, more: object) -> None:
         """Have a fault begin at a virtual device, or end the one of this number."""
-        desk, wanted = self._plant.faults, more if isinstance(more, dict) else {}
+        desk, wanted = self._plant.ask(FaultsApi), more if isinstance(more, dict) else {}
         kind, seconds = str(wanted.get("kind", "")), wanted.get("seconds")
         if desk is None or not (kind if act == fault_form.BEGIN else of.isdecimal()):
             return

@@ -7,6 +7,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 
 from arboleda.web.access.auth import require
+from arboleda.web.desks.make import MakeApi
 from arboleda.web.schema.bodies import FindingLines
 from arboleda.web.schema.queries import read_body
 
@@ -23,7 +24,7 @@ def serve(server: FastAPI, plant: PageApi) -> None:
 
     async def findings(request: Request) -> JSONResponse:
         require(request.scope["arboleda.role"], MAY)
-        make = plant.make
+        make = plant.ask(MakeApi)
         if make is None:
             raise HTTPException(404, NO_DRAFT)
         asked = read_body(await request.body(), FindingLines)

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import time
-from typing import Annotated
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated
 
 from fastapi import FastAPI, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse, Response
 
+from arboleda.model.packages import FLEET
 from arboleda.oee.rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
 from arboleda.web.access.auth import Role
+from arboleda.web.desks.make import MakeApi
+from arboleda.web.desks.oee import OeeApi
+from arboleda.web.desks.versions import VersionsApi
+from arboleda.web.missing import missing
 
 from . import (
     demo,
@@ -45,6 +51,9 @@ from .toolkit import Client, app, ui
 from .twin import pane, window
 from .twin.show import Show
 from .wording import words
+
+if TYPE_CHECKING:
+    from .past.tried import TriedPlants
 
 PARTS: Parts = {
     "cells": trees.build,
@@ -131,10 +140,17 @@ class Tried:
 
     def last(self) -> tuple[PastSide, Stills]:
         """The tryout and its drawings; an ArboledaError says that there is none."""
-        side = self._plant.tried()
+        desk = self._plant.ask(MakeApi)
+        side = self._plants.last(None if desk is None else desk.tried())
         if self._known is None or self._known[0] is not side:
             self._known = side, Stills()
         return self._known
+
+    @cached_property
+    def _plants(self) -> TriedPlants:
+        from .past.tried import TriedPlants  # slow to load, and only needed for a record
+
+        return TriedPlants()
 
 
 def _serve_tasks(server: FastAPI, plant: PageApi, feed: Feed) -> None:
@@ -153,11 +169,14 @@ def _serve_tasks(server: FastAPI, plant: PageApi, feed: Feed) -> None:
 
     async def figures(request: Request, hours: Hours = 24.0) -> JSONResponse:
         query = OeeQuery(since_s=time.time() - hours * 3600)
-        rows = await run_in_threadpool(plant.oee, query)
+        desk = plant.ask(OeeApi)
+        if desk is None:
+            raise missing(FLEET)
+        rows = await run_in_threadpool(desk.oee, query)
         return JSONResponse(oee.face(rows, words(language_of(request))))
 
     async def versions_kept(request: Request) -> Response:
-        desk = plant.versions
+        desk = plant.ask(VersionsApi)
         listed = None if desk is None else await run_in_threadpool(desk.listed)
         if listed is None:
             return Response(status_code=404)

@@ -8,7 +8,7 @@ from arboleda.web.plant_api import PlantApi
 
 if TYPE_CHECKING:  # without a record, the libraries that read one are not needed
     from .past.past import Past
-    from .past.side import PastSide, Start
+    from .past.side import Start
 
 
 Layout = dict[str, Any]
@@ -35,20 +35,11 @@ class PageApi(PlantApi, Protocol):
     def starts(self) -> list[Start]:
         """The starts of which there are records, the last first; it waits for the disk, too."""
 
-    def tried(self) -> PastSide:
-        """The last tryout of the draft; an ArboledaError says that there is none. It reads files."""
-
-    def proof(self) -> str | None:
-        """The page on the last proof of the draft, as one HTML file; None if there is none."""
-
     def links(self) -> Links:
         """`broker` {address, connected} or None, `ros` {notes} or None, `refused` {robot: {count, last}},
         `standbys` [{host, url}], whose url is "" where it leads there from no other host, `demo`: whether a
         demonstration gives tasks now, `memory` {typical_s, worst_s, is_slow}: how long commits take,
         `faults` that were provoked and go on {number, robot, kind, about, left_s}."""
-
-    def end_demo(self) -> None:
-        """Have the demonstration give no more tasks, of a plant whose layout has `demo`."""
 
     def past_acts(self) -> list[dict[str, Any]]:
         """The acts of operators before this start, oldest first: {at (unix s), scope, sentence}."""

@@ -7,6 +7,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, Response
 
 from arboleda.web.access.auth import require
+from arboleda.web.desks.make import MakeApi
 
 from .page_api import PageApi
 from .reports import POLICY
@@ -21,9 +22,11 @@ def serve(server: FastAPI, plant: PageApi) -> None:
 
     async def proof(request: Request) -> Response:
         require(request.scope["arboleda.role"], MAY)
-        content = await run_in_threadpool(plant.proof)
-        if content is None:
+        make = plant.ask(MakeApi)
+        file = None if make is None else await run_in_threadpool(make.proof_page)
+        if file is None:
             raise HTTPException(404, NONE)
+        content = await run_in_threadpool(file.read_text, "utf-8")
         return HTMLResponse(content, headers={"content-security-policy": POLICY})
 
     server.add_api_route(PATH, proof, include_in_schema=False)

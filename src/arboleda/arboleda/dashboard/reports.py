@@ -9,7 +9,10 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, Response
 
 from arboleda.model.errors import ArboledaError
+from arboleda.model.packages import PROOFS
 from arboleda.web.access import login
+from arboleda.web.desks.reports import ReportsApi
+from arboleda.web.missing import missing
 
 from .page_api import PageApi
 from .shell import language_of
@@ -30,7 +33,10 @@ def serve(server: FastAPI, plant: PageApi) -> None:
     async def report(request: Request, task: str = "") -> Response:
         wording = words(language_of(request))
         try:
-            content = await run_in_threadpool(plant.report, task)
+            desk = plant.ask(ReportsApi)
+            if desk is None:
+                raise missing(PROOFS)
+            content = await run_in_threadpool(desk.report, task)
         except ArboledaError as error:
             return _note(wording, task, wording.say(error.sentence), status=404)
         if content is None:

@@ -4,21 +4,39 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Mapping
 from functools import lru_cache
 from importlib import metadata
+from typing import Any
 
 Folders = tuple[tuple[str, int], ...]  # each with the time of its last change
-GROUPS = 8  # that are remembered
 
 
 def entry_points(group: str) -> metadata.EntryPoints:
     """The entry points of a group; who installs or removes a package changes the folder that it is in."""
-    return _entry_points(group, tuple((each, _changed_at(each)) for each in sys.path))
+    found: metadata.EntryPoints = _all(tuple((each, _changed_at(each)) for each in sys.path)).select(
+        group=group
+    )
+    return found
 
 
-@lru_cache(maxsize=GROUPS)
-def _entry_points(group: str, _: Folders) -> metadata.EntryPoints:
-    return metadata.entry_points(group=group)
+def registered(group: str, shipped: Mapping[str, str]) -> list[metadata.EntryPoint]:
+    """What is registered under a group, by name: the `shipped` rows, which are no packages of their own yet,
+    and the entry points of installed packages. Nothing of it is loaded."""
+    rows = [metadata.EntryPoint(name, value, group) for name, value in shipped.items()]
+    others = [each for each in entry_points(group) if each.name not in shipped]
+    return sorted((*rows, *others), key=lambda each: each.name)
+
+
+def package_of(point: metadata.EntryPoint) -> str:
+    """The package that registers this, under its own name or as PACKAGE.WHAT."""
+    return point.name.partition(".")[0]
+
+
+@lru_cache(maxsize=1)
+def _all(_: Folders) -> Any:
+    """Every entry point: reading those of one group reads the files of all packages as well."""
+    return metadata.entry_points()
 
 
 def _changed_at(folder: str) -> int:

@@ -6,6 +6,7 @@ ArboledaError            one sentence for a person; never shown as a traceback
 ├── IllegalTransition    a state table was fed a pair it does not list
 ├── ConfigError          a plant file or a robot file, all problems at once
 ├── PayloadError         bytes or a message that break the wire contract
+├── Refused              something that is not done as things are, such as while somebody else edits
 └── StartError           a part of the plant cannot start (port taken, library missing, ...)
 """
 
@@ -44,6 +45,10 @@ class ConfigError(ArboledaError):
 
 class PayloadError(ArboledaError):
     """A message from outside breaks the contract and is refused whole."""
+
+
+class Refused(ArboledaError):
+    """What is asked for is not done as things are, and nothing was changed; the sentence says why."""
 
 
 class StartError(ArboledaError):

@@ -25,7 +25,8 @@ from arboleda.model.plant_model import (
 from arboleda.model.recipe import Recipe
 from arboleda.model.recording import Limits, Recording
 from arboleda.recipes.storage import RECIPES
-from arboleda.store.address import has_password, is_address
+from arboleda.store.address import has_password
+from arboleda.store.schemes import objection
 
 from . import drivers, own_kinds, own_recipes, user_file
 from .assistant_limits import assistant_limits
@@ -312,8 +313,9 @@ def _opcua_view(document: Document) -> OpcUaView | None:
 
 def _store(document: Document, address: str) -> str:
     """The database of the plant's memory; problems do not repeat it, for there may be a password in it."""
-    if address and not is_address(address):
-        document.problem(("store",), "must be postgresql://USER@HOST:PORT/DATABASE")
+    wrong = objection(address) if address else ""
+    if wrong:
+        document.problem(("store",), wrong)
     elif has_password(address):
         document.problem(("store",), "has a password in it; leave it to PGPASSWORD or ~/.pgpass")
     return address

@@ -20,7 +20,7 @@ from .state import Running, find_running, running_plants
 if TYPE_CHECKING:  # slow to load, and only needed to ask a plant
     import ssl
 
-    from arboleda.store.postgres.leaders import Leaders
+    from arboleda.store.leadership import Leaders
 
 LARGEST = 65_536  # bytes of a file of tokens
 LINE = re.compile(r"(\S+)\s+(\S+)")

@@ -8,13 +8,13 @@ from concurrent.futures import Future
 from concurrent.futures import TimeoutError as NotInTime
 from functools import cached_property
 from itertools import count
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Event, FaultByHand
 from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.model.sentence import Phrase, Sentence
-from arboleda.simulator.fault_bench import MishapBegins, MishapEnds, MishapNote, MishapOver
+from arboleda.simulator.fault_bench import FaultBench, MishapBegins, MishapEnds, MishapNote, MishapOver
 from arboleda.simulator.mishaps import MISHAPS, Mishap
 from arboleda.web.desks.faults import BegunFault, FaultOffer, FaultRefused, FaultsApi
 
@@ -35,6 +35,7 @@ NO_KIND = Phrase("fault.no_kind", "{kind} cannot be provoked at {robot}; what ca
 TOO_LONG = Phrase("fault.seconds", "a fault lasts from {least:g} s to {most:g} s, not {seconds:g} s")
 AN_INSTANT = Phrase("fault.an_instant", "{kind} is over at once: leave out for how long")
 NO_NUMBER = Phrase("fault.no_number", "no fault {number} goes on now")
+Seen = TypeVar("Seen")
 NO_ANSWER = Phrase("fault.no_answer", "the virtual devices do not answer; the log says why")
 
 
@@ -48,8 +49,8 @@ class VirtualDevices(Protocol):
     def befall(self, event: Any) -> None:
         """Have something happen to them; from any thread."""
 
-    def begun(self) -> tuple[float, Sequence[MishapNote]]:
-        """The time on their clock, and the faults that go on."""
+    def read(self, look: Callable[[Any], Seen]) -> tuple[float, Seen]:
+        """The time on their clock, and what is seen at their bench."""
 
 
 class FaultDesk(FaultsApi):
@@ -90,7 +91,7 @@ class FaultDesk(FaultsApi):
     def begun(self) -> Sequence[BegunFault]:
         if self._devices is None:
             return []
-        now, notes = self._devices.begun()
+        now, notes = self._devices.read(_going_on)
         return [self._fault(note, now) for note in notes]
 
     def begin(self, kind: str, robot: str, seconds: float | None) -> BegunFault:
@@ -169,6 +170,10 @@ class FaultDesk(FaultsApi):
             about=MISHAPS[note.name].sentence,
             left_s=left_s,
         )
+
+
+def _going_on(bench: FaultBench) -> list[MishapNote]:
+    return list(bench.begun.values())
 
 
 def _sentence(note: MishapNote, what: Sentence) -> Sentence:

@@ -3,39 +3,28 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from arboleda.model.errors import StartError
+from arboleda.store.leadership import Leaders, Leadership
 from arboleda.store.plant_memory import PlantMemory
+from arboleda.store.schemes import databases
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import History, TaskHistory
 
-from . import invocation
 from .state import STORE
-
-if TYPE_CHECKING:
-    from arboleda.store.postgres.leadership import Leadership
 
 
 def memory_of(store: str, state: Path, plant: str) -> PlantMemory:
     """The memory of a plant: in the database `store`, or in `state` if that is ""; StartError."""
-    if not store:
-        return Store(state / STORE, plant)
-    refuse_without_library()
-    from arboleda.store.postgres.memory import PostgresMemory
-
-    return PostgresMemory(store, plant)
+    return databases(store).memory(store, plant) if store else Store(state / STORE, plant)
 
 
 def history_of(store: str, state: Path, plant: str, *, is_checked: bool = False) -> History:
     """The reader of the tasks there. A file is not checked for its owner if `plant` is "", nor for damage if
     it `is_checked` already."""
-    if not store:
-        return TaskHistory(state / STORE, plant, is_checked=is_checked)
-    refuse_without_library()
-    from arboleda.store.postgres.history import PostgresHistory
-
-    return PostgresHistory(store, plant)
+    if store:
+        return databases(store).history(store, plant)
+    return TaskHistory(state / STORE, plant, is_checked=is_checked)
 
 
 def leadership_of(store: str, plant: str) -> Leadership:
@@ -45,18 +34,9 @@ def leadership_of(store: str, plant: str) -> Leadership:
             "This plant's memory is a file, which one process of one host has: give it a database with"
             " `store:` in its plant file, or with --store."
         )
-    refuse_without_library()
-    from arboleda.store.postgres.leadership import Leadership
-
-    return Leadership(store, plant)
+    return databases(store).leadership(store, plant)
 
 
-def refuse_without_library() -> None:
-    """Raise StartError if the extra is not installed."""
-    try:
-        import psycopg  # noqa: F401 - it is an extra
-    except ImportError as error:
-        raise StartError(
-            "A store in PostgreSQL needs the library psycopg: type"
-            f" `{invocation.python()} -m pip install 'arboleda[postgres]'` ({error})"
-        ) from error
+def leaders_of(store: str) -> Leaders:
+    """The leaders of all plants of a database; StartError."""
+    return databases(store).leaders(store)

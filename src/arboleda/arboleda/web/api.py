@@ -22,23 +22,23 @@ from starlette.routing import BaseRoute, Match
 from starlette.types import Receive, Scope, Send
 
 from arboleda import __version__
-from arboleda.bt_xml.editing.errors import EditError
 from arboleda.client.protocol import COMMAND_LINE
 from arboleda.core.leaving import Unkept
-from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, TextError
+from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, Refused, TextError
 from arboleda.model.messages import Outcome, Verb
 from arboleda.model.outside import plain, quoted
+from arboleda.model.packages import PackageMissing
 from arboleda.model.verbs import Arguments, from_text
 from arboleda.store.task_rows import COMMAND, HTTP, TaskRow, answers_of, choice_of, table, unchecked_of
 
 from . import limits, stream
 from .access import login
 from .access.auth import SUBMIT, Forbidden, require
-from .desks.draft import DraftRefused
-from .desks.faults import FaultRefused
 from .limits import LATER_S
+from .missing import refuse_path
 from .plant_api import PlantApi
 from .request import METRICS, is_api
+from .routes import LeaveOut, installed
 from .routes import routers as looks
 from .schema import openapi
 from .schema.bodies import (
@@ -64,6 +64,7 @@ class NotFound(BaseRoute):
 
     def __init__(self, routes: Sequence[BaseRoute]) -> None:
         self._routes = tuple(routes)
+        self._packages = installed()
 
     def matches(self, scope: Scope) -> tuple[Match, Scope]:
         if scope["type"] != "http":
@@ -75,6 +76,7 @@ class NotFound(BaseRoute):
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         methods = ", ".join(scope["arboleda.methods"])
         if not methods:
+            refuse_path(scope["path"], self._packages)
             raise HTTPException(404, "There is nothing here; /api/docs lists what there is.")
         raise HTTPException(405, f"Here one can {methods} only.", {"allow": methods})
 
@@ -98,14 +100,7 @@ Where the plant is open to a network every request carries a token (Authorizatio
 that stands by for the plant answers 307 with the address of the one that leads it, to which a client shows
 its token itself, or 503 with Retry-After. Who names a plant in a header Arboleda-Plant is refused with 421
 where another one answers. The stop is a stop in software and no safety function."""
-STATUS = {
-    TextError: 422,
-    PayloadError: 422,
-    EditError: 422,
-    Forbidden: 403,
-    DraftRefused: 409,
-    FaultRefused: 409,
-}
+STATUS = {TextError: 422, PayloadError: 422, Forbidden: 403, Refused: 409, PackageMissing: 501}
 OTHERS: Answers = {
     "default": {"model": Sentence, "description": "401 without a token, 413 too long, 429 too often, ..."}
 }
@@ -128,11 +123,16 @@ UNKNOWN: Answers = {404: {"model": Sentence, "description": "There is no such ta
 
 
 def make_app(
-    side: PlantApi, *, streams: int = limits.STREAMS, counts: Callable[[], bytes] | None = None
+    side: PlantApi,
+    *,
+    streams: int = limits.STREAMS,
+    counts: Callable[[], bytes] | None = None,
+    leave_out: LeaveOut | None = None,
 ) -> FastAPI:
     """An application with the routes; pages may be mounted on it afterwards. It wants a Guard before it.
 
     At most so many `streams` of changes are open at a time; `counts` is what Prometheus gets, in its format.
+    `leave_out` is told of a package whose routes break.
     """
     app = openapi.DescribedApp(
         title="Arboleda",
@@ -144,7 +144,8 @@ def make_app(
         redirect_slashes=False,
     )
     answer_in_sentences(app)
-    routers = [routes(side), *looks(side), stream.routes(side, streams), login.routes(), openapi.routes(app)]
+    routers = [routes(side), *looks(side, leave_out), stream.routes(side, streams)]
+    routers += [login.routes(), openapi.routes(app)]
     routers += [_metrics(counts)] if counts is not None else []
     for router in routers:
         app.include_router(router, responses=OTHERS)
@@ -354,7 +355,7 @@ async def refuse(_request: Request, error: Exception) -> JSONResponse:
     if isinstance(error, HTTPException):
         return JSONResponse({"sentence": error.detail}, status_code=error.status_code, headers=error.headers)
     headers = {"retry-after": LATER_S} if isinstance(error, QueueFull) else None
-    status = STATUS.get(type(error), 503) if isinstance(error, ArboledaError) else 503
+    status = next((STATUS[each] for each in type(error).__mro__ if each in STATUS), 503)
     body = {"sentence": error.sentence if isinstance(error, ArboledaError) else str(error)}
     return PlainJson(explained(body), status_code=status, headers=headers)
 

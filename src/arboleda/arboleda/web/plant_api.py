@@ -7,26 +7,16 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from typing import Any, Protocol, TypeVar
 
-from arboleda.bt_xml.editing import desk
-from arboleda.bt_xml.editing.operations import Operation
 from arboleda.core.plant import Plant
 from arboleda.core.text import spelled
 from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.verbs import Arguments
-from arboleda.oee.figures import Oee
-from arboleda.oee.rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.views import forms, view
 
-from .desks.draft import DraftApi
-from .desks.faults import FaultsApi
-from .desks.make import MakeApi
-from .desks.proposals import ProposalsApi
-from .desks.teach import TeachApi
-from .desks.versions import VersionsApi
-from .languages import spoken, texts
+from .offers import Thing
 
 Snapshot = dict[str, Any]
 Found = TypeVar("Found")
@@ -63,34 +53,8 @@ class PlantApi(Protocol):
         """The text of a task given by its values; raises TextError if it is no task of this plant."""
         return spelled(self.model, cell=cell, recipe=recipe, values=values, id=id)
 
-    @property
-    def draft(self) -> DraftApi | None:
-        """The draft of its files; None where it has no plant file that could be changed."""
-        return None
-
-    @property
-    def teach(self) -> TeachApi | None:
-        """The teaching of its cells; None where that is not done from here."""
-        return None
-
-    @property
-    def make(self) -> MakeApi | None:
-        """Its draft as a plant; None where it has no draft."""
-        return None
-
-    @property
-    def faults(self) -> FaultsApi | None:
-        """The faults that can be provoked at its virtual devices; None where that is not done from here."""
-        return None
-
-    @property
-    def versions(self) -> VersionsApi | None:
-        """The versions of its files; None where it has no plant file that could be changed."""
-        return None
-
-    @property
-    def proposals(self) -> ProposalsApi | None:
-        """The proposals of assistants; None where it has no plant file that could be changed."""
+    def ask(self, kind: type[Thing]) -> Thing | None:
+        """What a part of this process offers of that kind, as `DraftApi`; None where no part does."""
         return None
 
     @abstractmethod
@@ -100,32 +64,6 @@ class PlantApi(Protocol):
     @abstractmethod
     def history(self, query: TaskQuery) -> list[TaskRow]:
         """Tasks of this and earlier starts; waits for the disk."""
-
-    @abstractmethod
-    def report(self, task: str) -> str | None:
-        """The report on a failed task, as one HTML file; None: it is being written now, ask again. It waits
-        for the disk; an ArboledaError says why there is none."""
-
-    @abstractmethod
-    def oee(self, query: OeeQuery) -> list[Oee]:
-        """The OEE of its cells, in the order of the plant file; waits for the disk."""
-
-    def tree_files(self) -> list[dict[str, Any]]:
-        """The files of trees that are recipes of this plant: `recipe`, `file`, `cells`, `text`."""
-        return desk.tree_files(self.model)
-
-    def palette(self, cell: str, language: str) -> list[dict[str, Any]]:
-        """The nodes that a tree can have in a cell; raises PayloadError where there is no such cell."""
-        return desk.palette(self.model, cell, texts(spoken([language]), "nodes"))
-
-    def drawn(self, cell: str, text: str, operation: Operation | None = None) -> dict[str, Any]:
-        """A file of trees as an editor shows it in a cell, after an operation on it; raises EditError where
-        that cannot be done. It computes a while, and asks nothing of the plant that runs."""
-        return desk.drawn(self.model, cell, text, operation)
-
-    def copied(self, cell: str, recipe: str, name: str) -> str:
-        """A recipe in Python as the text of a tree `name`, as `drawn` raises and computes."""
-        return desk.copied(self.model, cell, recipe, name)
 
     def promises(self, text: str) -> list[dict[str, Any]]:
         """The promise of each cell that a task text names; raises TextError or QueueFull."""

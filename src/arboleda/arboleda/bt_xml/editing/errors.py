@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from arboleda.model.errors import ArboledaError
+from arboleda.model.errors import PayloadError
 
 
-class EditError(ArboledaError):
+class EditError(PayloadError):
     """Error: the operation cannot be done on this text; nothing was changed."""

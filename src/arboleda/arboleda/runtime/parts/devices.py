@@ -6,27 +6,34 @@ import threading
 from collections.abc import Callable, Collection
 from contextlib import suppress
 from itertools import count
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 from arboleda.adapters import clock
 from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.model.plant_model import PlantModel
-from arboleda.sim.devices import Alarm, Devices, FromBoard, Reboot, ToBoard
-from arboleda.simulator.fault_bench import FaultBench, MishapBegins, MishapEnds, MishapNote, MishapOver
+from arboleda.sim.devices import Devices, FromBoard, ToBoard
 from arboleda.wire.payloads import Presence, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
-from ..loop import Loop
+from ..loop import Loop, Machine
 from .broker_survey import BrokerSurvey
 from .part import BrokerAddress, Crash, not_sent
+
+Seen = TypeVar("Seen")
+
+
+class DeviceBench(Protocol):
+    """What makes of virtual boards the machine that runs: one that does more to them than let time pass."""
+
+    def __call__(self, model: PlantModel, devices: Devices, *, now: float) -> Machine[Any, Any]: ...
 
 
 class DevicesPart:
     """The virtual boards in one loop, each with an MQTT client and a last will of its own.
 
     `joined` is called when they go to the broker: before that, a command might reach the boards of another
-    plant.
+    plant. A `bench` may take more events than they, and have messages of its own, which are `noted`.
     """
 
     def __init__(
@@ -39,6 +46,7 @@ class DevicesPart:
         scout: bool,
         joined: Callable[[], None],
         elsewhere: Collection[str] = (),
+        bench: DeviceBench | None = None,
     ) -> None:
         self._joined = joined
         self._broker = broker
@@ -46,14 +54,16 @@ class DevicesPart:
         self._scout = scout
         self._version = model.mqtt_version
         boot_ids = count(first_boot).__next__
-        self.noted: Callable[[MishapNote | MishapOver], None] = _ignore  # called in the loop's thread
+        self.noted: Callable[[Any], None] = _ignore  # called in the loop's thread
         now = clock.seconds()
         self._devices = Devices(model, now=now, boot_ids=boot_ids, elsewhere=elsewhere)
-        bench = FaultBench(model, self._devices, now=now)
+        machine = self._devices if bench is None else bench(model, self._devices, now=now)
         self._clients: dict[str, MqttClient] = {}
         self._lock = threading.Lock()
         self._lookout: BrokerSurvey | None = None
-        self.loop: Loop[Any, Any] = Loop("devices", bench, self._send, on_crash=crash, on_send_error=not_sent)
+        self.loop: Loop[Any, Any] = Loop(
+            "devices", machine, self._send, on_crash=crash, on_send_error=not_sent
+        )
 
     def start(self) -> None:
         """Join the broker; with `scout`, only after it was seen that no real board has these names."""
@@ -78,13 +88,14 @@ class DevicesPart:
         """The boards, by MQTT name."""
         return tuple(self._devices.boards)
 
-    def befall(self, fault: Reboot | Alarm | MishapBegins | MishapEnds) -> None:
-        """Have something go wrong with a board, or be over; from any thread."""
+    def befall(self, fault: object) -> None:
+        """Have a Reboot or an Alarm befall a board, or what the bench takes; from any thread."""
         self.loop.post(fault)
 
-    def begun(self) -> tuple[float, list[MishapNote]]:
-        """The time, and the mishaps that go on; from any thread."""
-        return clock.seconds(), self.loop.read(lambda bench: list(bench.begun.values()))
+    def read(self, look: Callable[[Any], Seen]) -> tuple[float, Seen]:
+        """The time, and what is seen at the bench between two steps; from any thread."""
+        seen: Seen = self.loop.read(look)
+        return clock.seconds(), seen
 
     def _join(self) -> None:
         with self._lock:
@@ -113,8 +124,8 @@ class DevicesPart:
             client.publish(Publication(topic=topic(board, Channel.PRESENCE), payload=gone, retain=True))
         client.close()
 
-    def _send(self, message: FromBoard | MishapNote | MishapOver) -> None:
-        if isinstance(message, MishapNote | MishapOver):
+    def _send(self, message: Any) -> None:
+        if not isinstance(message, FromBoard):
             self.noted(message)
             return
         client = self._clients.get(message.board)
@@ -122,4 +133,4 @@ class DevicesPart:
             client.publish(message.publication)
 
 
-def _ignore(note: MishapNote | MishapOver) -> None: ...
+def _ignore(note: object) -> None: ...

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import threading
-import time
 from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
@@ -14,48 +13,24 @@ from arboleda.model.errors import QueueFull
 from arboleda.model.messages import Event, OperatorAnswer, TaskChanged, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.verbs import Arguments
-from arboleda.oee.figures import Oee
-from arboleda.oee.rows import OeeQuery, figures
 from arboleda.store.task_rows import History, TaskQuery, TaskRow
 from arboleda.views import view
-from arboleda.web.desks.draft import DraftApi
-from arboleda.web.desks.faults import FaultsApi
-from arboleda.web.desks.make import MakeApi
-from arboleda.web.desks.proposals import ProposalsApi
-from arboleda.web.desks.teach import TeachApi
-from arboleda.web.desks.versions import VersionsApi
+from arboleda.web.offers import Offers, Thing
 from arboleda.web.plant_api import Found, PlantApi, Snapshot
 
-from ..teach_desk import TeachDesk
 from .orchestrator import GLANCE_S, Orchestrator
-from .reports import NO_RECORD, NoReport
 
 LOG = logging.getLogger(__name__)
 
 
 class LocalPlant(PlantApi):
-    """PlantApi of the plant in this process: its orchestrator, and the history of its tasks."""
+    """PlantApi of the plant in this process: its orchestrator, the history of its tasks, and
+    what its parts offer."""
 
-    def __init__(
-        self,
-        plant: Orchestrator,
-        history: History,
-        draft: DraftApi | None = None,
-        versions: VersionsApi | None = None,
-        make: MakeApi | None = None,
-        report: Callable[[str], str | None] | None = None,
-        proposals: ProposalsApi | None = None,
-        faults: FaultsApi | None = None,
-    ) -> None:
-        self._faults = faults
-        self._report = report
-        self._proposals = proposals
+    def __init__(self, plant: Orchestrator, history: History, offers: Offers | None = None) -> None:
         self._plant = plant
-        self._draft = draft
-        self._versions = versions
-        self._make = make
         self._history = history
-        self._teach = TeachDesk(lambda: plant.plant.model, self, draft)
+        self._offers = offers or Offers()
         self._watchers: tuple[Callable[[Snapshot], None], ...] = ()
         self._changing = threading.Lock()
 
@@ -72,47 +47,18 @@ class LocalPlant(PlantApi):
     def latest(self) -> Snapshot:
         return self._plant.snapshot()
 
-    @property
-    def draft(self) -> DraftApi | None:
-        return self._draft
-
-    @property
-    def teach(self) -> TeachApi:
-        return self._teach
+    def ask(self, kind: type[Thing]) -> Thing | None:
+        return self._offers.ask(kind)
 
     def post(self, event: Event) -> None:
         """Give the plant an event."""
         self._plant.hear(event)
-
-    @property
-    def make(self) -> MakeApi | None:
-        return self._make
-
-    @property
-    def faults(self) -> FaultsApi | None:
-        return self._faults
-
-    @property
-    def versions(self) -> VersionsApi | None:
-        return self._versions
-
-    @property
-    def proposals(self) -> ProposalsApi | None:
-        return self._proposals
 
     def find(self, task: str) -> dict[str, Any] | None:
         return self._plant.find(task)
 
     def history(self, query: TaskQuery) -> list[TaskRow]:
         return self._history.select(query)
-
-    def report(self, task: str) -> str | None:
-        if self._report is None:
-            raise NoReport(NO_RECORD())
-        return self._report(task)
-
-    def oee(self, query: OeeQuery) -> list[Oee]:
-        return figures(self._history, query, time.time(), [cell.name for cell in self.model.cells])
 
     def submit(self, text: str, asked_by: str, choice: str = "", version: str = "") -> Future[dict[str, Any]]:
         plain: Future[dict[str, Any]] = Future()

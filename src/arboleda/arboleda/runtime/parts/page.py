@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,14 +13,12 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.recorder.errors import NoRecord
-from arboleda.store.task_rows import History
 from arboleda.views import view
-from arboleda.web.desks.draft import DraftApi
+from arboleda.web.desks.demonstration import DemonstrationApi
 from arboleda.web.desks.faults import FaultsApi
-from arboleda.web.desks.proposals import ProposalsApi
-from arboleda.web.desks.versions import VersionsApi
+from arboleda.web.desks.make import MakeApi
 
-from ..make.bench import MakeBench
+from ..registry import Assembly
 from .local_plant import LocalPlant
 from .orchestrator import Orchestrator
 
@@ -30,47 +27,26 @@ if TYPE_CHECKING:  # slow to load, and only needed for a record
     from arboleda.dashboard.past.side import Start
 
     from .records import Records
-    from .tried import TriedPlant, TriedPlants
 
 NOT_YET = Phrase("record.not_yet", "There is no record of this start yet; try again in some seconds.")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Sources:
-    """The page's sources besides snapshots; each is called from the server's thread."""
-
-    links: Callable[[], dict[str, Any]]
-    positions: Callable[[], dict[str, Any]]
-    past_acts: Callable[[], list[dict[str, Any]]]
-    recorded: Path | None  # the state directory of a plant that writes a record
-    report: Callable[[str], str | None]
-    draft: DraftApi | None = None
-    versions: VersionsApi | None = None
-    make: MakeBench | None = None
-    faults: FaultsApi | None = None
-    proposals: ProposalsApi | None = None
-    end_demo: Callable[[], None] | None = None  # None: this start is no demonstration
 
 
 class PagePlant(LocalPlant):
     """PageApi of the plant in this process: LocalPlant with what only the page shows."""
 
-    def __init__(self, plant: Orchestrator, history: History, sources: Sources) -> None:
-        super().__init__(
-            plant,
-            history,
-            sources.draft,
-            sources.versions,
-            sources.make,
-            sources.report,
-            sources.proposals,
-            sources.faults,
-        )
-        self._drawn: tuple[PlantModel | None, dict[str, Any]] = None, {}
-        self._sources = sources
-        self.links = sources.links
-        self.positions = sources.positions
-        self.past_acts = sources.past_acts
+    def __init__(self, plant: Orchestrator, assembly: Assembly) -> None:
+        super().__init__(plant, assembly.holdings.history, assembly)
+        self._drawn: PlantModel | None = None
+        self._offered: tuple[bool, ...] = ()
+        self._layout: dict[str, Any] = {}
+        self._past_acts = assembly.holdings.past_acts
+        is_recorded = assembly.options.recording is not None
+        self._recorded_in = assembly.holdings.state.path if is_recorded else None
+        self.links = assembly.links
+        self.positions = plant.positions
+
+    def past_acts(self) -> list[dict[str, Any]]:
+        return self._past_acts
 
     def mount(self, app: FastAPI) -> None:
         """Put the page on the server's application."""
@@ -79,20 +55,19 @@ class PagePlant(LocalPlant):
         page.mount(app, self)
 
     def layout(self) -> dict[str, Any]:
-        model = self.model
-        if self._drawn[0] is not model:
+        model, faults = self.model, self.ask(FaultsApi)
+        demo, make = self.ask(DemonstrationApi), self.ask(MakeApi)
+        offered = demo is not None, make is not None, faults is not None
+        if self._drawn is not model or self._offered != offered:  # parts made after the page offer more
             beside = {
-                "recorded": self._sources.recorded is not None,
-                "demo": self._sources.end_demo is not None,
-                "draft": self._sources.make is not None,
-                "faults": [asdict(each) for each in self.faults.offers()] if self.faults else [],
+                "recorded": self._recorded_in is not None,
+                "demo": demo is not None,
+                "draft": make is not None,
+                "faults": [] if faults is None else [asdict(each) for each in faults.offers()],
             }
-            self._drawn = model, view.layout(model) | beside
-        return self._drawn[1]
-
-    def end_demo(self) -> None:
-        if self._sources.end_demo is not None:
-            self._sources.end_demo()
+            self._drawn, self._offered = model, offered
+            self._layout = view.layout(model) | beside
+        return self._layout
 
     def past(self, epoch: int | None = None) -> Past:
         return self._recorded.past(epoch)
@@ -104,31 +79,19 @@ class PagePlant(LocalPlant):
     def _recorded(self) -> Records:
         from .records import Records
 
-        return Records(self._own, self.layout())
-
-    def tried(self) -> TriedPlant:
-        make = self._sources.make
-        return self._tried.last(None if make is None else make.tried())
-
-    @cached_property
-    def _tried(self) -> TriedPlants:
-        from .tried import TriedPlants
-
-        return TriedPlants()
-
-    def proof(self) -> str | None:
-        file = None if self._sources.make is None else self._sources.make.proof_page()
-        return None if file is None else file.read_text("utf-8")
-
-    def _own(self) -> Path:
-        from arboleda.recorder import files
-
-        state, epoch = self._sources.recorded, self.snapshot()["epoch"]
-        found = files.parts_in(state / files.FOLDER) if state else []
-        parts = [part for part in found if part.epoch == epoch]
-        if not parts:
-            raise NoRecord(NOT_YET())
-        return parts[-1].path
+        state = self._recorded_in
+        return Records(lambda: _own_record(state, self.snapshot()["epoch"]), self.layout())
 
     def urdf(self, robot: str) -> str:
         return robot_urdf(self.model, robot)
+
+
+def _own_record(state: Path | None, epoch: int) -> Path:
+    """The last file of the record of this start; NoRecord where there is none yet."""
+    from arboleda.recorder import files
+
+    found = files.parts_in(state / files.FOLDER) if state else []
+    parts = [part for part in found if part.epoch == epoch]
+    if not parts:
+        raise NoRecord(NOT_YET())
+    return parts[-1].path

@@ -26,6 +26,21 @@ class BrokerAddress(Protocol):
     credentials: Credentials | None
 
 
+class Broker(BrokerAddress, Protocol):
+    """The broker of a plant, its own or another one; `secure` where it speaks TLS."""
+
+    secure: bool
+
+
+class PageAddress(Protocol):
+    """The server of this process: `port` is 0 before it listens."""
+
+    @property
+    def port(self) -> int: ...
+    def address_of(self, cell: str, task: str | None) -> str | None:
+        """The address at which a browser shows a cell, or a task of it; None if there is no page."""
+
+
 def not_sent(message: object, error: Exception) -> None:
     """Log a message that was lost with its connection; the client itself reports the lost connection."""
     LOG.debug("%s was not sent: %s", message, error)

@@ -18,6 +18,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.outside import plain, quoted
 from arboleda.model.sentence import Phrase
+from arboleda.web.desks.reports import ReportsApi
 
 LOG = logging.getLogger(__name__)
 FOLDER = "reports"
@@ -31,16 +32,23 @@ TOO_MANY = Phrase("report.too_many", "{most} other reports wait; try again in so
 SAID = Phrase("report.said", "{said}")
 
 
-class NoReport(ArboledaError):
-    """There is no report of a task; the sentence says why."""
-
-
 def _command(task: str, state: Path, target: Path) -> Sequence[str]:
     where = ["--state", str(state), "--output", str(target)]
     return [sys.executable, "-c", BEHIND, "report", *where, "--", task]
 
 
-class ReportsPart:
+class NoReport(ArboledaError):
+    """There is no report of a task; the sentence says why."""
+
+
+class NoReports(ReportsApi):
+    """Reports of a plant that writes no record."""
+
+    def report(self, task: str) -> str | None:
+        raise NoReport(NO_RECORD())
+
+
+class ReportsPart(ReportsApi):
     """Has reports of tasks that failed written by others: those that somebody asks for, and with `changed`,
     which never raises, one of each task that fails.
 

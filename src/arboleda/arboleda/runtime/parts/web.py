@@ -14,6 +14,7 @@ from arboleda.web import limits
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import DEFAULT_PORT, is_loopback, names_for
 from arboleda.web.api import make_app
+from arboleda.web.routes import LeaveOut
 from arboleda.web.server import SecondLoop, Server
 
 from .. import tokens
@@ -44,6 +45,7 @@ class WebPart:
         *,
         connections: int = limits.CONNECTIONS,
         counts: Callable[[], bytes] | None = None,
+        leave_out: LeaveOut | None = None,
     ) -> None:
         self.plant = plant
         self._options = options
@@ -51,7 +53,8 @@ class WebPart:
         self._announce = announce
         self._port = 0
         self._shows_page = mount is not None
-        app = make_app(self.plant, streams=limits.lasting(limits.STREAMS, connections), counts=counts)
+        streams = limits.lasting(limits.STREAMS, connections)
+        app = make_app(self.plant, streams=streams, counts=counts, leave_out=leave_out)
         if mount is not None:
             mount(app)
         sockets = limits.lasting(limits.SOCKETS, connections)
@@ -81,8 +84,11 @@ class WebPart:
             notes.append(CLEAR.format(host=self._options.host))
         return notes
 
+    @property
+    def port(self) -> int:
+        return self._port
+
     def address_of(self, cell: str, task: str | None) -> str | None:
-        """The address at which a browser shows a cell, or a task of it; None if there is no page."""
         if not self._shows_page:
             return None
         place = {"tab": "cells", "cell": cell} if task is None else {"tab": "tasks", "task": task}

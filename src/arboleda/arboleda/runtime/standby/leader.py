@@ -12,7 +12,7 @@ from arboleda.model.outside import plain
 from arboleda.web.access.names import is_near_only, public_origin
 
 if TYPE_CHECKING:
-    from arboleda.store.postgres.leadership import Leader
+    from arboleda.store.leadership import Leader
 
 
 @dataclass(frozen=True, kw_only=True)

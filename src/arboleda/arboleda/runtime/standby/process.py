@@ -26,7 +26,7 @@ from .leader import LeaderInfo, of_leader
 from .waiting_room import WaitingRoom
 
 if TYPE_CHECKING:
-    from arboleda.store.postgres.leadership import Leader, Leadership
+    from arboleda.store.leadership import Leader, Leadership
 
 LOG = logging.getLogger(__name__)
 NEEDED_THEN = (

@@ -10,8 +10,8 @@ from arboleda.core.leading import LEASE_S
 from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain
 
+from ..leadership import Leader, Leaders
 from .leader_row import lately
-from .leadership import Leader
 from .schema import PREFIX
 from .server import Impatient, checked, connected, explained
 
@@ -25,15 +25,14 @@ LEADER = (
 )
 
 
-class Leaders:
-    """Reader on its own connection, for one thread at a time; ArboledaError without the database."""
+class PostgresLeaders(Leaders):
+    """Leaders of the plants of a database: a connection of its own."""
 
     def __init__(self, address: str) -> None:
         self._address = checked(address)
         self._opened: Impatient | None = None
 
     def all(self) -> dict[str, Leader]:
-        """The leaders by the name of the plant; only of plants whose tables this user may read."""
         with explained(self._address, ArboledaError, "cannot be reached"):
             db = self._connection()
             schemas = [row[0] for row in db.execute(PLANTS, (PREFIX,)).fetchall()]
@@ -43,7 +42,6 @@ class Leaders:
         return {plain(name): _row(*rest) for name, *rest in rows}
 
     def close(self) -> None:
-        """Close the connection; idempotent."""
         if self._opened is not None:
             self._opened.close()
             self._opened = None

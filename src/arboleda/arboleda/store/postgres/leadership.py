@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import socket
-from dataclasses import dataclass
 from typing import Any
 
 from arboleda.adapters import clock
@@ -12,6 +11,7 @@ from arboleda.core.leading import LEASE_S, Silence
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
 
+from ..leadership import Leader, Leadership
 from .leader_row import END_LEASE, LAST_SEEN, lately
 from .schema import prepare, schema_of
 from .server import Impatient, checked, connected, explained, own_address
@@ -26,24 +26,8 @@ WAITS = (
 )
 
 
-@dataclass(frozen=True, kw_only=True)
-class Leader:
-    """The plant's last leader, and whether it still leads.
-
-    `leads`: it has renewed its lease lately, by the clock of the database; nobody takes a plant over by this
-    field. `url`: its page, "" if it gave none. `standbys`: the number of processes that wait to take over.
-    """
-
-    epoch: int
-    host: str
-    process: int
-    url: str
-    leads: bool
-    standbys: int
-
-
-class Leadership:
-    """Connection of a waiting process, for one thread at a time; ArboledaError without the database."""
+class PostgresLeadership(Leadership):
+    """Leadership in a database: a connection of its own."""
 
     def __init__(self, address: str, plant: str) -> None:
         self.name = f"{address} ({plant})"
@@ -66,21 +50,16 @@ class Leadership:
         )
 
     def is_free(self) -> bool:
-        """True if nobody leads: the last leader gave the plant back, or was silent for the length of a lease.
-
-        Ends the lease in the second case. The silence is counted over repeated calls.
-        """
+        """The same; ends the lease of a leader that was silent for the length of it."""
         (row,) = self._query(LAST_SEEN)
         if row[1] is None:
             return True
         return self._silence.ends_lease(clock.seconds(), row) and bool(self._query(END_LEASE, *row))
 
     def wait_here(self, url: str = "") -> None:
-        """Store that this process waits to lead, and the address of its page."""
         self._query(WAITS, *self._me, url)
 
     def own_address(self) -> str:
-        """The address by which hosts that reach the database may reach this one; "" if unknown."""
         with explained(self.name, ArboledaError, "cannot be reached"):
             return own_address(self._connection())
 
@@ -88,11 +67,9 @@ class Leadership:
         self._query("DELETE FROM standby WHERE host = %s AND process = %s", *self._me)
 
     def ask_for_handover(self) -> None:
-        """Ask the leader to hold all work, and to hand the plant over."""
         self._query("UPDATE leader SET wanted = clock_timestamp()")
 
     def close(self) -> None:
-        """Close the connection; idempotent."""
         if self._opened is not None:
             self._opened.close()
             self._opened = None

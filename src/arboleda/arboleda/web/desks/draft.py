@@ -6,13 +6,13 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Any, Protocol
 
-from arboleda.model.errors import ArboledaError
+from arboleda.model.errors import Refused
 
 State = dict[str, Any]
 Place = Sequence[str | int]
 
 
-class DraftRefused(ArboledaError):
+class DraftRefused(Refused):
     """The draft is not changed; the sentence says why, such as who edits it."""
 
 

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from arboleda.model.errors import ArboledaError
+from arboleda.model.errors import Refused
 from arboleda.model.sentence import Sentence
 
 
-class FaultRefused(ArboledaError):
+class FaultRefused(Refused):
     """Nothing is provoked; the sentence says why, and what can be."""
 
 

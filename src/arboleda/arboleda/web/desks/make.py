@@ -74,3 +74,12 @@ class MakeApi(Protocol):
     @abstractmethod
     def result(self, what: str) -> Path | None:
         """The file with what came of the last one, as JSON; None if nothing came of it."""
+
+    @abstractmethod
+    def tried(self) -> tuple[Path, Path] | None:
+        """The record of the last tryout, and the file on what is shown of its plant; None if there is
+        none."""
+
+    @abstractmethod
+    def proof_page(self) -> Path | None:
+        """The page on the last proof, as one HTML file; None if there is none."""

@@ -7,6 +7,7 @@ with a folder `languages`, in which each language has files of the same names.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING, Any
@@ -46,7 +47,8 @@ def _folders() -> Iterator[Traversable]:
     """The folders of languages: first this one, then those of other packages."""
     yield resources.files(__package__)
     for each in entry_points(GROUP):
-        yield resources.files(each.module) / "languages"
+        with suppress(ImportError):  # of a package that does not load nothing is said
+            yield resources.files(each.module) / "languages"
 
 
 def _joined(ours: dict[str, Any], theirs: dict[str, Any]) -> dict[str, Any]:

@@ -231,7 +231,7 @@ async def _answered(act: Callable[[], State]) -> JSONResponse:
 def _draft(side: PlantApi, request: Request) -> DraftApi:
     """The plant's draft for an operator; Forbidden for others, 404 if it has none."""
     require(request.scope["arboleda.role"], MAY)
-    draft = side.draft
+    draft = side.ask(DraftApi)
     if draft is None:
         raise HTTPException(404, SHIPPED)
     return draft

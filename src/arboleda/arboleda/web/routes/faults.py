@@ -75,7 +75,7 @@ def routes(side: PlantApi) -> APIRouter:
     @api.get("", response_model=FaultList)
     async def faults() -> JSONResponse:
         """The faults that were provoked at virtual devices and go on, and those that can be."""
-        desk = side.faults
+        desk = side.ask(FaultsApi)
         begun = [] if desk is None else await run_in_threadpool(desk.begun)
         offers = [] if desk is None else desk.offers()
         return PlainJson(
@@ -107,7 +107,7 @@ def routes(side: PlantApi) -> APIRouter:
 
 
 def _faults(side: PlantApi) -> FaultsApi:
-    found = side.faults
+    found = side.ask(FaultsApi)
     if found is None:
         raise FaultRefused(NOT_HERE)
     return found

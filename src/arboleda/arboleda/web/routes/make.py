@@ -239,6 +239,7 @@ def _run(api: APIRouter, side: PlantApi) -> None:
 def _make(side: PlantApi, request: Request) -> MakeApi:
     """The bench of the plant's draft for an operator; Forbidden for others, 404 if it has none."""
     require(request.scope["arboleda.role"], MAY)
-    if side.make is None:
+    make = side.ask(MakeApi)
+    if make is None:
         raise HTTPException(404, SHIPPED)
-    return side.make
+    return make

@@ -7,8 +7,11 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
+from arboleda.model.packages import FLEET
 from arboleda.oee.rows import OeeQuery
 
+from ..desks.oee import OeeApi
+from ..missing import missing
 from ..plant_api import PlantApi
 from ..schema.bodies import ResponseModel
 from ..schema.plain_json import PlainJson
@@ -54,7 +57,10 @@ def routes(side: PlantApi) -> APIRouter:
     @api.get("/oee", response_model=list[CellOee], responses=WRONG, openapi_extra=described(OeeFilter))
     async def oee(request: Request) -> JSONResponse:
         """The OEE of the cells, of the last 24 hours where no time is asked for; docs/how-to/oee.md."""
-        rows = await run_in_threadpool(side.oee, query_of(request, OeeFilter).query())
+        desk, query = side.ask(OeeApi), query_of(request, OeeFilter).query()
+        if desk is None:
+            raise missing(FLEET)
+        rows = await run_in_threadpool(desk.oee, query)
         return PlainJson([row.data() for row in rows])
 
     return api

@@ -248,6 +248,7 @@ def _decide(api: APIRouter, side: PlantApi) -> None:
 def _desk(side: PlantApi, request: Request, act: str) -> ProposalsApi:
     """The plant's proposals for a role that may do `act`; Forbidden for others, 404 if it has none."""
     require(request.scope["arboleda.role"], act)
-    if side.proposals is None:
+    desk = side.ask(ProposalsApi)
+    if desk is None:
         raise HTTPException(404, SHIPPED)
-    return side.proposals
+    return desk

@@ -13,7 +13,10 @@ from pydantic import Field
 from starlette.exceptions import HTTPException
 
 from arboleda.model.errors import ArboledaError
+from arboleda.model.packages import PROOFS
 
+from ..desks.reports import ReportsApi
+from ..missing import missing
 from ..plant_api import PlantApi
 from ..schema.bodies import ResponseModel, Sentence
 from ..schema.plain_json import PlainJson
@@ -120,8 +123,11 @@ def routes(side: PlantApi) -> APIRouter:
     @api.get("/tasks/{task_id}/report", response_model=TaskReport, responses=NONE | LATER)
     async def report(task_id: str) -> JSONResponse:
         """Why a task failed: cause and evidence. The first answer may be 202, until it is written."""
+        desk = side.ask(ReportsApi)
+        if desk is None:
+            raise missing(PROOFS)
         try:
-            content = await run_in_threadpool(side.report, task_id)
+            content = await run_in_threadpool(desk.report, task_id)
         except ArboledaError as error:
             raise HTTPException(404, str(error.sentence)) from None
         if content is None:

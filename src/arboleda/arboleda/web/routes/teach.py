@@ -142,6 +142,7 @@ async def _answered(act: Callable[[], teach.State]) -> JSONResponse:
 
 def _desk(side: PlantApi, request: Request) -> teach.TeachApi:
     require(request.scope["arboleda.role"], MAY)
-    if side.teach is None:
+    desk = side.ask(teach.TeachApi)
+    if desk is None:
         raise HTTPException(404, "This plant is not taught from here.")
-    return side.teach
+    return desk

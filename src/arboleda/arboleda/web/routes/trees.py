@@ -9,8 +9,10 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict
 
+from arboleda.bt_xml.editing import desk
+
 from ..access.auth import DRAW, require
-from ..languages import FIRST
+from ..languages import FIRST, spoken, texts
 from ..plant_api import PlantApi
 from ..schema.bodies import Sentence
 from ..schema.plain_json import PlainJson
@@ -40,13 +42,14 @@ def routes(side: PlantApi) -> APIRouter:
     @api.get("", response_model=list[TreeFile])
     async def trees() -> JSONResponse:
         """The files of trees that are recipes of this plant, as they were read."""
-        return PlainJson(side.tree_files())
+        return PlainJson(desk.tree_files(side.model))
 
     @api.get("/palette", response_model=list[Nodes], responses=WRONG, openapi_extra=described(PaletteFilter))
     async def palette(request: Request) -> JSONResponse:
         """All nodes that a tree can have in a cell: of its devices, in Python, and those of Arboleda."""
         wanted = query_of(request, PaletteFilter)
-        return PlainJson(await run_in_threadpool(side.palette, wanted.cell, wanted.language))
+        words = texts(spoken([wanted.language]), "nodes")
+        return PlainJson(await run_in_threadpool(desk.palette, side.model, wanted.cell, words))
 
     @api.post("/check", response_model=Drawn, responses=REFUSED, openapi_extra=described_body(TreeForm))
     async def check(request: Request) -> JSONResponse:
@@ -54,7 +57,7 @@ def routes(side: PlantApi) -> APIRouter:
         require(request.scope["arboleda.role"], DRAW)
         form = read_body(await request.body(), TreeForm)
         async with turn:
-            return PlainJson(await run_in_threadpool(side.drawn, form.cell, form.text))
+            return PlainJson(await run_in_threadpool(desk.drawn, side.model, form.cell, form.text))
 
     @api.post("/copy", response_model=TreeCopy, responses=REFUSED, openapi_extra=described_body(CopyForm))
     async def copy(request: Request) -> JSONResponse:
@@ -62,7 +65,7 @@ def routes(side: PlantApi) -> APIRouter:
         require(request.scope["arboleda.role"], DRAW)
         form = read_body(await request.body(), CopyForm)
         async with turn:
-            text = await run_in_threadpool(side.copied, form.cell, form.recipe, form.name)
+            text = await run_in_threadpool(desk.copied, side.model, form.cell, form.recipe, form.name)
             return PlainJson({"text": text})
 
     @api.post("/edit", response_model=Drawn, responses=REFUSED, openapi_extra=described_body(EditForm))
@@ -72,6 +75,7 @@ def routes(side: PlantApi) -> APIRouter:
         form = read_body(await request.body(), EditForm)
         operation = operation_of(form.operation)
         async with turn:
-            return PlainJson(await run_in_threadpool(side.drawn, form.cell, form.text, operation))
+            found = await run_in_threadpool(desk.drawn, side.model, form.cell, form.text, operation)
+            return PlainJson(found)
 
     return api

@@ -110,7 +110,7 @@ def routes(side: PlantApi) -> APIRouter:
 
 def _versions(side: PlantApi) -> VersionsApi:
     """The plant's versions; 404 if it has none."""
-    found = side.versions
+    found = side.ask(VersionsApi)
     if found is None:
         raise HTTPException(404, SHIPPED)
     return found

@@ -6,12 +6,13 @@ import json
 from pathlib import Path
 from typing import Any
 
-from arboleda.dashboard.past.past import Past
-from arboleda.dashboard.past.side import Start
 from arboleda.model.sentence import Phrase
 from arboleda.recorder import reader
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.views import Views
+
+from .past import Past
+from .side import Start
 
 NOTHING_TRIED = Phrase("record.nothing_tried", "Nothing of the draft has been tried yet.")
 

@@ -1,0 +1,46 @@
+"""Holdings: what only one process has of a plant, its state directory and its memory."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from arboleda.model.plant_model import PlantModel
+
+from . import past_acts
+from .options import Options
+from .parts.memory_pace import MemoryPace
+from .state import StateDir, default_state
+from .stores import history_of, memory_of
+
+
+class Holdings:
+    """Holdings: the state directory and the memory of a plant, and two readers of its tasks, between `open`
+    and `close`."""
+
+    def __init__(self, model: PlantModel, options: Options, *, has_plant: bool) -> None:
+        store = (options.store or model.store) if has_plant else ""
+        path = options.state_dir or default_state(model.name)
+        self.state = StateDir(path, plant=model.name, store=store)
+        self.memory = memory_of(store, path, model.name)
+        # for threads of a server, and for the plant's ports
+        self.history, self.recalled = (history_of(store, path, model.name, is_checked=True) for _ in range(2))
+        self.pace = MemoryPace()
+        self.memory.timing = self.pace
+        self.past_acts: list[dict[str, Any]] = []  # of operators, before this start
+
+    def open(self) -> None:
+        """Take both; StartError where another process has them, or they cannot be used."""
+        self.state.open()
+        self.memory.open()
+        self.past_acts = past_acts.of(self.memory)
+
+    def lead(self, now: int) -> int:
+        """The number of this start, higher than that of any start before, on any host."""
+        return self.memory.lead(self.state.next_epoch(now))
+
+    def close(self) -> None:
+        """Give back everything that only one process may have; idempotent."""
+        self.history.close()
+        self.recalled.close()
+        self.memory.close()
+        self.state.close()

@@ -1,0 +1,36 @@
+"""What a start needs of packages beside the runner, and refuses to do without."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from arboleda.model.errors import StartError
+from arboleda.model.packages import FLEET, MISSING
+from arboleda.model.sentence import Phrase
+
+from .registry import Assembly
+
+LEAD = Phrase("package.lead", "Leading a plant whose database several hosts reach")
+OPCUA = Phrase("package.opcua_view", "`opcua_view` of the plant file")
+
+
+class LeadKeeper(Protocol):
+    """What renews the lead of this process until the plant ends."""
+
+    def stop(self) -> None: ...
+
+
+class OpcUaView(Protocol):
+    """What shows the plant over OPC UA."""
+
+    def stop(self) -> None: ...
+
+
+def refuse_missing(assembly: Assembly) -> None:
+    """Raise StartError, with the line that installs it, if a package is not there that the plant needs."""
+    if "orchestrator" not in assembly.parts:
+        return
+    if assembly.holdings.memory.renew_s is not None and assembly.ask(LeadKeeper) is None:
+        raise StartError(MISSING(what=LEAD(), package=FLEET))
+    if assembly.model.opcua_view is not None and assembly.ask(OpcUaView) is None:
+        raise StartError(MISSING(what=OPCUA(), package=FLEET))

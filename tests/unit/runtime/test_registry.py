@@ -1,0 +1,179 @@
+"""A package beside the runner adds parts to a plant; where one breaks, it is named and robots work on."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.added_package import COUNTER, install
+
+from arboleda.model.errors import StartError
+from arboleda.runtime import holdings, registry
+from arboleda.runtime.build import App, Options, build
+from arboleda.runtime.part_list import PartList
+from arboleda.runtime.registry import Factory, Phase
+from arboleda.testing import shipped
+
+Install = Callable[[str, str], None]
+RAISES = "from arboleda.runtime.registry import Factory, Phase\n\n\nclass Part:\n"
+RAISES += "    def start(self): {start}\n    def stop(self): {stop}\n\n\n"
+RAISES += "def make(assembly):\n    {make}\n    yield Part()\n\n\n"
+RAISES += "PARTS = [Factory(phase=Phase.VIEWS, make=make)]\n"
+WRONG = "raise ValueError('the shelf is full')"
+SAID = "the package acme is left out of this plant: ValueError: the shelf is full"
+
+
+@pytest.fixture
+def put(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
+    """Installs a package of that name, with this code."""
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    yield lambda name, code: install(tmp_path / "site", name, code)
+    for name in ("acme", "bolt"):
+        sys.modules.pop(name, None)
+
+
+def built(tmp_path: Path, parts: set[str] | None = None, **options: Any) -> App:
+    wanted = Options(state_dir=tmp_path / "state", page=False, **options)
+    return build(shipped("sis_a"), parts or {"orchestrator"}, wanted)
+
+
+def raising(*, start: str = "pass", stop: str = "pass", make: str = "pass") -> str:
+    return RAISES.format(start=start, stop=stop, make=make)
+
+
+def kinds(app: App) -> list[str]:
+    return [type(each).__name__ for each in app.parts]
+
+
+def test_a_part_of_a_package_is_offered_and_tells_people(tmp_path: Path, put: Install) -> None:
+    put("acme", COUNTER)
+    app = built(tmp_path)
+    app.stop()
+    acme = sys.modules["acme"]
+    assert kinds(app)[-1] == "Counter" and app.offers.ask(acme.Counter) is app.parts[-1]
+    assert "Counter: it counts" in app.notes
+
+
+def test_a_package_is_loaded_only_when_a_plant_is_put_together(tmp_path: Path, put: Install) -> None:
+    put("acme", COUNTER)
+    assert [each.name for each in registry.registered(registry.GROUP, {})] == ["acme"]
+    assert "acme" not in sys.modules
+
+
+@pytest.mark.parametrize(
+    ("code", "why"),
+    [
+        ("import no_such_library", "No module named 'no_such_library'"),
+        ("PARTS = [7]", "acme:PARTS is no sequence of factories of parts"),
+        ("PARTS = 7", "'int' object is not iterable"),
+        ("raise SystemExit(3)", "it ends the program"),
+        (raising(make=WRONG), "ValueError: the shelf is full"),
+        (raising(make="assembly.offer(int, 1); assembly.offer(int, 2)"), "another part offers a int already"),
+        (raising(make="assembly.need(Part)"), "no part of this process offers a Part"),
+    ],
+)
+def test_a_package_that_breaks_when_it_is_loaded_or_made_is_left_out_and_named(
+    tmp_path: Path, put: Install, code: str, why: str
+) -> None:
+    put("acme", code)
+    put("bolt", COUNTER)
+    app = built(tmp_path)
+    app.stop()
+    (said,) = (note for note in app.notes if "left out" in note)
+    assert said.startswith("the package acme is left out of this plant: ") and why in said
+    assert kinds(app)[-1] == "Counter", "the other package is there"
+
+
+def test_a_package_may_refuse_the_start_with_a_sentence(tmp_path: Path, put: Install) -> None:
+    refuse = "from arboleda.model.errors import StartError; raise StartError('no shelf, no plant')"
+    put("acme", raising(make=refuse))
+    for _ in range(2):  # the second finds the state directory free
+        with pytest.raises(StartError, match="no shelf, no plant"):
+            built(tmp_path)
+
+
+class Noted:
+    """A part that notes what is done with it."""
+
+    def __init__(self, name: str, notes: list[str], broken: str = "") -> None:
+        self.name, self._notes, self._broken = name, notes, broken
+
+    def start(self) -> None:
+        self._act("start")
+
+    def stop(self) -> None:
+        self._act("stop")
+
+    def _act(self, what: str) -> None:
+        self._notes.append(f"{what} {self.name}")
+        if what == self._broken:
+            raise ValueError("the shelf is full")
+
+
+@pytest.fixture
+def listed(monkeypatch: pytest.MonkeyPatch) -> Callable[..., PartList]:
+    """Parts of the runner before and after one of a package, `acme`."""
+
+    def made(notes: list[str], *, broken: str, own: str = "") -> PartList:
+        def factory(phase: Phase, *part: Any) -> Factory:
+            return Factory(phase=phase, make=lambda _: [Noted(part[0], notes, part[1])])
+
+        package = factory(Phase.RECORD, "package", broken)
+        monkeypatch.setattr("arboleda.runtime.part_list.packaged", lambda _: [("acme", package)])
+        parts = PartList()
+        parts.make(None, [factory(Phase.READY, "last", own), factory(Phase.LINKS, "first", "")])
+        return parts
+
+    return made
+
+
+@pytest.mark.parametrize("broken", ["", "start", "stop"])
+def test_parts_start_by_their_phases_and_end_in_the_opposite_order_even_if_a_package_breaks(
+    listed: Callable[..., PartList], broken: str
+) -> None:
+    notes: list[str] = []
+    parts = listed(notes, broken=broken)
+    parts.start()
+    parts.stop()
+    parts.stop()
+    names = ["first", "package", "last"]
+    assert notes == [*(f"start {each}" for each in names), *(f"stop {each}" for each in reversed(names))]
+    assert parts.notes == ([SAID] if broken else [])
+
+
+def test_a_part_of_the_runner_that_breaks_keeps_the_plant_from_starting(
+    listed: Callable[..., PartList],
+) -> None:
+    parts = listed([], broken="", own="start")
+    with pytest.raises(ValueError, match="the shelf is full"):
+        parts.start()
+
+
+def test_a_shared_memory_is_refused_where_nothing_keeps_the_lead(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    memory_of = holdings.memory_of
+
+    def leased(*about: Any) -> Any:
+        memory = memory_of(*about)
+        memory.renew_s = 1.0
+        return memory
+
+    monkeypatch.setattr(holdings, "memory_of", leased)
+    monkeypatch.setattr(registry, "PARTS", {})
+    with pytest.raises(StartError, match=r"needs the package fleet.*pip install 'arboleda\[fleet\]'"):
+        built(tmp_path)
+
+
+def test_without_packages_a_plant_has_the_parts_of_the_runner(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(registry, "PARTS", {})
+    app = built(tmp_path, {"broker", "devices", "bridge", "orchestrator", "web"})
+    app.stop()
+    runner = ["OwnBroker", "BridgePart", "DevicesPart", "Periodic", "Orchestrator", "WebPart"]
+    assert kinds(app) == runner
+    assert app.links()["faults"] == [] and app.links()["demo"] is False

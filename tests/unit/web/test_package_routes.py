@@ -1,0 +1,128 @@
+"""Packages bring routes of their own; what is not installed is named with the line that installs it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.routing import APIRoute
+from tests.added_package import install
+
+from arboleda.web import missing, routes
+from arboleda.web.api import make_app
+from arboleda.web.routes import routers
+from arboleda.web.shipped_routes import ROUTES
+
+from ...in_process import Caller
+from ...web_plant import Plant
+
+CODE = '''
+from fastapi import APIRouter
+
+
+def routes(side):
+    api = APIRouter(prefix="/api")
+
+    @api.get("/ended")
+    async def ended():
+        """How many tasks ended."""
+        return {{"ended": len(side.latest()["tasks"])}}
+
+    {more}
+    return api
+'''
+Install = Callable[[str], None]
+
+
+@pytest.fixture
+def put(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
+    """Installs a package `acme` with this code."""
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    yield lambda code: install(tmp_path / "site", "acme", code, group=routes.GROUP, what="routes")
+    sys.modules.pop("acme", None)
+
+
+def paths(each: Any) -> list[str]:
+    return [route.path for route in each.routes if isinstance(route, APIRoute)]
+
+
+def test_a_route_of_a_package_is_asked_and_described(plant: Plant, put: Install) -> None:
+    put(CODE.format(more=""))
+    app = make_app(plant)
+    assert Caller(app).get("/api/ended").json() == {"ended": 1}
+    assert "/api/ended" in app.openapi()["paths"]
+
+
+def test_a_package_takes_no_path_of_the_runner(plant: Plant, put: Install) -> None:
+    put(CODE.replace("/ended", "/plant").format(more=""))
+    assert Caller(make_app(plant)).get("/api/plant").json()["plant"] == "demo"
+
+
+@pytest.mark.parametrize(
+    ("code", "why"),
+    [
+        (CODE.format(more="raise ValueError('the shelf is full')"), "the shelf is full"),
+        ("def routes(side): return 7", "acme:routes makes no APIRouter"),
+        ("import no_such_library", "No module named"),
+    ],
+)
+def test_a_package_whose_routes_break_is_left_out_and_named(
+    plant: Plant, put: Install, code: str, why: str
+) -> None:
+    put(code)
+    told: list[tuple[str, str]] = []
+    app = make_app(plant, leave_out=lambda package, error: told.append((package, str(error))))
+    assert [package for package, _ in told] == ["acme"] and why in told[0][1]
+    assert Caller(app).get("/api/plant").status_code == 200
+
+
+@pytest.fixture(scope="module")
+def bare() -> Caller:
+    """The routes of the runner alone."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(routes, "ROUTES", {})
+        return Caller(make_app(Plant()))
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "package"),
+    [
+        ("GET", "/api/oee", "fleet"),
+        ("GET", "/api/draft", "make"),
+        ("POST", "/api/draft/take", "make"),
+        ("GET", "/api/versions", "make"),
+        ("POST", "/api/assistants/tasks", "make"),
+        ("POST", "/api/faults", "proofs"),
+        ("GET", "/api/tasks/t-1/report", "proofs"),
+    ],
+)
+def test_what_is_not_installed_is_named_with_the_line_that_installs_it(
+    bare: Caller, method: str, path: str, package: str
+) -> None:
+    answer = bare.request(method, path)
+    assert answer.status_code == 501
+    said = f"This needs the package {package}, which is not installed here:"
+    assert answer.json()["sentence"] == f"{said} type pip install 'arboleda[{package}]'"
+
+
+def test_a_path_that_nobody_knows_is_no_missing_package(bare: Caller, web: Caller) -> None:
+    assert bare.get("/api/draughts").status_code == 404
+    assert web.get("/api/draft/nothing").status_code == 404
+
+
+def test_every_path_of_a_package_is_known_as_its_own() -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        for package in {name.partition(".")[0] for name in ROUTES}:
+            rows = {name: each for name, each in ROUTES.items() if name.startswith(f"{package}.")}
+            patch.setattr(routes, "ROUTES", rows)
+            known = missing.PATHS[package]
+            mine = [path for each in routers(None)[len(routes.OWN) :] for path in paths(each)]
+            assert mine and all(known.fullmatch(path) for path in mine), mine
+
+
+def test_no_path_of_the_runner_is_a_package_s(bare: Caller) -> None:
+    mine = [path for each in routers(None)[: len(routes.OWN)] for path in paths(each)]
+    assert not [path for path in mine for known in missing.PATHS.values() if known.fullmatch(path)]
