@@ -58,8 +58,8 @@ CORE_BUGS = (
     bug(
         "core/losses.py",
         "An operator who opens a hand strands nobody.",
-        "        run.stranded = NO_PART(arm=robot)\n\n\ndef uproot",
-        "        run.dirty = True\n\n\ndef uproot",
+        "        run.lose(NO_PART(arm=robot), run.trouble or lost)\n",
+        "        run.trouble = run.trouble or (lost if run.task else None)\n",
     ),
     bug(
         CELL,

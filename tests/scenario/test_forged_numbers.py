@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Home
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.simulator.world import BRIDGE
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig

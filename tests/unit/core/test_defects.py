@@ -22,6 +22,7 @@ from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import (
     InternalError,
+    MotionState,
     OperatorAnswer,
     OperatorRequest,
     Reason,
@@ -30,7 +31,7 @@ from arboleda.model.messages import (
     Undelivered,
     Verb,
 )
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.plant_model import Evidence
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.trees.leaves import Act
 

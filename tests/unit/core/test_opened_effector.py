@@ -9,8 +9,8 @@ import pytest
 
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
-from arboleda.model.messages import Reason
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState, Reason
+from arboleda.model.plant_model import Evidence
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
 

@@ -18,6 +18,7 @@ from arboleda.model.messages import (
     Heartbeat,
     Interference,
     InternalError,
+    MotionState,
     OperatorRequest,
     Reason,
     Shutdown,
@@ -27,7 +28,7 @@ from arboleda.model.messages import (
     TaskState,
     Verb,
 )
-from arboleda.model.plant_model import Evidence, MotionState, Timing
+from arboleda.model.plant_model import Evidence, Timing
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 from arboleda.trees import leaves

@@ -16,8 +16,8 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import Evidence
 from arboleda.testing import shipped
 
 EPOCH = 7

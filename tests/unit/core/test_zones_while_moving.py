@@ -7,8 +7,7 @@ from importlib.resources import as_file, files
 import pytest
 
 from arboleda.kinds.joints import MoveJoints
-from arboleda.model.messages import OperatorRequest, Verb
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, OperatorRequest, Verb
 from arboleda.plant_file.loader import load
 from arboleda.recipes.storage_layout import StorageLayout
 

@@ -14,8 +14,8 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Stop, StopMode, Switch
-from arboleda.model.messages import Failure, Reason, Report
-from arboleda.model.plant_model import DriverUse, Evidence, MotionState
+from arboleda.model.messages import Failure, MotionState, Reason, Report
+from arboleda.model.plant_model import DriverUse, Evidence
 from arboleda.testing import shipped
 
 EPOCH = 7

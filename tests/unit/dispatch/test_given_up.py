@@ -11,8 +11,7 @@ import pytest
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.commands import FRESH_S, Stop, StopMode
-from arboleda.model.messages import Failure, Reason, Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import Failure, MotionState, Reason, Report
 from arboleda.trees.interlocks import Interlocks
 
 from ..kinds.test_interlocks import with_mill

@@ -10,8 +10,8 @@ from typing import NamedTuple
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.commands import Command, Home, Motion, Process, Query, Switch
 from arboleda.model.facts import Facts
-from arboleda.model.messages import Fact, Failure, Reason, Report
-from arboleda.model.plant_model import DriverUse, Evidence, MotionState, PlantModel, Robot
+from arboleda.model.messages import Fact, Failure, MotionState, Reason, Report
+from arboleda.model.plant_model import DriverUse, Evidence, PlantModel, Robot
 
 from ..kinds.tending import plant
 

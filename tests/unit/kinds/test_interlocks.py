@@ -7,8 +7,8 @@ from typing import Any
 
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
 from arboleda.model.commands import FRESH_S, OnStop
-from arboleda.model.messages import Fact, Reason, Verb
-from arboleda.model.plant_model import Cell, Interlock, MotionState, PlantModel
+from arboleda.model.messages import Fact, MotionState, Reason, Verb
+from arboleda.model.plant_model import Cell, Interlock, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.testing.following import advised, follow

@@ -19,8 +19,8 @@ from arboleda.dispatch.ledger import Feed
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, VerbCall, WorkCall
 from arboleda.kinds.person import person
 from arboleda.model.commands import OnStop, Process, Query, StopMode
-from arboleda.model.messages import Failure, Reason, Report, Verb
-from arboleda.model.plant_model import Cell, Evidence, Interlock, MotionState, Need, Place, PlantModel
+from arboleda.model.messages import Failure, MotionState, Reason, Report, Verb
+from arboleda.model.plant_model import Cell, Evidence, Interlock, Need, Place, PlantModel
 from arboleda.recipes import Choice, Kit, parallel, recipe, work
 from arboleda.sim.board import Board
 from arboleda.sim.machine import MachineBody

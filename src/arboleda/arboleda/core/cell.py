@@ -11,10 +11,9 @@ from py_trees.common import Status
 from arboleda.dispatch.belief import Moment
 from arboleda.dispatch.dispatcher import BROKEN_OFF
 from arboleda.dispatch.ledger import State
-from arboleda.model.messages import Failure, Reason, TaskState, Verb
+from arboleda.model.messages import Failure, Reason, RevisionName, TaskState, Verb
 from arboleda.model.plant_model import Cell, Timing
 from arboleda.model.recipe import Build
-from arboleda.model.revision import RevisionName
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.task import Task
 from arboleda.trees import steps
@@ -24,8 +23,8 @@ from arboleda.trees.leaves import title_of
 from arboleda.trees.part_places import trouble_in
 from arboleda.trees.step_token import hash_of
 from arboleda.trees.tree_run import TreeRun, path_of
+from arboleda.trees.walk_back import NO_PART
 
-from . import losses
 from .absence import Absence
 from .advice import Advice
 from .cell_states import TABLE, Cause, CellState, after
@@ -74,8 +73,8 @@ class CellRun:
         self.stranded: Sentence | None = None  # why no step of a held task can go on from there
         self.place_trouble: Sentence | None = None  # for which the last task failed
         self.in_vain: set[tuple[Verb, str]] = set()  # what was done to get on, and failed, since it worked
-        self.manual = ManualMode(self)
-        self.absence = Absence(self)
+        self.manual = ManualMode(context, self.queue)
+        self.absence = Absence(context, self.run)
         self.dirty = False
         self.closed = False
         self.awaits_restart = False  # no further task begins before that
@@ -211,6 +210,23 @@ class CellRun:
         self.queue.resume()
         self.dirty = True
 
+    def outlast(self, failure: Failure) -> None:
+        """Hold what is at work, because the plant was away; a cell with nothing under way goes on.
+
+        Where the plant file says so, a held one goes on too, as soon as its devices prove what they did.
+        """
+        if self.state is CellState.EXECUTE:
+            paused = self.queue.paused
+            self.halt(Cause.AWAY, failure)
+            if self.cell.goes_on_after_absence and self.task is not None:
+                self.absence.begin(failure, paused=paused)
+        self.context.commands.cancel_motions()
+
+    def lose(self, what: Sentence, failure: Failure | None = None) -> None:
+        """Note that its task has lost what it needs to go on, so that it can only be abandoned."""
+        if self.task is not None:
+            self.trouble, self.stranded = failure or self.trouble, what
+
     def retry(self) -> None:
         """Give the step that failed anew; without a task, recover anew."""
         if self.task is not None:
@@ -303,7 +319,7 @@ class CellRun:
             return False
         self.become(Cause.HALTED)
         self.trouble = self.trouble or self._fault()
-        losses.miss_part(self)
+        self._miss_part()
         return True
 
     def _cleared(self) -> bool:
@@ -332,8 +348,25 @@ class CellRun:
             return self._judged()
         if self.task is not None and self.trouble is None:
             self.trouble = self._fault()
-        losses.miss_part(self)
-        return self.absence.is_over()
+        self._miss_part()
+        return self.absence.hold is not None and self._absence_is_over()
+
+    def _miss_part(self) -> None:
+        """Note that an effector was opened meanwhile, by whomever."""
+        if self.task is None or self.stranded:
+            return
+        gone = self.context.failures.opened_effector()
+        if gone is not None:
+            self.lose(NO_PART(arm=self.context.parts.opened_by or ""), gone)
+
+    def _absence_is_over(self) -> bool:
+        """Leave the hold that an absence of the plant has made, where nothing else is in its way."""
+        hold = self.absence.end(None if self.stranded else self.trouble)
+        if hold is None:
+            return False
+        self.go_on(Cause.RETRY)
+        self.queue.paused = hold.paused
+        return True
 
     def _judged(self) -> bool:
         """Look what devices say of the steps at which an earlier start ended; whether that is news.

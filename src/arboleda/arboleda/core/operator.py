@@ -176,7 +176,7 @@ class Operator:
         cells_of = dispatcher.model.cells_of.items()
         self._alone = {name: cells[found[0].name] for name, found in cells_of if len(found) == 1}
         for cell in cells.values():
-            cell.manual.when_over = self._teaching_over
+            cell.manual.when_over = partial(self._teaching_over, cell)
         self.acts = Acts()
         self._sent: list[Entry] = []  # the commands of the act that is being done
         self._defects: list[Sentence] = []  # what broke in it

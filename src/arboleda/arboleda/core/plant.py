@@ -476,7 +476,7 @@ class Plant:
         for name, cell in self.cells.items():
             if cell.state is CellState.EXECUTE:
                 cell.context.time.pause(at=left)
-            self._guard(name, partial(cell.absence.begin, failure))
+            self._guard(name, partial(cell.outlast, failure))
 
     def _watch_interlocks(self) -> None:
         for run, device in self._interlocked:

@@ -23,8 +23,8 @@ from arboleda.model.commands import (
 )
 from arboleda.model.facts import shown
 from arboleda.model.grips import Grip
-from arboleda.model.messages import Fact, Failure, Notice, Reason, Report
-from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel, Pose, Timing, Workspace
+from arboleda.model.messages import Fact, Failure, MotionState, Notice, Reason, Report
+from arboleda.model.plant_model import Evidence, Link, PlantModel, Pose, Timing, Workspace
 from arboleda.model.sentence import BOTH, Phrase, Sentence
 
 from . import evidence

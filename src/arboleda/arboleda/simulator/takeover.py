@@ -9,8 +9,8 @@ from arboleda.core.plant import HEARTBEAT_S, Plant
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.commands import Command, Position, Stop, StopMode
-from arboleda.model.messages import Heartbeat, Report
-from arboleda.model.plant_model import MotionState, PlantModel, Robot
+from arboleda.model.messages import Heartbeat, MotionState, Report
+from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.sim.body import BodyReport
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication

@@ -8,8 +8,8 @@ from arboleda.dispatch.belief import Belief, Moment
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.commands import Position
 from arboleda.model.facts import Value
-from arboleda.model.messages import Failure
-from arboleda.model.plant_model import Cell, Evidence, MotionState, Pose
+from arboleda.model.messages import Failure, MotionState
+from arboleda.model.plant_model import Cell, Evidence, Pose
 
 from .cell_devices import CellDevices
 from .cell_time import CellTime

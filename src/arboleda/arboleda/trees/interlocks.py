@@ -6,7 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.facts import shown
-from arboleda.model.plant_model import Cell, Evidence, MotionState
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import Cell, Evidence
 
 
 class Interlocks:

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from arboleda.dispatch.ledger import State
 from arboleda.model.commands import Command, Home, Motion, Query, Question, Stop, StopMode
-from arboleda.model.messages import Fact, OperatorRequest, Reason, Remember, TaskState, Verb
-from arboleda.model.plant_model import Evidence, MotionState, Robot
+from arboleda.model.messages import Fact, MotionState, OperatorRequest, Reason, Remember, TaskState, Verb
+from arboleda.model.plant_model import Evidence, Robot
 from arboleda.wire.hop import shown
 
 from ..recorded.commands import SentCommand

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator
 
 from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
-from arboleda.model.messages import Fact
-from arboleda.model.plant_model import Evidence, Link, MotionState, Pose, Workspace
+from arboleda.model.messages import Fact, MotionState
+from arboleda.model.plant_model import Evidence, Link, Pose, Workspace
 from arboleda.sim.board import Board
 
 from ..recorded.cells import KnownCell
