@@ -6,6 +6,7 @@ from arboleda.core.cell import CellRun
 from arboleda.core.choosing import best
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
+from arboleda.core.verbs.cancelling import Cancelling
 from arboleda.dispatch import evidence
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.simulator.run import NO_EXCEPTION
@@ -51,7 +52,7 @@ TASKS = (
         "ended_tasks_stay_ended",
         "To cancel a task that has ended is not refused.",
         edit(
-            Operator._planned_cancel,
+            Cancelling._planned_cancel,
             "raise VerbRefusal(TASK_ENDED(task=id, state=TASK_STATES[task.state]()))",
             "return lambda: None",
         ),
@@ -128,7 +129,7 @@ TASKS = (
         edit(
             Operator.act,
             "do = self._planned(request, scope)",
-            "early = Journal(verb=request.verb, scope=scope, cell=None, sentence=NONE())\n"
+            "early = Journal(verb=request.verb, scope=scope, cell=None, sentence=PLANT())\n"
             "    self._dispatcher.outbox.append(early)\n"
             "    do = self._planned(request, scope)",
         ),

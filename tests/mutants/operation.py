@@ -8,6 +8,9 @@ from arboleda.core.advisor import Advisor
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
 from arboleda.core.readiness import Readiness
+from arboleda.core.verbs.held_cells import not_resumable
+from arboleda.core.verbs.overriding import Overriding
+from arboleda.core.verbs.stops import Stops
 from arboleda.dispatch import evidence
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.dispatcher import Dispatcher
@@ -110,7 +113,7 @@ PEOPLE = (
     mutant(
         "verbs_are_refused_rightly",
         "A cell whose queue runs can be resumed.",
-        edit(Operator._not_resumable, "None if cell.queue.paused else", "None if True else"),
+        edit(not_resumable, "None if cell.queue.paused else", "None if True else"),
         weather={"operator_resume": 40.0},
         likely=12,
     ),
@@ -124,7 +127,7 @@ PEOPLE = (
         "verbs_do_what_they_say",
         "To clear one robot clears its cell.",
         edit(
-            Operator._clear,
+            Stops.clear,
             "if not any(robot.name in stopped for robot in cell.cell.robots):",
             "if True:",
         ),
@@ -143,7 +146,7 @@ PEOPLE = (
     mutant(
         "kept_is_what_is",
         "An overridden zone is still kept, and so quarantined again after a restart.",
-        edit(Operator._override, "self._dispatcher.memory.vacate([zone])", ""),
+        edit(Overriding._override, "self._dispatcher.memory.vacate([zone])", ""),
         seeds=SHARED,
         weather={"brown_out": 15.0, "operator_override": 40.0, "operator_stop": 5.0},
     ),

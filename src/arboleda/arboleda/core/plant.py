@@ -62,16 +62,10 @@ from .cell import CellRun, NextVersion
 from .cell_states import CellState
 from .choosing import PastTimes, Prospect, best, prospect
 from .intake import CUT_OFF, OTHER_VERSION, Intake, gone
-from .operator import (
-    NO_SCOPE,
-    PUT_TO_WORK,
-    RESTART_UNWANTED,
-    RESTART_WANTED,
-    Operator,
-    VerbRefusal,
-)
+from .operator import PUT_TO_WORK, RESTART_UNWANTED, RESTART_WANTED, Operator
 from .provoked import ProvokedFaults
 from .teaching import NOT_TAUGHT, OTHER_TEACHES, Teaching
+from .verbs.scopes import NO_SCOPE, VerbRefusal
 
 HEARTBEAT_S = 0.25
 DEFECT = Phrase("plant.defect", "this failed on an internal error; the log has its details")
@@ -544,14 +538,14 @@ class Plant:
         self._revised.update(run.cell.name for run in self._runs[robot])
         if not belief.answered or belief.homed is None:
             return
-        run = self._operator.in_charge(robot)
+        run = self._operator.scopes.in_charge(robot)
         if run.state not in (CellState.IDLE, CellState.HELD) or run.manual.teaching is not None:
             return
-        if belief.unhomed and self._operator.not_free_for_homing({robot}):
+        if belief.unhomed and self._operator.homing.not_free(frozenset([robot])):
             return
         self._to_home.discard(robot)
         if belief.unhomed:
-            self._operator.home(robot)
+            self._operator.homing.home(robot)
 
     def _on_undelivered(self, event: Undelivered) -> None:
         cell = self.model.cell_of.get(event.robot)
