@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from arboleda.core.cell import CellRun
 from arboleda.dispatch import evidence
-from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.time_limits import TimeLimits
 from arboleda.dispatch.zones import Zones
 from arboleda.kinds.joints.motion import JointMotion
 from arboleda.recipes import storage
@@ -100,7 +100,7 @@ MOTION = (
         "tiny_moves_succeed",
         "A move has the time of its way and not a moment more.",
         edit(
-            Dispatcher._allowed_s,
+            TimeLimits.allowed_s,
             "max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)",
             "travel_s * timing.deadline_factor",
         ),

@@ -8,7 +8,7 @@ from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
 from arboleda.core.verbs.cancelling import Cancelling
 from arboleda.dispatch import evidence
-from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.latches import Latches
 from arboleda.simulator.run import NO_EXCEPTION
 from arboleda.trees import paths, steps
 from arboleda.trees.cell_time import CellTime
@@ -231,7 +231,7 @@ LIVENESS = (
     mutant(
         "at_rest_at_end",
         "To clear a stop is not sent to the robot.",
-        edit(Dispatcher.unlatch, "self._stop(robot, StopMode.CLEAR)", ""),
+        edit(Latches.unlatch, "self._outlet.stop(robot, StopMode.CLEAR)", ""),
         weather={"operator_stop": 5.0},
         rest_s=PATIENCE_S,
     ),

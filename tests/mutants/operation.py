@@ -13,7 +13,7 @@ from arboleda.core.verbs.overriding import Overriding
 from arboleda.core.verbs.stops import Stops
 from arboleda.dispatch import evidence
 from arboleda.dispatch.belief import Belief
-from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.latches import Latches
 from arboleda.oee import figures as oee
 from arboleda.recipes.parameters import Slot
 from arboleda.trees import steps
@@ -103,7 +103,7 @@ PEOPLE = (
         "A recovery from an unknown place is planned as from home.",
         edit(
             CellZones.for_recovery,
-            "self._dispatcher.place(space)",
+            "self._dispatcher.whereabouts.place(space)",
             "self._robots.standing(robot)",
         ),
         seeds=SHARED,
@@ -137,9 +137,9 @@ PEOPLE = (
         "kept_before_it_leaves",
         "A latch is remembered only after it left.",
         edit(
-            Dispatcher.latch,
-            "self.memory.remember(Fact.LATCH, robot, LATCHED)\n    self._stop(robot, StopMode.LATCH)",
-            "self._stop(robot, StopMode.LATCH)\n    self.memory.remember(Fact.LATCH, robot, LATCHED)",
+            Latches.latch,
+            "self._memory.remember(Fact.LATCH, robot, LATCHED)\n    self._outlet.stop(robot, StopMode.LATCH)",
+            "self._outlet.stop(robot, StopMode.LATCH)\n    self._memory.remember(Fact.LATCH, robot, LATCHED)",
         ),
         weather={"operator_stop": 10.0},
     ),

@@ -31,7 +31,7 @@ def test_whatever_the_evidence_a_reported_opening_counts(
 def carries(plant: Any, level: Evidence) -> None:
     """Play the arm until it is on its way with the part."""
     for _ in range(60):
-        entry = plant.plant.dispatcher.last_sent.get("ra1")
+        entry = plant.plant.dispatcher.ledger.last_sent.get("ra1")
         command = entry.command if entry else None
         closed = bool(plant.commands(SetEffector))
         if closed and isinstance(command, MoveJoints):

@@ -43,5 +43,5 @@ def test_an_arm_whose_move_failed_at_once_may_be_anywhere_until_it_could_have_an
     places = []
     for _ in range(3):
         hand.tell("arm_right", after=0.15, state=MotionState.STOPPED, epoch=1, plant=7, q=layout.home.q)
-        places.append(hand.plant.dispatcher.place(cell.workspaces["arm_right"]))
+        places.append(hand.plant.dispatcher.whereabouts.place(cell.workspaces["arm_right"]))
     assert places == [None, None, layout.home]

@@ -26,7 +26,7 @@ class Floor:
     def __init__(self) -> None:
         model = with_mill()
         self.dispatcher = Dispatcher(model, 7, {})
-        self.dispatcher.timings["tending"] = replace(model.timing, stop_timeout_s=0.05)
+        self.dispatcher.limits.timings["tending"] = replace(model.timing, stop_timeout_s=0.05)
         self.now = GIVEN_AT
         self.hear(boot_id=3)
         close = partial(model.robots["mill"].verb_command, "close", ())
@@ -62,7 +62,7 @@ def not_seen_to_stop(floor: Floor) -> None:
 
 def broken_down(floor: Floor) -> None:
     failure = Failure(reason=Reason.INTERNAL, sentence="it broke")
-    floor.dispatcher.give_up("tending", failure, floor.now)
+    floor.dispatcher.booking.give_up("tending", failure, floor.now)
 
 
 def stopped_by_somebody(floor: Floor) -> None:

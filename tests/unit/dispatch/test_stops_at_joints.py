@@ -61,7 +61,7 @@ class Floor:
         space = cell.workspaces.get(self.mover.name)
         if space is None:
             return not Interlocks(cell, self.dispatcher).occupied_by(self.mover.name)
-        return self.dispatcher.place(space) is not None
+        return self.dispatcher.whereabouts.place(space) is not None
 
 
 @EACH

@@ -151,9 +151,9 @@ def test_a_machine_that_was_told_to_halt_keeps_its_zone_while_its_next_order_is_
     here.machines["mill"].lasts = lambda goal: 60.0
     here.submit("tending other")
     assert here.wait(20.0, lambda: len(here.plant.dispatcher.ledger.of_robot("mill")) == 1)
-    first = here.plant.dispatcher.work_of("mill")
+    first = here.plant.dispatcher.ledger.work_of("mill")
     here.lost = lambda publication: publication.topic in ("mill/paro", "mill/orden")
-    assert here.wait(20.0, lambda: here.plant.dispatcher.work_of("mill") not in (first, None))
+    assert here.wait(20.0, lambda: here.plant.dispatcher.ledger.work_of("mill") not in (first, None))
     here.wait(0.3)
     assert here.plant.dispatcher.beliefs["mill"].state is MotionState.MOVING
     assert here.plant.zones.holder("vise") == "mill"

@@ -16,6 +16,8 @@ from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.effectors import Effectors
 from arboleda.dispatch.evidence import Verdict
 from arboleda.dispatch.ledger import Feed
+from arboleda.dispatch.obstacles import Obstacles
+from arboleda.dispatch.outlet import Outlet
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, VerbCall, WorkCall
 from arboleda.kinds.person import person
 from arboleda.model.commands import OnStop, Process, Query, StopMode
@@ -336,7 +338,7 @@ def forgets_doors(patch: Patch) -> None:
 
 def ignores_needs(patch: Patch) -> None:
     """What a verb needs is not looked at before it is sent."""
-    patch.setattr(Dispatcher, "_unmet", lambda self, command, *, was: None)
+    patch.setattr(Obstacles, "_unmet", lambda self, command, *, was: None)
 
 
 def ignores_needs_of_others(patch: Patch) -> None:
@@ -422,7 +424,7 @@ def says_halt_to_what_finishes(patch: Patch) -> None:
 
     def harsh(self: Dispatcher, entry: Any, now: float) -> None:
         if entry.finishes:
-            self._stop(entry.command.robot, StopMode.HALT)
+            self.outlet.stop(entry.command.robot, StopMode.HALT)
         cancel(self, entry, now)
 
     patch.setattr(Dispatcher, "cancel", harsh)
@@ -483,7 +485,7 @@ def takes_old_orders(patch: Patch) -> None:
 
 def halts_nothing(patch: Patch) -> None:
     """Work whose step is left is not halted."""
-    patch.setattr(Dispatcher, "_stop", lambda self, robot, mode: None)
+    patch.setattr(Outlet, "stop", lambda self, robot, mode: None)
 
 
 def forgets_grips(patch: Patch) -> None:
@@ -506,10 +508,10 @@ def told_twice(patch: Patch) -> None:
 def raises_at_a_verb(patch: Patch) -> None:
     """A command of a device is an error of the program."""
 
-    def fails(self: Dispatcher, command: Any, *, was: bool) -> None:
+    def fails(self: Obstacles, command: Any, *, was: bool) -> None:
         raise ZeroDivisionError
 
-    patch.setattr(Dispatcher, "_unmet", fails)
+    patch.setattr(Obstacles, "_unmet", fails)
 
 
 def knows_no_accents(patch: Patch) -> None:

@@ -14,10 +14,11 @@ import pytest
 from arboleda.bt_xml import reading
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.recipe import tree_recipe
-from arboleda.core import cell, operator, plant
+from arboleda.core import cell, plant
 from arboleda.core.cell_states import CellState
 from arboleda.core.task_queue import TaskQueue
-from arboleda.dispatch import belief, dispatcher, evidence, ledger
+from arboleda.core.verbs import cancelling
+from arboleda.dispatch import belief, evidence, latches, ledger, obstacles, outlet, time_limits
 from arboleda.dispatch.ledger import TABLE, Feed, State
 from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.joints import MoveJoints
@@ -302,7 +303,7 @@ def test_no_command_to_unfit__offline(monkeypatch, bites):
 
 
 def test_no_command_to_unfit__after_a_stop(monkeypatch, bites):
-    monkeypatch.setattr(dispatcher.Dispatcher, "obstacle", lambda self, robot, was=False: None)
+    monkeypatch.setattr(obstacles.Obstacles, "of", lambda self, robot, was=False: None)
     monkeypatch.setattr(cell.CellRun, "stop", lambda self: None)
     watch = Watch()
     watch.task(wait_s=1)
@@ -311,7 +312,7 @@ def test_no_command_to_unfit__after_a_stop(monkeypatch, bites):
 
 
 def test_stops_are_cleared_by_operators(monkeypatch, bites):
-    monkeypatch.setattr(dispatcher.Dispatcher, "forget_stop", dispatcher.Dispatcher.unlatch)
+    monkeypatch.setattr(latches.Latches, "forget", latches.Latches.unlatch)
     watch = Watch()
     for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):
         watch.verb(verb, "sis_a", wait_s=1)
@@ -319,7 +320,7 @@ def test_stops_are_cleared_by_operators(monkeypatch, bites):
 
 
 def test_one_motion_per_robot(monkeypatch, bites):
-    monkeypatch.setattr(dispatcher.Dispatcher, "work_of", lambda self, robot: None)
+    monkeypatch.setattr(ledger.Ledger, "work_of", lambda self, robot: None)
     watch = Watch()
     watch.world.request_verb(Verb.HOME, "ra1")
     watch.verb(Verb.HOME, "ra1")
@@ -359,7 +360,7 @@ def test_no_deadline_overrun(monkeypatch, bites):
 
 
 def test_no_deadline_overrun__of_a_deadline_without_end(monkeypatch, bites):
-    monkeypatch.setattr(dispatcher.Dispatcher, "_allowed_s", lambda self, command, timing: 1e6)
+    monkeypatch.setattr(time_limits.TimeLimits, "allowed_s", lambda self, command, timing: 1e6)
     watch = Watch()
     watch.task(wait_s=1)
     bites(watch)
@@ -385,13 +386,13 @@ def test_retries_bounded(monkeypatch, bites):
 
 
 def test_halted_moves_sent_halt(monkeypatch, bites):
-    stop = dispatcher.Dispatcher._stop
+    stop = outlet.Outlet.stop
 
     def only_latch(self: Any, robot: str, mode: StopMode) -> None:
         if mode is not StopMode.HALT:
             stop(self, robot, mode)
 
-    monkeypatch.setattr(dispatcher.Dispatcher, "_stop", only_latch)
+    monkeypatch.setattr(outlet.Outlet, "stop", only_latch)
     watch = Watch()
     watch.task(wait_s=1)
     watch.verb(Verb.CANCEL, "sis_a")
@@ -429,7 +430,7 @@ def test_each_task_ends_once(monkeypatch, bites):
 
 
 def test_ended_tasks_stay_ended(monkeypatch, bites):
-    monkeypatch.setattr(operator.Operator, "_planned_cancel", lambda self, id, failure: lambda: None)
+    monkeypatch.setattr(cancelling.Cancelling, "_planned_cancel", lambda self, id, failure: lambda: None)
     watch = Watch()
     watch.task(f"{TASK} #one", wait_s=20)
     watch.verb(Verb.CANCEL, "#one")
@@ -626,9 +627,7 @@ def test_nothing_late_has_effect(monkeypatch, bites):
 
 
 def test_commands_say_what_was_heard(monkeypatch, bites):
-    monkeypatch.setattr(
-        dispatcher.Dispatcher, "_leave", lambda self, command, token: self.outbox.append(command)
-    )
+    monkeypatch.setattr(outlet.Outlet, "leave", lambda self, command, token: self._outbox.append(command))
     watch = Watch()
     watch.task(wait_s=15)
     bites(watch)
@@ -832,7 +831,7 @@ def test_no_starvation__of_a_cell_whose_cart_proves_no_place_and_was_led_into_a_
     (tmp_path / "recipes.py").write_text(STORE)
     watch = Watch(load(tmp_path / "plant.yaml"))
     watch.wait(2.0)
-    cell, reached = watch.record.cells["cell"], watch.world.plant.dispatcher.reached
+    cell, reached = watch.record.cells["cell"], watch.world.plant.dispatcher.whereabouts.reached
     assert watch.record.robots["cart"].node == 6
     assert ready(watch.look, cell), "nobody knows where it was led"
     reached["cart"] = 2

@@ -9,7 +9,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.dispatch.belief import Moment
-from arboleda.dispatch.dispatcher import BROKEN_OFF
+from arboleda.dispatch.booking import BROKEN_OFF
 from arboleda.dispatch.ledger import State
 from arboleda.model.messages import Failure, Reason, RevisionName, TaskState, Verb
 from arboleda.model.plant_model import Cell, Timing

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from arboleda.dispatch.dispatcher import Dispatcher, was_broken_off
+from arboleda.dispatch.booking import was_broken_off
+from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.dispatch.zones import Zones
 from arboleda.model.messages import Journal, OperatorRequest, Outcome, Verb

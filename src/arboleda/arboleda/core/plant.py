@@ -219,7 +219,7 @@ class Plant:
     @property
     def version(self) -> int:
         """A number that changes whenever something other than a position changed."""
-        return self.dispatcher.version + self.dispatcher.effectors.version + self._changes
+        return self.dispatcher.ledger.version + self.dispatcher.effectors.version + self._changes
 
     @property
     def acts(self) -> Sequence[OperatorAct]:
@@ -275,9 +275,9 @@ class Plant:
     def _run(self, cell: Cell) -> CellRun:
         context = Context(cell, self.dispatcher, self.zones, self._clock, self._at_work)
         stop = None
-        if self._was_stopped(cell, self.dispatcher.latched):
+        if self._was_stopped(cell, self.dispatcher.latches.stopped):
             stop = CellState.ABORTED
-        elif self._was_stopped(cell, self.dispatcher.cleared):
+        elif self._was_stopped(cell, self.dispatcher.latches.cleared):
             stop = CellState.STOPPED
         return CellRun(cell, context, self._task_changed, self._build, self._ways_out, stop)
 
@@ -444,7 +444,7 @@ class Plant:
         if self._reported_errors.get(cell) != sentence:
             self._reported_errors[cell] = sentence
             self.dispatcher.outbox.append(InternalError(cell=cell, error=error))
-        self.dispatcher.give_up(cell, failure, self.now)
+        self.dispatcher.booking.give_up(cell, failure, self.now)
         self.cells[cell].break_down(failure)
 
     def _plan(self, names: Iterable[str]) -> None:
@@ -550,8 +550,8 @@ class Plant:
     def _on_undelivered(self, event: Undelivered) -> None:
         cell = self.model.cell_of.get(event.robot)
         if cell is not None:
-            fail = partial(self.dispatcher.undelivered, event.id, event.robot, event.sentence, self.now)
-            self._guard(cell.name, fail)
+            fail = self.dispatcher.booking.undelivered
+            self._guard(cell.name, partial(fail, event.id, event.robot, event.sentence, self.now))
 
     def _on_interference(self, event: Interference) -> None:
         if event.robot in self.dispatcher.beliefs:

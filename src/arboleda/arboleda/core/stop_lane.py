@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from arboleda.dispatch.dispatcher import UNSENT
+from arboleda.dispatch.outlet import UNSENT
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import OperatorAnswer, OperatorRequest
 from arboleda.model.plant_model import PlantModel

@@ -86,7 +86,7 @@ def _given(plant: Plant, entries: Iterable[Entry]) -> Iterator[Given]:
         if entry.state is State.CANCELLING and entry.halts and entry.cancelled_at is not None:
             halt = Stop(id=f"{plant.epoch}-0", robot=entry.command.robot, mode=StopMode.HALT)
             yield entry.cancelled_at, halt
-    for robot in sorted(plant.dispatcher.latched):
+    for robot in sorted(plant.dispatcher.latches.stopped):
         yield plant.now, Stop(id=f"{plant.epoch}-00", robot=robot, mode=StopMode.LATCH)
     while first < plant.now:
         yield first, Heartbeat(epoch=plant.epoch)

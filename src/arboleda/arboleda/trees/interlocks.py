@@ -62,7 +62,7 @@ class Interlocks:
 
     def _is_at_its_work(self, device: str) -> bool:
         """True while a device has work, and has named it as taken where it names its commands."""
-        work = self._dispatcher.work_of(device)
+        work = self._dispatcher.ledger.work_of(device)
         names_commands = self._dispatcher.model.robots[device].evidence is Evidence.IDS
         return work is not None and (work.accepted_at is not None or not names_commands)
 

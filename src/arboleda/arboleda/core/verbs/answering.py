@@ -40,7 +40,7 @@ class Answering:
         people = [name for name, robot in self._dispatcher.model.robots.items() if robot.link is Link.SCREEN]
         if person not in people:
             raise VerbRefusal(NO_PERSON(person=quoted(person), known=tuple(people) or NONE()))
-        entry = self._dispatcher.question(person)
+        entry = self._dispatcher.ledger.question(person)
         if entry is None and id is not None:
             raise VerbRefusal(QUESTION_OVER(question=id, person=person))
         if entry is None:

@@ -131,7 +131,7 @@ class Homing:
             return ONLY_DRAWN(robot=name)
         if not belief.robot.homes:
             return NO_HOMING(robot=name)
-        if work := self._dispatcher.work_of(name):
+        if work := self._dispatcher.ledger.work_of(name):
             return STILL_DOING(robot=name, doing=work.doing)
         robot, has_routine = belief.robot, belief.robot.evidence is Evidence.IDS
         if by_hand and robot.says_homed:
@@ -142,5 +142,5 @@ class Homing:
             return None
         if not has_routine:
             return CANNOT_REPORT(robot=name)
-        obstacle = self._dispatcher.objection(partial(Home, robot=name))
+        obstacle = self._dispatcher.obstacles.objection(partial(Home, robot=name))
         return obstacle.sentence if obstacle else None

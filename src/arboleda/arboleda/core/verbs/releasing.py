@@ -88,7 +88,7 @@ class Releasing:
         if not able:
             first = next(each.name for each in cell.cell.robots if each.name in robots)
             return self._none_able(robots, first)
-        found = (self._dispatcher.obstacle_to_opening(name) for name in able)
+        found = (self._dispatcher.obstacles.to_opening(name) for name in able)
         obstacle = next((each for each in found if each), None)
         return NOT_OPENED(why=obstacle.sentence) if obstacle else None
 

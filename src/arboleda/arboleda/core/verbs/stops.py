@@ -32,7 +32,7 @@ class Stops:
         """Stop the robots of a cell until they are cleared."""
         for robot in cell.cell.robots:
             if robot.name in robots:
-                self._dispatcher.latch(robot.name)
+                self._dispatcher.latches.latch(robot.name)
 
     def not_clearable(self, cell: CellRun, robots: frozenset[str]) -> Sentence | None:
         """Why robots of a cell cannot be cleared."""
@@ -42,7 +42,7 @@ class Stops:
         if others and others.keys() >= {each.name for each in cell.cell.robots if each.name in robots}:
             device, cells = next(iter(others.items()))
             return STAYS_STOPPED(device=device, cells=cells)
-        finishes = self._dispatcher.finishes
+        finishes = self._dispatcher.ledger.finishes
         mine = [each.name for each in cell.cell.robots if each.name in robots and not finishes(each.name)]
         beliefs = [self._dispatcher.beliefs[name] for name in mine]
         moving = tuple(belief.robot.name for belief in beliefs if belief.online and not belief.still)
@@ -55,8 +55,8 @@ class Stops:
         unstopped = {name for name in cell.cell.shared if not was_stopped(name)}
         for robot in cell.cell.robots:
             if robot.name in robots - unstopped and robot.name not in kept:
-                self._dispatcher.unlatch(robot.name)
-        stopped = self._dispatcher.latched - kept.keys()
+                self._dispatcher.latches.unlatch(robot.name)
+        stopped = self._dispatcher.latches.stopped - kept.keys()
         if not any(robot.name in stopped for robot in cell.cell.robots):
             cell.become(Cause.CLEAR)
 
@@ -64,11 +64,11 @@ class Stops:
         """Those of the robots that stay stopped when they are cleared in a cell, and for which cells: whoever
         shares them was stopped, too, and is not cleared with them.
         """
-        kept, stopped = {}, self._dispatcher.latched - robots
+        kept, stopped = {}, self._dispatcher.latches.stopped - robots
         for name in cell.cell.shared:
             cells = [each for each in self._dispatcher.model.cells_of[name] if stopped & {*each.own}]
             others = tuple(each.name for each in cells if self._cells[each.name].state in STOPPING)
-            if name in robots and name in self._dispatcher.latched and others:
+            if name in robots and name in self._dispatcher.latches.stopped and others:
                 kept[name] = others
         return kept
 
@@ -77,7 +77,7 @@ class Stops:
         for robot in cell.cell.robots:
             others = [each for each in self._dispatcher.model.cells_of[robot.name] if each is not cell.cell]
             if not any(self._cells[other.name].state in UNTIL_RESET for other in others):
-                self._dispatcher.forget_stop(robot.name)
+                self._dispatcher.latches.forget(robot.name)
         cell.become(Cause.RESET)
         cell.become(Cause.READY)
 

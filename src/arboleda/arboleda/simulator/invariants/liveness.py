@@ -131,7 +131,7 @@ def _is_outside(look: Look, space: Workspace) -> bool:
     it says of its place.
     """
     if space.robot.evidence is Evidence.STATE:
-        goal = look.world.plant.dispatcher.reached.get(space.robot.name)
+        goal = look.world.plant.dispatcher.whereabouts.reached.get(space.robot.name)
         return goal is None or any(not pose.zones and pose.q == goal for pose in space.poses)
     return _stands_at(look, space, [pose for pose in space.poses if not pose.zones])
 
