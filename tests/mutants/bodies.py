@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from arboleda.core.cell import CellRun
+from arboleda.core.cell_steps import _cleared
 from arboleda.dispatch import evidence
 from arboleda.dispatch.time_limits import TimeLimits
 from arboleda.dispatch.zones import Zones
@@ -200,9 +201,9 @@ STOP = (
         "stop_holds",
         "A cell that was cleared resets itself.",
         edit(
-            CellRun._cleared,
-            "self.become(Cause.CLEARED)",
-            "self.become(Cause.CLEARED); self.become(Cause.RESET); self.become(Cause.READY)",
+            _cleared,
+            "run.become(Cause.CLEARED)",
+            "run.become(Cause.CLEARED); run.become(Cause.RESET); run.become(Cause.READY)",
         ),
         weather={"operator_stop": 10.0},
     ),

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from arboleda.core.cell import CellRun
+from arboleda.core.cell_steps import _aborted, _halted, advance
 from arboleda.core.choosing import best
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
-from arboleda.core.verbs.cancelling import Cancelling
+from arboleda.core.verbs.cancelling import Cancelling, _cancel
+from arboleda.core.verbs.held_cells import resume
 from arboleda.dispatch import evidence
 from arboleda.dispatch.latches import Latches
 from arboleda.simulator.run import NO_EXCEPTION
@@ -42,9 +44,9 @@ TASKS = (
         "nothing_of_an_ended_task_moves",
         "A task that is cancelled ends at once, and goes on with its work.",
         edit(
-            CellRun.cancel,
-            "if held or not self.run.recovering:\n        self._recover()",
-            "if self.task is not None:\n        self._finish(self.task, TaskState.CANCELLED)",
+            _cancel,
+            "if held or not cell.run.recovering:\n        cell.recover()",
+            "if cell.task is not None:\n        cell._finish(cell.task, TaskState.CANCELLED)",
         ),
         weather={"operator_cancel": 20.0},
     ),
@@ -69,13 +71,13 @@ TASKS = (
     mutant(
         "only_legal_task_states",
         "That a task starts is not told.",
-        edit(CellRun._start, "    self._changed(task)\n", ""),
+        edit(CellRun.start, "    self._changed(task)\n", ""),
         weather="none",
     ),
     mutant(
         "first_come_first_served",
         "The task that came last is the next one.",
-        edit(CellRun.advance, "self.queue.popleft()", "self.queue.pop()"),
+        edit(advance, "run.queue.popleft()", "run.queue.pop()"),
         weather="none",
     ),
     mutant(
@@ -104,7 +106,7 @@ TASKS = (
     mutant(
         "cancelled_tasks_end_cancelled",
         "A task that is held counts as failed when it is cancelled.",
-        edit(CellRun.cancel, "self._cancelling = True", "self._cancelling = self.state is CellState.EXECUTE"),
+        edit(_cancel, "cell.cancelling = True", "cell.cancelling = cell.state is CellState.EXECUTE"),
         weather={"operator_hold": 20.0, "operator_cancel": 40.0},
     ),
     mutant(
@@ -117,9 +119,9 @@ TASKS = (
         "only_legal_cell_states",
         "A stopped cell clears itself once it stands still.",
         edit(
-            CellRun._aborted,
-            "self.become(Cause.HALTED)",
-            "self.become(Cause.HALTED); self.become(Cause.CLEAR)",
+            _aborted,
+            "run.become(Cause.HALTED)",
+            "run.become(Cause.HALTED); run.become(Cause.CLEAR)",
         ),
         weather={"operator_stop": 10.0},
     ),
@@ -191,7 +193,7 @@ LIVENESS = (
     mutant(
         "held_cells_stand_still",
         "A cell counts as held while its robots still move.",
-        edit(CellRun._halted, "if any(entry.halts", "if False and any(entry.halts"),
+        edit(_halted, "if any(entry.halts", "if False and any(entry.halts"),
         weather={"operator_hold": 10.0},
     ),
     mutant(
@@ -211,9 +213,9 @@ LIVENESS = (
         "no_starvation",
         "An idle cell looks into its queue only when something else changed.",
         edit(
-            CellRun.advance,
-            "if self.queue and self.state is CellState.IDLE",
-            "if self.dirty and self.queue and self.state is CellState.IDLE",
+            advance,
+            "if run.queue and run.state is CellState.IDLE",
+            "if run.dirty and run.queue and run.state is CellState.IDLE",
         ),
         weather="none",
     ),
@@ -239,9 +241,9 @@ LIVENESS = (
         "nothing_waits_at_end",
         "To resume an idle cell does not let its queue run.",
         edit(
-            CellRun.resume,
-            "    self.queue.resume()",
-            "        self.queue.resume()",
+            resume,
+            "    cell.queue.resume()",
+            "        cell.queue.resume()",
         ),
         weather={"operator_stop": 5.0},
         rest_s=PATIENCE_S,

@@ -8,9 +8,7 @@ from .copied_tree import CopiedTree
 
 ROW = """    WIPE = "wipe", Row(scopes=_CELLS, arguments=(Argument(name="times", type=int),))
 """
-PROCEDURE = """            Verb.WIPE: CellByCell(
-                doing, check=not_holdable, do=lambda cell, robots: cell.hold()
-            ),
+PROCEDURE = """            Verb.WIPE: CellByCell(doing, check=not_holdable, do=hold),
 """
 WORDS = """    Verb.WIPE: VerbWords(
         label="Wipe it",

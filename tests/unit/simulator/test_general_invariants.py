@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.cell import WAITS
 from arboleda.core.cell_states import Cause, CellState
+from arboleda.core.cell_steps import WAITS
 from arboleda.core.plant import Plant
 from arboleda.dispatch import evidence
 from arboleda.dispatch.dispatcher import Dispatcher

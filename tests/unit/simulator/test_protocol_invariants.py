@@ -481,7 +481,7 @@ def test_first_come_first_served(bites):
 
 def test_cancelled_tasks_end_cancelled(monkeypatch, bites):
     monkeypatch.setattr(
-        cell.CellRun, "_cancelling", property(lambda self: False, lambda self, word: None), raising=False
+        cell.CellRun, "cancelling", property(lambda self: False, lambda self, word: None), raising=False
     )
     watch = Watch()
     watch.task(wait_s=1)

@@ -21,7 +21,16 @@ from .intake import Intake
 from .verbs.answering import Answering
 from .verbs.cancelling import Cancelling
 from .verbs.cell_by_cell import CellByCell, Doing, Plan
-from .verbs.held_cells import not_abandonable, not_holdable, not_resumable, not_retryable
+from .verbs.held_cells import (
+    abandon,
+    hold,
+    not_abandonable,
+    not_holdable,
+    not_resumable,
+    not_retryable,
+    resume,
+    retry,
+)
 from .verbs.homing import Homing
 from .verbs.overriding import Overriding
 from .verbs.part_counts import PartCounts
@@ -94,11 +103,11 @@ class Operator:
             Verb.RESET: CellByCell(
                 doing, check=not_resettable, do=stops.reset, must_all=(CellState.CLEARING,)
             ),
-            Verb.HOLD: CellByCell(doing, check=not_holdable, do=lambda cell, robots: cell.hold()),
-            Verb.RESUME: CellByCell(doing, check=not_resumable, do=lambda cell, robots: cell.resume()),
+            Verb.HOLD: CellByCell(doing, check=not_holdable, do=hold),
+            Verb.RESUME: CellByCell(doing, check=not_resumable, do=resume),
             Verb.CANCEL: Cancelling(scopes, intake, doing).plan,
-            Verb.RETRY: CellByCell(doing, check=not_retryable, do=lambda cell, robots: cell.retry()),
-            Verb.ABANDON: CellByCell(doing, check=not_abandonable, do=lambda cell, robots: cell.abandon()),
+            Verb.RETRY: CellByCell(doing, check=not_retryable, do=retry),
+            Verb.ABANDON: CellByCell(doing, check=not_abandonable, do=abandon),
             Verb.RELEASE: Releasing(scopes, dispatcher, zones, doing, clock).plan,
             Verb.HOME: self.homing.plan,
             Verb.OVERRIDE: Overriding(scopes, dispatcher, zones).plan,

@@ -60,7 +60,9 @@ from .advice import Advice
 from .advisor import Advisor
 from .cell import CellRun, NextVersion
 from .cell_states import CellState
+from .cell_steps import advance
 from .choosing import PastTimes, Prospect, best, prospect
+from .earlier_start import look_back, trail_of, walk_back
 from .intake import CUT_OFF, OTHER_VERSION, Intake, gone
 from .operator import PUT_TO_WORK, RESTART_UNWANTED, RESTART_WANTED, Operator
 from .provoked import ProvokedFaults
@@ -168,7 +170,7 @@ class Plant:
                 self._on_report(event)
             else:
                 for name in self._touched:  # whoever asks finds judged what was heard before
-                    self._guard(name, self.cells[name].look_back)
+                    self._guard(name, partial(look_back, self.cells[name]))
                 if not isinstance(
                     event, TaskRequest | Jog
                 ):  # that is the business of the cell which takes it
@@ -292,7 +294,7 @@ class Plant:
             for task in at_work:
                 trail = self.dispatcher.memory.value(Fact.STEP, task.id)
                 if trail is not None and run.task is None and run.state is CellState.IDLE:
-                    run.walk_back(task, trail)
+                    walk_back(run, task, trail)
         known = {run.task for run in self.cells.values()}
         for was, task in tasks:
             if task.state is TaskState.RUNNING and task not in known:
@@ -399,7 +401,7 @@ class Plant:
         """Let a cell do what it can; whether it did."""
         before = len(self.dispatcher.outbox)
         try:
-            did = self.cells[name].advance(woken=woken)
+            did = advance(self.cells[name], woken=woken)
             if did or woken:
                 self._keep_trail(self.cells[name], before)
         except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
@@ -413,7 +415,7 @@ class Plant:
 
         It says of steps that they are done, so what those have left behind is kept before it.
         """
-        text = run.trail()
+        text = trail_of(run)
         if text is None or run.task is None:
             return
         outbox = self.dispatcher.outbox
@@ -697,8 +699,8 @@ class Plant:
         by = plain(event.by) or "-"
         self.restart_by = by if event.wanted else ""
         self._changes += 1
-        for name, cell in self.cells.items():
-            self._guard(name, partial(cell.await_restart, wanted=event.wanted))
+        for cell in self.cells.values():
+            cell.awaits_restart, cell.dirty = event.wanted, True
         did = RESTART_WANTED if event.wanted else RESTART_UNWANTED
         self.dispatcher.outbox.append(Journal(verb=None, scope="", cell=None, sentence=did(by=by)))
 

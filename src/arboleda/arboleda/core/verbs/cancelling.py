@@ -9,7 +9,7 @@ from arboleda.model.messages import Failure, OperatorRequest, Reason, TaskState
 from arboleda.model.sentence import Phrase, Sentence
 
 from ..cell import CellRun
-from ..cell_states import CellState
+from ..cell_states import Cause, CellState
 from ..intake import Intake
 from .cell_by_cell import CellByCell, Doing, in_states
 from .scopes import Scopes, VerbRefusal
@@ -31,7 +31,9 @@ class Cancelling:
     def __init__(self, scopes: Scopes, intake: Intake, doing: Doing) -> None:
         self._scopes = scopes
         self._intake = intake
-        self._in_cells = CellByCell(doing, check=_not_cancellable, do=_cancel)
+        self._in_cells = CellByCell(
+            doing, check=_not_cancellable, do=lambda cell, robots: _cancel(cell, CANCELLED_BY_OPERATOR)
+        )
 
     def plan(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
         """Of one task, or of those that run in a scope."""
@@ -51,7 +53,7 @@ class Cancelling:
             raise VerbRefusal(TASK_ENDED(task=id, state=TASK_STATES[task.state]()))
         if why := _not_cancellable(cell, frozenset()):
             raise VerbRefusal(why)
-        return partial(cell.cancel, failure)
+        return partial(_cancel, cell, failure)
 
 
 def _not_cancellable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
@@ -60,5 +62,13 @@ def _not_cancellable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
     return _begun(cell, robots)
 
 
-def _cancel(cell: CellRun, robots: frozenset[str]) -> None:
-    cell.cancel(CANCELLED_BY_OPERATOR)
+def _cancel(cell: CellRun, failure: Failure) -> None:
+    """End the running task: halt, recover, then it is cancelled."""
+    cell.cancelling = True
+    if cell.task is not None:
+        cell.task.fail(failure)
+    held = cell.state is CellState.HELD
+    if held:
+        cell.become(Cause.ABANDON)
+    if held or not cell.run.recovering:
+        cell.recover()

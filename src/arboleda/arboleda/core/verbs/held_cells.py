@@ -1,16 +1,16 @@
-"""Refusals of verbs that hold a cell or get a held cell going: hold, resume, retry and abandon."""
+"""Verbs that hold a cell or get a held cell going: hold, resume, retry and abandon."""
 
 from __future__ import annotations
 
 from functools import reduce
 
-from arboleda.model.messages import Verb
+from arboleda.model.messages import Failure, Reason, Verb
 from arboleda.model.sentence import Phrase, Sentence
 
 from .. import reasons
 from ..advice import AND, DO
-from ..cell import NOT_YET, CellRun
-from ..cell_states import CellState
+from ..cell import CellRun
+from ..cell_states import Cause, CellState
 from .cell_by_cell import in_states
 
 NOT_AT_WORK = Phrase("refusal.not_at_work", "{cell} is {state}; only a cell at work can be held")
@@ -21,8 +21,47 @@ ONLY_HELD = Phrase(
 NO_FAULT = Phrase("refusal.no_fault", "{cell} is held without a fault; resume {cell} goes on")
 RELEASE_FIRST = Phrase("refusal.release_first", "{arm} may hold a part; release {arm} first")
 RELEASE_ALL_FIRST = Phrase("refusal.release_all_first", "{devices} may each hold a part; {releases} first")
+NOT_YET = Phrase("walk.not_yet", "{why}; until then nobody can tell what became of the step of {cell}")
+ABANDONED = Phrase("task.abandoned", "abandoned by the operator")
 
 _held = in_states(CellState.HELD)
+
+
+def hold(cell: CellRun, robots: frozenset[str]) -> None:
+    """Halt at once and keep everything for `resume`."""
+    cell.halt(Cause.HOLD)
+
+
+def resume(cell: CellRun, robots: frozenset[str]) -> None:
+    """Go on where `hold` interrupted, each interrupted step given anew; let an idle cell's queue run."""
+    if cell.state is CellState.HELD:
+        cell.go_on(Cause.RESUME)
+    cell.queue.resume()
+    cell.dirty = True
+
+
+def retry(cell: CellRun, robots: frozenset[str]) -> None:
+    """Give the step that failed anew; without a task, recover anew."""
+    if cell.task is not None:
+        cell.task.attempts += 1
+        cell.go_on(Cause.RETRY)
+    else:
+        cell.become(Cause.RETRY)
+        cell.context.start_afresh()
+        cell.recover(anew=True)
+
+
+def abandon(cell: CellRun, robots: frozenset[str]) -> None:
+    """Give the task up and recover; without a task, leave the cell as it is."""
+    if cell.task is None:
+        cell.leave_as_it_is()
+        return
+    cell.become(Cause.ABANDON)
+    given_up = Failure(reason=Reason.CANCELLED, sentence=ABANDONED())
+    if cell.keeping.walk is not None and cell.stranded is not None:
+        given_up = Failure(reason=Reason.INTERRUPTED, sentence=cell.stranded)
+    cell.task.fail(cell.trouble or given_up)
+    cell.recover()
 
 
 def not_holdable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:

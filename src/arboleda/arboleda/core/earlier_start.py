@@ -1,0 +1,51 @@
+"""Tasks of an earlier start: held at their step until devices prove what became of it, and people say how it
+goes on.
+"""
+
+from __future__ import annotations
+
+from arboleda.model.task import Task
+from arboleda.trees.step_token import hash_of
+
+from .cell import CellRun
+from .cell_states import CellState
+
+
+def walk_back(run: CellRun, task: Task, kept: str) -> None:
+    """Hold a task that was at work when an earlier start ended, until a person says how it goes on."""
+    run.task, run.queue.paused, run.state = task, True, CellState.HELD
+    run.context.answers, run.context.commands.task = task.answers, hash_of(task.id)
+    run.context.time.pause()
+    run.stranded = run.keeping.revive(task.order, kept)
+    trail = run.keeping.walk.trail if run.keeping.walk else None
+    if trail is not None:
+        run.trouble, run.cancelling = trail.failure, trail.cancels
+
+
+def look_back(run: CellRun) -> None:
+    """Judge a task of an earlier start by what its devices have said by now."""
+    if run.keeping.walk is not None and run.state is CellState.HELD:
+        judged(run)
+
+
+def judged(run: CellRun) -> bool:
+    """Look what devices say of the steps at which an earlier start ended; whether that is news.
+
+    What keeps a task from going on stays so, whatever they say later.
+    """
+    if run.run.tree is None:
+        return False
+    before, found = (run.awaits, run.trouble, run.stranded), run.keeping.judge()
+    run.awaits = found.waits
+    run.trouble = run.trouble or found.failure
+    run.stranded = run.stranded or found.stranded
+    return before != (run.awaits, run.trouble, run.stranded)
+
+
+def trail_of(run: CellRun) -> str | None:
+    """The place of its task in the tree, to be kept; None where that is kept already."""
+    if run.task is None or run.run.tree is None:
+        return None
+    holds = run.state in (CellState.HOLDING, CellState.HELD)
+    why, cancels = run.task.failure, run.cancelling
+    return run.keeping.news(failure=why, cancels=cancels, holds=holds, stranded=run.stranded)
