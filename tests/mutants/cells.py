@@ -7,6 +7,7 @@ from arboleda.core.cell_steps import _aborted, _halted, advance
 from arboleda.core.choosing import best
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
+from arboleda.core.task_desk import TaskDesk
 from arboleda.core.verbs.cancelling import Cancelling, _cancel
 from arboleda.core.verbs.held_cells import resume
 from arboleda.dispatch import evidence
@@ -20,7 +21,10 @@ from arboleda.wire import strict
 
 from .mutant import SHARED, edit, mutant
 
-BEAT = "self._beat()\n    self.next_deadline = self._earliest()"
+BEAT = """if now >= self._next_beat:
+        self._next_beat = now + HEARTBEAT_S
+        self.dispatcher.outbox.append(Heartbeat(epoch=self.epoch))
+    self.next_deadline = self._earliest()"""
 COLLECT = "out = self.dispatcher.outbox.copy()\n    self.dispatcher.outbox.clear()"
 STAYS_SHORT = (
     " or at < observed.stopped_since + QUIET_S:\n"
@@ -97,9 +101,9 @@ TASKS = (
         "tasks_stay_in_their_cell",
         "A task that begins is said to be in the last cell.",
         edit(
-            Plant._task_changed,
+            TaskDesk.tell,
             "cell=task.order.cell,",
-            "cell=[*self.cells][-1] if task.state is TaskState.RUNNING else task.order.cell,",
+            "cell=[*self._cells][-1] if task.state is TaskState.RUNNING else task.order.cell,",
         ),
         weather="none",
     ),
@@ -140,9 +144,9 @@ TASKS = (
         "every_request_is_answered",
         "An empty task text is passed over.",
         edit(
-            Plant._on_task_request,
-            "self.dispatcher.outbox.append(_refused(",
-            "if request.text: self.dispatcher.outbox.append(_refused(",
+            TaskDesk.take,
+            "self._dispatcher.outbox.append(_refused(",
+            "if request.text: self._dispatcher.outbox.append(_refused(",
         ),
         weather={"bad_task": 30.0},
     ),
@@ -166,7 +170,7 @@ TASKS = (
     mutant(
         "sentences_are_for_people",
         "Who sends a bad task text is told the exception, not its sentence.",
-        edit(Plant._on_task_request, "refusal.sentence", "Phrase('own', repr(refusal))()"),
+        edit(TaskDesk.take, "refusal.sentence", "Phrase('own', repr(refusal))()"),
         weather={"bad_task": 30.0},
     ),
 )

@@ -6,7 +6,7 @@ from arboleda.core import advisor
 from arboleda.core.acts import outcome_of
 from arboleda.core.advisor import Advisor
 from arboleda.core.operator import Operator
-from arboleda.core.plant import Plant
+from arboleda.core.people import People
 from arboleda.core.readiness import Readiness
 from arboleda.core.verbs.held_cells import not_resumable
 from arboleda.core.verbs.overriding import Overriding
@@ -188,7 +188,7 @@ SCREENS = (
     mutant(
         "screens_are_told_of_news",
         "What an operator has done is shown only with the next news.",
-        edit(Plant._on_operator_request, "self._changes += 1", "pass"),
+        edit(People.operate, "self._news.changes += 1", "pass"),
         weather={"operator_hold": 10.0},
     ),
     mutant(

@@ -222,7 +222,7 @@ def test_a_cell_that_raises_on_its_own_is_held_and_the_others_advance(
     def broken(run: CellRun, *, woken: bool) -> bool:
         return broken_rule() or False if run.cell.name == "sis_a" else sound(run, woken=woken)
 
-    monkeypatch.setattr("arboleda.core.plant.advance", broken)
+    monkeypatch.setattr("arboleda.core.rounds.advance", broken)
     plant.submit("sis_a 1C 3")
     plant.submit("sis_b 1C 3")
     plant.wait(1.0)
@@ -242,7 +242,7 @@ def test_a_task_is_the_business_of_the_cell_that_takes_it(
         advanced.add(run.cell.name)
         return sound(run, woken=woken)
 
-    monkeypatch.setattr("arboleda.core.plant.advance", noted)
+    monkeypatch.setattr("arboleda.core.rounds.advance", noted)
     before = dict(plant.plant.revisions)
     plant.submit("sis_b 1C 3")
     changed = {name for name, number in plant.plant.revisions.items() if number != before[name]}
@@ -256,7 +256,7 @@ def test_cells_that_never_come_to_rest_are_held(hand: Make, monkeypatch: pytest.
     def restless(run: CellRun, *, woken: bool) -> bool:
         return sound(run, woken=woken) or (run.cell.name == "sis_a" and run.state is CellState.IDLE)
 
-    monkeypatch.setattr("arboleda.core.plant.advance", restless)
+    monkeypatch.setattr("arboleda.core.rounds.advance", restless)
     plant.awake()
     assert cell_of(plant, "sis_a").trouble.reason is Reason.INTERNAL
     assert cell_of(plant, "sis_b").state is CellState.IDLE

@@ -1,9 +1,13 @@
-"""Tasks of an earlier start: held at their step until devices prove what became of it, and people say how it
-goes on.
+"""Cells as an earlier start left them: stopped, taught, or with a task that is held at its step until devices
+prove what became of it, and people say how it goes on.
 """
 
 from __future__ import annotations
 
+from arboleda.dispatch.fact_memory import FactMemory
+from arboleda.dispatch.latches import Latches
+from arboleda.model.messages import Fact
+from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.task import Task
 from arboleda.trees.step_token import hash_of
 
@@ -49,3 +53,30 @@ def trail_of(run: CellRun) -> str | None:
     holds = run.state in (CellState.HOLDING, CellState.HELD)
     why, cancels = run.task.failure, run.cancelling
     return run.keeping.news(failure=why, cancels=cancels, holds=holds, stranded=run.stranded)
+
+
+def stop_of(cell: Cell, model: PlantModel, latches: Latches) -> CellState | None:
+    """How far a cell came out of a stop of an earlier start; None where it was not stopped."""
+    if _was_stopped(cell, model, latches.stopped):
+        return CellState.ABORTED
+    return CellState.STOPPED if _was_stopped(cell, model, latches.cleared) else None
+
+
+def _was_stopped(cell: Cell, model: PlantModel, stopped: set[str]) -> bool:
+    """True for a cell that had been stopped: one of its own robots was, or what it shares, by itself."""
+    if not stopped.isdisjoint(cell.own):
+        return True
+    for name in stopped.intersection(cell.shared):
+        if all(stopped.isdisjoint(other.own) for other in model.cells_of[name]):
+            return True
+    return False
+
+
+def end_teaching(cells: dict[str, CellRun], memory: FactMemory) -> None:
+    """A cell that was being taught when an earlier start ended begins nothing by itself: somebody may stand
+    beside it.
+    """
+    for name in sorted(memory.names(Fact.MANUAL)):
+        memory.remember(Fact.MANUAL, name, None)
+        if name in cells:
+            cells[name].queue.paused = True

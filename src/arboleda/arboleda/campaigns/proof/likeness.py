@@ -16,6 +16,7 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
+from arboleda.core.news import News
 from arboleda.core.plant import Plant
 from arboleda.dispatch.belief import Belief, Moment
 from arboleda.dispatch.ledger import Entry, Ledger
@@ -51,7 +52,8 @@ LEFT_OUT: dict[type, frozenset[str]] = {
             "_agenda_no",  # the order of what is to come at one time, which that keeps
         }
     ),
-    Plant: frozenset({"_changes", "revisions"}),  # numbers that say to a page that there is something new
+    Plant: frozenset({"revisions"}),  # numbers that say to a page that there is something new
+    News: frozenset({"changes"}),
     Ledger: frozenset({"version"}),
     Belief: frozenset({"rate_hz", "_counted"}),  # how often a board speaks, which is shown and no more
     Entry: frozenset({"accepted_at", "observations"}),  # said by `_parts`, as far as it is asked for
