@@ -73,7 +73,10 @@ ACTS_TOLD = {
 
 
 class Operator:
-    """Carries out verbs wherever in their scope they can be done; refuses those that can be done nowhere."""
+    """Carries out verbs wherever in their scope they can be done; refuses those that can be done nowhere.
+
+    `table` says who does each of them: `CellByCell` in one cell after the other, anything else by its plan.
+    """
 
     def __init__(
         self,
