@@ -15,7 +15,8 @@ from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command
-from arboleda.model.plant_model import Cell, MotionState, PlantModel, Robot
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.wire.payloads import (
     EffectorGoal,

@@ -20,7 +20,7 @@ from std_msgs.msg import UInt32
 
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.joints import MoveJoints
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.wire.payloads import Telemetry, encode
 from arboleda_ros import convert, qos
 

@@ -11,8 +11,8 @@ from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
-from arboleda.model.messages import Event, Report, TaskChanged, TaskRequest, TaskState
-from arboleda.model.plant_model import MotionState, PlantModel, Robot
+from arboleda.model.messages import Event, MotionState, Report, TaskChanged, TaskRequest, TaskState
+from arboleda.model.plant_model import PlantModel, Robot
 
 EPOCH = 1000
 MESSAGE_S = 1e-4  # from one word of a robot to the next; none counts as silent meanwhile

@@ -10,8 +10,8 @@ from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.joints import Jointed, MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop
-from arboleda.model.messages import Heartbeat, Report
-from arboleda.model.plant_model import MotionState, PlantModel, Robot
+from arboleda.model.messages import Heartbeat, MotionState, Report
+from arboleda.model.plant_model import PlantModel, Robot
 
 from .clockwork import Clockwork, now
 

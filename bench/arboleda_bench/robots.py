@@ -16,8 +16,8 @@ from arboleda.kinds.arm import Arm
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Stop
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Cell, MotionState, PlantModel, Robot
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.wire.hop import PLAIN
 from arboleda_ros import convert, qos

@@ -19,8 +19,8 @@ from arboleda.drivers.pylabrobot.machine import Machine
 from arboleda.drivers.pylabrobot.messages import Event
 from arboleda.drivers.pylabrobot.settings import MachineMapping
 from arboleda.model.commands import Command, Stop
-from arboleda.model.messages import Reason, Report
-from arboleda.model.plant_model import MotionState, PlantModel, Robot
+from arboleda.model.messages import MotionState, Reason, Report
+from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.virtual.faults import Faults
 
 from .rig import START_S, Causes, Hear, Rig

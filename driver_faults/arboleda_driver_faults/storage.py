@@ -6,8 +6,8 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel, Robot
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
 from arboleda.recipes.storage_layout import StorageLayout
 
 from .rig import EPOCH, Rig

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import io
 import re
+from importlib import import_module
 from pathlib import Path
+from pkgutil import walk_packages
 from typing import Any
 
 import pytest
 from rich.console import Console
 
+import arboleda.core
 from arboleda.cli.screen import table
-from arboleda.core import cell, operator
 from arboleda.core.cell_states import CellState
 from arboleda.dashboard.wording import LANGUAGES, SENTENCES, tree_of, words
 from arboleda.model.sentence import Phrase
@@ -92,7 +94,8 @@ def test_the_plants_sentences_have_the_word_in_spanish(state: CellState) -> None
 
 def test_a_sentence_about_a_state_has_its_word_and_no_other_in_spanish() -> None:
     spanish, found = on_page("es"), set()
-    for phrase in (*vars(cell).values(), *vars(operator).values()):
+    names = [each.name for each in walk_packages(arboleda.core.__path__, "arboleda.core.")]
+    for phrase in (each for name in names for each in vars(import_module(name)).values()):
         if isinstance(phrase, Phrase) and (state := SAYS_STATE.match(phrase.english)):
             found.add(state[1])
             ours = tree_of("es")[SENTENCES][phrase.key]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from arboleda.core.cell import CellRun
+from arboleda.core.cell_steps import _cleared
 from arboleda.dispatch import evidence
-from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.time_limits import TimeLimits
 from arboleda.dispatch.zones import Zones
 from arboleda.kinds.joints.motion import JointMotion
 from arboleda.recipes import storage
@@ -100,7 +101,7 @@ MOTION = (
         "tiny_moves_succeed",
         "A move has the time of its way and not a moment more.",
         edit(
-            Dispatcher._allowed_s,
+            TimeLimits.allowed_s,
             "max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)",
             "travel_s * timing.deadline_factor",
         ),
@@ -200,9 +201,9 @@ STOP = (
         "stop_holds",
         "A cell that was cleared resets itself.",
         edit(
-            CellRun._cleared,
-            "self.become(Cause.CLEARED)",
-            "self.become(Cause.CLEARED); self.become(Cause.RESET); self.become(Cause.READY)",
+            _cleared,
+            "run.become(Cause.CLEARED)",
+            "run.become(Cause.CLEARED); run.become(Cause.RESET); run.become(Cause.READY)",
         ),
         weather={"operator_stop": 10.0},
     ),

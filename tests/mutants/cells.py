@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from arboleda.core.cell import CellRun
+from arboleda.core.cell_steps import _aborted, _halted, advance
 from arboleda.core.choosing import best
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
+from arboleda.core.task_desk import TaskDesk
+from arboleda.core.verbs.cancelling import Cancelling, _cancel
+from arboleda.core.verbs.held_cells import resume
 from arboleda.dispatch import evidence
-from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.latches import Latches
 from arboleda.simulator.run import NO_EXCEPTION
 from arboleda.trees import paths, steps
 from arboleda.trees.cell_time import CellTime
@@ -17,7 +21,10 @@ from arboleda.wire import strict
 
 from .mutant import SHARED, edit, mutant
 
-BEAT = "self._beat()\n    self.next_deadline = self._earliest()"
+BEAT = """if now >= self._next_beat:
+        self._next_beat = now + HEARTBEAT_S
+        self.dispatcher.outbox.append(Heartbeat(epoch=self.epoch))
+    self.next_deadline = self._earliest()"""
 COLLECT = "out = self.dispatcher.outbox.copy()\n    self.dispatcher.outbox.clear()"
 STAYS_SHORT = (
     " or at < observed.stopped_since + QUIET_S:\n"
@@ -41,9 +48,9 @@ TASKS = (
         "nothing_of_an_ended_task_moves",
         "A task that is cancelled ends at once, and goes on with its work.",
         edit(
-            CellRun.cancel,
-            "if held or not self.run.recovering:\n        self._recover()",
-            "if self.task is not None:\n        self._finish(self.task, TaskState.CANCELLED)",
+            _cancel,
+            "if held or not cell.run.recovering:\n        cell.recover()",
+            "if cell.task is not None:\n        cell._finish(cell.task, TaskState.CANCELLED)",
         ),
         weather={"operator_cancel": 20.0},
     ),
@@ -51,7 +58,7 @@ TASKS = (
         "ended_tasks_stay_ended",
         "To cancel a task that has ended is not refused.",
         edit(
-            Operator._planned_cancel,
+            Cancelling._planned_cancel,
             "raise VerbRefusal(TASK_ENDED(task=id, state=TASK_STATES[task.state]()))",
             "return lambda: None",
         ),
@@ -68,13 +75,13 @@ TASKS = (
     mutant(
         "only_legal_task_states",
         "That a task starts is not told.",
-        edit(CellRun._start, "    self._changed(task)\n", ""),
+        edit(CellRun.start, "    self._changed(task)\n", ""),
         weather="none",
     ),
     mutant(
         "first_come_first_served",
         "The task that came last is the next one.",
-        edit(CellRun.advance, "self.queue.popleft()", "self.queue.pop()"),
+        edit(advance, "run.queue.popleft()", "run.queue.pop()"),
         weather="none",
     ),
     mutant(
@@ -94,16 +101,16 @@ TASKS = (
         "tasks_stay_in_their_cell",
         "A task that begins is said to be in the last cell.",
         edit(
-            Plant._task_changed,
+            TaskDesk.tell,
             "cell=task.order.cell,",
-            "cell=[*self.cells][-1] if task.state is TaskState.RUNNING else task.order.cell,",
+            "cell=[*self._cells][-1] if task.state is TaskState.RUNNING else task.order.cell,",
         ),
         weather="none",
     ),
     mutant(
         "cancelled_tasks_end_cancelled",
         "A task that is held counts as failed when it is cancelled.",
-        edit(CellRun.cancel, "self._cancelling = True", "self._cancelling = self.state is CellState.EXECUTE"),
+        edit(_cancel, "cell.cancelling = True", "cell.cancelling = cell.state is CellState.EXECUTE"),
         weather={"operator_hold": 20.0, "operator_cancel": 40.0},
     ),
     mutant(
@@ -116,9 +123,9 @@ TASKS = (
         "only_legal_cell_states",
         "A stopped cell clears itself once it stands still.",
         edit(
-            CellRun._aborted,
-            "self.become(Cause.HALTED)",
-            "self.become(Cause.HALTED); self.become(Cause.CLEAR)",
+            _aborted,
+            "run.become(Cause.HALTED)",
+            "run.become(Cause.HALTED); run.become(Cause.CLEAR)",
         ),
         weather={"operator_stop": 10.0},
     ),
@@ -128,7 +135,7 @@ TASKS = (
         edit(
             Operator.act,
             "do = self._planned(request, scope)",
-            "early = Journal(verb=request.verb, scope=scope, cell=None, sentence=NONE())\n"
+            "early = Journal(verb=request.verb, scope=scope, cell=None, sentence=PLANT())\n"
             "    self._dispatcher.outbox.append(early)\n"
             "    do = self._planned(request, scope)",
         ),
@@ -137,9 +144,9 @@ TASKS = (
         "every_request_is_answered",
         "An empty task text is passed over.",
         edit(
-            Plant._on_task_request,
-            "self.dispatcher.outbox.append(_refused(",
-            "if request.text: self.dispatcher.outbox.append(_refused(",
+            TaskDesk.take,
+            "self._dispatcher.outbox.append(_refused(",
+            "if request.text: self._dispatcher.outbox.append(_refused(",
         ),
         weather={"bad_task": 30.0},
     ),
@@ -163,7 +170,7 @@ TASKS = (
     mutant(
         "sentences_are_for_people",
         "Who sends a bad task text is told the exception, not its sentence.",
-        edit(Plant._on_task_request, "refusal.sentence", "Phrase('own', repr(refusal))()"),
+        edit(TaskDesk.take, "refusal.sentence", "Phrase('own', repr(refusal))()"),
         weather={"bad_task": 30.0},
     ),
 )
@@ -190,7 +197,7 @@ LIVENESS = (
     mutant(
         "held_cells_stand_still",
         "A cell counts as held while its robots still move.",
-        edit(CellRun._halted, "if any(entry.halts", "if False and any(entry.halts"),
+        edit(_halted, "if any(entry.halts", "if False and any(entry.halts"),
         weather={"operator_hold": 10.0},
     ),
     mutant(
@@ -210,9 +217,9 @@ LIVENESS = (
         "no_starvation",
         "An idle cell looks into its queue only when something else changed.",
         edit(
-            CellRun.advance,
-            "if self.queue and self.state is CellState.IDLE",
-            "if self.dirty and self.queue and self.state is CellState.IDLE",
+            advance,
+            "if run.queue and run.state is CellState.IDLE",
+            "if run.dirty and run.queue and run.state is CellState.IDLE",
         ),
         weather="none",
     ),
@@ -230,7 +237,7 @@ LIVENESS = (
     mutant(
         "at_rest_at_end",
         "To clear a stop is not sent to the robot.",
-        edit(Dispatcher.unlatch, "self._stop(robot, StopMode.CLEAR)", ""),
+        edit(Latches.unlatch, "self._outlet.stop(robot, StopMode.CLEAR)", ""),
         weather={"operator_stop": 5.0},
         rest_s=PATIENCE_S,
     ),
@@ -238,9 +245,9 @@ LIVENESS = (
         "nothing_waits_at_end",
         "To resume an idle cell does not let its queue run.",
         edit(
-            CellRun.resume,
-            "    self.queue.resume()",
-            "        self.queue.resume()",
+            resume,
+            "    cell.queue.resume()",
+            "        cell.queue.resume()",
         ),
         weather={"operator_stop": 5.0},
         rest_s=PATIENCE_S,

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from .engine_bug import bug
 
-CELL = "core/cell.py"
+CELL, STEPS, HELD = "core/cell.py", "core/cell_steps.py", "core/verbs/held_cells.py"
 
 CORE_BUGS = (
     bug(
         CELL,
         "A hold halts nothing.",
-        "        self.context.time.pause()\n        self.context.commands.cancel_motions()\n\n    def resume",
-        "        self.context.time.pause()\n\n    def resume",
+        "        self.context.time.pause()\n        self.context.commands.cancel_motions()\n\n    def lose",
+        "        self.context.time.pause()\n\n    def lose",
     ),
     bug(
         CELL,
         "A held cell's time goes on.",
-        "        self.context.time.pause()\n        self.context.commands.cancel_motions()\n\n    def resume",
-        "        self.context.commands.cancel_motions()\n\n    def resume",
+        "        self.context.time.pause()\n        self.context.commands.cancel_motions()\n\n    def lose",
+        "        self.context.commands.cancel_motions()\n\n    def lose",
     ),
     bug(
         CELL,
@@ -32,9 +32,9 @@ CORE_BUGS = (
         "        self.manual.end(STOPPED",
     ),
     bug(
-        CELL,
+        STEPS,
         "A cell is held although something still moves.",
-        "        if any(entry.halts for entry in self.context.commands.open()):\n            return False\n",
+        "    if any(entry.halts for entry in run.context.commands.open()):\n        return False\n",
         "",
     ),
     bug(
@@ -46,20 +46,20 @@ CORE_BUGS = (
     bug(
         CELL,
         "A recovery that failed leaves the cell ready.",
-        "            self._stuck(self.context.failures.last or unknown)\n        else:",
+        "            self.stuck(self.context.failures.last or unknown)\n        else:",
         "            self.become(Cause.ENDED)\n        else:",
     ),
     bug(
-        CELL,
+        HELD,
         "A task that has failed is not recovered from once it is abandoned.",
-        "        self.task.fail(self.trouble or given_up)\n        self._recover()\n",
-        "        self.interrupt(self.trouble or given_up)\n        self.become(Cause.ENDED)\n",
+        "    cell.task.fail(cell.trouble or given_up)\n    cell.recover()\n",
+        "    cell.interrupt(cell.trouble or given_up)\n    cell.become(Cause.ENDED)\n",
     ),
     bug(
         "core/losses.py",
         "An operator who opens a hand strands nobody.",
-        "        run.stranded = NO_PART(arm=robot)\n\n\ndef uproot",
-        "        run.dirty = True\n\n\ndef uproot",
+        "        run.lose(NO_PART(arm=robot), run.trouble or lost)\n",
+        "        run.trouble = run.trouble or (lost if run.task else None)\n",
     ),
     bug(
         CELL,

@@ -6,6 +6,8 @@ from .engine_bug import bug
 
 EVIDENCE, ZONES, BELIEF = "dispatch/evidence.py", "dispatch/zones.py", "dispatch/belief.py"
 DISPATCHER, EFFECTORS, LEDGER = "dispatch/dispatcher.py", "dispatch/effectors.py", "dispatch/ledger.py"
+OBSTACLES, LATCHES, BOOKING = "dispatch/obstacles.py", "dispatch/latches.py", "dispatch/booking.py"
+LIMITS, WHEREABOUTS = "dispatch/time_limits.py", "dispatch/whereabouts.py"
 UNDERWAY = "dispatch/underway.py"
 
 OF_EVIDENCE = (
@@ -221,25 +223,25 @@ OF_BELIEF = (
 )
 OF_DISPATCHER = (
     bug(
-        DISPATCHER,
+        OBSTACLES,
         "A query obeys no needs.",
-        "return self.beliefs[robot].unreachable(was=was) or self._unmet(command, was=was)",
-        "return self.beliefs[robot].unreachable(was=was)",
+        "return self._beliefs[robot].unreachable(was=was) or self._unmet(command, was=was)",
+        "return self._beliefs[robot].unreachable(was=was)",
     ),
     bug(
-        DISPATCHER,
+        OBSTACLES,
         "A need that was never said is met.",
         "            reported = belief.fact(name)\n            if reported != value:",
         "            reported = belief.fact(name)\n            if reported not in (None, value):",
     ),
     bug(
-        DISPATCHER,
+        OBSTACLES,
         "Only the first need is looked at.",
         "        for name, value in command.needs:\n            reported",
         "        for name, value in command.needs[:1]:\n            reported",
     ),
     bug(
-        DISPATCHER,
+        OBSTACLES,
         "No command is met by the need of what is at work.",
         "return any(sets.get(name, value) != value for name, value in work.command.needs)",
         "return False",
@@ -253,58 +255,58 @@ OF_DISPATCHER = (
     bug(
         DISPATCHER,
         "What is cancelled keeps its old deadline.",
-        "        entry.deadline = now + self.timings[entry.cell].stop_timeout_s\n"
+        "        entry.deadline = now + self.limits.timings[entry.cell].stop_timeout_s\n"
         "        self.ledger.plan(entry)",
         "        self.ledger.plan(entry)",
     ),
     bug(
-        DISPATCHER,
+        BOOKING,
         "A command that failed by its deadline goes on moving.",
         "if failed and entry.halts and verdict.failure and verdict.failure.reason not in KNOWN_STILL:",
         "if failed and entry.halts and verdict.failure and verdict.failure.reason is Reason.LINK_LOST:",
     ),
     bug(
-        DISPATCHER,
+        LATCHES,
         "A latch is not kept for the next start.",
-        "        self.memory.remember(Fact.LATCH, robot, LATCHED)\n",
+        "        self._memory.remember(Fact.LATCH, robot, LATCHED)\n",
         "",
     ),
     bug(
-        DISPATCHER,
+        LATCHES,
         "A clear that nobody heard is not said again.",
-        "        if not self.beliefs[robot].online:\n            self.unheard_clears.add(robot)\n",
+        "        if not self._beliefs[robot].online:\n            self.unheard.add(robot)\n",
         "",
     ),
     bug(
-        DISPATCHER,
+        WHEREABOUTS,
         "Where a robot stands is told while a command is on its way to it.",
         "restless = belief.state is MotionState.MOVING or given",
         "restless = belief.state is MotionState.MOVING",
     ),
     bug(
-        DISPATCHER,
+        LIMITS,
         "The deadline of a move forgets how far it is.",
         "return max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)",
         "return min(robot.timeout_s, timing.deadline_floor_s)",
     ),
     bug(
-        DISPATCHER,
+        LIMITS,
         "A switch of which nothing is told settles at once.",
         "return now + timing.effector_settle_s + command.takes_s",
         "return now + timing.effector_settle_s",
     ),
     bug(
-        DISPATCHER,
+        BOOKING,
         "The grip of a switch that is done is not booked.",
-        "self.effectors.set(command.robot, Grip.ON if command.grips else Grip.OFF)",
-        "self.effectors.set(command.robot, Grip.ON)",
+        "self._effectors.set(command.robot, Grip.ON if command.grips else Grip.OFF)",
+        "self._effectors.set(command.robot, Grip.ON)",
     ),
     bug(
         DISPATCHER,
         "Silence fails no command.",
-        "            self._book(entry, Verdict(feed=Feed.FAILED, failure=failure), now)\n\n\n"
-        "def was_broken_off",
-        "            entry.interference = failure.sentence\n\n\ndef was_broken_off",
+        "            self.booking.book(entry, Verdict(feed=Feed.FAILED, failure=failure), now)\n\n\n"
+        "def _facts_shown",
+        "            entry.interference = failure.sentence\n\n\ndef _facts_shown",
     ),
 )
 OF_EFFECTORS = (

@@ -235,7 +235,7 @@ OF_CELLS = (
     bug(
         CELL_ZONES,
         "Zones are given back before the robot is seen outside.",
-        "return held if self._dispatcher.place(space) is not None else frozenset()",
+        "return held if self._dispatcher.whereabouts.place(space) is not None else frozenset()",
         "return held",
     ),
     bug(
@@ -308,8 +308,8 @@ OF_CELLS = (
     bug(
         CELL_DEVICES,
         "A shared device is given back at work.",
-        "return online and not self._works(device) and device not in self._dispatcher.latched",
-        "return online and device not in self._dispatcher.latched",
+        "return online and not self._works(device) and device not in self._dispatcher.latches.stopped",
+        "return online and device not in self._dispatcher.latches.stopped",
     ),
     bug(
         CELL_DEVICES,
@@ -321,7 +321,7 @@ OF_CELLS = (
         CELL_DEVICES,
         "A shared device is used before its stop is over.",
         "return self._dispatcher.memory.value(Fact.LATCH, device) is not None",
-        "return device in self._dispatcher.latched",
+        "return device in self._dispatcher.latches.stopped",
     ),
     bug(
         CELL_DEVICES,

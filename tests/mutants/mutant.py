@@ -33,12 +33,13 @@ class Edit:
 
     def make(self, patch: pytest.MonkeyPatch) -> None:
         """Have the function do so wherever it is called from."""
-        source = textwrap.dedent(inspect.getsource(self.function))
-        assert source.count(self.old) == 1, f"{self.function.__qualname__} holds this not once: {self.old}"
-        patch.setattr(self.function, "__code__", self._compiled(source.replace(self.old, self.new)))
+        patch.setattr(self.function, "__code__", self.compiled())
 
-    def _compiled(self, source: str) -> CodeType:
-        code = self.function.__code__
+    def compiled(self) -> CodeType:
+        """The code of the function with the edit."""
+        code, source = self.function.__code__, textwrap.dedent(inspect.getsource(self.function))
+        assert source.count(self.old) == 1, f"{self.function.__qualname__} holds this not once: {self.old}"
+        source = source.replace(self.old, self.new)
         if code.co_freevars:
             body = textwrap.indent(source, "    ")
             source = f"def outside({', '.join(code.co_freevars)}):\n{body}"

@@ -6,11 +6,14 @@ from arboleda.core import advisor
 from arboleda.core.acts import outcome_of
 from arboleda.core.advisor import Advisor
 from arboleda.core.operator import Operator
-from arboleda.core.plant import Plant
+from arboleda.core.people import People
 from arboleda.core.readiness import Readiness
+from arboleda.core.verbs.held_cells import not_resumable
+from arboleda.core.verbs.overriding import Overriding
+from arboleda.core.verbs.stops import Stops
 from arboleda.dispatch import evidence
 from arboleda.dispatch.belief import Belief
-from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.latches import Latches
 from arboleda.oee import figures as oee
 from arboleda.recipes.parameters import Slot
 from arboleda.trees import steps
@@ -100,7 +103,7 @@ PEOPLE = (
         "A recovery from an unknown place is planned as from home.",
         edit(
             CellZones.for_recovery,
-            "self._dispatcher.place(space)",
+            "self._dispatcher.whereabouts.place(space)",
             "self._robots.standing(robot)",
         ),
         seeds=SHARED,
@@ -110,7 +113,7 @@ PEOPLE = (
     mutant(
         "verbs_are_refused_rightly",
         "A cell whose queue runs can be resumed.",
-        edit(Operator._not_resumable, "None if cell.queue.paused else", "None if True else"),
+        edit(not_resumable, "None if cell.queue.paused else", "None if True else"),
         weather={"operator_resume": 40.0},
         likely=12,
     ),
@@ -124,7 +127,7 @@ PEOPLE = (
         "verbs_do_what_they_say",
         "To clear one robot clears its cell.",
         edit(
-            Operator._clear,
+            Stops.clear,
             "if not any(robot.name in stopped for robot in cell.cell.robots):",
             "if True:",
         ),
@@ -134,16 +137,16 @@ PEOPLE = (
         "kept_before_it_leaves",
         "A latch is remembered only after it left.",
         edit(
-            Dispatcher.latch,
-            "self.memory.remember(Fact.LATCH, robot, LATCHED)\n    self._stop(robot, StopMode.LATCH)",
-            "self._stop(robot, StopMode.LATCH)\n    self.memory.remember(Fact.LATCH, robot, LATCHED)",
+            Latches.latch,
+            "self._memory.remember(Fact.LATCH, robot, LATCHED)\n    self._outlet.stop(robot, StopMode.LATCH)",
+            "self._outlet.stop(robot, StopMode.LATCH)\n    self._memory.remember(Fact.LATCH, robot, LATCHED)",
         ),
         weather={"operator_stop": 10.0},
     ),
     mutant(
         "kept_is_what_is",
         "An overridden zone is still kept, and so quarantined again after a restart.",
-        edit(Operator._override, "self._dispatcher.memory.vacate([zone])", ""),
+        edit(Overriding._override, "self._dispatcher.memory.vacate([zone])", ""),
         seeds=SHARED,
         weather={"brown_out": 15.0, "operator_override": 40.0, "operator_stop": 5.0},
     ),
@@ -185,7 +188,7 @@ SCREENS = (
     mutant(
         "screens_are_told_of_news",
         "What an operator has done is shown only with the next news.",
-        edit(Plant._on_operator_request, "self._changes += 1", "pass"),
+        edit(People.operate, "self._news.changes += 1", "pass"),
         weather={"operator_hold": 10.0},
     ),
     mutant(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from arboleda.core.cell import CellRun
 from arboleda.core.intake import Intake
 from arboleda.core.leaving import leaves_unkept
-from arboleda.core.operator import _not_yet
+from arboleda.core.verbs.held_cells import _not_yet
 from arboleda.dispatch import evidence
 from arboleda.model.messages import Course
 from arboleda.trees.part_places import Places

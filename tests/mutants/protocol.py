@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from arboleda.dispatch.belief import Belief
+from arboleda.dispatch.booking import Booking
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.ledger import Ledger
+from arboleda.dispatch.obstacles import Obstacles
 from arboleda.sim.board import Board as VirtualBoard
 from arboleda.sim.freshness import Freshness
 from arboleda.sim.receipts import Receipts
@@ -16,8 +18,8 @@ from arboleda.wire.bridge import Bridge
 
 from .mutant import edit, mutant
 
-TOLD = "self._stop(report.robot, "
-ASKED = f"{TOLD}StopMode(report.robot in self.latched))"
+TOLD = "self.outlet.stop(report.robot, "
+ASKED = f"{TOLD}StopMode(report.robot in self.latches.stopped))"
 RETURNED = (
     "if latched and (new_link or (belief.online and not was_online)):  # it may have forgotten its stop"
 )
@@ -33,7 +35,7 @@ COMMANDS = (
     mutant(
         "no_command_to_unfit",
         "A robot that is not homed takes any command, not only to home.",
-        edit(Dispatcher._obstacle_to, "led_out = isinstance(command, Home) and ", "led_out = "),
+        edit(Obstacles.to, "led_out = isinstance(command, Home) and ", "led_out = "),
         likely=5,
     ),
     mutant(
@@ -48,7 +50,7 @@ COMMANDS = (
     mutant(
         "one_motion_per_robot",
         "Nobody asks whether the last move has ended, neither who sends nor who recovers.",
-        edit(Dispatcher._busy_with, "return self.work_of(command.robot)", "return None"),
+        edit(Obstacles._busy_with, "return self._ledger.work_of(command.robot)", "return None"),
         edit(steps._settle, "return not ending and not any", "return not any"),
         likely=6,
     ),
@@ -70,7 +72,7 @@ COMMANDS = (
     mutant(
         "halted_moves_sent_halt",
         "Halted is what stands still, instead of what may be moving.",
-        edit(Dispatcher._book, "not in KNOWN_STILL", "in KNOWN_STILL"),
+        edit(Booking.book, "not in KNOWN_STILL", "in KNOWN_STILL"),
     ),
 )
 

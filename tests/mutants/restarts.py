@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from arboleda.core.intake import Intake
 from arboleda.core.leaving import is_too_late, leaves_unkept
-from arboleda.core.plant import Plant
+from arboleda.core.task_desk import TaskDesk
 from arboleda.core.task_queue import TaskQueue
 from arboleda.model.task import Task
 from arboleda.trees.walk_back import WalkBack
@@ -31,7 +31,7 @@ RESTARTS = (
     mutant(
         "ends_once_over_all_starts",
         "A plant that starts tells of all tasks that it knows.",
-        edit(Plant._take_back, "if task.state is not was:", "if True:"),
+        edit(TaskDesk.take_back, "if task.state is not was:", "if True:"),
         weather=DIES,
     ),
     mutant(

@@ -23,7 +23,7 @@ TEACHING = (
         "no_task_begins_in_manual",
         "A cell that is taught goes on with its queue.",
         edit(CellRun.not_ready, "if self.manual.teaching is not None:", "if False:"),
-        edit(ManualMode.begin, "run.queue.paused = True", "run.queue.paused = False"),
+        edit(ManualMode.begin, "self._queue.paused = True", "self._queue.paused = False"),
         weather=TEACHERS,
     ),
     mutant(

@@ -16,7 +16,7 @@ FILES = {
 LOOK = r"""
 import asyncio, httpx, json, types
 from fastapi import FastAPI
-from arboleda.core.operator import ONLY_ABORTED
+from arboleda.core.verbs.stops import ONLY_ABORTED
 from arboleda.dashboard import header
 from arboleda.dashboard.shell import language_of
 from arboleda.dashboard.tags import markup

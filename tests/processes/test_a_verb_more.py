@@ -8,7 +8,7 @@ from .copied_tree import CopiedTree
 
 ROW = """    WIPE = "wipe", Row(scopes=_CELLS, arguments=(Argument(name="times", type=int),))
 """
-PROCEDURE = """    Verb.WIPE: Procedure(check=_not_holdable, do=lambda operator, cell, robots: cell.hold()),
+PROCEDURE = """            Verb.WIPE: CellByCell(doing, check=not_holdable, do=hold),
 """
 WORDS = """    Verb.WIPE: VerbWords(
         label="Wipe it",
@@ -72,7 +72,7 @@ print(json.dumps({
 def test_a_verb_of_three_texts_is_done_offered_and_described_everywhere(tmp_path: Path) -> None:
     tree = CopiedTree(tmp_path)
     tree.insert("model/verbs.py", "\n    _value_: str", ROW)
-    tree.insert("core/operator.py", "    Verb.ANSWER: Procedure(", PROCEDURE)
+    tree.insert("core/operator.py", "            Verb.ANSWER: Answering(", PROCEDURE)
     tree.insert("views/verb_words.py", "    Verb.ANSWER: VerbWords(", WORDS)
     assert len(tree.changed) == 3  # the two halves of its row, and its words
     seen = tree.run(LOOK)

@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 
 from arboleda.drivers import Clock, Command, Hear, Stop, StopMode
-from arboleda.model.messages import Heartbeat, Report, Undelivered
-from arboleda.model.plant_model import DriverUse, Link, MotionState, PlantModel, Robot, Timing
+from arboleda.model.messages import Heartbeat, MotionState, Report, Undelivered
+from arboleda.model.plant_model import DriverUse, Link, PlantModel, Robot, Timing
 from arboleda.runtime.parts.drivers import DriversPart
 
 from ..patience import PATIENCE_S

@@ -204,7 +204,7 @@ def stopped_at_its_bridge(evidence: Evidence) -> Rig:
 @levels
 def test_a_robot_that_cannot_say_that_it_is_stopped_is_stopped_and_cleared_too(evidence: Evidence) -> None:
     rig = stopped_at_its_bridge(evidence)
-    assert str(rig.plant.dispatcher.obstacle("ra1").sentence) == "ra1 is stopped (latched)"
+    assert str(rig.plant.dispatcher.obstacles.of("ra1").sentence) == "ra1 is stopped (latched)"
     assert advised(rig, "sis_a") == ["stop sis_a", "clear sis_a", "reset sis_a"]
     assert follow(rig, "sis_a") == ["stop sis_a", "clear sis_a", "reset sis_a", "resume sis_a"]
     rig.submit("sis_a palletizing")
@@ -215,7 +215,7 @@ def test_a_bridge_that_restarted_has_forgotten_the_stop_of_a_robot_without_one()
     rig = stopped_at_its_bridge(Evidence.IDS)
     rig.crash(BRIDGE)
     rig.wait(2.0)
-    assert rig.plant.dispatcher.obstacle("ra1") is None
+    assert rig.plant.dispatcher.obstacles.of("ra1") is None
     assert advised(rig, "sis_a")[0] == "retry sis_a"
 
 

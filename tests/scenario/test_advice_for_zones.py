@@ -75,7 +75,7 @@ def stopped_in_the_zone(folder: Path, plant: str, left: str, right: str) -> Rig:
     rig = Rig(load(folder / "plant.yaml"))
     rig.wait(1.0)
     for robot in ("left", "right"):
-        if rig.plant.dispatcher.obstacle(robot) is not None:
+        if rig.plant.dispatcher.obstacles.of(robot) is not None:
             rig.manual.put_at_reference(robot)
             rig.wait(1.0)
             rig.operate(Verb.HOME, robot, by_hand=True)

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from arboleda.model.commands import Command
-from arboleda.model.messages import Report, TaskState, Verb
-from arboleda.model.plant_model import Evidence, Link, MotionState
+from arboleda.model.messages import MotionState, Report, TaskState, Verb
+from arboleda.model.plant_model import Evidence, Link
 from arboleda.testing import Rig, shipped
 
 from ..cells import with_robot

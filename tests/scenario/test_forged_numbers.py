@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Home
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.simulator.world import BRIDGE
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
@@ -100,7 +100,7 @@ def test_a_second_bridge_that_comes_in_mid_carry_is_named_by_what_fails_and_comm
         rig.inject(beat)
     rig.wait(10.0, until=lambda: rig.outcomes()[task].state.value == "failed")
     assert "another bridge has come to its board" in str(rig.outcomes()[task].sentence)
-    assert rig.plant.dispatcher.rejected == {}
+    assert rig.plant.dispatcher.booking.rejected == {}
     home = Home(id=f"{rig.plant.epoch}-800", robot="ra1")
     rig.broker.clients[BRIDGE].inbox.append(FromPlant(at=rig.now, message=home))
     rig.settle()

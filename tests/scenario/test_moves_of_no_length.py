@@ -8,8 +8,8 @@ import pytest
 
 from arboleda.core.plant import Plant
 from arboleda.kinds.joints import MoveJoints
-from arboleda.model.messages import Event, Reason, Report, TaskChanged, TaskRequest, TaskState
-from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel
+from arboleda.model.messages import Event, MotionState, Reason, Report, TaskChanged, TaskRequest, TaskState
+from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import Rig, shipped
 

@@ -132,7 +132,7 @@ STATES: dict[str, tuple[Callable[[Rig], None], CellState, set[Verb]]] = {
 
 def facts(rig: Rig) -> Any:
     """Everything that a refused verb must leave as it is."""
-    latched = set(rig.plant.dispatcher.latched)
+    latched = set(rig.plant.dispatcher.latches.stopped)
     grip = rig.plant.dispatcher.effectors.grips["ra1"]
     return rig.snapshot(), latched, grip, {fact: dict(kept) for fact, kept in rig.disk.facts.items()}
 
@@ -366,7 +366,7 @@ def test_a_stop_is_for_its_scope(scope: str, cells: set[str]) -> None:
     ended = {change.cell: change.state for change in rig.outcomes().values()}
     assert {name for name, state in ended.items() if state is TaskState.FAILED} == cells
     latched = {"ra1"} if scope == "ra1" else {r.name for name in cells for r in rig.model.cell(name).robots}
-    assert rig.plant.dispatcher.latched == latched
+    assert rig.plant.dispatcher.latches.stopped == latched
 
 
 FAULTS: dict[str, Callable[[Rig], None]] = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from arboleda.core.cell import CellRun
-from arboleda.core.plant import Plant
+from arboleda.core.revisions import Revisions
 from arboleda.model.messages import CellRevised
 from arboleda.simulator import judged_world
 from arboleda.simulator.climate import Climate
@@ -65,7 +65,7 @@ def test_a_cell_that_never_takes_one_is_found(monkeypatch: pytest.MonkeyPatch) -
 def test_a_task_of_a_recipe_that_is_gone_is_found_where_it_is_not_ended(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(Plant, "_without_unfit", lambda plant, run, version: [])
+    monkeypatch.setattr(Revisions, "_without_unfit", lambda self, run, version: [])
     broken = calm(10).broken
     assert broken is not None and "is not a recipe of sis_b" in broken.sentence
 

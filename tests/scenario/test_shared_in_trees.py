@@ -60,13 +60,13 @@ def asking(folder: Path, body: str) -> Rig:
     rig = Rig(load(folder / "plant.yaml"))
     rig.wait(5.0)
     rig.submit("below ride #one")
-    assert rig.wait(20.0, until=lambda: rig.plant.dispatcher.question("ana") is not None)
+    assert rig.wait(20.0, until=lambda: rig.plant.dispatcher.ledger.question("ana") is not None)
     return rig
 
 
 def answered(rig: Rig) -> TaskState:
     for _ in range(20):
-        if rig.plant.dispatcher.question("ana") is not None:
+        if rig.plant.dispatcher.ledger.question("ana") is not None:
             assert rig.operate(Verb.ANSWER, "ana", answer="yes") is None
         if rig.wait(5.0, until=lambda: rig.outcomes()["one"].state in ENDED):
             break

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.plant_file.loader import load
 from arboleda.testing.plants import shipped
 from arboleda.views import view

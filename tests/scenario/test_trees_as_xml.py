@@ -40,7 +40,7 @@ def attended(rig: Rig, at_most_s: float = 200.0) -> None:
     for _ in range(int(at_most_s / 2)):
         if rig.wait(2.0, until=lambda: state(rig) in ENDED):
             return
-        if rig.plant.dispatcher.question("operator") is not None:
+        if rig.plant.dispatcher.ledger.question("operator") is not None:
             rig.operate(Verb.ANSWER, "operator", answer="good")
         for first in rig.plant.advice("cell")[:1]:
             if isinstance(first.do, Verb):

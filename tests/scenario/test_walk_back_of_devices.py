@@ -318,7 +318,7 @@ def attended_to(rig: Rig) -> list[str]:
     for _ in range(40):
         if rig.wait(5.0, until=lambda: state(rig) in ENDED):
             break
-        if rig.plant.dispatcher.question("operator") is not None:
+        if rig.plant.dispatcher.ledger.question("operator") is not None:
             rig.operate(Verb.ANSWER, "operator", answer="good")
         for first in rig.plant.advice("tending")[:1]:
             assert isinstance(first.do, Verb)

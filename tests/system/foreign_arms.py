@@ -18,7 +18,8 @@ from random import Random
 from typing import Any
 
 from arboleda.kinds.arm import Arm
-from arboleda.model.plant_model import Link, MotionState
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import Link
 from arboleda.plant_file import loader
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.wire.payloads import Channel, JointsGoal, Presence, StopGoal, Telemetry, decode, encode

@@ -15,8 +15,8 @@ from std_msgs.msg import String, UInt8
 
 from arboleda.kinds.declared import VerbCall
 from arboleda.model.commands import Command, Stop, StopMode
-from arboleda.model.messages import Interference, Report
-from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel
+from arboleda.model.messages import Interference, MotionState, Report
+from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda_ros.link import connect
 
 from ..patience import PATIENCE_S

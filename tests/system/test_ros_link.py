@@ -32,6 +32,7 @@ from arboleda.model.messages import (
     Heartbeat,
     Interference,
     Journal,
+    MotionState,
     OperatorAnswer,
     Report,
     SystemStart,
@@ -40,7 +41,7 @@ from arboleda.model.messages import (
     TaskState,
     Verb,
 )
-from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel
+from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.runtime import host_claim
 from arboleda.runtime.host_claim import node_claim
 from arboleda.runtime.parts.orchestrator import Orchestrator

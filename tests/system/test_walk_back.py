@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda_kills.deeds import Did
 from arboleda_kills.processes import PATIENCE_S, Boards, Plant
 

@@ -10,8 +10,8 @@ from std_msgs.msg import Bool, UInt8
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.counting import counted
 from arboleda.model.errors import PayloadError
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import Robot
 
 _AT_NODE = 0.125  # share of the pitch: a mobile farther from every node is between nodes
 

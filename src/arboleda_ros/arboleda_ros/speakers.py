@@ -8,8 +8,7 @@ from typing import Any
 
 from rclpy.node import Node
 
-from arboleda.model.messages import Event, Interference, Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import Event, Interference, MotionState, Report
 from arboleda.model.sentence import Sentence
 from arboleda.wire.speaker import Speaker
 from arboleda_ros import qos

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol
 
-from arboleda.model.plant_model import MotionState, PlantModel
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
 
 from ...patience import PATIENCE_S

@@ -12,8 +12,7 @@ from rich.text import Text
 
 from arboleda.cli import screen as shown
 from arboleda.cli.screen import Screen, joints, logged, parting, table
-from arboleda.model.messages import Reason, TaskChanged, TaskState, Verb
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Reason, TaskChanged, TaskState, Verb
 from arboleda.runtime.parts.orchestrator import task_line
 from arboleda.testing import Rig, shipped
 from arboleda.views import view

@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 from arboleda.core.plant import Plant
-from arboleda.model.messages import OperatorRequest, Report, TaskChanged, TaskRequest, Verb
-from arboleda.model.plant_model import Evidence, MotionState, PlantModel
+from arboleda.model.messages import MotionState, OperatorRequest, Report, TaskChanged, TaskRequest, Verb
+from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 

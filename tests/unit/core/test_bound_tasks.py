@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from arboleda.core.plant import Plant
-from arboleda.model.messages import KeptTask, Revision, TaskChanged, TaskRequest, TaskState
-from arboleda.model.revision import RevisionName
+from arboleda.model.messages import KeptTask, Revision, RevisionName, TaskChanged, TaskRequest, TaskState
 from arboleda.testing import shipped
 
 TEXT = "sis_a 0B 7 #lot1"

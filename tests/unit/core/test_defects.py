@@ -13,6 +13,7 @@ from py_trees.composites import Sequence
 from arboleda.core import reasons
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
+from arboleda.core.cell_steps import advance
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
 from arboleda.dispatch import evidence
@@ -22,6 +23,7 @@ from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import (
     InternalError,
+    MotionState,
     OperatorAnswer,
     OperatorRequest,
     Reason,
@@ -30,7 +32,7 @@ from arboleda.model.messages import (
     Undelivered,
     Verb,
 )
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.plant_model import Evidence
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.trees.leaves import Act
 
@@ -215,12 +217,12 @@ def test_a_cell_that_raises_on_its_own_is_held_and_the_others_advance(
 ) -> None:
     plant = hand(Evidence.IDS)
     plant.awake()
-    sound = CellRun.advance
+    sound = advance
 
     def broken(run: CellRun, *, woken: bool) -> bool:
         return broken_rule() or False if run.cell.name == "sis_a" else sound(run, woken=woken)
 
-    monkeypatch.setattr(CellRun, "advance", broken)
+    monkeypatch.setattr("arboleda.core.rounds.advance", broken)
     plant.submit("sis_a 1C 3")
     plant.submit("sis_b 1C 3")
     plant.wait(1.0)
@@ -234,13 +236,13 @@ def test_a_task_is_the_business_of_the_cell_that_takes_it(
 ) -> None:
     plant = hand(Evidence.IDS)
     plant.awake()
-    sound, advanced = CellRun.advance, set()
+    sound, advanced = advance, set()
 
     def noted(run: CellRun, *, woken: bool) -> bool:
         advanced.add(run.cell.name)
         return sound(run, woken=woken)
 
-    monkeypatch.setattr(CellRun, "advance", noted)
+    monkeypatch.setattr("arboleda.core.rounds.advance", noted)
     before = dict(plant.plant.revisions)
     plant.submit("sis_b 1C 3")
     changed = {name for name, number in plant.plant.revisions.items() if number != before[name]}
@@ -249,12 +251,12 @@ def test_a_task_is_the_business_of_the_cell_that_takes_it(
 
 def test_cells_that_never_come_to_rest_are_held(hand: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     plant = hand(Evidence.IDS)
-    sound = CellRun.advance
+    sound = advance
 
     def restless(run: CellRun, *, woken: bool) -> bool:
         return sound(run, woken=woken) or (run.cell.name == "sis_a" and run.state is CellState.IDLE)
 
-    monkeypatch.setattr(CellRun, "advance", restless)
+    monkeypatch.setattr("arboleda.core.rounds.advance", restless)
     plant.awake()
     assert cell_of(plant, "sis_a").trouble.reason is Reason.INTERNAL
     assert cell_of(plant, "sis_b").state is CellState.IDLE

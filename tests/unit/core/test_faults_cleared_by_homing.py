@@ -9,8 +9,8 @@ import pytest
 
 from arboleda.core.cell_states import CellState
 from arboleda.model.commands import Home
-from arboleda.model.messages import Verb
-from arboleda.model.plant_model import DriverUse, Evidence, MotionState, PlantModel, Robot
+from arboleda.model.messages import MotionState, Verb
+from arboleda.model.plant_model import DriverUse, Evidence, PlantModel, Robot
 from arboleda.testing import shipped
 
 from .conftest import Hand

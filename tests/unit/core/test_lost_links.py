@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from arboleda.dispatch.belief import Belief
-from arboleda.model.messages import Reason, Report, TaskState
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Reason, Report, TaskState
 from arboleda.model.sentence import OWN
 from arboleda.recipes import recipe
 from arboleda.testing.following import follow

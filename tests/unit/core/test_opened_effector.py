@@ -9,8 +9,8 @@ import pytest
 
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
-from arboleda.model.messages import Reason
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState, Reason
+from arboleda.model.plant_model import Evidence
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
 
@@ -31,7 +31,7 @@ def test_whatever_the_evidence_a_reported_opening_counts(
 def carries(plant: Any, level: Evidence) -> None:
     """Play the arm until it is on its way with the part."""
     for _ in range(60):
-        entry = plant.plant.dispatcher.last_sent.get("ra1")
+        entry = plant.plant.dispatcher.ledger.last_sent.get("ra1")
         command = entry.command if entry else None
         closed = bool(plant.commands(SetEffector))
         if closed and isinstance(command, MoveJoints):

@@ -18,6 +18,7 @@ from arboleda.model.messages import (
     Heartbeat,
     Interference,
     InternalError,
+    MotionState,
     OperatorRequest,
     Reason,
     Shutdown,
@@ -27,7 +28,7 @@ from arboleda.model.messages import (
     TaskState,
     Verb,
 )
-from arboleda.model.plant_model import Evidence, MotionState, Timing
+from arboleda.model.plant_model import Evidence, Timing
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 from arboleda.trees import leaves
@@ -64,7 +65,7 @@ def test_a_plant_that_is_fenced_off_says_by_whom_and_how_to_get_back(hand: Any) 
     plant.submit("sis_a 0B 7")
     assert "obeys plant 4000000000" in str(last_change(plant).sentence)
     plant.tell("ra1", state=STILL, epoch=1, plant=6)
-    assert "does not hear this plant yet" in str(plant.plant.dispatcher.obstacle("ra1"))
+    assert "does not hear this plant yet" in str(plant.plant.dispatcher.obstacles.of("ra1"))
 
 
 def last_change(plant: Any) -> TaskChanged:

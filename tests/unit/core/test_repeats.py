@@ -16,8 +16,8 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import Evidence
 from arboleda.testing import shipped
 
 EPOCH = 7
@@ -84,8 +84,16 @@ class Desk:
         self.dispatcher.expire(self.now, self.now)
 
     def do(self, verb: str, *rest: Any) -> None:
-        own = getattr(self, verb.replace(" ", "_"), None)
-        (own or partial(getattr(self.dispatcher, verb), "ra1"))(*rest)
+        getattr(self, verb.replace(" ", "_"))(*rest)
+
+    def latch(self) -> None:
+        self.dispatcher.latches.latch("ra1")
+
+    def unlatch(self) -> None:
+        self.dispatcher.latches.unlatch("ra1")
+
+    def declare_homed(self) -> None:
+        self.dispatcher.declare_homed("ra1")
 
     def _report(self) -> None:
         self.now += 0.1
@@ -105,7 +113,7 @@ class Desk:
             (id, entry.state, entry.deadline, vars(entry.observations))
             for id, entry in ledger.entries.items()
         ]
-        return [desk.outbox, beliefs, entries, ledger.changed, desk.reached, desk.next_deadline]
+        return [desk.outbox, beliefs, entries, ledger.changed, desk.whereabouts.reached, desk.next_deadline]
 
 
 @pytest.mark.parametrize("evidence", Evidence, ids=lambda level: level.value)

@@ -15,13 +15,13 @@ from arboleda.model.messages import (
     RestartRequest,
     Revision,
     RevisionAnswer,
+    RevisionName,
     TaskChanged,
     TaskState,
     Verb,
 )
 from arboleda.model.plant_model import Cell, PlantModel, Pose, Retry, Timing
 from arboleda.model.recipe import Recipe
-from arboleda.model.revision import RevisionName
 from arboleda.recorder.replay import plant_of, replayed
 from arboleda.recorder.tape import TapedPlant
 from arboleda.simulator.world import World

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from arboleda.kinds.joints import MoveJoints
-from arboleda.model.messages import OperatorRequest, Verb
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState, OperatorRequest, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.views import diagnostics, view
 
 

@@ -7,8 +7,7 @@ from importlib.resources import as_file, files
 import pytest
 
 from arboleda.kinds.joints import MoveJoints
-from arboleda.model.messages import OperatorRequest, Verb
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, OperatorRequest, Verb
 from arboleda.plant_file.loader import load
 from arboleda.recipes.storage_layout import StorageLayout
 
@@ -44,5 +43,5 @@ def test_an_arm_whose_move_failed_at_once_may_be_anywhere_until_it_could_have_an
     places = []
     for _ in range(3):
         hand.tell("arm_right", after=0.15, state=MotionState.STOPPED, epoch=1, plant=7, q=layout.home.q)
-        places.append(hand.plant.dispatcher.place(cell.workspaces["arm_right"]))
+        places.append(hand.plant.dispatcher.whereabouts.place(cell.workspaces["arm_right"]))
     assert places == [None, None, layout.home]

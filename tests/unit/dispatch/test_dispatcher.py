@@ -14,8 +14,8 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Stop, StopMode, Switch
-from arboleda.model.messages import Failure, Reason, Report
-from arboleda.model.plant_model import DriverUse, Evidence, MotionState
+from arboleda.model.messages import Failure, MotionState, Reason, Report
+from arboleda.model.plant_model import DriverUse, Evidence
 from arboleda.testing import shipped
 
 EPOCH = 7
@@ -36,7 +36,7 @@ def dispatcher() -> Dispatcher:
 @pytest.fixture
 def latched(dispatcher: Dispatcher) -> Dispatcher:
     """The same, stopped by an operator."""
-    dispatcher.latch("ra1")
+    dispatcher.latches.latch("ra1")
     return dispatcher
 
 
@@ -55,7 +55,7 @@ def test_what_nobody_can_judge_any_more_has_failed(dispatcher: Dispatcher, *, ca
     move = dispatcher.send(partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0)), "sis_a", "moving", 100.1)
     if cancelled:
         dispatcher.cancel(move, 100.2)
-    dispatcher.give_up("sis_a", Failure(reason=Reason.INTERNAL, sentence="it broke"), 100.3)
+    dispatcher.booking.give_up("sis_a", Failure(reason=Reason.INTERNAL, sentence="it broke"), 100.3)
     assert move.state is State.FAILED and move.failure and move.failure.reason is Reason.INTERNAL
 
 
@@ -66,7 +66,7 @@ def test_what_did_not_leave_has_failed_or_has_ended_as_it_was_told_to(
     move = dispatcher.send(partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0)), "sis_a", "moving", 100.1)
     if cancelled:
         dispatcher.cancel(move, 100.1)
-    dispatcher.undelivered(move.command.id, "ra1", "a stop left before it", 100.2)
+    dispatcher.booking.undelivered(move.command.id, "ra1", "a stop left before it", 100.2)
     assert move.state is (State.CANCELLED if cancelled else State.FAILED)
 
 
@@ -164,7 +164,7 @@ def test_a_refusal_for_a_stop_counts_as_the_report_of_it_that_is_missing_until_t
     dispatcher.report(Report(at=100.3, **STILL), 100.3)
     again = dispatcher.send(move, "sis_a", "moving", 100.4)
     assert (again.failure is not None and again.failure.reason is Reason.STOPPED) is stopped
-    dispatcher.unlatch("ra1")
+    dispatcher.latches.unlatch("ra1")
     assert dispatcher.beliefs["ra1"].obstacle(was=False) is None
 
 
@@ -177,7 +177,7 @@ def test_a_robot_that_moves_takes_no_second_motion_and_opens_nothing(dispatcher:
     move = partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0))
     dispatcher.send(move, "sis_a", "moving", 100.1)
     second = dispatcher.send(move, "sis_a", "moving", 100.2)
-    failures = [second.failure, dispatcher.obstacle_to_opening("ra1")]
+    failures = [second.failure, dispatcher.obstacles.to_opening("ra1")]
     assert [failure and str(failure.sentence) for failure in failures] == [
         "ra1 had an open motion command: no moving",
         "ra1 has an open motion command",
@@ -200,7 +200,7 @@ def test_a_command_names_the_last_telemetry_of_its_robot_that_was_heard_and_a_st
     for at, number in ((100.1, 41), (100.2, 42)):  # the second only repeats the first
         dispatcher.report(Report(at=at, **STILL, number=number), at)
     dispatcher.send(partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0)), "sis_a", "moving", 100.3)
-    dispatcher.latch("ra1")
+    dispatcher.latches.latch("ra1")
     sent = [each for each in dispatcher.outbox if isinstance(each, MoveJoints | Stop)]
     assert [(type(each), each.heard) for each in sent] == [(MoveJoints, 42), (Stop, None)]
 

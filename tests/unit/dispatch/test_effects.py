@@ -12,8 +12,8 @@ from arboleda.dispatch.evidence import Before, judge
 from arboleda.dispatch.ledger import Entry, Feed
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command, Home, Motion, Position, Stop, StopMode
-from arboleda.model.messages import Reason, Report
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState, Reason, Report
+from arboleda.model.plant_model import Evidence
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 

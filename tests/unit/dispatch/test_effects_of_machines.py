@@ -12,8 +12,8 @@ from arboleda.dispatch.evidence import QUIET_S, Before, Verdict, judge
 from arboleda.dispatch.ledger import Entry, Feed
 from arboleda.model.commands import Command, Motion, Process, Query, Switch
 from arboleda.model.facts import Facts, Value
-from arboleda.model.messages import Reason, Report
-from arboleda.model.plant_model import Evidence, Link, MotionState, Robot
+from arboleda.model.messages import MotionState, Reason, Report
+from arboleda.model.plant_model import Evidence, Link, Robot
 
 MOVING, STOPPED = MotionState.MOVING, MotionState.STOPPED
 ID = "1-1"

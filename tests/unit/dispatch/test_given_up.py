@@ -11,8 +11,7 @@ import pytest
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.commands import FRESH_S, Stop, StopMode
-from arboleda.model.messages import Failure, Reason, Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import Failure, MotionState, Reason, Report
 from arboleda.trees.interlocks import Interlocks
 
 from ..kinds.test_interlocks import with_mill
@@ -27,7 +26,7 @@ class Floor:
     def __init__(self) -> None:
         model = with_mill()
         self.dispatcher = Dispatcher(model, 7, {})
-        self.dispatcher.timings["tending"] = replace(model.timing, stop_timeout_s=0.05)
+        self.dispatcher.limits.timings["tending"] = replace(model.timing, stop_timeout_s=0.05)
         self.now = GIVEN_AT
         self.hear(boot_id=3)
         close = partial(model.robots["mill"].verb_command, "close", ())
@@ -63,7 +62,7 @@ def not_seen_to_stop(floor: Floor) -> None:
 
 def broken_down(floor: Floor) -> None:
     failure = Failure(reason=Reason.INTERNAL, sentence="it broke")
-    floor.dispatcher.give_up("tending", failure, floor.now)
+    floor.dispatcher.booking.give_up("tending", failure, floor.now)
 
 
 def stopped_by_somebody(floor: Floor) -> None:

@@ -10,8 +10,8 @@ from typing import NamedTuple
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.commands import Command, Home, Motion, Process, Query, Switch
 from arboleda.model.facts import Facts
-from arboleda.model.messages import Fact, Failure, Reason, Report
-from arboleda.model.plant_model import DriverUse, Evidence, MotionState, PlantModel, Robot
+from arboleda.model.messages import Fact, Failure, MotionState, Reason, Report
+from arboleda.model.plant_model import DriverUse, Evidence, PlantModel, Robot
 
 from ..kinds.tending import plant
 
@@ -109,14 +109,14 @@ def dispatcher_in(here: Situation) -> Dispatcher:
     dispatcher.report(said(at=99.0, state=MotionState.STOPPED, homed=True), 99.0)
     if here.work_failed:
         give(dispatcher, Run, MET)
-        dispatcher.give_up("tending", Failure(reason=Reason.INTERNAL, sentence="it broke"), 99.0)
+        dispatcher.booking.give_up("tending", Failure(reason=Reason.INTERNAL, sentence="it broke"), 99.0)
     if here.is_open is not None:
         give(dispatcher, here.is_open, MET)
     if here.tool_opens:
         dispatcher.effectors.command(LetGo(id="7-99", robot="jaw"))
     dispatcher.report(said(at=100.0, state=here.state, homed=here.homed), 100.0)
     if here.stopped:
-        dispatcher.latch("left")
+        dispatcher.latches.latch("left")
     return dispatcher
 
 
@@ -131,7 +131,7 @@ def give(
 
 def asked(dispatcher: Dispatcher, kind: type[Needing], needs: Facts) -> Reason | None:
     """Why a command would not leave now."""
-    objection = dispatcher.objection(partial(kind, robot="left", wanted=needs))
+    objection = dispatcher.obstacles.objection(partial(kind, robot="left", wanted=needs))
     return objection.reason if objection is not None else None
 
 

@@ -6,8 +6,8 @@ import pytest
 
 from arboleda.dispatch.belief import RATE_S
 from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import Evidence
 from arboleda.testing import shipped
 
 

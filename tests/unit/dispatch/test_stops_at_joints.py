@@ -10,8 +10,8 @@ import pytest
 
 from arboleda.dispatch.belief import APART_S
 from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Evidence, MotionState, PlantModel
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.trees.interlocks import Interlocks
 
 from ..kinds.test_interlocks import with_mill
@@ -61,7 +61,7 @@ class Floor:
         space = cell.workspaces.get(self.mover.name)
         if space is None:
             return not Interlocks(cell, self.dispatcher).occupied_by(self.mover.name)
-        return self.dispatcher.place(space) is not None
+        return self.dispatcher.whereabouts.place(space) is not None
 
 
 @EACH

@@ -11,8 +11,7 @@ from arboleda.drivers.serial_arm.settings import Settings
 from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command, Home, Stop, StopMode
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Report
 from arboleda.plant_file.loader import load
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.serial_arm.faults import FAULTS

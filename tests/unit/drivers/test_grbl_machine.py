@@ -18,8 +18,7 @@ from arboleda.drivers.gcode.lines import LineReader
 from arboleda.drivers.gcode.settings import Settings
 from arboleda.drivers.port import DriverError
 from arboleda.model.commands import StopMode
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Report
 
 from .gcode_rig import GrblRig
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 
 from .gcode_rig import GrblRig, gantry
 

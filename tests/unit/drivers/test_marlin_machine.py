@@ -26,8 +26,7 @@ from arboleda.drivers.port import DriverError
 from arboleda.drivers.stream import Event, Received, Write
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command, Home, Stop, StopMode
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Report
 
 from .gcode_rig import MarlinRig, gantry
 

@@ -12,7 +12,7 @@ from arboleda.drivers.gcode.moonraker_work import PIECE_S, Move
 from arboleda.drivers.gcode.settings import Settings
 from arboleda.drivers.port import DriverError
 from arboleda.model.commands import StopMode
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 
 from .gcode_rig import MoonrakerRig
 

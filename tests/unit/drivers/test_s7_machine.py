@@ -11,7 +11,7 @@ from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.drivers.s7.machine import LEAST_PDU, S7Device, Writing
 from arboleda.drivers.s7.settings import Settings
 from arboleda.kinds.declared import Device
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.plant_file.loader import load
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.s7.memory import FAULTS, BeltMemory

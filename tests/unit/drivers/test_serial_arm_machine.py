@@ -8,8 +8,7 @@ import pytest
 
 from arboleda.drivers.serial_arm.settings import ServoJoint
 from arboleda.model.commands import StopMode
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Report
 
 from .serial_arm_rig import SETTINGS, STILL, ServoRig
 

@@ -28,8 +28,8 @@ from arboleda.drivers.supervisor import (
     Supervisor,
 )
 from arboleda.model.commands import Command, Stop, StopMode
-from arboleda.model.messages import Report, Undelivered
-from arboleda.model.plant_model import Evidence, Link, MotionState
+from arboleda.model.messages import MotionState, Report, Undelivered
+from arboleda.model.plant_model import Evidence, Link
 from arboleda.model.sentence import OWN
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.board import SILENCE, SILENCE_US

@@ -11,7 +11,7 @@ import pytest
 from arboleda.drivers.ur import primary, programs, rtde
 from arboleda.drivers.ur.arm_state import Mode, Runtime, hindrance, motion_state
 from arboleda.drivers.ur.rtde import HEADER, LAYOUT, Frame, NotRtde, Packet, PacketReader
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 
 from .ur_rig import ARM
 

@@ -12,8 +12,8 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType, MotionCall
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.facts import Value
-from arboleda.model.messages import Heartbeat, Reason, Report, TaskState, Verb
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import Heartbeat, MotionState, Reason, Report, TaskState, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.wire.bridge import Bridge, Message
 from arboleda.wire.hop import FromPlant

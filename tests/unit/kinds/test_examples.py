@@ -229,7 +229,7 @@ class Shop(Bench):
         return self.changes[-1].state in ENDED
 
     def _questions(self) -> list[Question]:
-        entries = map(self.plant.dispatcher.question, self.model.robots)
+        entries = map(self.plant.dispatcher.ledger.question, self.model.robots)
         return [each.command for each in entries if each is not None and isinstance(each.command, Question)]
 
 
@@ -381,7 +381,7 @@ def test_no_two_carts_meet_on_their_grid_and_none_is_below_a_lift_that_comes_dow
         at = [here.boards[cart.mqtt].body.true_place for cart in carts]
         met.extend([at] if len(set(at)) < len(at) else [])
         moved.update(at)
-        work = here.plant.dispatcher.work_of("lift")
+        work = here.plant.dispatcher.ledger.work_of("lift")
         if work is not None and isinstance(work.command, MotionCall) and platform in at:
             met.append(at)
         return here.changes[-1].state in ENDED

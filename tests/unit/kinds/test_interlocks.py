@@ -7,8 +7,8 @@ from typing import Any
 
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
 from arboleda.model.commands import FRESH_S, OnStop
-from arboleda.model.messages import Fact, Reason, Verb
-from arboleda.model.plant_model import Cell, Interlock, MotionState, PlantModel
+from arboleda.model.messages import Fact, MotionState, Reason, Verb
+from arboleda.model.plant_model import Cell, Interlock, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.testing.following import advised, follow
@@ -151,9 +151,9 @@ def test_a_machine_that_was_told_to_halt_keeps_its_zone_while_its_next_order_is_
     here.machines["mill"].lasts = lambda goal: 60.0
     here.submit("tending other")
     assert here.wait(20.0, lambda: len(here.plant.dispatcher.ledger.of_robot("mill")) == 1)
-    first = here.plant.dispatcher.work_of("mill")
+    first = here.plant.dispatcher.ledger.work_of("mill")
     here.lost = lambda publication: publication.topic in ("mill/paro", "mill/orden")
-    assert here.wait(20.0, lambda: here.plant.dispatcher.work_of("mill") not in (first, None))
+    assert here.wait(20.0, lambda: here.plant.dispatcher.ledger.work_of("mill") not in (first, None))
     here.wait(0.3)
     assert here.plant.dispatcher.beliefs["mill"].state is MotionState.MOVING
     assert here.plant.zones.holder("vise") == "mill"

@@ -10,8 +10,7 @@ import pytest
 from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.errors import PayloadError
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Report
 from arboleda.wire import order
 from arboleda.wire.status import from_status, to_status
 

@@ -278,13 +278,13 @@ def test_two_stops_keep_it_until_both_are_cleared() -> None:
     assert here.operate(Verb.CLEAR, "below") is None
     here.wait(1.0)
     assert here.plant.cells["below"].state is CellState.STOPPED
-    assert "lift" in here.plant.dispatcher.latched
+    assert "lift" in here.plant.dispatcher.latches.stopped
     assert here.operate(Verb.RESET, "below") is None
     assert advised(here, "below") == ["clear above", "resume below"]
     assert "lift stays stopped while above is" in str(here.operate(Verb.CLEAR, "lift"))
     assert here.operate(Verb.CLEAR, "above") is None
     here.wait(1.0)
-    assert "lift" not in here.plant.dispatcher.latched
+    assert "lift" not in here.plant.dispatcher.latches.stopped
     assert follow(here, "below") == ["reset above", "resume below"]
 
 
@@ -297,7 +297,7 @@ def test_a_cell_is_cleared_robot_by_robot_though_another_one_keeps_what_they_sha
     assert here.operate(Verb.CLEAR, "below_lamp") is None
     assert here.plant.cells["below"].state is CellState.STOPPED
     assert here.plant.cells["above"].state is CellState.ABORTED
-    assert "lift" in here.plant.dispatcher.latched
+    assert "lift" in here.plant.dispatcher.latches.stopped
 
 
 def test_a_clear_that_got_lost_is_given_again(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -333,7 +333,7 @@ def test_its_own_stop_stops_all_who_share_it() -> None:
     here.wait(6.0)
     assert {run.state for run in here.plant.cells.values()} == {CellState.ABORTED}
     assert here.operate(Verb.CLEAR, "lift") is None
-    assert "lift" not in here.plant.dispatcher.latched
+    assert "lift" not in here.plant.dispatcher.latches.stopped
 
 
 @pytest.mark.parametrize("count", range(1, 6))
@@ -360,7 +360,7 @@ def test_a_cell_that_was_not_stopped_does_not_begin_so_after_a_restart() -> None
     again = Plant(here.model, epoch=9, now=0.0, memory=here.disk.facts)
     assert again.cells["below"].state is CellState.ABORTED
     assert again.cells["above"].state is CellState.IDLE
-    assert "lift" in again.dispatcher.latched
+    assert "lift" in again.dispatcher.latches.stopped
 
 
 def test_what_a_cell_had_before_a_restart_is_nobodys_before_it_is_heard() -> None:

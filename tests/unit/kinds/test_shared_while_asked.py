@@ -73,7 +73,7 @@ def asking(build: Build, *, shared: bool = False) -> Bench:
 
 
 def asked(here: Bench) -> str | None:
-    entry = here.plant.dispatcher.question("ana")
+    entry = here.plant.dispatcher.ledger.question("ana")
     return None if entry is None else entry.command.text  # type: ignore[attr-defined]
 
 
@@ -82,7 +82,7 @@ def answer(here: Bench) -> None:
     for _ in range(200):
         if ended(here, "below")():
             return
-        entry = here.plant.dispatcher.question("ana")
+        entry = here.plant.dispatcher.ledger.question("ana")
         if entry is not None:
             word = entry.command.answers[0]  # type: ignore[attr-defined]
             assert here.operate(Verb.ANSWER, "ana", answer=word) is None
@@ -150,7 +150,7 @@ def test_who_may_fail_in_a_zone_takes_it_before() -> None:
     cell = replace(cell, members=(*cell.members, ("ana", person("ana"))), shared=("lamp",))
     here = Bench(replace(model, cells=(cell,)))
     here.submit("tending risky")
-    assert here.wait(10.0, lambda: here.plant.dispatcher.question("ana") is not None)
+    assert here.wait(10.0, lambda: here.plant.dispatcher.ledger.question("ana") is not None)
     assert here.plant.zones.holder("lamp") is None
     names = [type(node).__name__ for node in here.plant.cells["tending"].tree.iterate()]  # type: ignore[union-attr]
     assert names.index("TakeDevices") < names.index("TakeZones")

@@ -11,7 +11,8 @@ import pytest
 from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType
 from arboleda.model.commands import StopMode
 from arboleda.model.facts import Value
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import Evidence
 from arboleda.sim.devices import Devices, Reboot, ToBoard
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import Beat, OrderGoal, Payload, StopGoal, Telemetry, decode, encode

@@ -14,8 +14,8 @@ from arboleda.cli.main import cli, main
 from arboleda.dashboard.page_state import PageState
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ConfigError, PayloadError
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState, PlantModel
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.views import view
 from arboleda.wire import order

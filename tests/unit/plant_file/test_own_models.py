@@ -15,7 +15,8 @@ from arboleda.cli.main import cli
 from arboleda.geometry import bodies, kinematics
 from arboleda.geometry.bodies import Body
 from arboleda.geometry.kinematics import Point
-from arboleda.model.plant_model import MotionState, PlantModel
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import layout_check, loader
 from arboleda.plant_file.robot_models import arm_models
 from arboleda.plant_file.urdf import robot_urdf, root_link

@@ -10,8 +10,7 @@ import pytest
 
 from arboleda.core.plant import Plant
 from arboleda.dashboard.wording import words
-from arboleda.model.messages import FaultByHand, Reason, Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import FaultByHand, MotionState, Reason, Report
 from arboleda.recorder.cause import BY_KEY, BY_REASON, PHRASES, Evidence, TaskCommand, cause_of
 from arboleda.recorder.incident import Reader
 from arboleda.recorder.replay import plant_of

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import random
 
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Report
 from arboleda.recorder.motion import FRESH_S, Motion
 
 NAMES = ("ra1", "rm1", "ra2")

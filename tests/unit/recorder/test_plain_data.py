@@ -21,12 +21,14 @@ from arboleda.model.messages import (
     Jog,
     KeptTask,
     LateDeparture,
+    MotionState,
     OperatorRequest,
     Reason,
     Receipt,
     Report,
     RestartRequest,
     Revision,
+    RevisionName,
     Shutdown,
     TaskAnswer,
     TaskRequest,
@@ -34,8 +36,6 @@ from arboleda.model.messages import (
     Undelivered,
     Verb,
 )
-from arboleda.model.plant_model import MotionState
-from arboleda.model.revision import RevisionName
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.plain_data import EVENTS, event_from, kept_from, memory_from, message_from, plain

@@ -12,8 +12,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, UInt8
 
 from arboleda.model.errors import PayloadError
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Report
 from arboleda.testing import shipped
 from arboleda_ros.plain_reports import PlainReports
 

@@ -13,8 +13,7 @@ from rclpy.clock import Clock
 from rclpy.serialization import serialize_message
 
 from arboleda.model.errors import PayloadError
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Report
 from arboleda.testing import shipped
 from arboleda_ros import statuses
 from arboleda_ros.robot_publisher import JointsMessage, StatusMessage

@@ -9,7 +9,7 @@ import pytest
 from arboleda.adapters import clock
 from arboleda.adapters.broker_login import Address
 from arboleda.model.commands import Stop, StopMode
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.plant_file import loader
 from arboleda.runtime.parts import bridge
 from arboleda.runtime.parts.broker import OtherBroker

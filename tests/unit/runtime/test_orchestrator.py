@@ -535,7 +535,7 @@ def test_a_view_that_cannot_be_made_is_logged_once_and_does_not_end_the_plant(pl
     plant.plant.intake.closed = True
     plant.plant.says = lambda events: [Heartbeat(epoch=7)]
     for version in range(3):
-        plant.plant.dispatcher.version = version + 1
+        plant.plant.dispatcher.ledger.version = version + 1
         plant.loop.turn()
     assert sum("internal error in the screens" in line for line in caplog.messages) == 1
     assert len(plant.robots.messages) == 3

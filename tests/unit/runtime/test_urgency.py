@@ -9,8 +9,8 @@ import pytest
 from arboleda.core.plant import Plant
 from arboleda.dispatch.ledger import Entry
 from arboleda.kinds.joints import MoveJoints
-from arboleda.model.messages import Report, TaskRequest
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState, Report, TaskRequest
+from arboleda.model.plant_model import Evidence
 from arboleda.runtime.parts.urgency import COMPANY_S, PASSING, RESTING_S, Urgency
 from arboleda.testing.plants import shipped
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from arboleda.model.commands import StopMode
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.sim.arm import ArmBody
 from arboleda.testing import shipped
 from arboleda.wire.payloads import Beat, EffectorGoal, HomeGoal, JointsGoal, PathGoal, StopGoal

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from arboleda.model.commands import StopMode
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import Evidence
 from arboleda.wire.payloads import Beat, EffectorGoal, HomeGoal, JointsGoal, StopGoal
 from arboleda.wire.topics import Channel
 

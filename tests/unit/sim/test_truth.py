@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from arboleda.model.commands import StopMode
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.wire.payloads import EffectorGoal, HomeGoal, JointsGoal, PathGoal, StopGoal
 from arboleda.wire.topics import Channel
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Report
 from arboleda.simulator.chance import Dice
 from arboleda.simulator.split_reports import TwoTopics
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.plant_file import loader
 from arboleda.sim.devices import Devices, FromBoard, ToBoard
 from arboleda.simulator.fault_bench import FaultBench, MishapBegins, MishapEnds, MishapNote, MishapOver

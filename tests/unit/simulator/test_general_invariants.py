@@ -8,19 +8,21 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.cell import WAITS
 from arboleda.core.cell_states import Cause, CellState
+from arboleda.core.cell_steps import WAITS
 from arboleda.core.plant import Plant
 from arboleda.dispatch import evidence
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.effectors import Effectors
 from arboleda.dispatch.evidence import Verdict
 from arboleda.dispatch.ledger import Feed
+from arboleda.dispatch.obstacles import Obstacles
+from arboleda.dispatch.outlet import Outlet
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, VerbCall, WorkCall
 from arboleda.kinds.person import person
 from arboleda.model.commands import OnStop, Process, Query, StopMode
-from arboleda.model.messages import Failure, Reason, Report, Verb
-from arboleda.model.plant_model import Cell, Evidence, Interlock, MotionState, Need, Place, PlantModel
+from arboleda.model.messages import Failure, MotionState, Reason, Report, Verb
+from arboleda.model.plant_model import Cell, Evidence, Interlock, Need, Place, PlantModel
 from arboleda.recipes import Choice, Kit, parallel, recipe, work
 from arboleda.sim.board import Board
 from arboleda.sim.machine import MachineBody
@@ -336,7 +338,7 @@ def forgets_doors(patch: Patch) -> None:
 
 def ignores_needs(patch: Patch) -> None:
     """What a verb needs is not looked at before it is sent."""
-    patch.setattr(Dispatcher, "_unmet", lambda self, command, *, was: None)
+    patch.setattr(Obstacles, "_unmet", lambda self, command, *, was: None)
 
 
 def ignores_needs_of_others(patch: Patch) -> None:
@@ -422,7 +424,7 @@ def says_halt_to_what_finishes(patch: Patch) -> None:
 
     def harsh(self: Dispatcher, entry: Any, now: float) -> None:
         if entry.finishes:
-            self._stop(entry.command.robot, StopMode.HALT)
+            self.outlet.stop(entry.command.robot, StopMode.HALT)
         cancel(self, entry, now)
 
     patch.setattr(Dispatcher, "cancel", harsh)
@@ -483,7 +485,7 @@ def takes_old_orders(patch: Patch) -> None:
 
 def halts_nothing(patch: Patch) -> None:
     """Work whose step is left is not halted."""
-    patch.setattr(Dispatcher, "_stop", lambda self, robot, mode: None)
+    patch.setattr(Outlet, "stop", lambda self, robot, mode: None)
 
 
 def forgets_grips(patch: Patch) -> None:
@@ -506,16 +508,16 @@ def told_twice(patch: Patch) -> None:
 def raises_at_a_verb(patch: Patch) -> None:
     """A command of a device is an error of the program."""
 
-    def fails(self: Dispatcher, command: Any, *, was: bool) -> None:
+    def fails(self: Obstacles, command: Any, *, was: bool) -> None:
         raise ZeroDivisionError
 
-    patch.setattr(Dispatcher, "_unmet", fails)
+    patch.setattr(Obstacles, "_unmet", fails)
 
 
 def knows_no_accents(patch: Patch) -> None:
     """A word with an accent is none of the answers."""
     of_ascii = lambda word, names: next((name for name in names if word.isascii() and name == word), None)  # noqa: E731
-    patch.setattr("arboleda.core.operator.known", of_ascii)
+    patch.setattr("arboleda.core.verbs.answering.known", of_ascii)
 
 
 def advises_nothing(patch: Patch) -> None:

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from arboleda.dispatch import evidence
-from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.evidence import Verdict
 from arboleda.dispatch.ledger import Feed
+from arboleda.dispatch.whereabouts import Whereabouts
 from arboleda.dispatch.zones import Zones
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
@@ -167,7 +167,7 @@ def everybody_gets_it(patch: Patch) -> Watch:
 
 
 def freed_at_a_stop(patch: Patch) -> Watch:
-    patch.setattr(Dispatcher, "place", lambda self, space: space.home)
+    patch.setattr(Whereabouts, "place", lambda self, space: space.home)
     watch = Watch(zoned())
     watch.carry()
     watch.verb(Verb.STOP)

@@ -14,16 +14,17 @@ import pytest
 from arboleda.bt_xml import reading
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.recipe import tree_recipe
-from arboleda.core import cell, operator, plant
+from arboleda.core import cell, people, plant, task_desk, zone_watch
 from arboleda.core.cell_states import CellState
 from arboleda.core.task_queue import TaskQueue
-from arboleda.dispatch import belief, dispatcher, evidence, ledger
+from arboleda.core.verbs import cancelling
+from arboleda.dispatch import belief, evidence, latches, ledger, obstacles, outlet, time_limits
 from arboleda.dispatch.ledger import TABLE, Feed, State
 from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop, StopMode
-from arboleda.model.messages import Fact, Heartbeat, OperatorRequest, TaskState, Verb
+from arboleda.model.messages import Fact, Heartbeat, TaskState, Verb
 from arboleda.model.plant_model import Evidence, ForeignCommands, PlantModel, Retry
 from arboleda.model.sentence import Phrase, as_sentence
 from arboleda.plant_file.loader import load
@@ -302,7 +303,7 @@ def test_no_command_to_unfit__offline(monkeypatch, bites):
 
 
 def test_no_command_to_unfit__after_a_stop(monkeypatch, bites):
-    monkeypatch.setattr(dispatcher.Dispatcher, "obstacle", lambda self, robot, was=False: None)
+    monkeypatch.setattr(obstacles.Obstacles, "of", lambda self, robot, was=False: None)
     monkeypatch.setattr(cell.CellRun, "stop", lambda self: None)
     watch = Watch()
     watch.task(wait_s=1)
@@ -311,7 +312,7 @@ def test_no_command_to_unfit__after_a_stop(monkeypatch, bites):
 
 
 def test_stops_are_cleared_by_operators(monkeypatch, bites):
-    monkeypatch.setattr(dispatcher.Dispatcher, "forget_stop", dispatcher.Dispatcher.unlatch)
+    monkeypatch.setattr(latches.Latches, "forget", latches.Latches.unlatch)
     watch = Watch()
     for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):
         watch.verb(verb, "sis_a", wait_s=1)
@@ -319,7 +320,7 @@ def test_stops_are_cleared_by_operators(monkeypatch, bites):
 
 
 def test_one_motion_per_robot(monkeypatch, bites):
-    monkeypatch.setattr(dispatcher.Dispatcher, "work_of", lambda self, robot: None)
+    monkeypatch.setattr(ledger.Ledger, "work_of", lambda self, robot: None)
     watch = Watch()
     watch.world.request_verb(Verb.HOME, "ra1")
     watch.verb(Verb.HOME, "ra1")
@@ -359,7 +360,7 @@ def test_no_deadline_overrun(monkeypatch, bites):
 
 
 def test_no_deadline_overrun__of_a_deadline_without_end(monkeypatch, bites):
-    monkeypatch.setattr(dispatcher.Dispatcher, "_allowed_s", lambda self, command, timing: 1e6)
+    monkeypatch.setattr(time_limits.TimeLimits, "allowed_s", lambda self, command, timing: 1e6)
     watch = Watch()
     watch.task(wait_s=1)
     bites(watch)
@@ -385,13 +386,13 @@ def test_retries_bounded(monkeypatch, bites):
 
 
 def test_halted_moves_sent_halt(monkeypatch, bites):
-    stop = dispatcher.Dispatcher._stop
+    stop = outlet.Outlet.stop
 
     def only_latch(self: Any, robot: str, mode: StopMode) -> None:
         if mode is not StopMode.HALT:
             stop(self, robot, mode)
 
-    monkeypatch.setattr(dispatcher.Dispatcher, "_stop", only_latch)
+    monkeypatch.setattr(outlet.Outlet, "stop", only_latch)
     watch = Watch()
     watch.task(wait_s=1)
     watch.verb(Verb.CANCEL, "sis_a")
@@ -411,7 +412,7 @@ def test_halted_moves_sent_halt__by_a_step_left_early(monkeypatch, bites):
 
 
 def twice(state: TaskState) -> Callable[..., None]:
-    told = plant.Plant._task_changed
+    told = task_desk.TaskDesk.tell
 
     def tell(self: Any, task: Any, request: str | None = None) -> None:
         told(self, task, request)
@@ -422,14 +423,14 @@ def twice(state: TaskState) -> Callable[..., None]:
 
 
 def test_each_task_ends_once(monkeypatch, bites):
-    monkeypatch.setattr(plant.Plant, "_task_changed", twice(TaskState.DONE))
+    monkeypatch.setattr(task_desk.TaskDesk, "tell", twice(TaskState.DONE))
     watch = Watch()
     watch.task(wait_s=20)
     bites(watch)
 
 
 def test_ended_tasks_stay_ended(monkeypatch, bites):
-    monkeypatch.setattr(operator.Operator, "_planned_cancel", lambda self, id, failure: lambda: None)
+    monkeypatch.setattr(cancelling.Cancelling, "_planned_cancel", lambda self, id, failure: lambda: None)
     watch = Watch()
     watch.task(f"{TASK} #one", wait_s=20)
     watch.verb(Verb.CANCEL, "#one")
@@ -457,7 +458,7 @@ def test_a_task_may_fail_after_somebody_or_something_disturbed_it(monkeypatch, d
 
 
 def test_only_legal_task_states(monkeypatch, bites):
-    monkeypatch.setattr(plant.Plant, "_task_changed", twice(TaskState.RUNNING))
+    monkeypatch.setattr(task_desk.TaskDesk, "tell", twice(TaskState.RUNNING))
     watch = Watch()
     watch.task()
     bites(watch)
@@ -480,7 +481,7 @@ def test_first_come_first_served(bites):
 
 def test_cancelled_tasks_end_cancelled(monkeypatch, bites):
     monkeypatch.setattr(
-        cell.CellRun, "_cancelling", property(lambda self: False, lambda self, word: None), raising=False
+        cell.CellRun, "cancelling", property(lambda self: False, lambda self, word: None), raising=False
     )
     watch = Watch()
     watch.task(wait_s=1)
@@ -540,7 +541,7 @@ def test_rejected_input_changes_nothing__of_what_a_start_finds_in_a_hand(bites):
 
 
 def test_every_request_is_answered(monkeypatch, bites):
-    monkeypatch.setitem(plant.HANDLERS, OperatorRequest, lambda self, event: None)
+    monkeypatch.setattr(people.People, "operate", lambda self, request: None)
     watch = Watch()
     watch.verb(Verb.HOLD)
     bites(watch)
@@ -626,9 +627,7 @@ def test_nothing_late_has_effect(monkeypatch, bites):
 
 
 def test_commands_say_what_was_heard(monkeypatch, bites):
-    monkeypatch.setattr(
-        dispatcher.Dispatcher, "_leave", lambda self, command, token: self.outbox.append(command)
-    )
+    monkeypatch.setattr(outlet.Outlet, "leave", lambda self, command, token: self._outbox.append(command))
     watch = Watch()
     watch.task(wait_s=15)
     bites(watch)
@@ -832,7 +831,7 @@ def test_no_starvation__of_a_cell_whose_cart_proves_no_place_and_was_led_into_a_
     (tmp_path / "recipes.py").write_text(STORE)
     watch = Watch(load(tmp_path / "plant.yaml"))
     watch.wait(2.0)
-    cell, reached = watch.record.cells["cell"], watch.world.plant.dispatcher.reached
+    cell, reached = watch.record.cells["cell"], watch.world.plant.dispatcher.whereabouts.reached
     assert watch.record.robots["cart"].node == 6
     assert ready(watch.look, cell), "nobody knows where it was led"
     reached["cart"] = 2
@@ -877,7 +876,7 @@ def test_no_starvation__of_a_cell_whose_shared_arm_may_still_be_told_something(t
 def test_zone_requests_end(monkeypatch, bites):
     watch = Watch(zoned())
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
-    monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
+    monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     monkeypatch.setattr(leaves.TakeZones, "update", lambda self: self.arrived() or leaves.Status.RUNNING)
     watch.task("sis_a palletizing", wait_s=2.9)
     assert "zone_requests_end" not in watch.found
@@ -888,7 +887,7 @@ def test_zone_requests_end(monkeypatch, bites):
 def test_zone_requests_end__of_a_recovery_where_who_has_the_zone_does_not_work(monkeypatch, bites):
     watch = Watch(zoned())
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
-    monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
+    monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     monkeypatch.setattr(cell_zones.CellZones, "will_come_free", lambda self, robot: True)
     watch.task("sis_a palletizing", wait_s=6.1)
     assert watch.found == {}
@@ -910,7 +909,7 @@ def test_zone_requests_end__of_a_recovery_unless_who_has_the_zone_works():
 def test_zone_requests_end__in_the_cells_own_time(monkeypatch):
     watch = Watch(zoned())
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
-    monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
+    monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     watch.task("sis_a palletizing", wait_s=1)
     watch.verb(Verb.HOLD, "sis_a", wait_s=10)
     watch.verb(Verb.RESUME, "sis_a", wait_s=5)
@@ -927,7 +926,7 @@ def test_zone_requests_end__anew_after_the_pause_of_a_retry(monkeypatch):
     cells = tuple(replace(each, recipes=(*each.recipes, look)) for each in model.cells)
     watch = Watch(replace(model, cells=cells))
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
-    monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
+    monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     watch.task("sis_a look", wait_s=7.0)
     assert [cell.name for cell in watch.record.waiting] == ["sis_a"]
     watch.wait(10)
@@ -949,7 +948,7 @@ PAUSE = '<Inverter><Sleep msec="500"/></Inverter>'
 def test_zone_requests_end__anew_at_each_try_of_a_tree(monkeypatch, node):
     watch = Watch(in_a_tree(zoned(), f'<RetryUntilSuccessful num_attempts="4">{node}</RetryUntilSuccessful>'))
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
-    monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
+    monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     watch.task("sis_a look", wait_s=5.0)
     assert [cell.name for cell in watch.record.waiting] == ["sis_a"]
     watch.wait(12)
@@ -961,7 +960,7 @@ def test_zone_requests_end__at_a_later_try_of_a_tree(monkeypatch, bites):
         in_a_tree(zoned(), f'<RetryUntilSuccessful num_attempts="4">{VISIT}</RetryUntilSuccessful>')
     )
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
-    monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
+    monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     watch.task("sis_a look", wait_s=4)
     assert watch.found == {}
     monkeypatch.setattr(leaves.TakeZones, "update", lambda self: self.arrived() or leaves.Status.RUNNING)
@@ -972,7 +971,7 @@ def test_zone_requests_end__at_a_later_try_of_a_tree(monkeypatch, bites):
 def test_zone_requests_end__once_a_cell_that_was_held_at_that_moment_goes_on(monkeypatch):
     watch = Watch(zoned())
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
-    monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
+    monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     watch.task("sis_a palletizing", wait_s=3.1)
     watch.world.stall(PLANT, 0.3)
     watch.verb(Verb.HOLD, "sis_a", wait_s=5)

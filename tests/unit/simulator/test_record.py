@@ -11,8 +11,8 @@ from arboleda.dispatch.ledger import State
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Stop, StopMode
-from arboleda.model.messages import Report, TaskChanged, TaskState, Verb
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState, Report, TaskChanged, TaskState, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.simulator.record import Record
 from arboleda.simulator.recorded.robots import KnownRobot, Obstacle, StopProgress
 from arboleda.simulator.recorded.scopes import Scopes

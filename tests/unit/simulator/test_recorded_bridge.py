@@ -8,8 +8,7 @@ from dataclasses import replace
 import pytest
 
 from arboleda.campaigns.request import Request
-from arboleda.model.messages import Heartbeat, Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import Heartbeat, MotionState, Report
 from arboleda.simulator.moment import BridgeStep
 from arboleda.simulator.recorded.bridge import Bridges
 from arboleda.simulator.recorded.reported_telemetry import REPORTS

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from arboleda.core.intake import Intake
-from arboleda.core.plant import Plant
+from arboleda.core.task_desk import TaskDesk
 from arboleda.core.task_queue import TaskQueue
 from arboleda.model.messages import ENDED, KeptTask, TaskState
 from arboleda.model.plant_model import PlantModel
@@ -43,7 +43,7 @@ def run(model: PlantModel, seed: int, *, only: str = "", cycles: int = 6) -> Bro
 
 def forgets(patch: Patch) -> None:
     """What an earlier start accepted is nothing to the next one."""
-    patch.setattr(Plant, "_take_back", lambda self, kept: None)
+    patch.setattr(TaskDesk, "take_back", lambda self, kept: None)
 
 
 def takes_ended_for_others(patch: Patch) -> None:
@@ -61,16 +61,16 @@ def takes_ended_for_others(patch: Patch) -> None:
 
 def tells_ends_again(patch: Patch) -> None:
     """A plant that starts tells of all tasks that it knows, also of those that have ended."""
-    take_back = Plant._take_back
+    take_back = TaskDesk.take_back
 
-    def loudly(self: Plant, kept: Iterable[KeptTask]) -> None:
+    def loudly(self: TaskDesk, kept: Iterable[KeptTask]) -> None:
         rows = list(kept)
         take_back(self, rows)
         for each in rows:
             if each.state in ENDED:
-                self._task_changed(self.intake.tasks[each.id])
+                self.tell(self._intake.tasks[each.id])
 
-    patch.setattr(Plant, "_take_back", loudly)
+    patch.setattr(TaskDesk, "take_back", loudly)
 
 
 def begins_anew(patch: Patch) -> None:

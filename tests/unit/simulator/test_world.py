@@ -221,7 +221,7 @@ def test_a_plant_that_restarts_keeps_what_it_had_to(world):
     world.crash(PLANT)
     world.advance(0.5)
     assert world.plant.epoch > epoch
-    assert world.plant.dispatcher.latched == {"ra1", "rm_sis_a"}
+    assert world.plant.dispatcher.latches.stopped == {"ra1", "rm_sis_a"}
 
 
 def test_carriers_alter_what_is_published(world):

@@ -7,8 +7,7 @@ from typing import Any
 import pytest
 
 from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.model.messages import Receipt, Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Receipt, Report
 from arboleda.testing import shipped
 from arboleda.trees.walk_back import Fate, fate
 

@@ -7,8 +7,8 @@ import pytest
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.model.messages import OperatorRequest, Verb
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState, OperatorRequest, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import in_json
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import Rig, shipped

@@ -8,8 +8,7 @@ import pytest
 from py_trees.behaviours import Failure, Running, Success
 from py_trees.composites import Selector, Sequence
 
-from arboleda.model.messages import TaskState, Verb
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, TaskState, Verb
 from arboleda.testing import Rig, shipped
 from arboleda.views import diagnostics, tree_view, view
 from arboleda.wire.status import ERROR, OK, STALE, WARN

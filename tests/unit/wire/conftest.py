@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from arboleda.model.commands import Command
-from arboleda.model.messages import Heartbeat, Report
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import Heartbeat, MotionState, Report
+from arboleda.model.plant_model import Evidence
 from arboleda.testing import shipped
 from arboleda.wire.bridge import Bridge, Message
 from arboleda.wire.hop import FromPlant

@@ -10,8 +10,8 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Stop, StopMode
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Evidence, MotionState, Robot
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import Evidence, Robot
 from arboleda.wire.payloads import REFUSALS, Beat
 
 SMALL = st.none() | st.integers(0, 6)

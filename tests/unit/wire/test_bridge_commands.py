@@ -11,8 +11,8 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Stop, StopMode
-from arboleda.model.messages import Tokens
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState, Tokens
+from arboleda.model.plant_model import Evidence
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import Beat, EffectorGoal, HomeGoal, JointsGoal, PathGoal, StopGoal
 

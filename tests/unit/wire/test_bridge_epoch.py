@@ -7,8 +7,8 @@ import pytest
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Stop, StopMode
-from arboleda.model.messages import Heartbeat
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import Heartbeat, MotionState
+from arboleda.model.plant_model import Evidence
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import Beat, EffectorGoal
 

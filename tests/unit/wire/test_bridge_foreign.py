@@ -10,7 +10,8 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Home, Stop, StopMode
-from arboleda.model.plant_model import Evidence, ForeignCommands, MotionState
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import Evidence, ForeignCommands
 from arboleda.wire.bridge import PLANT_GONE_S, UNSURE_S, Bridge
 from arboleda.wire.copies import COPY_S
 from arboleda.wire.hop import FromPlant, without_id

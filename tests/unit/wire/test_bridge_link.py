@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from arboleda.kinds.joints import MoveJoints
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import Evidence
 
 MOVING, STOPPED, NO_LINK = MotionState.MOVING, MotionState.STOPPED, MotionState.NO_LINK
 STALE_AFTER_S = 1.5

@@ -7,7 +7,7 @@ import pytest
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command, Home, Stop, StopMode
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.wire.bridge import Leaving
 from arboleda.wire.payloads import EffectorGoal, StopGoal
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from arboleda.model.commands import Home
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.wire.labels import Labels
 from arboleda.wire.strict import UINT32
 from arboleda.wire.values import Telemetry

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from arboleda.kinds.joints import MoveJoints
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import Evidence
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 from arboleda.wire.motion import LINGER_S, OpenMotion

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from arboleda.model.commands import StopMode
 from arboleda.model.errors import PayloadError
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.wire.payloads import (
     REFUSALS,
     Beat,

@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from arboleda.model.errors import PayloadError
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import Evidence
 from arboleda.wire.payloads import Telemetry, decode, read_angles
 from arboleda.wire.repeats import Words
 from arboleda.wire.strict import LIMIT_BYTES

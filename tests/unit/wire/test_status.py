@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.errors import PayloadError
-from arboleda.model.messages import Receipt, Report, Tokens
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Receipt, Report, Tokens
 from arboleda.model.sentence import OWN
 from arboleda.testing import shipped
 from arboleda.wire import rejections

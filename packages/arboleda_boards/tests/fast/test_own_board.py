@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.plant_file.loader import load
 from arboleda.sim.board import Board as VirtualBoard
 from arboleda.sim.machine import MachineBody

@@ -20,9 +20,8 @@ from rich.text import Text
 
 from arboleda.core.cell_states import CellState
 from arboleda.model.facts import Value, shown
-from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.model.messages import MotionState, TaskChanged, TaskState
 from arboleda.model.outside import plain
-from arboleda.model.plant_model import MotionState
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.views import view
 

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from arboleda.dispatch.belief import Moment
 from arboleda.dispatch.ledger import State
 from arboleda.model.commands import Motion
 from arboleda.model.messages import Failure, Reason
-
-from .cell_states import Cause, CellState
-
-if TYPE_CHECKING:
-    from .cell import CellRun
+from arboleda.trees.context import Context
+from arboleda.trees.tree_run import TreeRun
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,50 +29,43 @@ class Hold:
 class Absence:
     """Absence of the plant, to one cell; `hold` is the one that it has made, and that ends by itself."""
 
-    def __init__(self, run: CellRun) -> None:
+    def __init__(self, context: Context, run: TreeRun) -> None:
+        self._context = context
         self._run = run
         self.hold: Hold | None = None
 
-    def begin(self, failure: Failure) -> None:
-        """Hold what is at work, because the plant was away; a cell with nothing under way goes on.
+    def begin(self, failure: Failure, *, paused: bool) -> None:
+        """Have the hold for this failure end as soon as the devices of the cell prove what they did.
 
-        Where the plant file says so, a held one goes on too, as soon as its devices prove what they did. That
-        has to be within the time in which they confirm a stop: later nobody expects a move any more.
+        That has to be within the time in which they confirm a stop: later nobody expects a move any more.
         """
-        run, context = self._run, self._run.context
-        if run.state is CellState.EXECUTE:
-            paused = run.queue.paused
-            run.halt(Cause.AWAY, failure)
-            if run.cell.goes_on_after_absence and run.task is not None:
-                by = context.time.plant_now + context.timing.stop_timeout_s
-                self.hold = Hold(trouble=failure, since=context.robots.moments(), by=by, paused=paused)
-        context.commands.cancel_motions()
+        context = self._context
+        by = context.time.plant_now + context.timing.stop_timeout_s
+        self.hold = Hold(trouble=failure, since=context.robots.moments(), by=by, paused=paused)
 
-    def is_over(self) -> bool:
-        """Leave the hold where nothing else is in the way and what was at work is proved; True if so."""
-        run, hold = self._run, self.hold
-        self.hold = None
-        if hold is None or run.trouble is not hold.trouble or run.stranded:
-            return False
-        if run.context.time.plant_now > hold.by:
-            return False
-        if run.context.commands.open() or not self._is_proved(hold.since):
+    def end(self, trouble: Failure | None) -> Hold | None:
+        """End the hold where what was at work is proved, and return it; None where the cell stays held.
+
+        `trouble` is why the cell is held now: for another one it does not go on by itself any more.
+        """
+        hold, self.hold = self.hold, None
+        if hold is None or trouble is not hold.trouble or self._context.time.plant_now > hold.by:
+            return None
+        if self._context.commands.open() or not self._is_proved(hold.since):
             self.hold = hold  # until its devices have reported what they did
-            return False
-        run.go_on(Cause.RETRY)
-        run.queue.paused = hold.paused
-        return True
+            return None
+        return hold
 
     def _is_proved(self, since: dict[str, Moment]) -> bool:
         """True where its devices are at rest and can work, and what was at work may be given anew.
 
         A motion whose robot was not heard meanwhile may: it begins wherever the robot stands now.
         """
-        run, robots = self._run, self._run.context.robots
-        for entry in [act.entry for act in run.run.interrupted() if act.entry is not None]:
+        robots = self._context.robots
+        for entry in [act.entry for act in self._run.interrupted() if act.entry is not None]:
             lost = entry.failure is not None and entry.failure.reason is Reason.LINK_LOST
             anew = entry.too_early or (lost and isinstance(entry.command, Motion))
             if entry.state is State.FAILED and not anew:
                 return False
-        able = all(robots.obstacle(robot.name) is None for robot in run.cell.reached)
+        able = all(robots.obstacle(robot.name) is None for robot in self._context.cell.reached)
         return able and not robots.moving_since(since)

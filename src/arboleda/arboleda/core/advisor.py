@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from arboleda.dispatch.dispatcher import MAY_LET_GO
+from arboleda.dispatch.obstacles import MAY_LET_GO
 from arboleda.model.messages import OperatorRequest, Reason, Verb
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.trees import part_places

@@ -9,12 +9,10 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.dispatch.belief import Moment
-from arboleda.dispatch.dispatcher import BROKEN_OFF
-from arboleda.dispatch.ledger import State
-from arboleda.model.messages import Failure, Reason, TaskState, Verb
+from arboleda.dispatch.booking import BROKEN_OFF
+from arboleda.model.messages import Failure, Reason, RevisionName, TaskState, Verb
 from arboleda.model.plant_model import Cell, Timing
 from arboleda.model.recipe import Build
-from arboleda.model.revision import RevisionName
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.task import Task
 from arboleda.trees import steps
@@ -25,7 +23,6 @@ from arboleda.trees.part_places import trouble_in
 from arboleda.trees.step_token import hash_of
 from arboleda.trees.tree_run import TreeRun, path_of
 
-from . import losses
 from .absence import Absence
 from .advice import Advice
 from .cell_states import TABLE, Cause, CellState, after
@@ -74,18 +71,18 @@ class CellRun:
         self.stranded: Sentence | None = None  # why no step of a held task can go on from there
         self.place_trouble: Sentence | None = None  # for which the last task failed
         self.in_vain: set[tuple[Verb, str]] = set()  # what was done to get on, and failed, since it worked
-        self.manual = ManualMode(self)
-        self.absence = Absence(self)
+        self.manual = ManualMode(context, self.queue)
+        self.absence = Absence(context, self.run)
         self.dirty = False
         self.closed = False
         self.awaits_restart = False  # no further task begins before that
         self.following: NextVersion | None = None  # while it has not taken it
         self.version: RevisionName | None = None  # the one that it took while the plant ran
+        self.cancelling = False  # its task, so that this ends as cancelled
+        self.stopped_after: dict[str, Moment] = {}  # what its robots had said when it was stopped last
+        self.stop_by = 0.0  # until when they have to stand, s of the cell's time
         self._changed = changed
-        self._cancelling = False
         self._recovers_anew = False
-        self._stopped_after: dict[str, Moment] = {}
-        self._stop_by = 0.0
 
     @property
     def tree(self) -> Behaviour | None:
@@ -116,67 +113,12 @@ class CellRun:
         trouble = self.trouble if self.state is CellState.HELD and self.task is None else None
         return trouble is not None and trouble.reason is Reason.INTERRUPTED
 
-    def advance(self, *, woken: bool) -> bool:
-        """Do what can be done now: tick the tree until it rests, start the next task; whether it did."""
-        self.dirty = self.context.time.woken() or woken or self.dirty
-        if self.state is CellState.EXECUTE and not self.dirty:
-            return False
-        did = self.manual.teaching is not None and self.manual.go_on()
-        did |= self._transit()
-        if self.dirty and self.run.tree is not None and self.state is CellState.EXECUTE:
-            self._look(self.run.tick())
-            did = True
-        if self.following is not None and self.is_between_tasks:
-            self._revise(self.following)
-            did = True
-        if self.queue and self.state is CellState.IDLE and self._may_begin:
-            self._start(self.queue.popleft())
-            did = True
-        self.dirty = False
-        return did
-
-    @property
-    def _may_begin(self) -> bool:
-        return not self.closed and not self.awaits_restart and self.not_ready is None
-
     @property
     def is_between_tasks(self) -> bool:
         """True where it can take another version: nobody teaches it, no task, tree or command is open."""
         if self.manual.teaching is not None or self.task is not None or self.run.tree is not None:
             return False
         return self.state in BETWEEN_TASKS and not self.context.commands.open()
-
-    def _revise(self, following: NextVersion) -> None:
-        self.following, self.version = None, following.version
-        self.cell = following.cell
-        self.context.revise(following.cell, following.timing)
-        self.queue.revise(following.cell)
-        self.readiness.revise(following.cell)
-        self.keeping.revise()
-        following.taken(following)
-
-    def walk_back(self, task: Task, kept: str) -> None:
-        """Hold a task that was at work when an earlier start ended, until a person says how it goes on."""
-        self.task, self.queue.paused, self.state = task, True, CellState.HELD
-        self.context.answers, self.context.commands.task = task.answers, hash_of(task.id)
-        self.context.time.pause()
-        self.stranded = self.keeping.revive(task.order, kept)
-        trail = self.keeping.walk.trail if self.keeping.walk else None
-        if trail is not None:
-            self.trouble, self._cancelling = trail.failure, trail.cancels
-
-    def look_back(self) -> None:
-        """Judge a task of an earlier start by what its devices have said by now."""
-        if self.keeping.walk is not None and self.state is CellState.HELD:
-            self._judged()
-
-    def trail(self) -> str | None:
-        """The place of its task in the tree, to be kept; None where that is kept already."""
-        if self.task is None or self.run.tree is None:
-            return None
-        holds = self.state in (CellState.HOLDING, CellState.HELD)
-        why, cancels = self.task.failure, self._cancelling
-        return self.keeping.news(failure=why, cancels=cancels, holds=holds, stranded=self.stranded)
 
     def stop(self) -> None:
         """The operator's stop (software): the task has failed; the robots are latched by the caller."""
@@ -185,16 +127,12 @@ class CellRun:
         self.become(Cause.STOP)
         self.context.time.go_on()
         self.trouble = None
-        self._stopped_after = self.context.robots.moments()
-        self._stop_by = self.context.time.now + self.context.timing.stop_timeout_s
+        self.stopped_after = self.context.robots.moments()
+        self.stop_by = self.context.time.now + self.context.timing.stop_timeout_s
         failure = Failure(reason=Reason.STOPPED, sentence=STOPPED(cell=self.cell.name))
         self.interrupt(failure)
         self.context.commands.cancel_all()
-        self.context.time.wake_at(self._stop_by)
-
-    def hold(self) -> None:
-        """Halt at once and keep everything for `resume`."""
-        self.halt(Cause.HOLD)
+        self.context.time.wake_at(self.stop_by)
 
     def halt(self, cause: Cause, trouble: Failure | None = None) -> None:
         """Hold the task for this cause, and halt what moves."""
@@ -204,34 +142,22 @@ class CellRun:
         self.context.time.pause()
         self.context.commands.cancel_motions()
 
-    def resume(self) -> None:
-        """Go on where `hold` interrupted, each interrupted step given anew; let an idle cell's queue run."""
-        if self.state is CellState.HELD:
-            self.go_on(Cause.RESUME)
-        self.queue.resume()
-        self.dirty = True
-
-    def retry(self) -> None:
-        """Give the step that failed anew; without a task, recover anew."""
+    def lose(self, what: Sentence, failure: Failure | None = None) -> None:
+        """Note that its task has lost what it needs to go on, so that it can only be abandoned."""
         if self.task is not None:
-            self.task.attempts += 1
-            self.go_on(Cause.RETRY)
-        else:
-            self.become(Cause.RETRY)
-            self.context.start_afresh()
-            self._recover(anew=True)
+            self.trouble, self.stranded = failure or self.trouble, what
 
-    def abandon(self) -> None:
-        """Give the task up and recover; without a task, leave the cell as it is."""
-        if self.task is None:
-            self._leave_as_it_is()
-            return
-        self.become(Cause.ABANDON)
-        given_up = Failure(reason=Reason.CANCELLED, sentence=ABANDONED())
-        if self.keeping.walk is not None and self.stranded is not None:
-            given_up = Failure(reason=Reason.INTERRUPTED, sentence=self.stranded)
-        self.task.fail(self.trouble or given_up)
-        self._recover()
+    def outlast(self, failure: Failure) -> None:
+        """Hold what is at work, because the plant was away; a cell with nothing under way goes on.
+
+        Where the plant file says so, a held one goes on too, as soon as its devices prove what they did.
+        """
+        if self.state is CellState.EXECUTE:
+            paused = self.queue.paused
+            self.halt(Cause.AWAY, failure)
+            if self.cell.goes_on_after_absence and self.task is not None:
+                self.absence.begin(failure, paused=paused)
+        self.context.commands.cancel_motions()
 
     def drop(self, task: Task, failure: Failure) -> None:
         """Take a task that waits out of the queue; it is cancelled."""
@@ -239,21 +165,6 @@ class CellRun:
         task.fail(failure)
         task.become(TaskState.CANCELLED, self.context.time.plant_now)
         self._changed(task)
-
-    def cancel(self, failure: Failure) -> None:
-        """End the running task: halt, recover, then it is cancelled."""
-        self._cancelling = True
-        if self.task is not None:
-            self.task.fail(failure)
-        held = self.state is CellState.HELD
-        if held:
-            self.become(Cause.ABANDON)
-        if held or not self.run.recovering:
-            self._recover()
-
-    def await_restart(self, *, wanted: bool) -> None:
-        """Begin no further task, or go on with them where no restart is wanted any more."""
-        self.awaits_restart, self.dirty = wanted, True
 
     def close(self, *, drops_waiting: bool) -> None:
         """The plant ends: what runs is halted and stays as it is for the next start, no other task starts.
@@ -273,7 +184,7 @@ class CellRun:
 
     def interrupt(self, failure: Failure) -> None:
         """End the task as failed without recovery; whatever moves for it is halted."""
-        task, cancelled = self.task, self._cancelling
+        task, cancelled = self.task, self.cancelling
         self.run.drop()
         if task is not None:
             task.fail(failure)
@@ -285,96 +196,20 @@ class CellRun:
         self.manual.end(failure.sentence)
         self.interrupt(failure)
         if (self.state, Cause.STUCK) in TABLE:
-            self._stuck(failure)
+            self.stuck(failure)
 
     def become(self, cause: Cause) -> None:
         """Change the state by its table; IllegalTransition where it has no row."""
         self.state = after(self.state, cause, self.cell.name)
         self.dirty = True
 
-    def _transit(self) -> bool:
-        """Leave a state that only waits for something to come true."""
-        wait = WAITS.get(self.state)
-        return wait is not None and wait(self)
-
-    def _halted(self) -> bool:
-        """Leave `holding` once no motion is open."""
-        if any(entry.halts for entry in self.context.commands.open()):
-            return False
-        self.become(Cause.HALTED)
-        self.trouble = self.trouble or self._fault()
-        losses.miss_part(self)
-        return True
-
-    def _cleared(self) -> bool:
-        """Leave `clearing` once no robot says any more that it is stopped."""
-        if self.context.robots.reports_a_latch():
-            return False
-        self.become(Cause.CLEARED)
-        return True
-
-    def _found_unsettled(self) -> bool:
-        """Leave `idle` where a part may hang in the effector; while it is taught that is as it should be."""
-        if self.manual.teaching is not None:
-            return False
-        unsettled = self.readiness.part_in_hand()
-        if unsettled is None or self.context.commands.open():
-            return False
-        self._stuck(unsettled)
-        return True
-
-    def _settled(self) -> bool:
-        """Leave `held` where only the effector was the trouble; else keep what goes wrong meanwhile."""
-        if self.waits_for_grip and not self.context.parts.holding:
-            self._leave_as_it_is()
-            return True
-        if self.keeping.walk is not None:
-            return self._judged()
-        if self.task is not None and self.trouble is None:
-            self.trouble = self._fault()
-        losses.miss_part(self)
-        return self.absence.is_over()
-
-    def _judged(self) -> bool:
-        """Look what devices say of the steps at which an earlier start ended; whether that is news.
-
-        What keeps a task from going on stays so, whatever they say later.
-        """
-        if self.run.tree is None:
-            return False
-        before, found = (self.awaits, self.trouble, self.stranded), self.keeping.judge()
-        self.awaits = found.waits
-        self.trouble = self.trouble or found.failure
-        self.stranded = self.stranded or found.stranded
-        return before != (self.awaits, self.trouble, self.stranded)
-
-    def _leave_as_it_is(self) -> None:
+    def leave_as_it_is(self) -> None:
         """From held to idle without a move; a recovery that was held is given up."""
         self.run.drop()
         self.context.time.go_on()
         self.become(Cause.ENDED)
         self.trouble = None
         self.in_vain.clear()
-
-    def _aborted(self) -> bool:
-        """Leave `aborting` once every online robot is seen still, or the time for it is over."""
-        moving = self.context.robots.moving_since(self._stopped_after)
-        if moving and self.context.time.now < self._stop_by:
-            return False
-        if moving:
-            sentence = STOP_UNCONFIRMED(robots=tuple(moving))
-            self.trouble = Failure(reason=Reason.STOP_UNCONFIRMED, sentence=sentence)
-        self.become(Cause.HALTED)
-        return True
-
-    def _fault(self) -> Failure | None:
-        """The fault that came during a hold: an interrupted step that failed, a robot that cannot."""
-        for act in self.run.interrupted():
-            entry = act.entry
-            if entry is not None and entry.state is State.FAILED and not entry.too_early:
-                return entry.failure
-        found = (self.context.robots.obstacle(robot.name, was=True) for robot in self.cell.reached)
-        return next((failure for failure in found if failure), None)
 
     def go_on(self, cause: Cause) -> None:
         """Leave a hold, each interrupted step given anew."""
@@ -387,8 +222,9 @@ class CellRun:
         for act in self.run.interrupted():
             act.send()
 
-    def _start(self, task: Task) -> None:
-        self.task, self._cancelling, self._recovers_anew = task, False, False
+    def start(self, task: Task) -> None:
+        """Begin a task."""
+        self.task, self.cancelling, self._recovers_anew = task, False, False
         self.in_vain.clear()
         self.place_trouble = None
         self.context.answers, self.context.commands.task = task.answers, hash_of(task.id)
@@ -397,9 +233,9 @@ class CellRun:
         self._changed(task)
         self.context.start_afresh()
         self.context.places.begin()
-        self._look(self.run.begin(lambda: self.keeping.make(task.order)))
+        self.look(self.run.begin(lambda: self.keeping.make(task.order)))
 
-    def _recover(self, *, anew: bool = False) -> None:
+    def recover(self, *, anew: bool = False) -> None:
         """Drop what runs, halting it, and run the recovery alone; `anew`: after one that failed."""
         self._recovers_anew = anew
         self.stranded = self.awaits = None
@@ -408,7 +244,7 @@ class CellRun:
         self.context.time.go_on()
         self.trouble = None
         self.context.parts.recover()
-        self._look(self.run.begin(lambda: steps.recovery(self.context)))
+        self.look(self.run.begin(lambda: steps.recovery(self.context)))
 
     def set_parts(self, parts: Mapping[str, int]) -> None:
         """Take the word of a person on how many parts are at places, who has seen to these places then."""
@@ -416,7 +252,8 @@ class CellRun:
         if self.place_trouble is not None and self.place_trouble.values["place"] in parts:
             self.place_trouble = None
 
-    def _look(self, status: Status) -> None:
+    def look(self, status: Status) -> None:
+        """Take what a tick of the tree came to."""
         if status is not Status.RUNNING:
             self._ended(recovered=status is Status.SUCCESS)
 
@@ -427,8 +264,8 @@ class CellRun:
         self.run.drop()
         if not recovered:
             unknown = Failure(reason=Reason.INTERNAL, sentence=NO_CAUSE(cell=self.cell.name))
-            self._fail_again(self.context.failures.last or unknown)
-            self._stuck(self.context.failures.last or unknown)
+            self._note_in_vain(self.context.failures.last or unknown)
+            self.stuck(self.context.failures.last or unknown)
         else:
             self.in_vain.clear()
             self.become(Cause.ENDED)
@@ -437,7 +274,7 @@ class CellRun:
         self.place_trouble = None if found is None else trouble_in(found.sentence)
         if found is not None:
             task.fail(found, path_of(leaf) if leaf else None, title_of(leaf) if leaf else None)
-        if self._cancelling:
+        if self.cancelling:
             self._finish(task, TaskState.CANCELLED)
         elif task.failure:
             self._finish(task, TaskState.FAILED)
@@ -445,13 +282,14 @@ class CellRun:
             task.course, task.unchecked = course, self.context.handling.unchecked
             self._finish(task, TaskState.DONE)
 
-    def _fail_again(self, failure: Failure) -> None:
+    def _note_in_vain(self, failure: Failure) -> None:
         """A recovery that somebody wanted once more has failed as well, by what the cell itself cannot do."""
         if self._recovers_anew and failure.reason not in BROKEN_OFF:
             self.in_vain.add((Verb.RETRY, self.cell.name))
             self.in_vain.update((Verb.RELEASE, robot) for robot in self.context.parts.unopened)
 
-    def _stuck(self, failure: Failure) -> None:
+    def stuck(self, failure: Failure) -> None:
+        """Hold a cell that cannot go on by itself."""
         self.queue.paused = True
         self.trouble = failure
         self.become(Cause.STUCK)
@@ -466,16 +304,5 @@ class CellRun:
 
 BETWEEN_TASKS = (CellState.IDLE, CellState.STOPPED, CellState.ABORTED)
 STOPPED = Phrase("cell.stopped", "{cell} was stopped by the operator")
-ABANDONED = Phrase("task.abandoned", "abandoned by the operator")
 ASKED_TO_END = Phrase("task.plant_ends", "the plant was asked to end")
 NO_CAUSE = Phrase("cell.no_cause", "{cell} failed without a cause")
-STOP_UNCONFIRMED = Phrase("cell.stop_unconfirmed", "{robots} did not confirm the stop")
-NOT_YET = Phrase("walk.not_yet", "{why}; until then nobody can tell what became of the step of {cell}")
-
-WAITS: dict[CellState, Callable[[CellRun], bool]] = {
-    CellState.HOLDING: CellRun._halted,
-    CellState.ABORTING: CellRun._aborted,
-    CellState.CLEARING: CellRun._cleared,
-    CellState.IDLE: CellRun._found_unsettled,
-    CellState.HELD: CellRun._settled,
-}

@@ -38,6 +38,7 @@ class Intake:
     def __init__(self, model: PlantModel, epoch: int) -> None:
         self.model = model
         self.epoch = epoch
+        self.put_last = ""  # the digest of the version that was put to work last, in this start
         self.closed = False
         self.tasks: dict[str, Task] = {}
         self._count = 0

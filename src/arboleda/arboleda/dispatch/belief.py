@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 from arboleda.model.commands import Position
 from arboleda.model.facts import HEALTH, WELL, Facts, Value
-from arboleda.model.messages import BUILT_IN, Failure, Reason, Receipt, Report, Tokens
-from arboleda.model.plant_model import Evidence, Link, MotionState, Robot
+from arboleda.model.messages import BUILT_IN, Failure, MotionState, Reason, Receipt, Report, Tokens
+from arboleda.model.plant_model import Evidence, Link, Robot
 from arboleda.model.sentence import OWN, Phrase, Sentence
 
 STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 from arboleda.model.commands import Command, Home, Motion, Position, Process, Query, Switch
 from arboleda.model.facts import Facts, Value, shown
-from arboleda.model.messages import Failure, Reason, Report
-from arboleda.model.plant_model import Evidence, MotionState, Robot
+from arboleda.model.messages import Failure, MotionState, Reason, Report
+from arboleda.model.plant_model import Evidence, Robot
 from arboleda.model.sentence import Phrase, Sentence
 
 from .belief import APART_S, Belief

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from enum import Enum
 from typing import Any
 
-from arboleda.model.commands import Command, Motion, OnStop, Position, Work
+from arboleda.model.commands import Command, Motion, OnStop, Position, Question, Work
 from arboleda.model.errors import IllegalTransition
 from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, Receipt
@@ -124,7 +124,11 @@ class Entry:
 
 
 class Ledger:
-    """The open commands by id, and which cells must look again."""
+    """The open commands by id, and which cells must look again.
+
+    `version` changes whenever something changed to which screens react: all but positions. `last_sent` and
+    `last_work` have each robot's last command, and its last work; stops and halts are no commands here.
+    """
 
     def __init__(self) -> None:
         self.entries: dict[str, Entry] = {}
@@ -133,6 +137,9 @@ class Ledger:
         self._due: dict[str, float] = {}
         self.next_deadline = math.inf  # when a command is due, s of the plant's clock; inf where none is
         self.changed: set[str] = set()
+        self.version = 0
+        self.last_sent: dict[str, Entry] = {}
+        self.last_work: dict[str, Entry] = {}
         self.ignored: Counter[str] = Counter()
 
     def open(self, entry: Entry) -> None:
@@ -140,6 +147,9 @@ class Ledger:
         self.entries[entry.command.id] = entry
         self.by_robot[robot] = [*self.by_robot[robot], entry]
         self.by_cell[entry.cell] = [*self.by_cell[entry.cell], entry]
+        self.last_sent[robot] = entry
+        if entry.is_work:
+            self.last_work[robot] = entry
         self.plan(entry)
 
     def plan(self, entry: Entry) -> None:
@@ -154,6 +164,23 @@ class Ledger:
     def of_robot(self, robot: str) -> list[Entry]:
         """The open commands of a robot, oldest first."""
         return self.by_robot[robot]
+
+    def work_of(self, robot: str) -> Entry | None:
+        """The work of a robot that has not ended."""
+        for entry in self.by_robot[robot]:
+            if entry.is_work:
+                return entry
+        return None
+
+    def finishes(self, robot: str) -> bool:
+        """True while a robot does work that goes on even when it is stopped, until it is finished."""
+        work = self.work_of(robot)
+        return work is not None and work.finishes
+
+    def question(self, robot: str) -> Entry | None:
+        """The open question to a person; None where there is none, or this is no person."""
+        questions = (e for e in self.by_robot[robot] if isinstance(e.command, Question) and e.open)
+        return next(questions, None)
 
     def of_cell(self, cell: str) -> list[Entry]:
         """The open commands of a cell, oldest first."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 
 from arboleda.model.commands import Command, Switch, Work
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Cell, Evidence, MotionState, PlantModel, Robot
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import Cell, Evidence, PlantModel, Robot
 
 from .evidence import QUIET_S
 

@@ -5,8 +5,8 @@ from arboleda.kinds.declared import VerbCall as VerbCommand
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop, StopMode
-from arboleda.model.messages import Receipt, Report, Tokens
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.messages import MotionState, Receipt, Report, Tokens
+from arboleda.model.plant_model import Robot
 
 from .port import Clock, Driver, DriverError, Hear, NotSent, driver, lost
 

@@ -7,8 +7,8 @@ from collections import OrderedDict
 from dataclasses import replace
 
 from arboleda.model.commands import Command, OnStop, Stop, StopMode, Work, needs_clear
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Evidence, MotionState, Robot
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import Evidence, Robot
 from arboleda.model.sentence import Sentence
 
 REMEMBERED = 256  # commands; an open one is never that old

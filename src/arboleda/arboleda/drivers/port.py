@@ -8,9 +8,9 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 
 from arboleda.model.commands import Command
 from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import Report
+from arboleda.model.messages import MotionState, Report
 from arboleda.model.outside import plain
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import OWN
 
 

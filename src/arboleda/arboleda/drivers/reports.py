@@ -6,9 +6,9 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from arboleda.model.messages import Receipt, Report, Tokens
+from arboleda.model.messages import MotionState, Receipt, Report, Tokens
 from arboleda.model.outside import plain, quoted
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import Sentence
 
 LONGEST = 200  # characters of a word

@@ -14,8 +14,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from arboleda.model.commands import Command, Stop, StopMode
-from arboleda.model.messages import Report, Undelivered
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.messages import MotionState, Report, Undelivered
+from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import Phrase, Sentence
 
 from .device import DrivenDevice

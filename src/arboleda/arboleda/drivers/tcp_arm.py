@@ -10,8 +10,8 @@ from typing import Any
 from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command, Home, Stop, StopMode
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import Robot
 
 from .link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from .port import lost

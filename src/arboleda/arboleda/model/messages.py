@@ -12,11 +12,20 @@ from typing import NamedTuple
 from .commands import Position
 from .facts import Facts, Value
 from .grips import Grip
-from .plant_model import MotionState
-from .revision import RevisionName
 from .sentence import NOTHING, Sentence
 from .verbs import Arguments
 from .verbs import Verb as Verb  # of whose requests and answers this module tells
+
+
+class MotionState(int, Enum):
+    """The code a robot reports as `motion_state` (ROS 2) and `estado` (MQTT)."""
+
+    STOPPED = 0
+    MOVING = 1
+    FAULT = 2
+    NOT_HOMED = 3
+    STOP_LATCHED = 4
+    NO_LINK = 255
 
 
 class Reason(str, Enum):
@@ -261,6 +270,14 @@ class Absence:
     """The plant did nothing for so many seconds: its process was stopped, or its machine suspended."""
 
     seconds: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class RevisionName:
+    """Name of a version: `digest` of its files, and its `number` among those that are kept."""
+
+    digest: str
+    number: int
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,18 +7,16 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 from .assistants import NO_LIMITS, AssistantLimits, Assistants
 from .commands import Command, Position
 from .errors import ArboledaError
 from .facts import Facts, Value
+from .messages import MotionState, Report
 from .movement import Movement
 from .recipe import Recipe
 from .sentence import NOTHING, OWN, Sentence
-
-if TYPE_CHECKING:
-    from .messages import Report
 
 STATIONS = "stations"
 """The group of targets at which a cell with a handover leaves parts."""
@@ -62,17 +60,6 @@ class MqttVersion(str, Enum):
 
     V3_1_1 = "3.1.1"
     V5 = "5"
-
-
-class MotionState(int, Enum):
-    """The code a robot reports as `motion_state` (ROS 2) and `estado` (MQTT)."""
-
-    STOPPED = 0
-    MOVING = 1
-    FAULT = 2
-    NOT_HOMED = 3
-    STOP_LATCHED = 4
-    NO_LINK = 255
 
 
 @dataclass(frozen=True, kw_only=True)

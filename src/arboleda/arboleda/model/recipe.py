@@ -4,22 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from unicodedata import normalize
 
 from py_trees.behaviour import Behaviour
 
 from .facts import Value, shown
 from .sentence import Phrase
+from .task import Order
 
-if TYPE_CHECKING:
-    from .plant_model import Cell
-    from .task import Order
-
-Build = Callable[["Order", Any], Behaviour]
+Build = Callable[[Order, Any], Behaviour]
 """Makes the tree of an order in the `Context` of its cell, which stands two rooms above this one."""
 Builders = Mapping[str, Build]
 """By the name of the recipe that they make the tree of."""
+Cell = Any
+"""The `Cell` of `plant_model`: a cell has recipes, so that its module imports this one."""
 
 
 def known(word: str, names: Iterable[str]) -> str | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from .plant_model import Cell, PlantModel, Workspace
 from .sentence import Phrase, Sentence
@@ -30,14 +30,6 @@ BETWEEN_TASKS = (
     "handover",
     "teach",
 )
-
-
-@dataclass(frozen=True, kw_only=True)
-class RevisionName:
-    """Name of a version: `digest` of its files, and its `number` among those that are kept."""
-
-    digest: str
-    number: int
 
 
 def revised(cell: Cell, other: Cell) -> Cell:

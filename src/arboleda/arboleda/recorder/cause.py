@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from arboleda.core.advice import DO
-from arboleda.core.operator import PLANT
+from arboleda.core.verbs.scopes import PLANT
 from arboleda.model.messages import Reason, Verb
 from arboleda.model.sentence import Phrase, Sentence, Value
 

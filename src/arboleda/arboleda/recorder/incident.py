@@ -15,13 +15,14 @@ from arboleda.model.messages import (
     Failure,
     FaultByHand,
     Interference,
+    MotionState,
     OperatorRequest,
     Report,
     TaskChanged,
     TaskState,
 )
 from arboleda.model.plant_model import Evidence as Level
-from arboleda.model.plant_model import Link, MotionState, PlantModel
+from arboleda.model.plant_model import Link, PlantModel
 from arboleda.model.sentence import Sentence
 from arboleda.model.verbs import as_text
 from arboleda.recipes.decorators import first_cause

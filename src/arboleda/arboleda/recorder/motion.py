@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Report
 
 FRESH_S = 1.0  # a report of less age is fresh: its exact time is left out
 DIGITS = 6  # of rad and m

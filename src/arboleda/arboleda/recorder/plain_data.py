@@ -22,6 +22,7 @@ from arboleda.model.messages import (
     Journal,
     KeptTask,
     LateDeparture,
+    MotionState,
     OperatorAnswer,
     OperatorRequest,
     Reason,
@@ -29,6 +30,7 @@ from arboleda.model.messages import (
     Report,
     RestartRequest,
     Revision,
+    RevisionName,
     Shutdown,
     TaskAnswer,
     TaskRequest,
@@ -37,8 +39,6 @@ from arboleda.model.messages import (
     Undelivered,
     Verb,
 )
-from arboleda.model.plant_model import MotionState
-from arboleda.model.revision import RevisionName
 from arboleda.model.sentence import Phrase, Sentence, Value
 from arboleda.model.verbs import from_text
 

@@ -68,7 +68,7 @@ def _cell(plant: Plant, run: CellRun) -> State:
         "tree": tuple([node.status for node in run.run.nodes]),
         "commands": tuple([_opened(entry) for entry in _entries(plant, run)]),
         "devices": {robot.name: _device(plant.dispatcher.beliefs[robot.name]) for robot in robots},
-        "latched": tuple([robot.name for robot in robots if robot.name in plant.dispatcher.latched]),
+        "latched": tuple([robot.name for robot in robots if robot.name in plant.dispatcher.latches.stopped]),
         **_taught(run.manual.teaching),
         "holds": tuple([(robot.name, zone) for robot in robots for zone in _zones(plant, robot.name)]),
     }

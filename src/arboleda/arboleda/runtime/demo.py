@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.model.plant_model import Cell, Link, MotionState, PlantModel, Robot
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import Cell, Link, PlantModel, Robot
 from arboleda.sim.devices import Alarm, Reboot
 from arboleda.simulator.chance import Dice
 from arboleda.simulator.people import text_of

@@ -45,7 +45,7 @@ def state(plant: Plant, name: str) -> Row:
 
 def standing(plant: Plant, robot: str) -> Row:
     """Position of a robot, as people write it, whoever moved it there; and why it takes no command now."""
-    belief, obstacle = plant.dispatcher.beliefs[robot], plant.dispatcher.obstacle(robot)
+    belief, obstacle = plant.dispatcher.beliefs[robot], plant.dispatcher.obstacles.of(robot)
     at = belief.known_position
     return {
         "name": robot,

@@ -13,11 +13,10 @@ from typing import Any
 from arboleda.core.cell import CellRun
 from arboleda.core.plant import Plant
 from arboleda.model.errors import ArboledaError, ConfigError, StartError
-from arboleda.model.messages import RevisionAnswer
+from arboleda.model.messages import RevisionAnswer, RevisionName
 from arboleda.model.outside import plain
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
-from arboleda.model.revision import RevisionName
 from arboleda.plant_file import loader
 from arboleda.plant_file.changes import Change, changes
 from arboleda.plant_file.draft_check import CheckResult

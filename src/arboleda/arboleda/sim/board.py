@@ -8,7 +8,8 @@ from typing import Any
 
 from arboleda.model.commands import StopMode
 from arboleda.model.errors import PayloadError
-from arboleda.model.plant_model import Evidence, MotionState, Robot
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import Evidence, Robot
 from arboleda.wire import strict
 from arboleda.wire.payloads import (
     Beat,

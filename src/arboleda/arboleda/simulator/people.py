@@ -209,7 +209,7 @@ class FixedAnswers:
 
     def _answer(self, _: None) -> None:
         for name in self._people:
-            entry = self._world.plant.dispatcher.question(name)
+            entry = self._world.plant.dispatcher.ledger.question(name)
             if entry is not None and isinstance(entry.command, Question):
                 word = self._words.get(name)
                 answer = word if word in entry.command.answers else entry.command.answers[0]
@@ -261,7 +261,7 @@ class Attendant:
         """Have people who are asked something give one of the answers."""
         plant = self._world.plant
         for name in self._people:
-            entry = plant.dispatcher.question(name)
+            entry = plant.dispatcher.ledger.question(name)
             if entry is not None and isinstance(entry.command, Question):
                 answer = self._dice.pick(entry.command.answers)
                 self._world.request_verb(Verb.ANSWER, name, arguments=(("answer", answer),))

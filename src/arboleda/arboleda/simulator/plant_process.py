@@ -20,12 +20,13 @@ from arboleda.model.messages import (
     Report,
     Revision,
     RevisionAnswer,
+    RevisionName,
     Shutdown,
     TaskChanged,
     Undelivered,
 )
 from arboleda.model.plant_model import PlantModel
-from arboleda.model.revision import RevisionName, revised
+from arboleda.model.revision import revised
 from arboleda.model.sentence import as_sentence
 from arboleda.wire.hop import HEARTBEAT, FromPlant, command_topic, loses_its_id, plain_topic, without_id
 

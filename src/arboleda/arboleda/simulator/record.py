@@ -201,7 +201,7 @@ class Record:
     def questions(self) -> list[Entry]:
         """The open questions to people: nothing is sent for those."""
         dispatcher = self.world.plant.dispatcher
-        return [entry for name in self._people if (entry := dispatcher.question(name)) is not None]
+        return [entry for name in self._people if (entry := dispatcher.ledger.question(name)) is not None]
 
     def due_for(self, what: str, every_s: float) -> bool:
         """True if a check that is made only every `every_s` is due now; counts as made then."""

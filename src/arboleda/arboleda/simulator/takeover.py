@@ -9,8 +9,8 @@ from arboleda.core.plant import HEARTBEAT_S, Plant
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.commands import Command, Position, Stop, StopMode
-from arboleda.model.messages import Heartbeat, Report
-from arboleda.model.plant_model import MotionState, PlantModel, Robot
+from arboleda.model.messages import Heartbeat, MotionState, Report
+from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.sim.body import BodyReport
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
@@ -86,7 +86,7 @@ def _given(plant: Plant, entries: Iterable[Entry]) -> Iterator[Given]:
         if entry.state is State.CANCELLING and entry.halts and entry.cancelled_at is not None:
             halt = Stop(id=f"{plant.epoch}-0", robot=entry.command.robot, mode=StopMode.HALT)
             yield entry.cancelled_at, halt
-    for robot in sorted(plant.dispatcher.latched):
+    for robot in sorted(plant.dispatcher.latches.stopped):
         yield plant.now, Stop(id=f"{plant.epoch}-00", robot=robot, mode=StopMode.LATCH)
     while first < plant.now:
         yield first, Heartbeat(epoch=plant.epoch)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.dispatch.dispatcher import Barrier, Dispatcher, Make
+from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.ledger import Entry
+from arboleda.dispatch.obstacles import Barrier, Make
 from arboleda.model.commands import Command, Query
 from arboleda.model.messages import Failure
 from arboleda.model.sentence import Sentence
@@ -57,7 +58,7 @@ class CellCommands:
 
     def objection(self, make: Make) -> Failure | None:
         """The reason for which a command would not leave now."""
-        return self._dispatcher.objection(make, barrier=self._objection)
+        return self._dispatcher.obstacles.objection(make, barrier=self._objection)
 
     def cancel(self, entry: Entry) -> None:
         """Halt an open command."""
@@ -85,11 +86,11 @@ class CellCommands:
         """True where a robot takes a command soon: it may have ended its last move, or nobody waits any more
         for what it does.
         """
-        return self._dispatcher.may_come_to_rest(robot)
+        return self._dispatcher.obstacles.may_come_to_rest(robot)
 
     def finishes(self, robot: str) -> bool:
         """True while a robot does work that goes on until it is finished."""
-        return self._dispatcher.finishes(robot)
+        return self._dispatcher.ledger.finishes(robot)
 
     def _objection(self, command: Command) -> Failure | None:
         own: Failure | None = None

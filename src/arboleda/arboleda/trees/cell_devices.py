@@ -170,7 +170,7 @@ class CellDevices:
         space = self._cell.reach.get(device)
         if space is None:
             return True
-        place = self._dispatcher.place(space)
+        place = self._dispatcher.whereabouts.place(space)
         return place is not None and place.q == space.home.q and not self._zones.held_by(device)
 
     def part_left_in(self, devices: Iterable[str]) -> str | None:
@@ -186,7 +186,7 @@ class CellDevices:
 
     def _does_nothing(self, device: str) -> bool:
         online = self._dispatcher.beliefs[device].online
-        return online and not self._works(device) and device not in self._dispatcher.latched
+        return online and not self._works(device) and device not in self._dispatcher.latches.stopped
 
     def _works(self, device: str) -> bool:
         moves = self._dispatcher.beliefs[device].moves

@@ -8,8 +8,8 @@ from arboleda.dispatch.belief import Belief, Moment
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.commands import Position
 from arboleda.model.facts import Value
-from arboleda.model.messages import Failure
-from arboleda.model.plant_model import Cell, Evidence, MotionState, Pose
+from arboleda.model.messages import Failure, MotionState
+from arboleda.model.plant_model import Cell, Evidence, Pose
 
 from .cell_devices import CellDevices
 from .cell_time import CellTime
@@ -63,7 +63,7 @@ class CellRobots:
         if self.as_planned is not None:
             name = self.as_planned.standing.get(robot)
             return next((pose for pose in space.poses if pose.name == name), space.home)
-        return self._dispatcher.place(space) or space.home
+        return self._dispatcher.whereabouts.place(space) or space.home
 
     def planned(self) -> Planned:
         """The places of the robots now, by which a recipe may plan; a shared one may be another cell's."""
@@ -106,12 +106,12 @@ class CellRobots:
         That a shared device moves is none: another cell may be using it. A robot that the cell holds has to
         stand still.
         """
-        shares = robot in self._cell.shared and robot not in self._dispatcher.latched
+        shares = robot in self._cell.shared and robot not in self._dispatcher.latches.stopped
         if shares and (stop := self._devices.not_reset(robot)) is not None:
             return stop
         if shares and self._dispatcher.beliefs[robot].moves and not self._has_to_rest(robot):
             return None
-        return self._dispatcher.obstacle(robot, was=was)
+        return self._dispatcher.obstacles.of(robot, was=was)
 
     def _has_to_rest(self, robot: str) -> bool:
         """True for a shared robot that goes from place to place, while this cell holds it."""
@@ -144,13 +144,13 @@ class CellRobots:
 
     def moving_since(self, moments: dict[str, Moment]) -> list[str]:
         """The online robots of the cell not seen still since then; who finishes its work may move."""
-        ending = [name for name in moments if not self._dispatcher.finishes(name)]
+        ending = [name for name in moments if not self._dispatcher.ledger.finishes(name)]
         beliefs = {name: self._dispatcher.beliefs[name] for name in ending}
         return [name for name, b in beliefs.items() if b.online and not b.still_since(moments[name])]
 
     def reports_a_latch(self) -> bool:
         """True while an online robot of the cell still reports that it is stopped and latched."""
-        stopped = self._dispatcher.latched  # by another cell, where a cell that was cleared shares them
+        stopped = self._dispatcher.latches.stopped  # by another cell, where a cleared one shares them
         names = [robot.name for robot in self._cell.robots if robot.name not in stopped]
         beliefs = [self._dispatcher.beliefs[name] for name in names]
         return any(belief.online and belief.state is MotionState.STOP_LATCHED for belief in beliefs)

@@ -148,7 +148,7 @@ class CellZones:
     def for_recovery(self, robot: str) -> frozenset[str]:
         """The zones that a recovery needs on its way, from where the robot stands now."""
         space = self._cell.workspaces[robot]
-        place, back = self._dispatcher.place(space), self._parts.way_back(robot)
+        place, back = self._dispatcher.whereabouts.place(space), self._parts.way_back(robot)
         between = self.between(robot, *((back,) if back else ()), space.home)
         return zone_plan.recovery_zones(space, place, back) | between
 
@@ -166,8 +166,8 @@ class CellZones:
             if robot in self._cell.shared:
                 continue
             space, belief = self._cell.workspaces[robot], self._dispatcher.beliefs[robot]
-            unknown = not belief.supervised and robot not in self._dispatcher.reached
-            if unknown or self._dispatcher.place(space) is not None:
+            unknown = not belief.supervised and robot not in self._dispatcher.whereabouts.reached
+            if unknown or self._dispatcher.whereabouts.place(space) is not None:
                 continue
             astray = ASTRAY if belief.robot.says_homed else ASTRAY_BY_HAND
             return robot, Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=astray(arm=robot))
@@ -245,7 +245,7 @@ class CellZones:
         if space is not None and isinstance(command, Motion) and command.way:
             if not space.zones:
                 return space.zones
-            return zone_plan.entered(space, self._dispatcher.place(space), command.way)
+            return zone_plan.entered(space, self._dispatcher.whereabouts.place(space), command.way)
         if not self._cell.interlocks:
             return frozenset()
         locks = self._cell.interlocks_of(command.robot)
@@ -256,12 +256,12 @@ class CellZones:
         space = self._cell.workspaces.get(robot)
         if space is None:
             return self.interlocks.left_by(robot, held)
-        return held if self._dispatcher.place(space) is not None else frozenset()
+        return held if self._dispatcher.whereabouts.place(space) is not None else frozenset()
 
     def _is_outside(self, robot: str) -> bool:
         """True for a robot of this cell that is seen outside of all zones."""
         space = self._cell.workspaces.get(robot)
-        return space is not None and self._dispatcher.place(space) is not None
+        return space is not None and self._dispatcher.whereabouts.place(space) is not None
 
     def _claim(self, robot: str, zones: frozenset[str]) -> None:
         self._zones.claim(robot, zones)

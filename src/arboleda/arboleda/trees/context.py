@@ -42,7 +42,7 @@ class Context:
         at_work: Callable[[str], bool],
     ) -> None:
         self.cell = cell
-        self.timing: Timing = dispatcher.timings[cell.name]
+        self.timing: Timing = dispatcher.limits.timings[cell.name]
         self.time = CellTime(clock)
         self.devices = CellDevices(cell, dispatcher, zones)
         self.robots = CellRobots(cell, dispatcher, self.time, self.devices)
@@ -64,7 +64,7 @@ class Context:
         for facet in (self.devices, self.robots, self.parts, self.zones, self.places):
             facet.revise(cell)
         self.sensors.revise(timing)
-        self._dispatcher.timings[cell.name] = timing
+        self._dispatcher.limits.timings[cell.name] = timing
 
     def start_afresh(self) -> None:
         """Forget what the last tree waited for and why it failed."""

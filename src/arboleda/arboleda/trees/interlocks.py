@@ -6,7 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.facts import shown
-from arboleda.model.plant_model import Cell, Evidence, MotionState
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import Cell, Evidence
 
 
 class Interlocks:
@@ -61,7 +62,7 @@ class Interlocks:
 
     def _is_at_its_work(self, device: str) -> bool:
         """True while a device has work, and has named it as taken where it names its commands."""
-        work = self._dispatcher.work_of(device)
+        work = self._dispatcher.ledger.work_of(device)
         names_commands = self._dispatcher.model.robots[device].evidence is Evidence.IDS
         return work is not None and (work.accepted_at is not None or not names_commands)
 

@@ -10,8 +10,8 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.dispatch.dispatcher import Make
 from arboleda.dispatch.ledger import Entry, State
+from arboleda.dispatch.obstacles import Make
 from arboleda.model.messages import Check, Failure, Notice, Reason
 from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
 

@@ -237,7 +237,7 @@ class Places:
 
         Of a robot at `state`, which owes no position, it is where its last move has ended.
         """
-        reached = self._dispatcher.reached.get(space.robot.name)
+        reached = self._dispatcher.whereabouts.reached.get(space.robot.name)
         here = self._robots.position(space.robot.name)
         if space.robot.evidence is Evidence.STATE and self._robots.as_planned is None:
             here = reached

@@ -120,7 +120,7 @@ class Parts:
 
     def obstacle_to_opening(self, robot: str) -> Failure | None:
         """The reason for which a robot cannot let go now."""
-        return self._dispatcher.obstacle_to_opening(robot)
+        return self._dispatcher.obstacles.to_opening(robot)
 
     def opening_tool(self, robot: str) -> str | None:
         """The tool of a robot that may still let go of a part on an earlier command."""

@@ -361,7 +361,7 @@ def _rise_first(context: Context, robot: str, goal: Pose) -> list[Behaviour]:
     """The same move before one to a goal, where the robot is down at another target: the work there has
     failed, and the recipe goes on all the same.
     """
-    if not any(pose.above for pose in context.cell.reach[robot].poses if pose != goal):
+    if not any(pose != goal for pose in context.cell.reach[robot].poses if pose.above):
         return []
     rise = Approach(RISE(), context, partial(_risen, context, robot), RISING())
 

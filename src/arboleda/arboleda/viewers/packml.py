@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from arboleda.core.cell_states import CellState
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.views.alarms import needs_in
 
 Type = Literal["Boolean", "Int32", "Double", "String"]

@@ -62,7 +62,7 @@ class RestingCells:
 def _with_sources(plant: Plant, row: dict[str, Any]) -> tuple[dict[str, Any], Belief, Entry | None]:
     """A robot's row, with those that know its times."""
     dispatcher, name = plant.dispatcher, row["name"]
-    return row, dispatcher.beliefs[name], dispatcher.last_sent.get(name)
+    return row, dispatcher.beliefs[name], dispatcher.ledger.last_sent.get(name)
 
 
 def _rests(plant: Plant, cell: CellRun) -> bool:

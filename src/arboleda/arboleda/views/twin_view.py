@@ -114,7 +114,7 @@ def _sent(tree: Behaviour) -> list[Entry]:
 
 def _robot(plant: Plant, belief: Belief) -> Row:
     name = belief.robot.name
-    last = plant.dispatcher.last_sent.get(name)
+    last = plant.dispatcher.ledger.last_sent.get(name)
     return {
         "name": name,
         "q": belief.q,
@@ -138,7 +138,7 @@ def _positioned(plant: Plant, belief: Belief) -> bool:
 
 def _reached(plant: Plant, belief: Belief, last: Entry | None) -> Row | None:
     """The proven end of a robot's last motion: {"q"} or {"node"}; None if there is none."""
-    place = plant.dispatcher.reached.get(belief.robot.name)
+    place = plant.dispatcher.whereabouts.reached.get(belief.robot.name)
     if isinstance(place, tuple):
         return {"q": list(place)}
     way = _way(last) if last is not None and last.state is State.DONE else ()

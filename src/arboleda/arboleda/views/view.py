@@ -296,7 +296,7 @@ def _blocked_by(plant: Plant, cell: CellRun) -> str | None:
     """The robot that keeps an idle cell from starting a task; None if there is none."""
     why = cell.not_ready
     for robot in cell.cell.robots if why is not None else ():
-        obstacle = plant.dispatcher.obstacle(robot.name)
+        obstacle = plant.dispatcher.obstacles.of(robot.name)
         if obstacle is not None and obstacle.sentence == why:
             return robot.name
     return None
@@ -388,7 +388,8 @@ def _words(checks: Iterable[Check]) -> list[str]:
 
 def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
     robot, now = belief.robot, plant.now
-    obstacle, last = plant.dispatcher.obstacle(robot.name), plant.dispatcher.last_sent.get(robot.name)
+    dispatcher = plant.dispatcher
+    obstacle, last = dispatcher.obstacles.of(robot.name), dispatcher.ledger.last_sent.get(robot.name)
     return {
         "name": robot.name,
         "kind": robot.kind_name,
@@ -402,12 +403,12 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
         "units": robot.units,
         "node": belief.node,
         "homed": belief.homed,
-        "latched": robot.name in plant.dispatcher.latched,
+        "latched": robot.name in plant.dispatcher.latches.stopped,
         "effector": belief.effector,
         "piece": belief.piece,
         "facts": _facts(belief),
         "answer": last.answer if last is not None else None,
-        "question": _question(plant.dispatcher.question(robot.name), now),
+        "question": _question(plant.dispatcher.ledger.question(robot.name), now),
         "boot_id": belief.boot_id,
         "bridge_epoch": belief.epoch,
         "still": belief.still,
@@ -415,7 +416,7 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
         "goal": twin_view.goal(last),
         "telemetry_hz": belief.rate_hz if belief.online else None,
         "command": _command(last, now),
-        "rejected": _rejected(plant.dispatcher.rejected.get(robot.name)),
+        "rejected": _rejected(plant.dispatcher.booking.rejected.get(robot.name)),
         "refused": _refused(plant, robot.name, OF_ROBOTS),
     }
 

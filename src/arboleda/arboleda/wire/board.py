@@ -8,8 +8,8 @@ from functools import lru_cache
 from arboleda.model.commands import Command, Stop, StopMode, Work, needs_clear
 from arboleda.model.errors import PayloadError
 from arboleda.model.facts import Facts
-from arboleda.model.messages import Receipt, Report, Tokens
-from arboleda.model.plant_model import Evidence, MotionState, Robot
+from arboleda.model.messages import MotionState, Receipt, Report, Tokens
+from arboleda.model.plant_model import Evidence, Robot
 from arboleda.model.sentence import NOTHING, Phrase, Sentence
 
 from . import rejections

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 from arboleda.model.commands import Motion, Position, Work
 from arboleda.model.facts import Facts
-from arboleda.model.plant_model import Evidence, MotionState, Robot
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import Evidence, Robot
 
 from .payloads import Telemetry
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType
 from arboleda.model.errors import PayloadError
 from arboleda.model.facts import Value
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 
 from . import strict
 from .payloads import DEVICE_REFUSALS, FAILURES_KEPT, OrderGoal, Telemetry, encode

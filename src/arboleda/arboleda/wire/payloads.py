@@ -10,8 +10,8 @@ from typing import Any
 from arboleda.model.commands import StopMode
 from arboleda.model.errors import PayloadError
 from arboleda.model.facts import Facts
+from arboleda.model.messages import MotionState
 from arboleda.model.outside import quoted
-from arboleda.model.plant_model import MotionState
 
 from . import strict
 from .topics import Channel

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 
 from .payloads import Telemetry, read_angles
 from .strict import LIMIT_BYTES, UINT32

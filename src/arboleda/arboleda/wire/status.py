@@ -15,9 +15,9 @@ from dataclasses import dataclass
 
 from arboleda.model.errors import PayloadError
 from arboleda.model.facts import Facts, Value
-from arboleda.model.messages import Receipt, Report, Tokens
+from arboleda.model.messages import MotionState, Receipt, Report, Tokens
 from arboleda.model.outside import quoted
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import OWN, Sentence, from_data
 
 from . import strict

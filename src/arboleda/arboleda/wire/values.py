@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from arboleda.model.commands import StopMode
 from arboleda.model.facts import Facts, Value
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,8 +11,8 @@ from arboleda.core.plant import Plant
 from arboleda.dashboard.twin.twin import Twin
 from arboleda.geometry import kinematics
 from arboleda.geometry.bodies import Body
-from arboleda.model.messages import Report, TaskRequest, Verb
-from arboleda.model.plant_model import Cell, Evidence, MotionState, PlantModel
+from arboleda.model.messages import MotionState, Report, TaskRequest, Verb
+from arboleda.model.plant_model import Cell, Evidence, PlantModel
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import Rig, shipped
 from arboleda.views import twin_view

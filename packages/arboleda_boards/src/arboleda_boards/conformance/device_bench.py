@@ -9,7 +9,7 @@ from itertools import islice, product
 
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, VerbCall
 from arboleda.model.facts import Facts, Value
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState
 from arboleda.wire.payloads import DEVICE, Telemetry, decode
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery

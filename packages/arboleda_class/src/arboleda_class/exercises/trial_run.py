@@ -133,7 +133,7 @@ class _Run:
             elif entry := entries.get(getattr(message, "id", "")):
                 self._act(entry_name(entry))
         for name in self._people:
-            entry = self._world.plant.dispatcher.question(name)
+            entry = self._world.plant.dispatcher.ledger.question(name)
             if entry is not None and entry.command.id not in self._questions:
                 self._questions.add(entry.command.id)
                 self._act(entry_name(entry))

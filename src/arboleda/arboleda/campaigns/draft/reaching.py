@@ -15,9 +15,9 @@ from arboleda.drivers.address import address
 from arboleda.drivers.port import Driver, Listens
 from arboleda.drivers.reports import objection
 from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import Report
+from arboleda.model.messages import MotionState, Report
 from arboleda.model.outside import plain
-from arboleda.model.plant_model import DriverUse, MotionState, Robot
+from arboleda.model.plant_model import DriverUse, Robot
 from arboleda.plant_file.python_uses import LONGEST, error_text
 
 from .process import errand, write

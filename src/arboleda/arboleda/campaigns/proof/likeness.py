@@ -16,10 +16,10 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
+from arboleda.core.news import News
 from arboleda.core.plant import Plant
 from arboleda.dispatch.belief import Belief, Moment
-from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.dispatch.ledger import Entry
+from arboleda.dispatch.ledger import Entry, Ledger
 from arboleda.kinds.declared import DeviceKind
 from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.model.recipe import Recipe
@@ -52,8 +52,9 @@ LEFT_OUT: dict[type, frozenset[str]] = {
             "_agenda_no",  # the order of what is to come at one time, which that keeps
         }
     ),
-    Plant: frozenset({"_changes", "revisions"}),  # numbers that say to a page that there is something new
-    Dispatcher: frozenset({"version"}),
+    Plant: frozenset({"revisions"}),  # numbers that say to a page that there is something new
+    News: frozenset({"changes"}),
+    Ledger: frozenset({"version"}),
     Belief: frozenset({"rate_hz", "_counted"}),  # how often a board speaks, which is shown and no more
     Entry: frozenset({"accepted_at", "observations"}),  # said by `_parts`, as far as it is asked for
     Freshness: frozenset({"_marks"}),  # said by `_parts`

@@ -280,7 +280,7 @@ class Stage:
     def _fresh_questions(self) -> Iterator[Entry]:
         """The questions that persons see since this step: those are sent to nobody else."""
         for name in self._people:
-            entry = self.world.plant.dispatcher.question(name)
+            entry = self.world.plant.dispatcher.ledger.question(name)
             if entry is not None and entry.cell == self.cell.name and entry.command.id not in self._questions:
                 self._questions.add(entry.command.id)
                 yield entry

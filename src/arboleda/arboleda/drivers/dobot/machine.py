@@ -13,8 +13,8 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Home
 from arboleda.model.facts import HEALTH, WELL
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import Robot
 
 from .alarms import named
 from .frames import Feedback, FrameReader, Mode

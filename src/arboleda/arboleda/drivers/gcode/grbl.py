@@ -9,8 +9,7 @@ from enum import Enum, auto
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Home
 from arboleda.model.facts import HEALTH, WELL
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Report
 
 from ..stream import Write
 from .grbl_book import Book

@@ -13,8 +13,7 @@ from enum import Enum
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Home
 from arboleda.model.facts import HEALTH, WELL
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Report
 
 from .lines import LineReader
 from .machine import ANSWER_S, HOMING_S, Machine

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 from arboleda.drivers.port import DriverError
 from arboleda.model.facts import Facts, Value
-from arboleda.model.messages import Receipt, Report
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import MotionState, Receipt, Report
 
 from .numbers import Numbers
 

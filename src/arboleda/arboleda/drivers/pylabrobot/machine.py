@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from arboleda.kinds.declared import Device, Effect, VerbCall
 from arboleda.model.commands import Command, OnStop, Stop, StopMode, Work
 from arboleda.model.facts import Facts
-from arboleda.model.messages import Report
+from arboleda.model.messages import MotionState, Report
 from arboleda.model.outside import plain
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.plant_model import Robot
 
 from ..link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from ..plc.checks import answers

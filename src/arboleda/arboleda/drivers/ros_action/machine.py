@@ -6,9 +6,8 @@ import math
 from collections.abc import Sequence
 
 from arboleda.model.commands import Command, Home, Stop, StopMode
-from arboleda.model.messages import Report
+from arboleda.model.messages import MotionState, Report
 from arboleda.model.outside import plain
-from arboleda.model.plant_model import MotionState
 
 from ..port import lost
 from .events import (

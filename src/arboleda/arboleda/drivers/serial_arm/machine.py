@@ -15,8 +15,8 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import Jointed, MoveJoints
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.facts import HEALTH, WELL, Facts
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import Robot
 
 from ..link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from ..port import lost

@@ -15,9 +15,9 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Home
 from arboleda.model.facts import HEALTH, WELL
-from arboleda.model.messages import Report
+from arboleda.model.messages import MotionState, Report
 from arboleda.model.outside import plain
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.plant_model import Robot
 
 from . import programs, rtde
 from .arm_state import Runtime, hindrance, motion_state

@@ -17,9 +17,9 @@ from arboleda.kinds.declared import Device, VerbCall
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Query, Stop, StopMode
 from arboleda.model.facts import Facts, Value, shown
-from arboleda.model.messages import Report
+from arboleda.model.messages import MotionState, Report
 from arboleda.model.outside import plain
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.plant_model import Robot
 
 from ..port import NotSent, lost
 from . import factsheet

@@ -47,6 +47,7 @@ from arboleda.model.messages import (
     RestartRequest,
     Revision,
     RevisionAnswer,
+    RevisionName,
     Shutdown,
     TaskChanged,
     TaskRequest,
@@ -56,7 +57,6 @@ from arboleda.model.messages import (
 )
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
-from arboleda.model.revision import RevisionName
 from arboleda.model.sentence import Phrase, Sentence, as_sentence
 from arboleda.model.verbs import Arguments
 from arboleda.store.plant_memory import PlantMemory, Superseded

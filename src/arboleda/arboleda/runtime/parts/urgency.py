@@ -7,8 +7,8 @@ from operator import attrgetter
 
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import Evidence
 
 COMPANY_S = 0.02  # a fifth of a telemetry period, too short to be seen in the twin
 RESTING_S = 0.25  # the plant steps as often by itself, to beat

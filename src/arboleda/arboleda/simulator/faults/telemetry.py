@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 from typing import Any, cast
 
 from arboleda.kinds.joints import Joint, Jointed
-from arboleda.model.plant_model import Evidence, MotionState, PlantModel, Robot
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import Evidence, PlantModel, Robot
 from arboleda.wire.units import to_wire
 
 from ..chance import Dice

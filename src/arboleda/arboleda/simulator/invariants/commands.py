@@ -13,8 +13,8 @@ from arboleda.dispatch.ledger import TABLE, State
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.joints.motion import JointMotion
 from arboleda.model.commands import Command, Home, Motion, Query, Stop, StopMode, Switch
-from arboleda.model.messages import Reason, Verb
-from arboleda.model.plant_model import Cell, Evidence, MotionState, Robot, Timing
+from arboleda.model.messages import MotionState, Reason, Verb
+from arboleda.model.plant_model import Cell, Evidence, Robot, Timing
 from arboleda.trees.leaves import Act
 
 from ..recorded.cells import KnownCell

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from arboleda.dispatch.ledger import State
 from arboleda.model.commands import Command, Home, Motion, Query, Question, Stop, StopMode
-from arboleda.model.messages import Fact, OperatorRequest, Reason, Remember, TaskState, Verb
-from arboleda.model.plant_model import Evidence, MotionState, Robot
+from arboleda.model.messages import Fact, MotionState, OperatorRequest, Reason, Remember, TaskState, Verb
+from arboleda.model.plant_model import Evidence, Robot
 from arboleda.wire.hop import shown
 
 from ..recorded.commands import SentCommand
@@ -73,7 +73,7 @@ def what_a_task_left_is_so(look: Look) -> Iterator[str]:
     reports anything counts as switched after a time, and so does a device at `state`, which is judged while
     nothing goes wrong.
     """
-    truth, last_sent = look.truth, look.world.plant.dispatcher.last_sent
+    truth, last_sent = look.truth, look.world.plant.dispatcher.ledger.last_sent
     for cell, task, began in truth.done_tasks:
         of_task = look.world.model.cell(cell)
         for robot in of_task.robots:
@@ -224,7 +224,7 @@ def offered_answers_are_accepted(look: Look) -> Iterator[str]:
     for request in look.moment.requests if refused else ():
         if not isinstance(request, OperatorRequest) or request.verb is not Verb.ANSWER:
             continue
-        entry = look.world.plant.dispatcher.question(request.scope)
+        entry = look.world.plant.dispatcher.ledger.question(request.scope)
         if entry is None or entry.sent_at >= request.at or request.scope not in refused:
             continue
         if _is_offered(entry.command, request):

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator
 
 from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
-from arboleda.model.messages import Fact
-from arboleda.model.plant_model import Evidence, Link, MotionState, Pose, Workspace
+from arboleda.model.messages import Fact, MotionState
+from arboleda.model.plant_model import Evidence, Link, Pose, Workspace
 from arboleda.sim.board import Board
 
 from ..recorded.cells import KnownCell
@@ -131,7 +131,7 @@ def _is_outside(look: Look, space: Workspace) -> bool:
     it says of its place.
     """
     if space.robot.evidence is Evidence.STATE:
-        goal = look.world.plant.dispatcher.reached.get(space.robot.name)
+        goal = look.world.plant.dispatcher.whereabouts.reached.get(space.robot.name)
         return goal is None or any(not pose.zones and pose.q == goal for pose in space.poses)
     return _stands_at(look, space, [pose for pose in space.poses if not pose.zones])
 

@@ -42,8 +42,8 @@ def _plant(look: Look) -> Iterator[Row]:
     yield "cells to wake", len(dispatcher.ledger.changed), 0
     yield "kinds of ignored feeds", len(dispatcher.ledger.ignored), len(Feed)
     yield "beliefs", len(dispatcher.beliefs), robots
-    yield "reached goals", len(dispatcher.reached), robots
-    yield "latched robots", len(dispatcher.latched | dispatcher.cleared), robots
+    yield "reached goals", len(dispatcher.whereabouts.reached), robots
+    yield "latched robots", len(dispatcher.latches.stopped | dispatcher.latches.cleared), robots
     yield "tasks", len(plant.intake.tasks), HISTORY + waiting
     cells = look.world.model.cells
     users = sum(len(cell.zone_users) + len(cell.interlocked) + bool(cell.shared) for cell in cells)

@@ -74,7 +74,7 @@ def done_tasks_leave_nothing_behind(look: Look) -> Iterator[str]:
 
 def _was_commanded(look: Look, robot: str, cell: str, *, since: float) -> bool:
     """True where the last command to a robot is of this cell, and not older than `since`, in s."""
-    last = look.world.plant.dispatcher.last_sent.get(robot)
+    last = look.world.plant.dispatcher.ledger.last_sent.get(robot)
     return last is not None and last.cell == cell and last.sent_at >= since
 
 

@@ -16,8 +16,8 @@ from arboleda.dispatch.ledger import OPEN, State
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Position
-from arboleda.model.messages import ENDED, Reason, TaskChanged
-from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.messages import ENDED, MotionState, Reason, TaskChanged
+from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.trees.tree_nodes import nodes_of

@@ -373,7 +373,7 @@ def _ends(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
     """Differences in since when a robot goes, where it came to, and when it said where it is."""
     name = known.robot.name
     last = look.record.commands.last.get(name)
-    reached = rows.ended_at(known.robot, last, look.world.plant.dispatcher.reached.get(name))
+    reached = rows.ended_at(known.robot, last, look.world.plant.dispatcher.whereabouts.reached.get(name))
     goes = last is not None and last.state in (State.RUNNING, State.CANCELLING)
     since = row["going_since"]
     if row["reached"] != reached or (since is not None and (last is None or last.state not in OPEN)):

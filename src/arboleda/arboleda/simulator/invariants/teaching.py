@@ -64,7 +64,8 @@ def a_lost_teacher_stops_the_robot(look: Look) -> Iterator[str]:
             longest = nearest(LONGEST_S, type(robot))
             if longest is None or robot.name in cell.shared:
                 continue
-            homes = isinstance(getattr(world.plant.dispatcher.work_of(robot.name), "command", None), Home)
+            work = world.plant.dispatcher.ledger.work_of(robot.name)
+            homes = work is not None and isinstance(work.command, Home)
             since = world.now - teachers.held_at.get(robot.name, math.inf)
             if not homes and since > longest(robot) and world.boards[robot.mqtt].body.moving:
                 yield f"{robot.name} still moves {since:.3f} s after its button was held last"

@@ -8,8 +8,7 @@ from collections import deque
 from arboleda.dispatch.ledger import OPEN, Entry, Ledger, State
 from arboleda.kinds.declared import WorkCall
 from arboleda.model.commands import Command, Motion, OnStop, Stop, StopMode, Switch, Work
-from arboleda.model.messages import Heartbeat, Report, Verb
-from arboleda.model.plant_model import MotionState
+from arboleda.model.messages import Heartbeat, MotionState, Report, Verb
 
 from .robots import KnownRobot, Obstacle
 

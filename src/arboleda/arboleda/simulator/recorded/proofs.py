@@ -13,8 +13,8 @@ from typing import cast
 from arboleda.kinds.joints import Jointed, MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Motion, Query, Switch
-from arboleda.model.messages import Failure, Reason, Report
-from arboleda.model.plant_model import Evidence, MotionState, Robot
+from arboleda.model.messages import Failure, MotionState, Reason, Report
+from arboleda.model.plant_model import Evidence, Robot
 
 from .commands import SentCommand
 from .robots import KnownRobot

@@ -9,8 +9,8 @@ from copy import copy
 from enum import Enum
 
 from arboleda.model.facts import Value
-from arboleda.model.messages import BUILT_IN, Report
-from arboleda.model.plant_model import Evidence, Link, MotionState, Robot
+from arboleda.model.messages import BUILT_IN, MotionState, Report
+from arboleda.model.plant_model import Evidence, Link, Robot
 
 NUMBERS = 512  # telemetry messages, more than a plant that was stalled finds in its inbox
 LOOK_S = 0.5  # a report that says the same counts as news this often

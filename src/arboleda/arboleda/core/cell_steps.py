@@ -1,0 +1,148 @@
+"""Steps of a cell: what it does by itself, as far as it can, each time that something happened to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from arboleda.dispatch.ledger import State
+from arboleda.model.messages import Failure, Reason
+from arboleda.model.sentence import Phrase
+from arboleda.trees.walk_back import NO_PART
+
+from .cell import CellRun, NextVersion
+from .cell_states import Cause, CellState
+from .earlier_start import judged
+
+STOP_UNCONFIRMED = Phrase("cell.stop_unconfirmed", "{robots} did not confirm the stop")
+
+
+def advance(run: CellRun, *, woken: bool) -> bool:
+    """Do what can be done now: tick the tree until it rests, start the next task; whether it did."""
+    run.dirty = run.context.time.woken() or woken or run.dirty
+    if run.state is CellState.EXECUTE and not run.dirty:
+        return False
+    did = run.manual.teaching is not None and run.manual.go_on()
+    did |= _transit(run)
+    if run.dirty and run.run.tree is not None and run.state is CellState.EXECUTE:
+        run.look(run.run.tick())
+        did = True
+    if run.following is not None and run.is_between_tasks:
+        _revise(run, run.following)
+        did = True
+    if run.queue and run.state is CellState.IDLE and _may_begin(run):
+        run.start(run.queue.popleft())
+        did = True
+    run.dirty = False
+    return did
+
+
+def _may_begin(run: CellRun) -> bool:
+    return not run.closed and not run.awaits_restart and run.not_ready is None
+
+
+def _revise(run: CellRun, following: NextVersion) -> None:
+    run.following, run.version = None, following.version
+    run.cell = following.cell
+    run.context.revise(following.cell, following.timing)
+    run.queue.revise(following.cell)
+    run.readiness.revise(following.cell)
+    run.keeping.revise()
+    following.taken(following)
+
+
+def _transit(run: CellRun) -> bool:
+    """Leave a state that only waits for something to come true."""
+    wait = WAITS.get(run.state)
+    return wait is not None and wait(run)
+
+
+def _halted(run: CellRun) -> bool:
+    """Leave `holding` once no motion is open."""
+    if any(entry.halts for entry in run.context.commands.open()):
+        return False
+    run.become(Cause.HALTED)
+    run.trouble = run.trouble or _fault(run)
+    _miss_part(run)
+    return True
+
+
+def _cleared(run: CellRun) -> bool:
+    """Leave `clearing` once no robot says any more that it is stopped."""
+    if run.context.robots.reports_a_latch():
+        return False
+    run.become(Cause.CLEARED)
+    return True
+
+
+def _found_unsettled(run: CellRun) -> bool:
+    """Leave `idle` where a part may hang in the effector; while it is taught that is as it should be."""
+    if run.manual.teaching is not None:
+        return False
+    unsettled = run.readiness.part_in_hand()
+    if unsettled is None or run.context.commands.open():
+        return False
+    run.stuck(unsettled)
+    return True
+
+
+def _settled(run: CellRun) -> bool:
+    """Leave `held` where only the effector was the trouble; else keep what goes wrong meanwhile."""
+    if run.waits_for_grip and not run.context.parts.holding:
+        run.leave_as_it_is()
+        return True
+    if run.keeping.walk is not None:
+        return judged(run)
+    if run.task is not None and run.trouble is None:
+        run.trouble = _fault(run)
+    _miss_part(run)
+    return run.absence.hold is not None and _absence_is_over(run)
+
+
+def _miss_part(run: CellRun) -> None:
+    """Note that an effector was opened meanwhile, by whomever."""
+    if run.task is None or run.stranded:
+        return
+    gone = run.context.failures.opened_effector()
+    if gone is not None:
+        run.lose(NO_PART(arm=run.context.parts.opened_by or ""), gone)
+
+
+def _absence_is_over(run: CellRun) -> bool:
+    """Leave the hold that an absence of the plant has made, where nothing else is in its way."""
+    hold = run.absence.end(None if run.stranded else run.trouble)
+    if hold is None:
+        return False
+    run.go_on(Cause.RETRY)
+    run.queue.paused = hold.paused
+    return True
+
+
+def _aborted(run: CellRun) -> bool:
+    """Leave `aborting` once every online robot is seen still, or the time for it is over."""
+    moving = run.context.robots.moving_since(run.stopped_after)
+    if moving and run.context.time.now < run.stop_by:
+        return False
+    if moving:
+        sentence = STOP_UNCONFIRMED(robots=tuple(moving))
+        run.trouble = Failure(reason=Reason.STOP_UNCONFIRMED, sentence=sentence)
+    run.become(Cause.HALTED)
+    return True
+
+
+def _fault(run: CellRun) -> Failure | None:
+    """The fault that came during a hold: an interrupted step that failed, a robot that cannot."""
+    for act in run.run.interrupted():
+        entry = act.entry
+        if entry is not None and entry.state is State.FAILED and not entry.too_early:
+            return entry.failure
+    found = (run.context.robots.obstacle(robot.name, was=True) for robot in run.cell.reached)
+    return next((failure for failure in found if failure), None)
+
+
+WAITS: dict[CellState, Callable[[CellRun], bool]] = {
+    CellState.HOLDING: _halted,
+    CellState.ABORTING: _aborted,
+    CellState.CLEARING: _cleared,
+    CellState.IDLE: _found_unsettled,
+    CellState.HELD: _settled,
+}

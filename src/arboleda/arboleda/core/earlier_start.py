@@ -1,0 +1,82 @@
+"""Cells as an earlier start left them: stopped, taught, or with a task that is held at its step until devices
+prove what became of it, and people say how it goes on.
+"""
+
+from __future__ import annotations
+
+from arboleda.dispatch.fact_memory import FactMemory
+from arboleda.dispatch.latches import Latches
+from arboleda.model.messages import Fact
+from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.model.task import Task
+from arboleda.trees.step_token import hash_of
+
+from .cell import CellRun
+from .cell_states import CellState
+
+
+def walk_back(run: CellRun, task: Task, kept: str) -> None:
+    """Hold a task that was at work when an earlier start ended, until a person says how it goes on."""
+    run.task, run.queue.paused, run.state = task, True, CellState.HELD
+    run.context.answers, run.context.commands.task = task.answers, hash_of(task.id)
+    run.context.time.pause()
+    run.stranded = run.keeping.revive(task.order, kept)
+    trail = run.keeping.walk.trail if run.keeping.walk else None
+    if trail is not None:
+        run.trouble, run.cancelling = trail.failure, trail.cancels
+
+
+def look_back(run: CellRun) -> None:
+    """Judge a task of an earlier start by what its devices have said by now."""
+    if run.keeping.walk is not None and run.state is CellState.HELD:
+        judged(run)
+
+
+def judged(run: CellRun) -> bool:
+    """Look what devices say of the steps at which an earlier start ended; whether that is news.
+
+    What keeps a task from going on stays so, whatever they say later.
+    """
+    if run.run.tree is None:
+        return False
+    before, found = (run.awaits, run.trouble, run.stranded), run.keeping.judge()
+    run.awaits = found.waits
+    run.trouble = run.trouble or found.failure
+    run.stranded = run.stranded or found.stranded
+    return before != (run.awaits, run.trouble, run.stranded)
+
+
+def trail_of(run: CellRun) -> str | None:
+    """The place of its task in the tree, to be kept; None where that is kept already."""
+    if run.task is None or run.run.tree is None:
+        return None
+    holds = run.state in (CellState.HOLDING, CellState.HELD)
+    why, cancels = run.task.failure, run.cancelling
+    return run.keeping.news(failure=why, cancels=cancels, holds=holds, stranded=run.stranded)
+
+
+def stop_of(cell: Cell, model: PlantModel, latches: Latches) -> CellState | None:
+    """How far a cell came out of a stop of an earlier start; None where it was not stopped."""
+    if _was_stopped(cell, model, latches.stopped):
+        return CellState.ABORTED
+    return CellState.STOPPED if _was_stopped(cell, model, latches.cleared) else None
+
+
+def _was_stopped(cell: Cell, model: PlantModel, stopped: set[str]) -> bool:
+    """True for a cell that had been stopped: one of its own robots was, or what it shares, by itself."""
+    if not stopped.isdisjoint(cell.own):
+        return True
+    for name in stopped.intersection(cell.shared):
+        if all(stopped.isdisjoint(other.own) for other in model.cells_of[name]):
+            return True
+    return False
+
+
+def end_teaching(cells: dict[str, CellRun], memory: FactMemory) -> None:
+    """A cell that was being taught when an earlier start ended begins nothing by itself: somebody may stand
+    beside it.
+    """
+    for name in sorted(memory.names(Fact.MANUAL)):
+        memory.remember(Fact.MANUAL, name, None)
+        if name in cells:
+            cells[name].queue.paused = True

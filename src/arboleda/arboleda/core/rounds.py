@@ -1,0 +1,124 @@
+"""Rounds over the cells in a step: each does what it can, again while that makes others do more."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.model.commands import Command, Stop
+from arboleda.model.errors import ArboledaError
+from arboleda.model.messages import Fact, Notice, Remember, TaskChanged, TaskState
+from arboleda.model.task import Task
+
+from .cell import CellRun
+from .cell_guard import CellGuard
+from .cell_steps import advance
+from .earlier_start import trail_of
+from .news import News
+from .zone_watch import ZoneWatch
+
+ROUND_BOUND = 100  # rounds over the cells in one step; more means cells that never leave each other in peace
+
+
+class Rounds:
+    """Rounds over the cells of a plant; `next_wake` is when a tree is to be woken next, s."""
+
+    def __init__(
+        self,
+        cells: dict[str, CellRun],
+        dispatcher: Dispatcher,
+        news: News,
+        guard: CellGuard,
+        watch: ZoneWatch,
+    ) -> None:
+        self.next_wake = math.inf
+        self._cells = cells
+        self._dispatcher = dispatcher
+        self._news = news
+        self._guard = guard
+        self._watch = watch
+        self._order = {name: number for number, name in enumerate(cells)}
+        self._wakes: dict[str, float] = {}  # by cell
+
+    def go(self, now: float) -> None:
+        """Let the cells to which something happened do what they can, again while that makes them do more."""
+        ledger, news = self._dispatcher.ledger, self._news
+        soon = math.nextafter(now, math.inf)  # after a hold, rounding may bring a wake so much earlier
+        if self.next_wake <= soon:
+            woken = [name for name, at in self._wakes.items() if at <= soon]
+            news.touched.update(woken)
+            news.revised.update(woken)
+        if not news.touched and not ledger.changed:
+            return
+        touched, news.touched = news.touched, set()
+        for _ in range(ROUND_BOUND):
+            changed, ledger.changed = ledger.changed, set()
+            touched |= changed
+            in_order = sorted(touched, key=self._order.__getitem__)
+            did = set[str]()
+            for name in in_order:
+                if self._advanced(name, woken=name in changed):
+                    did.add(name)
+            news.revised |= changed | did
+            self._plan(touched)
+            if did:
+                news.changes += 1
+                self._watch.give_back_shared()
+            elif not ledger.changed:
+                return
+            touched = did
+        for name in sorted(touched, key=self._order.__getitem__):
+            restless = f"the cells do not come to rest in {ROUND_BOUND} rounds of one step"
+            self._guard.break_down(name, ArboledaError(restless))
+
+    def keep_trail(self, run: CellRun, before: int) -> None:
+        """Have it kept where a cell's task stands, before any command of what is newer in the outbox leaves,
+        and before anybody hears that the task runs.
+
+        It says of steps that they are done, so what those have left behind is kept before it.
+        """
+        text = trail_of(run)
+        if text is None or run.task is None:
+            return
+        outbox = self._dispatcher.outbox
+        first = before
+        while first < len(outbox) and not _waits(outbox[first], run.task):
+            first += 1
+        facts, others = list[Command | Notice](), list[Command | Notice]()
+        for each in outbox[first:]:
+            (facts if _is_fact(each) else others).append(each)
+        outbox[first:] = facts
+        self._dispatcher.memory.remember(Fact.STEP, run.task.id, text)
+        outbox += others
+
+    def _advanced(self, name: str, *, woken: bool) -> bool:
+        """Let a cell do what it can; whether it did."""
+        before = len(self._dispatcher.outbox)
+        try:
+            did = advance(self._cells[name], woken=woken)
+            if did or woken:
+                self.keep_trail(self._cells[name], before)
+        except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
+            self._guard.break_down(name, error)
+            return False
+        return did
+
+    def _plan(self, names: Iterable[str]) -> None:
+        """Take over when the trees of these cells are to be woken."""
+        for name in names:
+            at = self._cells[name].due
+            self._wakes[name] = math.inf if at is None else at
+        self.next_wake = min(self._wakes.values())
+
+
+def _waits(message: Command | Notice, task: Task) -> bool:
+    """True for a command, and for the word that a task runs."""
+    if isinstance(message, TaskChanged):
+        return message.task == task.id and message.state is TaskState.RUNNING
+    return isinstance(message, Command) and not isinstance(message, Stop)
+
+
+def _is_fact(message: Command | Notice) -> bool:
+    """True for a fact, but for that a task stands nowhere any more: that is told after its end."""
+    return isinstance(message, Remember) and not (message.fact is Fact.STEP and message.value is None)

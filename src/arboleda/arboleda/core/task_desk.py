@@ -1,0 +1,145 @@
+"""Desk for tasks: accepts or refuses what is asked for, and tells of each change of a task."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.model.errors import QueueFull, TextError
+from arboleda.model.messages import (
+    Fact,
+    Failure,
+    InternalError,
+    KeptTask,
+    Reason,
+    TaskChanged,
+    TaskRequest,
+    TaskState,
+)
+from arboleda.model.outside import plain
+from arboleda.model.sentence import OWN, Phrase, Sentence
+from arboleda.model.task import Order, Task
+
+from . import reasons
+from .cell import CellRun
+from .cell_states import CellState
+from .choosing import PastTimes, Prospect, best, prospect
+from .earlier_start import walk_back
+from .intake import CUT_OFF, OTHER_VERSION, Intake
+from .news import News
+
+DEFECT = Phrase("plant.defect", "this failed on an internal error; the log has its details")
+OWN_CYCLE = Phrase("cell.own_cycle", "{arm} is in its own cycle; its plant file refuses a trigger then")
+
+
+class TaskDesk:
+    """Desk for the tasks of a plant."""
+
+    def __init__(
+        self,
+        cells: dict[str, CellRun],
+        dispatcher: Dispatcher,
+        intake: Intake,
+        news: News,
+        clock: Callable[[], float],
+    ) -> None:
+        self._cells = cells
+        self._dispatcher = dispatcher
+        self._intake = intake
+        self._news = news
+        self._clock = clock
+
+    def take_back(self, kept: Iterable[KeptTask]) -> None:
+        """Queue again what waited when an earlier start ended, and hold what was at work then at its step."""
+        now, memory = self._clock(), self._dispatcher.memory
+        tasks = [(each.state, self._intake.take_back(each, now)) for each in kept]
+        for name, run in self._cells.items():
+            own = [task for _, task in tasks if task.order.cell == name]
+            waiting = [task for task in own if task.state is TaskState.QUEUED]
+            at_work = [task for task in own if task.state is TaskState.RUNNING]
+            run.queue.take_back(waiting, cut_off=bool(at_work))
+            for task in at_work:
+                trail = memory.value(Fact.STEP, task.id)
+                if trail is not None and run.task is None and run.state is CellState.IDLE:
+                    walk_back(run, task, trail)
+        known = {run.task for run in self._cells.values()}
+        for was, task in tasks:
+            if task.state is TaskState.RUNNING and task not in known:
+                task.fail(Failure(reason=Reason.INTERRUPTED, sentence=CUT_OFF()))
+                task.become(TaskState.FAILED, now)
+            if task.state is not was:
+                self.tell(task)
+        for id in memory.names(Fact.STEP) - {task.id for task in known if task}:
+            memory.remember(Fact.STEP, id, None)
+
+    def take(self, request: TaskRequest) -> None:
+        """Accept what is asked for, or refuse it."""
+        try:
+            if request.kept is not None:
+                self._intake.recall(request.kept)
+            task = self._intake.task(request.text, lambda orders: best(self.prospects(orders)))
+            if not self._intake.knows(task):
+                if request.version and self._intake.put_last not in ("", request.version):
+                    raise TextError(OTHER_VERSION())
+                task.version = request.version
+                if request.choice and task.choice is None:
+                    task.choice = OWN(text=plain(request.choice))
+                self._refuse_trigger(request, task)
+                self._cells[task.order.cell].queue.add(task)
+                self._news.touched.add(task.order.cell)
+                self._news.revised.add(task.order.cell)
+                self._intake.remember(task)
+        except (TextError, QueueFull) as refusal:
+            for_now = isinstance(refusal, QueueFull)
+            self._dispatcher.outbox.append(_refused(request, refusal.sentence, for_now=for_now))
+            return
+        except Exception as error:  # noqa: BLE001 - whoever asks gets an answer, and the plant goes on
+            self._dispatcher.outbox += [_refused(request, DEFECT()), InternalError(cell="", error=error)]
+            return
+        self.tell(task, request.request)
+
+    def tell(self, task: Task, request: str | None = None) -> None:
+        """Tell of a change of a task."""
+        self._news.changes += 1
+        sentence = (
+            reasons.of_waiting(self._cells[task.order.cell]) if task.state is TaskState.QUEUED else None
+        )
+        change = TaskChanged(
+            task=task.id,
+            text=task.order.text,
+            cell=task.order.cell,
+            state=task.state,
+            reason=task.failure.reason if task.failure else None,
+            sentence=sentence or task.remark,
+            request=request,
+            choice=task.choice,
+            course=task.course,
+            unchecked=task.unchecked,
+        )
+        self._dispatcher.outbox.append(change)
+        if task.ended_at is not None:
+            self._dispatcher.memory.remember(Fact.STEP, task.id, None)
+
+    def prospects(self, orders: Iterable[Order]) -> list[Prospect]:
+        """The promises of the cells that may carry out one of these orders."""
+        times = PastTimes(self._intake.tasks.values())
+        return [prospect(order, self._cells[order.cell], times, self._clock()) for order in orders]
+
+    def _refuse_trigger(self, request: TaskRequest, task: Task) -> None:
+        """Raise QueueFull for a machine's start signal that the cell does not take now."""
+        cell = self._cells[task.order.cell]
+        busy = cell.queue.in_its_own_cycle(cell.task) if request.trigger else None
+        if busy is not None:
+            raise QueueFull(OWN_CYCLE(arm=busy))
+
+
+def _refused(request: TaskRequest, sentence: Sentence, *, for_now: bool = False) -> TaskChanged:
+    return TaskChanged(
+        task="",
+        text=plain(request.text),
+        cell=None,
+        state=TaskState.REFUSED,
+        sentence=sentence,
+        request=request.request,
+        for_now=for_now,
+    )

@@ -1,0 +1,146 @@
+"""Homing on an operator's word: robots run their routine, or somebody has put them at their reference."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from arboleda.dispatch.belief import ONLY_DRAWN
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.ledger import Entry
+from arboleda.dispatch.zones import Zones
+from arboleda.model.commands import Home
+from arboleda.model.messages import OperatorRequest
+from arboleda.model.plant_model import Evidence
+from arboleda.model.sentence import Phrase, Sentence
+
+from .. import losses
+from ..readiness import STILL_DOING
+from .cell_by_cell import AT_REST, Doing, at_rest
+from .scopes import Scopes, VerbRefusal
+
+WITH_OTHER = Phrase("refusal.with_other", "{device}, which cells share, is with {cell} now")
+MAY_CROSS = Phrase(
+    "refusal.may_cross",
+    "{arm} may cross zone {zone}, which {holder} holds; home it once the zone is free",
+)
+SAYS_ITSELF = Phrase(
+    "refusal.says_itself", "{robot} says itself whether it is homed; home {robot} runs its routine"
+)
+SAYS_UNHOMED = Phrase(
+    "refusal.says_unhomed", "{robot} says that it is not homed; home {robot} runs its routine"
+)
+SAYS_UNHOMED_BY_HAND = Phrase(
+    "refusal.says_unhomed_by_hand",
+    "{robot} says that it is not homed; home {robot} at its own controls first",
+)
+NO_HOMING = Phrase("refusal.no_homing", "{robot} has no homing")
+CANNOT_REPORT = Phrase(
+    "refusal.cannot_report",
+    "{robot} cannot report a homing; put it at its reference and say: home {robot} --by-hand",
+)
+
+
+class Homing:
+    """Homing of robots; no robot sets out for its reference while another one is where it may get."""
+
+    def __init__(
+        self,
+        scopes: Scopes,
+        dispatcher: Dispatcher,
+        zones: Zones,
+        doing: Doing,
+        clock: Callable[[], float],
+    ) -> None:
+        self._scopes = scopes
+        self._dispatcher = dispatcher
+        self._zones = zones
+        self._doing = doing
+        self._clock = clock
+        reached = [robot for cell in scopes.cells.values() for robot in cell.cell.reached]
+        self._reached = {robot.name for robot in reached}
+        self._homing = {robot.name for robot in reached if robot.homes}
+
+    def plan(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
+        """Robots that are only drawn, or have no homing, are left out; one of them alone is refused."""
+        robots, by_hand = self._scopes.robots(scope), request.by_hand
+        if scope in self._scopes.cells and self._scopes.cells[scope].cell.shared:
+            robots = self._here(scope, robots)
+        robots = robots & self._homing or robots
+        for name in sorted(robots):
+            obstacle = self._not_homeable(name, by_hand=by_hand)
+            if obstacle:
+                raise VerbRefusal(obstacle)
+        if not by_hand and (occupied := self.not_free(robots)):
+            raise VerbRefusal(occupied)
+        return partial(self._home, robots, by_hand=by_hand)
+
+    def home(self, name: str) -> Entry:
+        """Have a robot run its homing routine; it keeps everybody out of its zones meanwhile."""
+        cell = self._scopes.in_charge(name)
+        if not self._dispatcher.beliefs[name].is_cleared_by_homing:
+            losses.uproot(cell, name)
+        users = [run for run in self._scopes.of_robots(frozenset([name])) if name in run.cell.zone_users]
+        for run in (each for each in users if each.state in AT_REST):
+            run.context.zones.forsake()
+        if name in cell.cell.shared:
+            cell.context.devices.claim(name)
+        for run in users:
+            run.context.zones.claim(name)
+        return self._dispatcher.home(name, cell.cell.name, self._clock())
+
+    def not_free(self, robots: frozenset[str]) -> Sentence | None:
+        """Why robots may not set out for their reference: from where they stand they may cross any zone."""
+        taken: dict[str, str] = {}
+        for cell in self._scopes.of_robots(robots):
+            for name, space in cell.cell.workspaces.items():
+                for zone in sorted(space.zones) if name in robots else ():
+                    for_task = cell.state in AT_REST and cell.context.zones.is_for_task(zone)
+                    kept = None if for_task else self._zones.holder(zone)
+                    holder = kept or taken.setdefault(zone, name)
+                    if holder != name:
+                        return MAY_CROSS(arm=name, zone=zone, holder=holder)
+        return None
+
+    def _here(self, scope: str, robots: frozenset[str]) -> frozenset[str]:
+        """The robots that are homed with a cell: none of those that another one has now."""
+        shared, holder = self._scopes.cells[scope].cell.shared, self._zones.holder
+        found = frozenset(name for name in robots if name not in shared or holder(name) in (None, scope))
+        if self._homing.isdisjoint(found) and (others := sorted(self._homing & robots)):
+            raise VerbRefusal(WITH_OTHER(device=others[0], cell=holder(others[0]) or ""))
+        return found
+
+    def _home(self, robots: frozenset[str], *, by_hand: bool) -> None:
+        for name in sorted(robots):
+            if by_hand:
+                self._dispatcher.declare_homed(name)
+                losses.uproot(self._scopes.in_charge(name), name)
+            else:
+                self._doing.sent.append(self.home(name))
+
+    def _not_homeable(self, name: str, *, by_hand: bool) -> Sentence | None:
+        cell = self._scopes.alone.get(name) or self._scopes.in_charge(name)
+        belief = self._dispatcher.beliefs[name]
+        if refusal := at_rest(cell, frozenset()):
+            return refusal
+        if cell.manual.teaching is not None and not by_hand:
+            return cell.manual.teaching.sentence
+        if name in cell.cell.shared and (stopped := cell.context.devices.not_reset(name)) is not None:
+            return stopped.sentence
+        if name not in self._reached:
+            return ONLY_DRAWN(robot=name)
+        if not belief.robot.homes:
+            return NO_HOMING(robot=name)
+        if work := self._dispatcher.ledger.work_of(name):
+            return STILL_DOING(robot=name, doing=work.doing)
+        robot, has_routine = belief.robot, belief.robot.evidence is Evidence.IDS
+        if by_hand and robot.says_homed:
+            return SAYS_ITSELF(robot=name)
+        if belief.says_unhomed and (by_hand or not has_routine):
+            return SAYS_UNHOMED(robot=name) if has_routine else SAYS_UNHOMED_BY_HAND(robot=name)
+        if by_hand:
+            return None
+        if not has_routine:
+            return CANNOT_REPORT(robot=name)
+        obstacle = self._dispatcher.obstacles.objection(partial(Home, robot=name))
+        return obstacle.sentence if obstacle else None

@@ -1,0 +1,71 @@
+"""Override of a quarantine: an operator says that nobody is in a zone, or at a shared device, any more."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.zones import Zones
+from arboleda.model.errors import IllegalTransition
+from arboleda.model.messages import OperatorRequest
+from arboleda.model.sentence import Phrase
+
+from .scopes import Scopes, VerbRefusal
+
+STILL_WORKS = Phrase(
+    "refusal.still_works",
+    "{robot} has not given up its work in {zone}; stop {cell}, then override {zone}",
+)
+STILL_USES = Phrase(
+    "refusal.still_uses",
+    "{cell} has not given up its work with {device}; stop {cell}, then override {device}",
+)
+GOES_BACK = Phrase(
+    "refusal.goes_back",
+    "{device} stays with {cell} until it is heard, holds no part and is at home; "
+    "then it is free without an override",
+)
+
+
+class Overriding:
+    """Override of zones and of devices that cells share."""
+
+    def __init__(self, scopes: Scopes, dispatcher: Dispatcher, zones: Zones) -> None:
+        self._scopes = scopes
+        self._dispatcher = dispatcher
+        self._zones = zones
+
+    def plan(self, request: OperatorRequest, zone: str) -> Callable[[], None]:
+        """Of one zone or device, on which nobody counts for its work any more."""
+        holder = self._zones.holder(zone)
+        cell = self._scopes.cells.get(holder or "")
+        if cell is not None and cell.tree is not None and self._zones.is_quarantined(zone):
+            raise VerbRefusal(STILL_USES(cell=cell.cell.name, device=zone))
+        if cell is not None and zone in cell.cell.shared and not self._is_left_anywhere(zone):
+            raise VerbRefusal(GOES_BACK(device=zone, cell=cell.cell.name))
+        known = self._dispatcher.model.cell_of  # without who is no longer in the plant file
+        if holder in known and self._zones.is_quarantined(zone) and self._works(holder):
+            name = self._scopes.in_charge(holder).cell.name  # what it does there counts on the zone
+            raise VerbRefusal(STILL_WORKS(robot=holder, zone=zone, cell=name))
+        try:
+            self._zones.require_quarantined(zone)
+        except IllegalTransition as error:
+            raise VerbRefusal(error.sentence) from error
+        return partial(self._override, zone)
+
+    def _override(self, zone: str) -> None:
+        granted = self._zones.override(zone)
+        self._dispatcher.memory.vacate([zone])
+        self._dispatcher.wake({*granted, *self._zones.robbed})
+
+    def _is_left_anywhere(self, device: str) -> bool:
+        """True for a shared device that goes nowhere and holds no part, so that any cell may have it next."""
+        robot = self._dispatcher.model.robots[device]
+        return not robot.goes and robot.held_fact is None
+
+    def _works(self, arm: str) -> bool:
+        """True where a tree counts on what an arm has, or the arm moves without one: homing needs none."""
+        cell = self._scopes.in_charge(arm)
+        moves = any(entry.is_work for entry in self._dispatcher.ledger.of_robot(arm))
+        return moves or cell.tree is not None

@@ -1,0 +1,126 @@
+"""Release of parts on an operator's word: effectors let go, or somebody has taken a part out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.zones import Zones
+from arboleda.model.messages import OperatorRequest
+from arboleda.model.sentence import Phrase, Sentence
+
+from .. import losses
+from ..advice import sentence
+from ..cell import CellRun
+from ..cell_states import CellState
+from ..readiness import STILL_DOING
+from .cell_by_cell import CellByCell, Doing
+from .homing import WITH_OTHER
+from .scopes import Scopes, VerbRefusal
+
+RELEASING = Phrase("doing.release", "letting go on the operator's word")
+NOT_OPENED = Phrase("refusal.not_opened", "{why}: it cannot let go")
+HOLD_FIRST = Phrase("refusal.hold_first", "{cell} is {state}; hold or stop it first")
+NO_EFFECTOR = Phrase("refusal.no_effector", "{robot} has no effector")
+HOLDS_NOTHING = Phrase("refusal.holds_nothing", "no part is known to be in {devices}")
+HOLDS_NOTHING_ANY_MORE = Phrase(
+    "refusal.holds_nothing_any_more",
+    "no part is known to be in {devices}, so nothing has to be said of it; go on with {next}",
+)
+AT_WORK = (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING)
+
+
+class Releasing:
+    """Release of parts from the devices that hold them."""
+
+    def __init__(
+        self,
+        scopes: Scopes,
+        dispatcher: Dispatcher,
+        zones: Zones,
+        doing: Doing,
+        clock: Callable[[], float],
+    ) -> None:
+        self._scopes = scopes
+        self._dispatcher = dispatcher
+        self._zones = zones
+        self._doing = doing
+        self._clock = clock
+        self._in_cells = CellByCell(doing, check=self._not_releasable, do=self._release)
+
+    def plan(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
+        """Devices let go cell by cell; by hand, a person has taken out what all of them hold."""
+        robots = self._scopes.robots(scope)
+        cells = self._scopes.cells_in(request.verb, scope, robots)
+        if request.by_hand:
+            return self._planned_emptying(robots, cells)
+        return self._in_cells.planned(robots, cells)
+
+    def _planned_emptying(self, robots: frozenset[str], cells: list[CellRun]) -> Callable[[], None]:
+        """A person has taken out what devices hold; all of them are still, as far as the plant moves them."""
+        for cell in cells:
+            if cell.state in AT_WORK:
+                raise VerbRefusal(HOLD_FIRST(cell=cell.cell.name, state=cell.state.sentence))
+        able = [(cell, name) for cell in cells for name in self._holders(cell, robots)]
+        if not able:
+            raise VerbRefusal(self._none_able(robots, sorted(robots)[0]))
+        holding = [(cell, name) for cell, name in able if name in cell.context.parts.holding]
+        if not holding:
+            raise VerbRefusal(_nothing_held(able))
+        for cell, name in holding:
+            if (entry := cell.context.commands.first_of(name)) is not None:
+                raise VerbRefusal(STILL_DOING(robot=name, doing=entry.doing))
+        return partial(self._empty, holding)
+
+    def _empty(self, holding: list[tuple[CellRun, str]]) -> None:
+        for cell, name in holding:
+            losses.let_go(cell, name)
+            self._dispatcher.effectors.declare_empty(self._dispatcher.beliefs[name])
+            self._dispatcher.wake([name])
+
+    def _not_releasable(self, cell: CellRun, robots: frozenset[str]) -> Sentence | None:
+        if cell.state in AT_WORK:
+            return HOLD_FIRST(cell=cell.cell.name, state=cell.state.sentence)
+        if cell.manual.teaching is not None:
+            return cell.manual.teaching.sentence
+        able = self._holders(cell, robots)
+        if not able:
+            first = next(each.name for each in cell.cell.robots if each.name in robots)
+            return self._none_able(robots, first)
+        found = (self._dispatcher.obstacles.to_opening(name) for name in able)
+        obstacle = next((each for each in found if each), None)
+        return NOT_OPENED(why=obstacle.sentence) if obstacle else None
+
+    def _release(self, cell: CellRun, robots: frozenset[str]) -> None:
+        for name in self._holders(cell, robots):
+            if name in cell.cell.shared:
+                cell.context.devices.claim(name)
+            losses.let_go(cell, name)
+            make = self._dispatcher.model.robots[name].let_go
+            now, name_of_cell = self._clock(), cell.cell.name
+            self._doing.sent.append(self._dispatcher.send(make, name_of_cell, RELEASING(), now, by_hand=True))
+
+    def _holders(self, cell: CellRun, robots: frozenset[str]) -> list[str]:
+        """Those of the robots that hold parts for this cell; what it shares may be with another one."""
+        found = [name for name in cell.cell.holders if name in robots]
+        return [*filter(cell.context.devices.answers_for, found)] if cell.cell.shared else found
+
+    def _none_able(self, robots: frozenset[str], first: str) -> Sentence:
+        """Why nothing can be released: nothing holds parts, or what does is with another cell."""
+        for device in sorted(robots.intersection(self._dispatcher.model.shared)):
+            holder = self._zones.holder(device)
+            if holder is not None and self._dispatcher.model.robots[device].held_fact is not None:
+                return WITH_OTHER(device=device, cell=holder)
+        return NO_EFFECTOR(robot=first)
+
+
+def _nothing_held(able: list[tuple[CellRun, str]]) -> Sentence:
+    """That no part is known to be in devices, and what leads on where they keep a cell waiting."""
+    devices = tuple(dict.fromkeys(name for _, name in able))
+    ways = [each for cell, _ in able[:1] for each in cell.ways_out(cell.cell.name)]
+    return (
+        HOLDS_NOTHING_ANY_MORE(devices=devices, next=sentence(ways))
+        if ways
+        else HOLDS_NOTHING(devices=devices)
+    )

@@ -1,0 +1,91 @@
+"""Stops (software) on an operator's word: latches robots, clears them, and resets their cells."""
+
+from __future__ import annotations
+
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.model.sentence import Phrase, Sentence
+
+from ..cell import CellRun
+from ..cell_states import Cause, CellState
+
+STAYS_STOPPED = Phrase(
+    "refusal.stays_stopped", "{device} stays stopped while {cells} is; clear {cells} first"
+)
+ONLY_ABORTED = Phrase("refusal.only_aborted", "{cell} is {state}; only an aborted cell can be cleared")
+NOT_STILL = Phrase("refusal.not_still", "{robots} is not still yet")
+CLEAR_FIRST = Phrase("refusal.clear_first", "{cell} is not cleared after its stop yet; clear {cell} first")
+NOT_STOPPED = Phrase(
+    "refusal.not_stopped", "{cell} is {state}; a cell is reset after a stop, once it has been cleared"
+)
+STOPPING = (CellState.ABORTING, CellState.ABORTED)
+UNTIL_RESET = (*STOPPING, CellState.CLEARING, CellState.STOPPED)
+
+
+class Stops:
+    """Stops of robots in their cells; what cells share stays stopped as long as one of them is."""
+
+    def __init__(self, cells: dict[str, CellRun], dispatcher: Dispatcher) -> None:
+        self._cells = cells
+        self._dispatcher = dispatcher
+
+    def latch(self, cell: CellRun, robots: frozenset[str]) -> None:
+        """Stop the robots of a cell until they are cleared."""
+        for robot in cell.cell.robots:
+            if robot.name in robots:
+                self._dispatcher.latches.latch(robot.name)
+
+    def not_clearable(self, cell: CellRun, robots: frozenset[str]) -> Sentence | None:
+        """Why robots of a cell cannot be cleared."""
+        if cell.state not in (CellState.ABORTED, CellState.CLEARING):
+            return ONLY_ABORTED(cell=cell.cell.name, state=cell.state.sentence)
+        others = self._kept_stopped(cell, robots)
+        if others and others.keys() >= {each.name for each in cell.cell.robots if each.name in robots}:
+            device, cells = next(iter(others.items()))
+            return STAYS_STOPPED(device=device, cells=cells)
+        finishes = self._dispatcher.ledger.finishes
+        mine = [each.name for each in cell.cell.robots if each.name in robots and not finishes(each.name)]
+        beliefs = [self._dispatcher.beliefs[name] for name in mine]
+        moving = tuple(belief.robot.name for belief in beliefs if belief.online and not belief.still)
+        return NOT_STILL(robots=moving) if moving else None
+
+    def clear(self, cell: CellRun, robots: frozenset[str]) -> None:
+        """Clear robots of a cell, and the cell once none of its robots is stopped any more."""
+        kept = self._kept_stopped(cell, robots.union(cell.cell.shared))
+        was_stopped = cell.context.devices.is_stopped  # also if it was cleared: that may have got lost
+        unstopped = {name for name in cell.cell.shared if not was_stopped(name)}
+        for robot in cell.cell.robots:
+            if robot.name in robots - unstopped and robot.name not in kept:
+                self._dispatcher.latches.unlatch(robot.name)
+        stopped = self._dispatcher.latches.stopped - kept.keys()
+        if not any(robot.name in stopped for robot in cell.cell.robots):
+            cell.become(Cause.CLEAR)
+
+    def _kept_stopped(self, cell: CellRun, robots: frozenset[str]) -> dict[str, tuple[str, ...]]:
+        """Those of the robots that stay stopped when they are cleared in a cell, and for which cells: whoever
+        shares them was stopped, too, and is not cleared with them.
+        """
+        kept, stopped = {}, self._dispatcher.latches.stopped - robots
+        for name in cell.cell.shared:
+            cells = [each for each in self._dispatcher.model.cells_of[name] if stopped & {*each.own}]
+            others = tuple(each.name for each in cells if self._cells[each.name].state in STOPPING)
+            if name in robots and name in self._dispatcher.latches.stopped and others:
+                kept[name] = others
+        return kept
+
+    def reset(self, cell: CellRun, robots: frozenset[str]) -> None:
+        """End the stop of a cell that was cleared."""
+        for robot in cell.cell.robots:
+            others = [each for each in self._dispatcher.model.cells_of[robot.name] if each is not cell.cell]
+            if not any(self._cells[other.name].state in UNTIL_RESET for other in others):
+                self._dispatcher.latches.forget(robot.name)
+        cell.become(Cause.RESET)
+        cell.become(Cause.READY)
+
+
+def not_resettable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
+    """Why a cell cannot be reset."""
+    if cell.state is CellState.STOPPED:
+        return None
+    if cell.state in STOPPING:
+        return CLEAR_FIRST(cell=cell.cell.name)
+    return NOT_STOPPED(cell=cell.cell.name, state=cell.state.sentence)

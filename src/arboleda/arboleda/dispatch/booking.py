@@ -1,0 +1,185 @@
+"""Booking of what ends commands: feeds the ledger, and does what follows for their robots."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from arboleda.model.commands import FRESH_S, Command, Home, Motion, StopMode, Switch, Work
+from arboleda.model.grips import Grip
+from arboleda.model.messages import Failure, MotionState, Reason
+from arboleda.model.sentence import BOTH, Phrase, Sentence
+
+from .belief import Belief
+from .effectors import Effectors
+from .evidence import Verdict
+from .ledger import Entry, Feed, Ledger, State
+from .outlet import Outlet
+from .time_limits import TimeLimits
+from .underway import UnderWay, Unfinished
+from .whereabouts import Whereabouts
+
+NOT_FINISHED = Phrase("command.not_finished", "{robot}: did not finish within {seconds:.1f} s while {doing}")
+NOT_STOPPED = Phrase(
+    "command.not_stopped", "{robot}: did not confirm that it stopped within {seconds:.1f} s while {doing}"
+)
+BROKEN_OFF = frozenset({Reason.LINK_LOST, Reason.REBOOTED, Reason.STOPPED, Reason.CANCELLED, Reason.INTERNAL})
+"""What befell a command that its device might have carried out."""
+KNOWN_STILL = frozenset({Reason.STOPPED_SHORT, Reason.NOT_REACHED, Reason.STOPPED})
+
+
+class Booking:
+    """Booking of what ends commands.
+
+    `doubtful` has, by robot, the facts that a command was to set which has failed: what is reported of them
+    may be old. `rejected` says how often a robot refused a command, and the last time why.
+    """
+
+    def __init__(
+        self,
+        *,
+        beliefs: dict[str, Belief],
+        ledger: Ledger,
+        effectors: Effectors,
+        outlet: Outlet,
+        under_way: UnderWay,
+        unfinished: Unfinished,
+        whereabouts: Whereabouts,
+        limits: TimeLimits,
+    ) -> None:
+        self.doubtful: dict[str, set[str]] = {}
+        self.rejected: dict[str, tuple[int, Sentence | None]] = {}
+        self._beliefs = beliefs
+        self._ledger = ledger
+        self._effectors = effectors
+        self._outlet = outlet
+        self._under_way = under_way
+        self._unfinished = unfinished
+        self._whereabouts = whereabouts
+        self._limits = limits
+
+    def book(self, entry: Entry, verdict: Verdict, now: float) -> None:
+        """Feed the ledger; a motion that failed and may still be under way is halted."""
+        before = entry.state
+        entry.answer = verdict.answer
+        self._ledger.feed(entry.command.id, verdict.feed, now, _explained(entry, verdict.failure))
+        self._ledger.version += entry.state is not before
+        if entry.state in (State.DONE, State.CANCELLED):
+            self._under_way.ended(entry.command)
+        if _lets_go(entry.command) and entry.state is State.FAILED and not was_broken_off(entry):
+            self._effectors.unopened.add(entry.command.robot)
+        if entry.state is State.DONE:
+            self._done(entry.command)
+        elif verdict.feed is Feed.REJECTED:
+            self._reject(entry.command.robot, verdict.failure)
+        failed = entry.state is State.FAILED and verdict.feed is not Feed.REJECTED
+        if failed:
+            self._doubt(entry)
+        called_off = entry.state is State.CANCELLED and verdict.feed is Feed.HALTED and not verdict.failure
+        if failed or called_off:
+            self._expect_late(entry, verdict, now)
+        if failed and entry.halts and verdict.failure and verdict.failure.reason not in KNOWN_STILL:
+            self._outlet.stop(entry.command.robot, StopMode.HALT)
+
+    def end_overdue(self, entry: Entry, now: float) -> None:
+        """Book the end of a command whose time is over: done, where it needs no answer, else failed."""
+        verdict = _overdue(entry)
+        entry.settled = verdict.feed is Feed.DONE
+        self.book(entry, verdict, now)
+
+    def give_up(self, cell: str, failure: Failure, now: float) -> None:
+        """Fail every open command of a cell, and halt what moves: nobody can judge them any more."""
+        for entry in self._ledger.of_cell(cell):
+            self.book(entry, Verdict(feed=Feed.FAILED, failure=failure), now)
+
+    def undelivered(self, id: str, robot: str, sentence: Sentence, now: float) -> None:
+        """Fail a command that could not leave this process; one that was being cancelled has ended so."""
+        failure = Failure(reason=Reason.LINK_LOST, sentence=sentence)
+        for entry in self._ledger.of_robot(robot):
+            if entry.command.id == id:
+                self._effectors.grips.will_not_open(robot, id)
+                feed = Feed.HALTED if entry.state is State.CANCELLING else Feed.FAILED
+                self.book(entry, Verdict(feed=feed, failure=failure), now)
+
+    def _expect_late(self, entry: Entry, verdict: Verdict, now: float) -> None:
+        """Expect a command that is over for the plant, where its device may still carry it out.
+
+        Reports of before it came show its device at rest. Where it is halted, its halt comes after it.
+        """
+        lasts_s = 0.0 if _ended_by_boot(verdict) else _arrives_s(entry, now)
+        if entry.state is State.FAILED and _may_go_on(entry, verdict):
+            lasts_s += self._limits.allowed_s(entry.command, self._limits.timings[entry.cell])
+        if lasts_s > 0:
+            self._unfinished.expect(entry.command, lasts_s, now)
+
+    def _doubt(self, entry: Entry) -> None:
+        """Take what is reported of the facts of a failed command for old, until another of them is done."""
+        if entry.sets:
+            facts = self.doubtful.setdefault(entry.command.robot, set())
+            facts.update(name for name, _ in entry.sets)
+
+    def _reject(self, robot: str, failure: Failure | None) -> None:
+        count, _ = self.rejected.get(robot, (0, None))
+        self.rejected[robot] = (count + 1, failure.sentence if failure else None)
+        belief, stopped = self._beliefs[robot], failure is not None and failure.reason is Reason.STOPPED
+        belief.barred |= stopped and belief.state is not MotionState.STOP_LATCHED
+
+    def _done(self, command: Command) -> None:
+        if doubtful := self.doubtful.get(command.robot):
+            doubtful.difference_update(name for name, _ in command.sets)
+        if command.robot in self._unfinished.by_device:
+            self._unfinished.done(command)
+        belief = self._beliefs[command.robot]
+        if not belief.is_sure and isinstance(command, Work):
+            belief.be_sure()
+        if isinstance(command, Switch) and command.grips is not None:
+            self._effectors.set(command.robot, Grip.ON if command.grips else Grip.OFF)
+        elif isinstance(command, Motion) and command.way:
+            self._whereabouts.reached[command.robot] = command.way[-1]
+        elif isinstance(command, Home):
+            self._whereabouts.displace(belief, displaced=False)
+
+
+def was_broken_off(entry: Entry) -> bool:
+    """True for a command that failed by something from outside, or was halted: not by its device."""
+    return entry.failure is None or entry.failure.reason in BROKEN_OFF
+
+
+def _may_go_on(entry: Entry, verdict: Verdict) -> bool:
+    """True where a device may carry out a command to its end that has failed.
+
+    A boot ends all, and work that does not go on to its end is halted; but of a link that was lost nobody
+    knows if the command, or word of its beginning, is still on its way.
+    """
+    lost = verdict.failure is not None and verdict.failure.reason is Reason.LINK_LOST
+    return lost if entry.halts else not _ended_by_boot(verdict)
+
+
+def _ended_by_boot(verdict: Verdict) -> bool:
+    return verdict.failure is not None and verdict.failure.reason is Reason.REBOOTED
+
+
+def _arrives_s(entry: Entry, now: float) -> float:
+    """The time in which a command may still come to its device, which has not named it as accepted."""
+    return 0.0 if entry.accepted_at is not None else max(0.0, entry.sent_at + FRESH_S - now)
+
+
+def _lets_go(command: Command) -> bool:
+    return isinstance(command, Switch) and command.grips is False
+
+
+def _explained(entry: Entry, failure: Failure | None) -> Failure | None:
+    """A failure that a command of somebody else may have caused says so."""
+    if failure is None or entry.interference is None:
+        return failure
+    return replace(failure, sentence=BOTH(first=failure.sentence, second=entry.interference))
+
+
+def _overdue(entry: Entry) -> Verdict:
+    if entry.settles_at is not None and entry.settles_at <= entry.deadline:
+        return Verdict(feed=Feed.DONE)
+    stopping = entry.state is State.CANCELLING
+    what = NOT_STOPPED if stopping else NOT_FINISHED
+    waited = entry.deadline - (entry.cancelled_at if entry.cancelled_at is not None else entry.sent_at)
+    sentence = what(robot=entry.command.robot, seconds=waited, doing=entry.doing)
+    reason = Reason.STOP_UNCONFIRMED if stopping else Reason.DEADLINE
+    return Verdict(feed=Feed.FAILED, failure=Failure(reason=reason, sentence=sentence))

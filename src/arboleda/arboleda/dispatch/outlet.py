@@ -1,0 +1,55 @@
+"""Outlet of a plant: numbers its commands, and has commands and stops leave."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from arboleda.model.commands import Command, Stop, StopMode
+from arboleda.model.messages import Notice
+from arboleda.model.plant_model import Link
+
+from .belief import Belief
+from .underway import UnderWay, UnnamedCommands
+
+UNSENT = (Link.NONE, Link.SCREEN)  # nothing leaves the plant for these
+
+
+class Outlet:
+    """Outlet of commands to `outbox`; `count` is the number of the last command in this start, `epoch`."""
+
+    def __init__(
+        self,
+        epoch: int,
+        beliefs: dict[str, Belief],
+        outbox: list[Command | Notice],
+        under_way: UnderWay,
+        unnamed: UnnamedCommands,
+    ) -> None:
+        self.epoch = epoch
+        self.count = 0
+        self._beliefs = beliefs
+        self._outbox = outbox
+        self._under_way = under_way
+        self._unnamed = unnamed
+
+    def new_id(self) -> str:
+        """The id of the next command."""
+        self.count += 1
+        return f"{self.epoch}-{self.count}"
+
+    def stop(self, robot: str, mode: StopMode) -> None:
+        """Have a stop, a halt or a clear leave for a robot."""
+        self.leave(Stop(id=self.new_id(), robot=robot, mode=mode))
+
+    def leave(self, command: Command, token: str | None = None) -> None:
+        """Have a command leave; a board that numbers its commands echoes `token`."""
+        belief = self._beliefs[command.robot]
+        link = belief.robot.link
+        if link in UNSENT:
+            return
+        number = None if isinstance(command, Stop) else belief.number
+        if number is not None or (token is not None and link is Link.DRIVER):
+            command = replace(command, heard=number, token=token)
+        self._outbox.append(command)
+        self._under_way.left(command)
+        self._unnamed.left(command)

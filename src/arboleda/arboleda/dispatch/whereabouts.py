@@ -1,0 +1,76 @@
+"""Whereabouts of robots: where their last moves ended, and at which poses they stand for sure."""
+
+from __future__ import annotations
+
+from arboleda.model.commands import Command, Motion, Position
+from arboleda.model.messages import Fact, MotionState
+from arboleda.model.plant_model import Pose, Workspace
+
+from .belief import Belief
+from .fact_memory import FactMemory, Memory
+from .ledger import Ledger
+from .underway import UnderWay
+
+DISPLACED = "true"
+
+
+class Whereabouts:
+    """Whereabouts of robots; `reached` has the goal of each robot's last motion, once that is done."""
+
+    def __init__(
+        self,
+        beliefs: dict[str, Belief],
+        kept: Memory,
+        memory: FactMemory,
+        ledger: Ledger,
+        under_way: UnderWay,
+    ) -> None:
+        self.reached: dict[str, Position] = {}
+        self._beliefs = beliefs
+        self._memory = memory
+        self._ledger = ledger
+        self._under_way = under_way
+        for name in kept.get(Fact.DISPLACED, {}).keys() & beliefs.keys():
+            beliefs[name].displaced = True
+
+    def place(self, workspace: Workspace) -> Pose | None:
+        """The zone-free pose at, or above, which its robot stands, as far as its evidence goes.
+
+        What it said last may be older than a move that it was just given, or than its last stop.
+        """
+        robot = workspace.robot
+        belief = self._beliefs[robot.name]
+        given = robot.name in self._under_way.ids or self._ledger.work_of(robot.name) is not None
+        restless = belief.state is MotionState.MOVING or given
+        if not belief.online or belief.unhomed or restless:
+            return None
+        here = belief.position if belief.supervised else self.reached.get(robot.name)
+        if here is None or (belief.supervised and not belief.is_sure):
+            return None
+        return next((pose for spot, pose in workspace.free_spots if robot.motion.stands_at(here, spot)), None)
+
+    def displace(self, belief: Belief, *, displaced: bool) -> None:
+        """Remember if the position of a robot has lost its meaning, which it cannot report itself."""
+        belief.displaced = displaced
+        self._memory.remember(Fact.DISPLACED, belief.robot.name, DISPLACED if displaced else None)
+
+    def put_at_reference(self, robot: str) -> None:
+        """Take a robot that cannot say so for put at its reference, wherever it stood before."""
+        belief = self._beliefs[robot]
+        self.displace(belief, displaced=False)
+        self.reached.pop(robot, None)
+        stands = belief.state in (None, MotionState.STOPPED)
+        if belief.robot.reference is not None and not belief.supervised and stands:
+            self.reached[robot] = belief.robot.reference
+
+    def moves_again(self, robot: str) -> None:
+        """A robot that tells no position moves, or cannot: it is no longer where its last move ended."""
+        self.reached.pop(robot, None)
+        for entry in self._ledger.of_robot(robot):
+            if entry.is_work and entry.settles_at is not None:
+                entry.settles_at = None
+                self._ledger.plan(entry)
+
+    def is_there(self, command: Command) -> bool:
+        """True for a motion that ends where the robot's last one, which was done, has left it."""
+        return isinstance(command, Motion) and command.way == (self.reached.get(command.robot),)
