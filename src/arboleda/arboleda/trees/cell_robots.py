@@ -92,7 +92,7 @@ class CellRobots:
         """The place of a robot that stands: at `state` the end of its last move, which may be told late."""
         if self.as_planned is not None or self._dispatcher.beliefs[robot].supervised:
             return self.position(robot)
-        return self._dispatcher.reached.get(robot) or self.position(robot)
+        return self._dispatcher.whereabouts.reached.get(robot) or self.position(robot)
 
     def risen(self, robot: str) -> Position:
         """The position of a robot, lifted as high as its highest approach; home where it is unknown."""
