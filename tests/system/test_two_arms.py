@@ -53,7 +53,7 @@ def test_tasks_are_done_on_virtual_boards(arboleda: Callable[..., Any], type_in:
     plant = arboleda(*up, "--no-ros")
     plant.wait_for("done      sis_a 0B 7")
     plant.wait_for("done      sis_b fetch 1C 4")
-    assert [words[0] for words in operating] == ["submit", "stop", "clear", "reset"]
+    assert [words[0] for words in operating] == ["submit", "stop", "clear", "reset", "resume"]
     for words in operating:
         type_in(words)
     plant.wait_for("done      sis_a palletizing")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import pytest
@@ -80,6 +81,21 @@ def test_an_example_that_is_not_there_is_refused_with_those_that_are(
 )
 def test_a_page_shows_the_pair_as_it_is_written(page: str, file: str) -> None:
     assert f"\n{(PAIR / file).read_text('utf-8')}```\n" in (ROOT / page).read_text("utf-8")
+
+
+@pytest.mark.parametrize("page", ["README.md", "README.es.md"])
+def test_what_the_first_page_has_one_type_makes_a_plant_that_takes_its_task(
+    tmp_path: Path, page: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    lines = (ROOT / page).read_text("utf-8").splitlines()
+    made, started = (shlex.split(line, comments=True) for line in lines if line.startswith("arboleda "))
+    assert CliRunner().invoke(cli, made[1:]).exit_code == 0
+    up, task, option, plant = started[1:]
+    assert (up, option) == ("up", "--plant")
+    here = Bench(loader.load(Path(plant)))
+    here.submit(task)
+    assert here.outcome().state.value == "done"
 
 
 def test_what_is_there_is_never_written_over(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
