@@ -77,8 +77,18 @@ def test_the_spanish_readme_has_the_headings_of_the_english_one() -> None:
 
 
 @pytest.mark.parametrize("name", ["README.md", "README.es.md"])
-def test_a_readme_is_read_in_five_minutes(name: str) -> None:
-    assert len(texts()[name].splitlines()) <= 200
+def test_a_readme_is_read_in_three_minutes(name: str) -> None:
+    lines = texts()[name].splitlines()
+    assert len(lines) <= 80 and max(map(len, lines)) <= 130
+
+
+@pytest.mark.parametrize(("name", "other"), [("README.md", "README.es.md"), ("README.es.md", "README.md")])
+def test_a_readme_leads_to_that_of_the_other_language_and_has_the_same_code(name: str, other: str) -> None:
+    assert f"[{other}]({other})" in texts()[name].splitlines()[2]
+    boxes = [re.findall(r"^```\w*\n(.*?)^```$", texts()[each], re.M | re.S) for each in (name, other)]
+    typed, other_typed = ([re.sub(r" +# .*", "", box) for box in each] for each in boxes)
+    assert typed == other_typed
+    assert "make run\nmake test\n" in typed
 
 
 def test_the_changelog_has_a_page_for_each_version() -> None:

@@ -131,7 +131,7 @@ def arboleda(start: Callable[..., Process], tmp_path: Path) -> Callable[..., Pro
     """`arboleda("run", "sis_a 0B 7")`: the command, with a state directory of the test's own."""
 
     def go(verb: str, *args: str) -> Process:
-        own = verb not in ("check", "conformance", "tree") and "--state" not in args
+        own = verb not in ("check", "conformance", "new", "tree") and "--state" not in args
         state = ("--state", str(tmp_path / "state")) if own else ()
         main = "from arboleda.cli.main import main; main()"
         return start(sys.executable, "-c", main, verb, *args, *state, env={"PYTHONPATH": paths()})

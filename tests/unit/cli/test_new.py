@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -15,6 +15,7 @@ from arboleda.plant_file import loader
 from ..kinds.lab import Bench
 
 ROOT = Path(__file__).parents[3]
+PAIR = ROOT / "examples/scara_pair"
 
 
 def new(folder: Path) -> Result:
@@ -50,19 +51,51 @@ def test_a_step_that_is_left_out_of_its_recipe_is_told(tmp_path: Path, step: str
     assert warning in " ".join(result.output.split())
 
 
-@pytest.mark.parametrize("page", ["README.md", "README.es.md"])
-def test_what_the_first_page_shows_of_it_is_in_it(tmp_path: Path, page: str) -> None:
-    new(tmp_path / "my_plant")
-    written = {
-        name: (tmp_path / "my_plant" / name).read_text("utf-8") for name in ("plant.yaml", "recipes.py")
+@pytest.mark.parametrize("words", [["new", "{}", "--like", "scara_pair"], ["examples", "scara_pair", "{}"]])
+def test_an_example_is_written_with_the_names_that_it_has(tmp_path: Path, words: list[str]) -> None:
+    folder = tmp_path / "my_plant"
+    result = CliRunner().invoke(cli, [word.format(folder) for word in words])
+    assert result.exit_code == 0 and f"up --plant {folder / 'plant.yaml'}" in " ".join(result.output.split())
+    assert {each.name: each.read_bytes() for each in folder.iterdir()} == {
+        each.name: each.read_bytes() for each in PAIR.iterdir() if each.is_file()
     }
-    text = (ROOT / page).read_text("utf-8")
-    kinds, recipe = (
-        re.search(f"```\\w+\n({start}.*?)```", text, re.DOTALL) for start in ("kinds:", "@recipe")
-    )
-    assert kinds and kinds[1] in written["plant.yaml"]
-    docstring = '    """Put a blank into the press, press it, and bring it back."""\n'
-    assert recipe and recipe[1] in written["recipes.py"].replace(docstring, "")
+    assert loader.load(folder / "plant.yaml").name == "scara_pair"
+
+
+def test_an_example_that_is_not_there_is_refused_with_those_that_are(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert _status("new", str(tmp_path / "my_plant"), "--like", "scara_pear") == 2
+    said = " ".join(capsys.readouterr().err.split())
+    assert "there is no example 'scara_pear'" in said and "did you mean scara_pair?" in said
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("page", "file"),
+    [
+        (f"{page}{ending}", file)
+        for page, file in (("README", "recipes.py"), ("docs/how-to/two-arms", "plant.yaml"))
+        for ending in (".md", ".es.md")
+    ],
+)
+def test_a_page_shows_the_pair_as_it_is_written(page: str, file: str) -> None:
+    assert f"\n{(PAIR / file).read_text('utf-8')}```\n" in (ROOT / page).read_text("utf-8")
+
+
+@pytest.mark.parametrize("page", ["README.md", "README.es.md"])
+def test_what_the_first_page_has_one_type_makes_a_plant_that_takes_its_task(
+    tmp_path: Path, page: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    lines = (ROOT / page).read_text("utf-8").splitlines()
+    made, started = (shlex.split(line, comments=True) for line in lines if line.startswith("arboleda "))
+    assert CliRunner().invoke(cli, made[1:]).exit_code == 0
+    up, task, option, plant = started[1:]
+    assert (up, option) == ("up", "--plant")
+    here = Bench(loader.load(Path(plant)))
+    here.submit(task)
+    assert here.outcome().state.value == "done"
 
 
 def test_what_is_there_is_never_written_over(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

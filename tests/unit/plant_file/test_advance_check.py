@@ -41,6 +41,19 @@ cells:
 zones:
   in_the_reader: {poses: [lab drawer], free_while: {reader: {lid: open}}}
 """
+STORAGE = """
+name: store
+uses: [recipes.py]
+paths: {0A: [0, 3, 6], 0B: [0, 3, 4, 7]}
+stations: {0: {deg: [0, 10], mm: 50}}
+cells:
+  sis_a:
+    arm: {name: ra1, model: scara, link: mqtt, evidence: ids, base: {yaw_deg: 220.6}}
+    mobile: {name: rm_sis_a, link: mqtt, evidence: ids, grid: {origin_m: [-0.1, -1.366], pitch_mm: 100}}
+    home: {deg: [0, 0], mm: 0}
+    pickup: {deg: [45, 10], mm: 0}
+    pickups: {A: {deg: [44.09, 0.9], mm: 0}}
+"""
 INTO = 'take("rack"), reader.open(), put("drawer"), reader.close()'
 OUT = 'reader.open(), take("drawer"), put("bin"), reader.close(), loader.home()'
 BRING_BACK = 'loader.brings_back_to("bin") or cell.wait(1)'
@@ -309,3 +322,20 @@ def test_who_goes_into_a_zone_knows_nothing_of_what_no_verb_tells(tmp_path: Path
     (tmp_path / "plant.yaml").write_text(told, "utf-8")
     assert any("which needs" in each for each in advance_check.warnings(model))
     assert not any("which needs" in each for each in advance_check.warnings(load(tmp_path / "plant.yaml")))
+
+
+def test_a_part_goes_back_to_a_target_whose_pose_has_another_name(tmp_path: Path) -> None:
+    """In a cell of an arm and a mobile robot the target `pickup_a` is the pose `pick-up A`."""
+    code = """
+from arboleda.recipes import Path, Pick, Place, Slot, recipe, work
+
+@recipe("try")
+def attempt(cell, path=Path(), station=Slot("stations")):
+    arm, mobile = cell.devices("arm", "mobile")
+    pickup = cell.handover(path)
+    arm.brings_back_to(pickup)
+    return work(mobile.follow(path), arm.tour(Pick(pickup), Place(station), "home"))
+"""
+    (tmp_path / "recipes.py").write_text(code, "utf-8")
+    (tmp_path / "plant.yaml").write_text(STORAGE, "utf-8")
+    assert advance_check.warnings(load(tmp_path / "plant.yaml")) == ()

@@ -13,10 +13,12 @@ import typer
 from arboleda.model.errors import ConfigError, StartError
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase
+from arboleda.plant_file.examples import PLANT, found
+from arboleda.plant_file.examples import texts as texts_of
 from arboleda.plant_file.shapes import PLANT_NAME_RULE, is_plant_name
 from arboleda.runtime import invocation
 
-from .language import say
+from .language import allowed, say
 
 # by what they are called here; pytest must not take the tests of the new plant for tests of Arboleda
 WRITTEN = {"plant.yaml": "plant.yaml", "recipes.py": "recipes.py", "tests_of_plant.py": "test_plant.py"}
@@ -38,6 +40,8 @@ With faults; the first line once, for pytest has to be beside Arboleda:
 
 What the devices can do is in plant.yaml, what they do together in recipes.py. Change them, check again.""",
 )
+NO_EXAMPLE = Phrase("cli.examples.none", "there is no example {name}; {others}")
+RUN_IT = Phrase("cli.examples.run_it", "On virtual devices, with a page:")
 NAMED = "PLANT"  # stands for the plant's name in what is written
 
 
@@ -50,14 +54,37 @@ def new(
     folder: Annotated[
         Path, typer.Argument(metavar="FOLDER", help="The folder to write; its name is that of the plant.")
     ],
+    like: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME",
+            help="Write an example of `arboleda examples` instead, with the names that it has.",
+            show_default=False,
+        ),
+    ] = "",
 ) -> None:
     """Write a plant of your own: an arm, a device, a recipe and a test, in a folder of its own."""
+    if like:
+        copy_example(like, folder)
+        return
     written = write(folder)
     command, plant = invocation.command(), shlex.quote(str(written[0]))
     for file in written:
         typer.echo(say(WROTE(file=str(file))))
     python, named = invocation.python(), shlex.quote(str(folder))
     typer.echo(say(NEXT(command=command, plant=plant, python=python, folder=named)))
+
+
+def copy_example(name: str, folder: Path) -> None:
+    """Write an example to a folder, and say how to start it; ConfigError where there is no such example."""
+    known = found()
+    if name not in known:
+        raise ConfigError((say(NO_EXAMPLE(name=quoted(name), others=allowed(name, known))),))
+    written = write_files(folder, texts_of(known[name]))
+    for file in written:
+        typer.echo(say(WROTE(file=str(file))))
+    plant = next(shlex.quote(str(file)) for file in written if file.name == PLANT)
+    typer.echo(f"\n{say(RUN_IT())}\n  {invocation.command()} up --plant {plant}")
 
 
 def write(folder: Path) -> list[Path]:

@@ -87,10 +87,18 @@ class CellCheck:
 
     def _followed(self, tree: Behaviour) -> tuple[Walkthrough, tuple[Scene, ...]]:
         """All ways through a recipe's tree, and the scenes at their ends."""
-        back = {robot: pose.name for robot, pose in self.context.parts.back.items()}
-        walk = Walkthrough(foresight=Foresight(self.cell, back), rules=RULES)
+        walk = Walkthrough(foresight=Foresight(self.cell, self._back()), rules=RULES)
         begin = walk.foresight.begin().put(first_values(tree))
         return walk, walk.follow(tree.children[0], [begin]).passed
+
+    def _back(self) -> dict[str, str]:
+        """By robot, the target to which the recipe has a recovery bring a part."""
+        poses = self.context.parts.back
+        targets = {robot: self.cell.reach[robot].targets.items() for robot in poses}
+        return {
+            robot: next(name for name, pose in targets[robot] if pose == back)
+            for robot, back in poses.items()
+        }
 
     def _check(self, recipe: Recipe, order: Order) -> None:
         tree = recipe.build(order, self.context)

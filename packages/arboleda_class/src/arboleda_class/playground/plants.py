@@ -31,6 +31,7 @@ FILES = {
     "plc_conveyor": "examples/plc_conveyor/plant.yaml",
     "press_board": "examples/press_board/plant.yaml",
     "ros2_control": "examples/ros2_control/plant.yaml",
+    "scara_pair": "examples/scara_pair/plant.yaml",
 }
 """By the name in an address, the file in the package."""
 FIRST = next(iter(FILES))
