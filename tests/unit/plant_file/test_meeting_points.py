@@ -99,3 +99,24 @@ def test_two_targets_at_one_place_are_told(tmp_path: Path) -> None:
 def test_two_heights_over_one_place_are_two_targets(tmp_path: Path) -> None:
     more = "      again: {left: {deg: [100, 10], mm: 80, approach_mm: 20}}\n"
     assert warned(tmp_path, PLANT + more + ZONE) == []
+
+
+RACK = """
+name: rack
+paths: {AZ: [7], B1: [3]}
+cells:
+  lab:
+    arm: {name: arm, model: scara, link: mqtt, evidence: ids}
+    mobile: {name: cart, model: mobile, link: mqtt, evidence: ids}
+    home: {deg: [0, 0], mm: 0}
+    pickup: {deg: [52.3, 52.7], mm: 27.3}
+    pickups: {"1": {deg: [52.3, 52.7], mm: 27.3}}
+    stations: {"0": {deg: [52.3, 52.7], mm: 27.3}, "1": {deg: [140.5, 74.5], mm: 75}}
+"""
+
+
+def test_a_station_where_parts_are_picked_up_is_told_and_two_exits_may_be_met_at_one_place(
+    tmp_path: Path,
+) -> None:
+    told = [each for each in warned(tmp_path, RACK) if "one place" in each]
+    assert told == [f"lab: {pickup} and station_0 of arm are one place" for pickup in ("pickup", "pickup_1")]

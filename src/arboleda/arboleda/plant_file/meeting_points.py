@@ -52,13 +52,16 @@ def warnings(plant: PlantModel) -> tuple[str, ...]:
 
 
 def _alike(cell: Cell, space: Workspace) -> Iterator[str]:
-    """The targets of a robot that it cannot tell apart; ends of paths, and where those are met, may be so."""
+    """The targets of a robot that it cannot tell apart; ends of paths may be so, and two of where those are
+    met.
+    """
     ends = {path.code for path in space.paths}
-    met = () if cell.handover is None else (*cell.handover.targets, *cell.groups.get("pickups", ()))
-    targets = {name: pose for name, pose in space.targets.items() if name not in ends.union(met)}
-    for (one, here), (other, there) in combinations(targets.items(), 2):
+    met = set() if cell.handover is None else {*cell.handover.targets, *cell.groups.get("pickups", ())}
+    names = {pose.name: name for name, pose in reversed(space.targets.items()) if name not in ends}
+    targets = [(names[pose.name], pose) for pose in space.poses if pose.name in names]
+    for (one, here), (other, there) in combinations(targets, 2):
         is_same = space.robot.motion.stands_at(here.q, there.q) and here.above == there.above
-        if is_same and space.home not in (here, there):
+        if is_same and space.home not in (here, there) and not met.issuperset((one, other)):
             yield f"{cell.name}: {one} and {other} of {space.robot.name} are one place"
 
 

@@ -25,9 +25,9 @@ class CellPlaces:
     which that task put or took a part last, and of those where no other cell did. `is_doubtful` once nobody
     could know them any more, `end_is_doubtful` where that was so when that task ended: a device has lied or
     lost its power, its effector was stuck and nobody reports that, somebody took a hand's part, a hand took
-    one at a station where none was known, or two places are one to its robot. The next task begins with what
-    is in the books then, unless a hand still holds something. `late_hands` were in the middle of a grip, on
-    an earlier command, as that task began.
+    one at a station where none was known, or a place and another target are one to its robot. The next task
+    begins with what is in the books then, unless a hand still holds something. `late_hands` were in the
+    middle of a grip, on an earlier command, as that task began.
     """
 
     def __init__(self, cell: Cell, robots: Mapping[str, Any]) -> None:
@@ -80,7 +80,7 @@ class CellPlaces:
             # what another cell puts down where this one has no place is no part of its places
             self.is_doubtful |= bool(found) or not (now or is_of_others)
             return None
-        place = found[0]
+        place = self._places[found[0]]
         if is_of_others and place.by_people:
             return None  # people see to it for each task
         sentence = self._move(place, name, -1 if now else 1, is_of_others=is_of_others)
@@ -137,16 +137,21 @@ class CellPlaces:
         """The robot that carries a hand."""
         return self._hands[hand].robot.name
 
-    def _found(self, space: Workspace, carrier: RobotTruth) -> list[Place]:
-        """The places where a hand is; several lie so close together that its carrier cannot tell which.
+    def _found(self, space: Workspace, carrier: RobotTruth) -> list[str]:
+        """The places where a hand is, and the other targets that its carrier cannot tell from them.
 
         What is known of a carrier that cells share has the targets of the first of them only.
         """
-        targets = [(name, pose) for name, pose in space.targets.items() if name in self._places]
-        if carrier.cell.name != self.cell.name:
-            return [self._places[name] for name, pose in targets if carrier.stands_at(pose.q)]
         stands = carrier.here | carrier.stood
-        return [self._places[name] for name, pose in targets if pose.name in stands]
+        is_shared = carrier.cell.name != self.cell.name
+        here = {
+            target: pose.q
+            for target, pose in space.targets.items()
+            if (carrier.stands_at(pose.q) if is_shared else pose.name in stands)
+        }
+        places = {target: q for target, q in here.items() if target in self._places}
+        others = [target for target, q in here.items() if q not in places.values()]
+        return [*places, *others] if places else []
 
 
 class PlacesTruth:
