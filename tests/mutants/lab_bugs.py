@@ -8,7 +8,6 @@ from .lab_step_bugs import STEP_BUGS
 
 LAB_BUGS = (*RECIPE_BUGS, *STEP_BUGS, *PLANT_BUGS)
 NOT_FOUND = {
-    "The doser stays over the waste.": "no other recipe moves the doser, so nobody says that it ends at home",
     "The nest is no place.": "a target that is no place gives and takes any number, and the recipe is right",
     "The clamp holds no part.": "the recipe opens the clamp in time, though nothing would tell if it did not",
 }

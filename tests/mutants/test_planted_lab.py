@@ -17,6 +17,7 @@ from .lab_bugs import LAB_BUGS, NOT_FOUND
 from .planted_lab import sighted, written
 
 FOUND = [bug for bug in LAB_BUGS if bug.about not in NOT_FOUND]
+UNSEEN = [bug for bug in LAB_BUGS if bug.about in NOT_FOUND]
 
 
 @pytest.mark.timeout(3600)  # as a whole it takes minutes
@@ -27,6 +28,12 @@ def test_in_the_laboratory_nothing_is_found(tmp_path: Path) -> None:
 @pytest.mark.parametrize("bug", sample(FOUND, every=9), ids=lambda bug: bug.about[:60])
 def test_a_bug_of_the_laboratory_is_found(tmp_path: Path, bug: LabBug) -> None:
     assert sighted(written(tmp_path, bug)) is not None
+
+
+@pytest.mark.timeout(3600)
+@pytest.mark.parametrize("bug", UNSEEN, ids=lambda bug: bug.about[:60])
+def test_what_is_said_to_be_found_by_nobody_is_not_found(tmp_path: Path, bug: LabBug) -> None:
+    assert sighted(written(tmp_path, bug), range(1, length(2, whole=21))) is None
 
 
 def test_nobody_is_advised_to_move_the_mover_onto_an_arm(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from arboleda.model.messages import Verb
 from arboleda.plant_file.loader import load
 from arboleda.simulator.faults.kind import Fault
 from arboleda.simulator.invariants.part_places import PLACES
@@ -57,3 +58,18 @@ def test_a_task_does_not_answer_for_a_hand_that_closes_late_on_a_command_of_befo
     assert [task.state.value for task in world.plant.intake.tasks.values()] == ["done", "done"]
     assert watched.truth.places.cells["lab"].late_hands == {"hand"}
     assert world.boards["hand"].body.facts["closed"]
+
+
+def test_nobody_knows_what_a_hand_has_that_closes_late_on_its_way(tmp_path: Path) -> None:
+    plant = PLANT.replace("at_most_s: 1", "at_most_s: 2")
+    plant = plant.replace("[-60, 10], mm: 80", "[-60, 10], mm: 80, approach_mm: 40")
+    watched = JudgedWorld(load(written(tmp_path, plant, 'take("nest")')), invariants=PLACES)
+    world, places = watched.world, watched.truth.places.cells["lab"]
+    watched.begin(Fault(at=0.0, kind="ends_late", target="hand", amount=2.5, seconds=5.5))
+    world.request_verb(Verb.LOAD, "lab", arguments=(("place", "nest"),))
+    world.request_task("lab try")
+    assert world.advance(8.0, lambda: places.is_doubtful)
+    assert world.boards["hand"].body.facts["closed"] and not watched.truth.robots["mover"].here
+    world.advance(8.0)  # by the books it is brought back meanwhile
+    assert not world.boards["hand"].body.facts["closed"]
+    assert world.plant.cells["lab"].context.places.counts["nest"] == 1

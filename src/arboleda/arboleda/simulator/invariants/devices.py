@@ -190,7 +190,7 @@ def nothing_is_dropped(look: Look) -> Iterator[str]:
             hand, carrier = truth.robot(space.hand.name), truth.robot(space.robot.name)
             if hand not in truth.changed or carrier is None or not hand.let_go:
                 continue
-            places = carrier.here | carrier.stood if carrier in truth.changed else carrier.here
+            places = carrier.here | carrier.stood
             excused = carrier.taken_away or truth.released(space.hand.name) or truth.mistaken(carrier)
             if not places and not excused and not _is_settled_by_a_lie(truth, hand):
                 yield f"{space.hand.name} lets go, and {space.robot.name} stands at no target"

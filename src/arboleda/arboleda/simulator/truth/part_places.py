@@ -25,9 +25,10 @@ class CellPlaces:
     which that task put or took a part last, and of those where no other cell did. `is_doubtful` once nobody
     could know them any more, `end_is_doubtful` where that was so when that task ended: a device has lied or
     lost its power, its effector was stuck and nobody reports that, somebody took a hand's part, a hand took
-    one at a station where none was known, or a place and another target are one to its robot. The next task
-    begins with what is in the books then, unless a hand still holds something. `late_hands` were in the
-    middle of a grip, on an earlier command, as that task began.
+    one at a station where none was known, or closed where its robot stood at no target, or a place and
+    another target are one to its robot. The next task begins with what is in the books then, unless a hand
+    still holds something. `late_hands` were in the middle of a grip, on an earlier command, as that task
+    began.
     """
 
     def __init__(self, cell: Cell, robots: Mapping[str, Any]) -> None:
@@ -76,6 +77,9 @@ class CellPlaces:
         if now == before:
             return None
         found = [] if carrier is None else self._found(self._hands[name], carrier)
+        if now and not is_of_others and carrier is not None and self._is_on_its_way(name, carrier):
+            self.is_doubtful = True  # it closes late, and may have the part that it was to take, or none
+            return None
         if len(found) != 1:
             # what another cell puts down where this one has no place is no part of its places
             self.is_doubtful |= bool(found) or not (now or is_of_others)
@@ -136,6 +140,12 @@ class CellPlaces:
     def carrier(self, hand: str) -> str:
         """The robot that carries a hand."""
         return self._hands[hand].robot.name
+
+    def _is_on_its_way(self, hand: str, carrier: RobotTruth) -> bool:
+        """True for the carrier of a hand where it stands at no target of this cell, place or not."""
+        if carrier.cell.name != self.cell.name:
+            return not any(map(carrier.stands_at, (pose.q for pose in self._hands[hand].targets.values())))
+        return not carrier.here | carrier.stood
 
     def _found(self, space: Workspace, carrier: RobotTruth) -> list[str]:
         """The places where a hand is, and the other targets that its carrier cannot tell from them.

@@ -116,6 +116,7 @@ class RobotTruth:
             self.acts = []
         self.lost_power = self.started = self.swerved = self.jumped = False
         self.sped_up = self.runs_on = False
+        self.stood = self.here
 
     def expect(self, publication: Publication) -> None:
         """Expect a command that our bridge published for it."""
