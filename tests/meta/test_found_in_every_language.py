@@ -18,7 +18,7 @@ from arboleda.web.languages import FIRST, LANGUAGES, contents
 
 PACKAGE = Path(__file__).parents[2] / "src/arboleda/arboleda"
 WORDS = PACKAGE / "web/languages"
-SEEING = ("invariants", "recorded", "storage", "truth")  # what an invariant saw is said there
+SEEING = ("invariants", "recorded", "truth")  # what an invariant saw is said there
 DRIVEN = (
     *(
         "device_feed",

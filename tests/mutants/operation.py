@@ -86,7 +86,7 @@ PEOPLE = (
         weather="none",
     ),
     mutant(
-        "commands_follow_the_recipe",
+        "tasks_take_their_time",
         "After an effector nobody dwells.",
         edit(
             steps.effector,

@@ -20,7 +20,7 @@ PATH = Phrase("text.path", "path")
 STATION = Phrase("text.station", "station")
 
 
-@recipe("storage", title=NAME, about="", is_default=True)
+@recipe("storage", title=NAME, about="", is_default=True, ends_with={"station": 1})
 def storage(
     cell: Kit,
     path: Annotated[str, Path(called=PATH)],
