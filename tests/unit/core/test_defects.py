@@ -31,7 +31,7 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import Evidence, MotionState
-from arboleda.recipes.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees.leaves import Act
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED

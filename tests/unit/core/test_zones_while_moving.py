@@ -10,7 +10,7 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.plant_model import MotionState
 from arboleda.plant_file.loader import load
-from arboleda.recipes.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 
 from .conftest import Hand
 

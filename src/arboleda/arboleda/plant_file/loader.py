@@ -24,7 +24,6 @@ from arboleda.model.plant_model import (
 )
 from arboleda.model.recipe import Recipe
 from arboleda.model.recording import Limits, Recording
-from arboleda.recipes.storage import RECIPES
 from arboleda.store.address import has_password, is_address
 
 from . import drivers, own_kinds, own_recipes, user_file
@@ -205,7 +204,7 @@ def notes(plant: PlantModel) -> tuple[str, ...]:
     sampled = [
         f"{cell.name}: {recipe.name} has {number} combinations of parameters; {MOST} of them were tried"
         for cell, recipe, number in many
-        if number > MOST and recipe not in RECIPES
+        if number > MOST and not recipe.is_shipped
     ]
     return (*own_models, *sampled)
 
