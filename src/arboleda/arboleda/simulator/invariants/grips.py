@@ -75,7 +75,7 @@ def _is_unchecked(look: Look, task: str, effector: Effector, began: float) -> bo
     """True where nobody could know, or looked, whether an effector has a part."""
     is_blind = effector.unseen_at >= began
     lies = look.truth.deceived_since(effector.arm.robot.mqtt, "piece", began)
-    return is_blind or lies or Check.GRIP in _unchecked(look, task)
+    return is_blind or lies or Check.GRIP in look.truth.unchecked[task]
 
 
 @invariant(Trigger.DONE_TASKS)
@@ -90,7 +90,7 @@ def unchecked_is_as_said(look: Look) -> Iterator[str]:
             continue
         silent = any(arm.robot.evidence is not Evidence.IDS for arm in arms)
         booted = any(arm.booted_us / 1e6 >= began for arm in arms)
-        unchecked = _unchecked(look, task)
+        unchecked = look.truth.unchecked[task]
         if (Check.GRIP in unchecked) not in _may_be_unchecked(look, cell, task, silent=silent):
             yield f"{task} is done, and its grip is {_checked(Check.GRIP, unchecked)}"
         if (Check.RELEASE in unchecked) is not silent and not booted:
@@ -105,12 +105,6 @@ def _may_be_unchecked(look: Look, cell: str, task: str, *, silent: bool) -> tupl
     if known is None or not model.recipe(text.parse(known.order.text, look.world.model).recipe).is_shipped:
         return (True, False)
     return (model.piece_check is False,)
-
-
-def _unchecked(look: Look, task: str) -> tuple[Check, ...]:
-    """What nobody confirmed of a task, by the plant's own word."""
-    said = [each.message for each in look.record.tasks.changes if each.message.task == task]
-    return said[-1].unchecked if said else ()
 
 
 def _checked(check: Check, unchecked: tuple[Check, ...]) -> str:

@@ -6,7 +6,7 @@ import json
 
 from arboleda.model.commands import Command, Motion, Query
 from arboleda.model.facts import Value
-from arboleda.model.messages import ENDED, Fact, OperatorAnswer, Report, TaskChanged, TaskState, Verb
+from arboleda.model.messages import ENDED, Check, Fact, OperatorAnswer, Report, TaskChanged, TaskState, Verb
 from arboleda.model.whole_cells import whole_cell
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import OrderGoal
@@ -40,6 +40,7 @@ class Truth(RobotsTruth):
         self.shared = SharedDevicesTruth(world, self.robots)
         self.begun_tasks: list[tuple[str, str]] = []
         self.done_tasks: list[tuple[str, str, float]] = []
+        self.unchecked: dict[str, tuple[Check, ...]] = {}  # of those, what nobody confirmed
         self._at_work = _tasks_at_work(world)
         self._refused_commands = RefusedCommands()
         self._facts = {name: dict(robot.body.true_facts) for name, robot in self.robots.items()}
@@ -105,7 +106,7 @@ class Truth(RobotsTruth):
 
     def look(self) -> None:
         if self.done_tasks:
-            self.done_tasks = []
+            self.done_tasks, self.unchecked = [], {}
         super().look()
         if self.world.model.shared:
             self.shared.look()
@@ -197,6 +198,7 @@ class Truth(RobotsTruth):
             del self._at_work[cell]
         if change.state is TaskState.DONE and change.request is None:
             self.done_tasks.append((cell, change.task, self._began.get(cell, self.world.now)))
+            self.unchecked[change.task] = change.unchecked
 
     def _answered(self, answer: OperatorAnswer) -> None:
         super()._answered(answer)
