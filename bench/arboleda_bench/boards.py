@@ -17,7 +17,7 @@ from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command
 from arboleda.model.messages import MotionState
 from arboleda.model.plant_model import Cell, PlantModel, Robot
-from arboleda.recipes.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.payloads import (
     EffectorGoal,
     Goal,

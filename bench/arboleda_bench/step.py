@@ -31,7 +31,7 @@ from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
-from arboleda.recipes.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.views import view
 from arboleda.views.resting_cells import RestingCells
 

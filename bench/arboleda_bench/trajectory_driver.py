@@ -17,8 +17,8 @@ from arboleda.drivers import MotionState, MoveJoints
 from arboleda.drivers.joint_trajectory.settings import Settings
 from arboleda.kinds.arm import Arm
 from arboleda.model.errors import ArboledaError
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 
 from .reports import Reports
 from .result import Aim, Figure, Result, percentile

@@ -19,12 +19,12 @@ from arboleda.adapters import clock
 from arboleda.adapters.broker_login import Address
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.runtime.loop import Loop
 from arboleda.runtime.rate import at_rate
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.sim.devices import Devices, FromBoard
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.payloads import Goal, StopGoal
 
 from .board_clients import BoardClients, forget_unsent

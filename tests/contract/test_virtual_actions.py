@@ -33,8 +33,8 @@ from arboleda.kinds.gripper import gripper
 from arboleda.kinds.mobile import Grid, Mobile
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Evidence, Link, Robot
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.gripper.machine import FAULTS as GRIPPER_FAULTS
 from arboleda.virtual.nav2.machine import FAULTS as BASE_FAULTS

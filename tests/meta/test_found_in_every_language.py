@@ -19,7 +19,7 @@ from arboleda_boards.conformance.judge import CHECKS, DEVICE_CHECKS
 
 PACKAGE = Path(__file__).parents[2] / "src/arboleda/arboleda"
 WORDS = PACKAGE / "web/languages"
-SEEING = ("invariants", "recorded", "storage", "truth")  # what an invariant saw is said there
+SEEING = ("invariants", "recorded", "truth")  # what an invariant saw is said there
 DRIVEN = (
     *(
         "device_feed",

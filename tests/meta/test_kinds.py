@@ -30,7 +30,6 @@ NAMED_AS_ROLES = {
     "dashboard/twin/twin.py",
     "simulator/invariants/rows.py",  # what only storage knows
     "simulator/invariants/screens.py",
-    "simulator/storage/texts.py",
     "simulator/plants/cells.py",  # plant files of cells of storage
     "simulator/plants/draw.py",
     "simulator/plants/reductions.py",

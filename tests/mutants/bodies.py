@@ -109,9 +109,9 @@ MOTION = (
     ),
 )
 
-GRIP = (
+GRIPS = (
     mutant(
-        "effector_on_only_between_pick_and_place",
+        "effector_on_only_for_a_part",
         "The work at a pose is done before the arm goes there, and no piece is looked for.",
         edit(steps._at, "[go, *work]", "[*work, go]"),
         edit(steps.grip, "if not check:", "if True:"),
@@ -129,57 +129,17 @@ GRIP = (
         likely=6,
     ),
     mutant(
-        "no_part_dropped",
-        "A board that stops switches all its outputs off.",
-        edit(ArmBody.stop, "self._plan(now_us)", "self._plan(now_us); self.switch_effector(False)"),
-        likely=10,
-    ),
-    mutant(
         "parts_conserved",
         "An effector that opens keeps its part.",
         edit(ArmBody.switch_effector, "self.holding and on", "self.holding"),
         weather="none",
     ),
     mutant(
-        "station_gets_one_part",
-        "What is resumed begins anew, instead of where it was held.",
-        edit(
-            CellRun.go_on,
-            "for act in self.run.interrupted():\n        act.send()",
-            "self._look(self.run.begin(lambda: self.keeping.make(self.task.order)))",
-        ),
-        weather={"operator_hold": 30.0},
-    ),
-    mutant(
-        "one_pick_one_place",
-        "A storage task fetches its part twice.",
-        edit(
-            storage.storage.function,
-            "Place(station), HOME",
-            "Place(station), Pick(pickup), HOME",
-        ),
-        weather="none",
-    ),
-    mutant(
-        "done_task_is_true",
-        "A task that failed and was recovered counts as done.",
-        edit(CellRun._ended, "if found is not None:", "if found is not None and not recovered:"),
-    ),
-)
-
-ROBBED = (
-    mutant(
-        "robbed_task_is_not_done",
+        "done_tasks_bring_their_parts",
         "Nobody looks whether an effector opened by itself, or has lost its part.",
         edit(Failures.opened_effector, "if robot is None or", "if True or"),
         *LOOKS_AT_NO_PIECE,
         weather={"opened_effector": 20.0},
-    ),
-    mutant(
-        "done_task_has_its_part",
-        "A part that was lost is missed neither on the way nor where it belongs.",
-        *LOOKS_AT_NO_PIECE,
-        weather={"lost_part": 20.0},
     ),
     mutant(
         "unchecked_is_as_said",
@@ -189,6 +149,7 @@ ROBBED = (
         seeds=SHARED,
     ),
 )
+
 
 STOP = (
     mutant(
@@ -215,4 +176,43 @@ STOP = (
     ),
 )
 
-BODIES = (*ZONES, *MOTION, *GRIP, *ROBBED, *STOP)
+BODIES = (*ZONES, *MOTION, *GRIPS, *STOP)
+PLANTED_PARTS = (
+    mutant(
+        "nothing_is_dropped",
+        "A board that stops switches all its outputs off.",
+        edit(ArmBody.stop, "self._plan(now_us)", "self._plan(now_us); self.switch_effector(False)"),
+        likely=10,
+    ),
+    mutant(
+        "parts_are_taken_and_put_where_they_can_be",
+        "What is resumed begins anew, instead of where it was held.",
+        edit(
+            CellRun.go_on,
+            "for act in self.run.interrupted():\n        act.send()",
+            "self._look(self.run.begin(lambda: self.keeping.make(self.task.order)))",
+        ),
+        weather={"operator_hold": 30.0},
+    ),
+    mutant(
+        "done_tasks_leave_nothing_behind",
+        "A storage task fetches its part twice.",
+        edit(
+            storage.storage.function,
+            "Place(station), HOME",
+            "Place(station), Pick(pickup), HOME",
+        ),
+        weather="none",
+    ),
+    mutant(
+        "recipes_end_as_they_say",
+        "A task that failed and was recovered counts as done.",
+        edit(CellRun._ended, "if found is not None:", "if found is not None and not recovered:"),
+    ),
+    mutant(
+        "done_tasks_bring_their_parts",
+        "A part that was lost is missed neither on the way nor where it belongs.",
+        *LOOKS_AT_NO_PIECE,
+        weather={"lost_part": 20.0},
+    ),
+)

@@ -89,7 +89,7 @@ PEOPLE = (
         weather="none",
     ),
     mutant(
-        "commands_follow_the_recipe",
+        "tasks_take_their_time",
         "After an effector nobody dwells.",
         edit(
             steps.effector,

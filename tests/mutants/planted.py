@@ -16,12 +16,15 @@ from arboleda.views import view
 from arboleda.views.changes import changed
 from arboleda.views.chronicle import Chronicle
 
+from .bodies import PLANTED_PARTS
 from .leaders import PLANTED_LEADERS
 from .mutant import SHARED, edit, mutant
-from .restarts import DIES, FULL
+from .restarts import DIES, FULL, PLANTED_RESTARTS
 
 PLANTED = (
     *PLANTED_LEADERS,
+    *PLANTED_PARTS,
+    *PLANTED_RESTARTS,
     mutant(
         "tasks_go_to_the_best_cell",
         "A task whose step takes longer than ever counts as nearly done.",
@@ -87,18 +90,18 @@ PLANTED = (
         weather=DIES,
     ),
     mutant(
-        "commands_follow_the_recipe",
+        "no_step_is_done_twice",
         "A board may have taken any commands since where its task stands was kept.",
         edit(Knowledge.explains, "if now == before:", "if True:"),
         weather={**DIES, "power_cut": 12.0, "slow_disk": 12.0},
         likely=28,
     ),
     mutant(
-        "effector_on_only_between_pick_and_place",
+        "nothing_is_dropped",
         "What a board never took counts as done after a restart.",
         edit(fate, "return Fate.UNTAKEN", "return Fate.DONE"),
         weather={**DIES, "loss": 20.0},
-        likely=6,
+        likely=14,
     ),
     mutant(
         "books_of_parts_are_true",

@@ -47,12 +47,6 @@ RESTARTS = (
         weather={**DIES, "reboot": 20.0},
     ),
     mutant(
-        "one_pick_one_place_over_all_starts",
-        "A task that was at work waits again.",
-        edit(Intake.take_back, "Task.of(kept, text.parse(", "Task(kept.id, text.parse("),
-        weather=DIES,
-    ),
-    mutant(
         "nothing_unkept_leaves",
         "A plant that can keep nothing more goes on telling its robots what to do.",
         edit(leaves_unkept, "ends_motion(message)", "isinstance(message, Command)"),
@@ -68,6 +62,14 @@ RESTARTS = (
         "nothing_moves_after_a_restart",
         "What waited starts again by itself.",
         edit(TaskQueue.take_back, "not self._cell.goes_on", "False"),
+        weather=DIES,
+    ),
+)
+PLANTED_RESTARTS = (
+    mutant(
+        "parts_are_taken_and_put_where_they_can_be",
+        "A task that was at work waits again.",
+        edit(Intake.take_back, "Task.of(kept, text.parse(", "Task(kept.id, text.parse("),
         weather=DIES,
     ),
 )

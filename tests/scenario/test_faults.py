@@ -18,9 +18,9 @@ from arboleda.core import reasons
 from arboleda.core.cell_states import CellState
 from arboleda.model.messages import Reason, TaskState
 from arboleda.model.plant_model import Evidence
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.arm import ArmBody
 from arboleda.testing import Rig, Witness, faults, shipped, slowed
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees import steps
 from arboleda.wire.transport import Publication
 

@@ -16,13 +16,13 @@ from arboleda.model.commands import Home
 from arboleda.model.messages import Journal, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel, Retry
 from arboleda.plant_file.loader import load
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.freshness import Freshness
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.run import Simulation
 from arboleda.simulator.shrink import explicit
 from arboleda.testing import Rig, Witness, faults, shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.board import Board, Message
 from arboleda.wire.hop import FromPlant
 

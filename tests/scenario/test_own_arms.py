@@ -13,9 +13,9 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.plant_file.robot_models import mobile_models
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.simulator.plants import draw
 from arboleda.testing import Sim
+from arboleda.testing.storage_layout import StorageLayout
 
 from ..lengths import sample
 from ..unit.plant_file import own_arms

@@ -11,10 +11,10 @@ from arboleda.core.cell_states import CellState
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Retry
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
 from arboleda.testing import Rig, Witness, faults
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees.tree_run import TreeRun
 from arboleda.wire.transport import Publication
 

@@ -21,7 +21,7 @@ from arboleda.kinds.arm import Arm
 from arboleda.model.messages import MotionState
 from arboleda.model.plant_model import Link
 from arboleda.plant_file import loader
-from arboleda.recipes.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.payloads import Channel, JointsGoal, Presence, StopGoal, Telemetry, decode, encode
 from arboleda.wire.topics import topic
 from arboleda.wire.units import from_wire, to_wire

@@ -11,8 +11,8 @@ import pytest
 from arboleda.drivers import DriverError
 from arboleda.drivers.joint_trajectory.settings import Settings as ArmSettings
 from arboleda.drivers.nav2.settings import ToPose
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_ros.joint_trajectory import FollowJointTrajectory
 from arboleda_ros.nav2 import NavigateToPose
 

@@ -19,11 +19,11 @@ from arboleda.campaigns.request import Request, shared
 from arboleda.cli.main import main
 from arboleda.model.plant_model import Evidence
 from arboleda.plant_file import loader
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.simulator import judged
 from arboleda.simulator.faults import KINDS
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.invariants.invariant import Look, Trigger, invariant
+from arboleda.testing.storage_layout import StorageLayout
 
 PLANT = """
 name: small

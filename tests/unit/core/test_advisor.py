@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from arboleda.campaigns.request import shared
 from arboleda.model.messages import Verb
-from arboleda.recipes.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 
 from .conftest import Hand
 

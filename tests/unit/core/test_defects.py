@@ -33,7 +33,7 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import Evidence
-from arboleda.recipes.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees.leaves import Act
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED

@@ -29,8 +29,8 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import Evidence, Timing
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees import leaves
 from arboleda.views import view
 

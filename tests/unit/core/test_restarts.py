@@ -11,9 +11,9 @@ from arboleda.campaigns.request import shared
 from arboleda.core.plant import SHORTEST_ABSENCE_S, Plant
 from arboleda.model.messages import Fact, MotionState, Notice, Remember, Report, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees.leaves import Act
 
 MOBILE = "rm_sis_a"

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 from arboleda.drivers import MoveJoints, Report
 from arboleda.model.plant_model import Evidence, Link
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.virtual.dobot.faults import FAULTS
 from arboleda.virtual.dobot.machine import VirtualDobot
 from arboleda.virtual.faults import Faults

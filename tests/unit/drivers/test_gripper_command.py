@@ -27,8 +27,8 @@ from arboleda.kinds.declared import Device
 from arboleda.kinds.gripper import GripperSettings, gripper
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Evidence, Link
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 
 JAW = Device(
     name="jaw",

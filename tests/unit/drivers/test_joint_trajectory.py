@@ -28,8 +28,8 @@ from arboleda.drivers.ros_action.events import (
 )
 from arboleda.drivers.ros_action.joints import JointStateEvent
 from arboleda.model.plant_model import Evidence, Link
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 
 ARM = replace(StorageLayout(shipped("sis_c").cells[0]).arm, link=Link.DRIVER, evidence=Evidence.IDS)
 NAMES = tuple(joint.name for joint in ARM.joints)

@@ -31,9 +31,9 @@ from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.messages import MotionState, Report, Undelivered
 from arboleda.model.plant_model import Evidence, Link
 from arboleda.model.sentence import OWN
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.board import SILENCE, SILENCE_US
 from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 
 from ..kinds.station import STATION, plant
 

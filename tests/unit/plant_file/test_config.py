@@ -10,7 +10,7 @@ import pytest
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, MqttVersion, PlantModel, Timing
 from arboleda.plant_file import loader
-from arboleda.recipes.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_bench.cost.counter import count
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "plants"

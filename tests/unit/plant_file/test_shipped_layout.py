@@ -18,8 +18,8 @@ from arboleda.kinds.joints import Joint
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import Cell, Pose
 from arboleda.plant_file.urdf import robot_urdf
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 
 from ...lengths import sample
 

@@ -10,9 +10,9 @@ import pytest
 from arboleda.adapters.broker_login import Address, Credentials
 from arboleda.model.errors import StartError
 from arboleda.model.plant_model import Evidence, Link, PlantModel
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.runtime.parts.linux_boards import LinuxBoards, on_linux
 from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 
 
 class Broker:

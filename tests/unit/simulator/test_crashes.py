@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from importlib.resources import as_file, files
 from itertools import product
 
 import pytest
@@ -11,6 +12,7 @@ import pytest
 from arboleda.core.cell_states import CellState
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Fact, Heartbeat, TaskChanged, TaskState, Verb
+from arboleda.plant_file.loader import load
 from arboleda.simulator.chance import Dice
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import KINDS, OF_CRASHES, Fault
@@ -334,3 +336,10 @@ def test_crashes_are_a_level_of_their_own() -> None:
     drawn = [Climate.draw(shipped(), seed, "crashes").rates for seed in range(8)]
     assert set(OF_CRASHES) <= {name for rates in drawn for name in rates}
     assert all(KINDS[name].targets(shipped()) == (PLANT,) for name in OF_CRASHES)
+
+
+def test_what_a_done_task_leaves_unchecked_is_heard_also_in_the_last_words_of_a_plant() -> None:
+    with as_file(files("arboleda").joinpath("plants", "shared.yaml")) as file:
+        model = load(file)
+    climate = Climate.draw(model, 6, "crashes")
+    assert Simulation(model, 6, climate.faults).run(seconds=10.0).broken is None

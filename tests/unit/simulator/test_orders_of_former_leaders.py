@@ -11,9 +11,9 @@ from arboleda.model.plant_model import Evidence
 from arboleda.sim.arm import ArmBody
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants import Invariant
+from arboleda.simulator.invariants.grips import GRIPS
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda.simulator.network import Client
-from arboleda.simulator.storage.grip import GRIP
 from arboleda.simulator.world import BRIDGE, PLANT
 from arboleda.testing import shipped
 from arboleda.wire.payloads import EffectorGoal, encode
@@ -107,7 +107,7 @@ def test_one_that_grips_where_no_task_runs_is_nobodys_fault_either() -> None:
 
 
 def test_the_same_order_of_who_leads_is_one_too_many() -> None:
-    change = Change(invariants=GRIP)
+    change = Change(invariants=GRIPS)
     change.carry()
     change.tell_to_let_go(change.world.broker.clients[BRIDGE])
     with pytest.raises(BrokenInvariant, match=OFF):
@@ -115,7 +115,7 @@ def test_the_same_order_of_who_leads_is_one_too_many() -> None:
 
 
 def test_one_that_comes_late_from_who_leads_still_is_one_too_many() -> None:
-    change = Change(invariants=GRIP)
+    change = Change(invariants=GRIPS)
     change.carry()
     change.tell_to_let_go(change.world.broker.clients[BRIDGE], late_s=0.05)
     with pytest.raises(BrokenInvariant, match=OFF):
@@ -123,7 +123,7 @@ def test_one_that_comes_late_from_who_leads_still_is_one_too_many() -> None:
 
 
 def test_one_with_a_number_could_have_been_refused() -> None:
-    change = Change(invariants=GRIP)
+    change = Change(invariants=GRIPS)
     change.tell_to_let_go(change.leader, epoch=1001)  # among its last packets
     change.carry()
     with pytest.raises(BrokenInvariant, match=OFF):

@@ -20,15 +20,19 @@ from arboleda.model.commands import Home
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.model.sentence import Sentence
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
+from arboleda.simulator.invariants.grips import GRIPS
 from arboleda.simulator.invariants.invariant import Judges, Look
 from arboleda.simulator.invariants.motion import MOTION
+from arboleda.simulator.invariants.part_places import (
+    done_tasks_leave_nothing_behind,
+    parts_are_taken_and_put_where_they_can_be,
+    recipes_end_as_they_say,
+)
 from arboleda.simulator.invariants.stop import STOP
 from arboleda.simulator.invariants.zones import ZONES
 from arboleda.simulator.record import Record
-from arboleda.simulator.storage.grip import GRIP
 from arboleda.simulator.truth.truth import Truth
 from arboleda.simulator.world import World
 from arboleda.testing.plants import shipped
@@ -48,7 +52,12 @@ from arboleda.wire.transport import Publication
 from ...cells import with_poses
 from ...lengths import sample
 
-INVARIANTS = (*ZONES, *MOTION, *GRIP, *STOP)
+OF_PARTS = (
+    parts_are_taken_and_put_where_they_can_be,
+    done_tasks_leave_nothing_behind,
+    recipes_end_as_they_say,
+)
+INVARIANTS = (*ZONES, *MOTION, *GRIPS, *OF_PARTS, *STOP)
 ARM, MOBILE = "ra_1", "rm_sis_a"
 Patch = pytest.MonkeyPatch
 
@@ -78,7 +87,7 @@ class Watch:
     def carry(self) -> None:
         """Be in the middle of the way from pick-up to place."""
         self.task(wait_s=0.0)
-        self.wait(60.0, until=lambda: self.truth.storage.cells["sis_a"].picks == 1)
+        self.wait(60.0, until=lambda: self.body.holding and self.body.moving)
         self.wait(0.1)
 
     def verb(self, verb: Verb, scope: str = "", wait_s: float = 1.0) -> None:
@@ -102,7 +111,8 @@ def zoned() -> PlantModel:
     plant = shipped()
     cells = []
     for cell in plant.cells:
-        pickup = replace(StorageLayout(cell).pickup, zones=frozenset({"centre"}))
+        assert cell.handover is not None
+        pickup = replace(cell.taker.targets[cell.handover.otherwise], zones=frozenset({"centre"}))
         cells.append(with_poses(cell, pickup=pickup))
     return replace(plant, zones=("centre",), cells=tuple(cells))
 
@@ -299,11 +309,19 @@ def a_part_from_nowhere(patch: Patch) -> Watch:
     return watch
 
 
+def lost_for_no_reason(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.carry()
+    watch.body.lose_piece()
+    watch.wait(0.5)
+    return watch
+
+
 def twice(order: Any, context: Context) -> Any:
     """A storage recipe that stores two parts."""
-    layout = StorageLayout(context.cell)
-    station = layout.space.targets[order.values["station"]]
-    arm, pickup = layout.arm.name, layout.pickup
+    space = context.cell.taker
+    station = space.targets[order.values["station"]]
+    arm, pickup = space.robot.name, space.targets["pickup"]
 
     def once() -> list[Any]:
         gripped = steps.grip(context, arm, pickup, check=False)
@@ -315,6 +333,20 @@ def twice(order: Any, context: Context) -> Any:
 def two_parts(patch: Patch) -> Watch:
     watch = Watch(recipes={"storage": twice})
     watch.task("sis_a 0B 7", wait_s=30.0)
+    return watch
+
+
+def not_brought(order: Any, context: Context) -> Any:
+    """A storage recipe that waits for no mobile robot."""
+    space = context.cell.taker
+    arm, pickup = space.robot.name, space.targets["pickup"]
+    gripped = steps.grip(context, arm, pickup, check=False)
+    return steps.task("storage", steps.tour(context, arm, [(pickup, gripped), (space.home, [])]), context)
+
+
+def taken_too_early(patch: Patch) -> Watch:
+    watch = Watch(recipes={"storage": not_brought})
+    watch.task("sis_a 0B 7")
     return watch
 
 
@@ -395,16 +427,17 @@ BREAKS: list[tuple[str, Callable[[Patch], Watch]]] = [
     ("done_is_true", done_when_accepted(SetEffector)),
     ("done_is_true", done_when_accepted(Home)),
     ("tiny_moves_succeed", never_reached),
-    ("effector_on_only_between_pick_and_place", gripped_at_home),
-    ("effector_on_only_between_pick_and_place", began_with_the_effector_on),
+    ("effector_on_only_for_a_part", gripped_at_home),
+    ("effector_on_only_for_a_part", began_with_the_effector_on),
     ("effector_off_only_where_legal", opened_on_the_way),
-    ("no_part_dropped", opened_on_the_way),
     ("parts_conserved", a_part_from_nowhere),
-    ("station_gets_one_part", two_parts),
-    ("one_pick_one_place", two_parts),
-    ("done_task_is_true", nothing_was_done),
-    ("robbed_task_is_not_done", robbed_unnoticed),
-    ("done_task_has_its_part", lost_unnoticed),
+    ("parts_conserved", lost_for_no_reason),
+    ("parts_are_taken_and_put_where_they_can_be", two_parts),
+    ("parts_are_taken_and_put_where_they_can_be", taken_too_early),
+    ("done_tasks_leave_nothing_behind", taken_too_early),
+    ("recipes_end_as_they_say", nothing_was_done),
+    ("done_tasks_bring_their_parts", robbed_unnoticed),
+    ("done_tasks_bring_their_parts", lost_unnoticed),
     ("unchecked_is_as_said", checked_unseen),
     ("latched_board_stays_still", moved_while_latched),
     ("stop_holds", moved_while_latched),
@@ -420,4 +453,5 @@ def test_it_bites(name: str, break_it: Callable[[Patch], Watch], monkeypatch: Pa
 
 
 def test_every_invariant_has_something_that_breaks_it() -> None:
-    assert {name for name, _ in BREAKS} == {each.name for each in INVARIANTS}
+    elsewhere = {"recovery_takes_its_zones"}  # it needs seeds, and has its bug in tests/mutants
+    assert {name for name, _ in BREAKS} | elsewhere == {each.name for each in INVARIANTS}

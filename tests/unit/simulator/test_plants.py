@@ -15,8 +15,8 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.plant_file import shapes
 from arboleda.plant_file.robot_models import arm_models, mobile_models
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.simulator.plants import NOT_DRAWN, draw, smaller
+from arboleda.testing.storage_layout import StorageLayout
 
 SEEDS = range(120)
 LINKS = set(Link) - {Link.SCREEN, Link.DRIVER}  # a person is a device, and drivers are not drawn

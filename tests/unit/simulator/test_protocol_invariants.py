@@ -29,7 +29,6 @@ from arboleda.model.plant_model import Evidence, ForeignCommands, PlantModel, Re
 from arboleda.model.sentence import Phrase, as_sentence
 from arboleda.plant_file.loader import load
 from arboleda.recipes import recipe, work
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.board import Board
 from arboleda.sim.freshness import Freshness
 from arboleda.sim.receipts import Receipts
@@ -790,7 +789,7 @@ def zoned() -> PlantModel:
     zone = frozenset({"table"})
     cells = []
     for each in model.cells:
-        pickup = replace(StorageLayout(each).pickup, zones=zone)
+        pickup = replace(each.taker.targets["pickup"], zones=zone)
         cells.append(replace(with_poses(each, pickup=pickup), zone_wait_s=3.0))
     return replace(model, cells=tuple(cells), zones=("table",))
 
@@ -900,7 +899,7 @@ def test_zone_requests_end__of_a_recovery_unless_who_has_the_zone_works():
     watch.task("sis_b palletizing", wait_s=1)
     assert watch.world.plant.zones.holder("table") == "ra2"
     watch.task("sis_a palletizing", wait_s=8)
-    assert [cell.name for cell in watch.record.waiting] == ["sis_a"]
+    assert [user.cell for user in watch.record.waiting] == ["sis_a"]
     assert watch.world.plant.cells["sis_a"].run.recovering
     watch.wait(40)
     assert watch.found == {} and watch.record.waiting == []
@@ -928,7 +927,7 @@ def test_zone_requests_end__anew_after_the_pause_of_a_retry(monkeypatch):
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
     monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     watch.task("sis_a look", wait_s=7.0)
-    assert [cell.name for cell in watch.record.waiting] == ["sis_a"]
+    assert [user.cell for user in watch.record.waiting] == ["sis_a"]
     watch.wait(10)
     assert watch.found == {}
 
@@ -950,7 +949,7 @@ def test_zone_requests_end__anew_at_each_try_of_a_tree(monkeypatch, node):
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
     monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     watch.task("sis_a look", wait_s=5.0)
-    assert [cell.name for cell in watch.record.waiting] == ["sis_a"]
+    assert [user.cell for user in watch.record.waiting] == ["sis_a"]
     watch.wait(12)
     assert watch.found == {}
 

@@ -260,7 +260,7 @@ def test_parts_stay_in_doubt_where_a_task_begins_in_the_middle_of_a_grip(tmp_pat
     seat = judged(tmp_path).truth.places.cells["left"]
     for hands, is_doubtful in ((["hand"], True), ([], False)):
         seat.is_doubtful = True
-        seat.begin({"seat": 0}, hands)
+        seat.begin("t-1", seat.cell.recipes[0], {"seat": 0}, hands)
         assert seat.is_doubtful is is_doubtful
 
 

@@ -17,11 +17,11 @@ from arboleda.model.task import Task
 from arboleda.simulator import plant_process
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import KINDS, OF_CRASHES
+from arboleda.simulator.invariants.part_places import parts_are_taken_and_put_where_they_can_be
 from arboleda.simulator.invariants.starts import STARTS
 from arboleda.simulator.judged import INVARIANTS, judged_by
 from arboleda.simulator.judged_world import BrokenInvariant
 from arboleda.simulator.run import Simulation
-from arboleda.simulator.storage.grip import one_pick_one_place_over_all_starts
 from arboleda.testing import shipped
 from arboleda.trees.walk_back import WalkBack
 
@@ -109,7 +109,7 @@ BITES: list[tuple[str, Bug]] = [
     ("ends_once_over_all_starts", tells_ends_again),
     ("no_step_is_done_twice", begins_anew),
     ("no_step_is_done_twice", gives_again_what_is_proven),
-    ("one_pick_one_place_over_all_starts", begins_anew),
+    ("parts_are_taken_and_put_where_they_can_be", begins_anew),
     ("nothing_moves_after_a_restart", goes_on_by_itself),
 ]
 LIKELY = {  # seeds that found them, tried first
@@ -117,7 +117,7 @@ LIKELY = {  # seeds that found them, tried first
     ("storage", "asked_again_is_the_same_task", takes_ended_for_others): 7,
     ("storage", "no_step_is_done_twice", begins_anew): 5,
     ("storage", "no_step_is_done_twice", gives_again_what_is_proven): 10,
-    ("storage", "one_pick_one_place_over_all_starts", begins_anew): 12,
+    ("storage", "parts_are_taken_and_put_where_they_can_be", begins_anew): 12,
     ("storage", "nothing_moves_after_a_restart", goes_on_by_itself): 7,
     ("devices", "accepted_is_found_again", says_what_it_cannot_keep): 4,
     ("devices", "asked_again_is_the_same_task", takes_ended_for_others): 16,
@@ -154,7 +154,6 @@ def test_all_of_them_hold_however_often_the_plant_dies(kind: str, seed: int) -> 
 
 def test_every_one_of_them_has_a_bug_and_judges_where_it_can() -> None:
     rest = {"tasks_go_on_from_what_was_kept"}  # it needs boots, and has its bugs in tests/mutants
-    assert {each.name for each in (*STARTS, one_pick_one_place_over_all_starts)} == rest | {
-        name for name, _ in BITES
-    }
-    assert {*STARTS, one_pick_one_place_over_all_starts} <= {*INVARIANTS}
+    over_all_starts = (*STARTS, parts_are_taken_and_put_where_they_can_be)
+    assert {each.name for each in over_all_starts} == rest | {name for name, _ in BITES}
+    assert {*over_all_starts} <= {*INVARIANTS}

@@ -8,10 +8,13 @@ import pytest
 
 from arboleda.dispatch.belief import APART_S
 from arboleda.model.commands import StopMode
-from arboleda.model.messages import Fact, Report, Verb
+from arboleda.model.messages import Report, Verb
 from arboleda.model.plant_model import Crossing, Evidence, PlantModel
-from arboleda.recipes.storage_layout import StorageLayout
+from arboleda.simulator.invariants.grips import parts_conserved
+from arboleda.simulator.invariants.invariant import Look
+from arboleda.simulator.record import Record
 from arboleda.simulator.truth.arm import ArmTruth
+from arboleda.simulator.truth.part_places import CellPlaces
 from arboleda.simulator.truth.truth import Truth
 from arboleda.simulator.world import PLANT, World
 from arboleda.testing import shipped, slowed
@@ -32,7 +35,7 @@ def zoned() -> PlantModel:
 
 
 def _zoned(cell):
-    pickup = replace(StorageLayout(cell).pickup, zones=frozenset({"centre"}))
+    pickup = replace(cell.taker.targets["pickup"], zones=frozenset({"centre"}))
     crossings = (Crossing(a="home", b="station 7", zones=frozenset({"aisle"})),)
     crossings = crossings if cell.name == "sis_a" else ()
     return with_poses(cell, *crossings, pickup=pickup)
@@ -46,13 +49,21 @@ class Stage:
         self.truth = Truth(self.world)
         self.world.watchers.append(self.truth.look)
         self.zones: list[frozenset[str]] = []
-        self.places: list[str] = []
         self.world.watchers.append(self._keep)
         self.world.advance(0.5)
 
     @property
     def arm(self) -> ArmTruth:
-        return self.truth.storage.arms["ra1"]
+        return self.truth.grips.effectors["ra1"].arm
+
+    @property
+    def places(self) -> CellPlaces:
+        return self.truth.places.cells["sis_a"]
+
+    def carry(self) -> None:
+        """Be in the middle of the way from the pick-up to the place of a task."""
+        self.ask("sis_a 0B 7")
+        self.until(lambda: self.arm.holding and self.arm.moving)
 
     @property
     def body(self):
@@ -68,7 +79,6 @@ class Stage:
     def _keep(self) -> None:
         if self.arm.zones not in self.zones[-1:]:
             self.zones.append(self.arm.zones)
-        self.places += [passage.place for passage in self.truth.storage.parts.passages]
 
 
 @pytest.fixture
@@ -111,12 +121,12 @@ def test_an_arm_that_lost_a_few_steps_counts_as_where_it_would_be(stage):
     stage.ask("sis_a palletizing")
     stage.until(lambda: stage.arm.here == {"pick-up"})
     assert stage.arm.true[1] == stage.arm.intended[1] - 2
-    assert stage.arm.stands_at(StorageLayout(stage.arm.cell).pickup.q)
+    assert stage.arm.stands_at(stage.arm.cell.taker.targets["pickup"].q)
 
 
 def drive_beside(stage: Stage, steps: int) -> None:
     """Have ra1 stand so many steps of its first joint beside its pick-up, by its own count."""
-    joints, (first, *others) = stage.arm.arm.joints, StorageLayout(stage.arm.cell).pickup.q
+    joints, (first, *others) = stage.arm.arm.joints, stage.arm.cell.taker.targets["pickup"].q
     goal = (first + steps * joints[0].step, *others)
     degrees = tuple(to_wire(joint, value) for joint, value in zip(joints, goal, strict=True))
     stage.body.start(round(stage.world.now * 1e6), JointsGoal(q=degrees, seq=None, epoch=None))
@@ -129,23 +139,26 @@ def drive_beside(stage: Stage, steps: int) -> None:
 def test_an_arm_stands_at_a_pose_within_its_tolerance(beside, here):
     model = shipped("sis_a")
     (cell,) = model.cells
-    layout = StorageLayout(cell)
-    tolerance = (3 * layout.arm.joints[0].step, *layout.arm.tolerances[1:])
+    arm = cell.roles["arm"]
+    tolerance = (3 * arm.joints[0].step, *arm.tolerances[1:])
     stage = Stage(replace(model, cells=(with_robot(cell, "arm", tolerance=tolerance),)))
     drive_beside(stage, beside)
     assert stage.arm.here == here
 
 
+def found_by_parts_conserved(stage: Stage) -> list[str]:
+    look = Look(world=stage.world, truth=stage.truth, record=Record(stage.world))
+    return [*parts_conserved.rule(look)]
+
+
 def test_a_part_is_gripped_where_the_axes_truly_are(stage):
-    lay_there = []
-    stage.world.watchers.append(
-        lambda: lay_there.extend(p.lay_there for p in stage.truth.storage.parts.passages)
-    )
+    found = []
+    stage.world.watchers.append(lambda: found.extend(found_by_parts_conserved(stage)))
     stage.body.lose_steps(0, 5)
     drive_beside(stage, -5)
     stage.body.switch_effector(True)
     stage.world.advance(0.2)
-    assert (stage.arm.here, stage.arm.holding, lay_there) == (set(), True, [True])
+    assert (stage.arm.here, stage.arm.holding, found) == (set(), True, [])
 
 
 def test_a_part_is_gripped_where_an_arm_stood_that_has_moved_on_in_the_same_step(stage):
@@ -154,8 +167,8 @@ def test_a_part_is_gripped_where_an_arm_stood_that_has_moved_on_in_the_same_step
     stage.body.start(round(stage.world.now * 1e6), JointsGoal(q=(0.0, 0.0, 0.0), seq=None, epoch=None))
     stage.body.advance(round(stage.world.now * 1e6) + 100_000)
     stage.truth.look()
-    assert not stage.arm.reaches
-    assert [passage.lay_there for passage in stage.truth.storage.parts.passages] == [True]
+    assert stage.arm.holding and not stage.arm.reaches
+    assert found_by_parts_conserved(stage) == []
 
 
 def test_a_move_sweeps_the_zones_of_both_ends_and_those_between():
@@ -180,9 +193,8 @@ def test_a_halted_arm_is_in_all_that_it_may_have_swept_until_it_stands_at_a_pose
 def test_an_arm_that_is_halted_near_a_pose_on_its_way_is_where_the_way_is():
     plant = shipped("sis_a")
     cell = plant.cells[0]
-    layout = StorageLayout(cell)
-    arm = layout.arm
-    home, pickup = replace(layout.home, q=(0.0, 0.0, 0.0)), replace(layout.pickup, q=(1.0, 0.0, 0.0))
+    space, arm = cell.taker, cell.roles["arm"]
+    home, pickup = replace(space.home, q=(0.0, 0.0, 0.0)), replace(space.targets["pickup"], q=(1.0, 0.0, 0.0))
     between = replace(cell.stations[4], q=(0.5, 0.0, 0.0), zones=frozenset({"rack"}))
     cell = with_robot(cell, "arm", tolerance=(0.35, *arm.tolerances[1:]))
     cell = with_poses(cell, home=home, pickup=pickup, station_4=between)
@@ -199,58 +211,56 @@ def test_an_arm_that_is_halted_near_a_pose_on_its_way_is_where_the_way_is():
     stage.until(lambda: stage.arm.zones == {"rack"})
 
 
-def test_a_part_goes_from_the_pick_up_to_its_station_and_the_customer_takes_it(stage):
+def test_a_part_goes_from_the_pick_up_to_its_station(stage):
+    switched = []
+    stage.world.watchers.append(lambda: switched.extend(stage.truth.grips.switched))
     stage.ask("sis_a 0B 7")
-    stage.until(lambda: bool(stage.truth.storage.parts.stations))
-    cell = stage.truth.storage.cells["sis_a"]
-    assert (cell.picks, cell.places, cell.let_go) == (1, 1, True)
-    stage.until(lambda: bool(stage.truth.storage.ended))
-    assert stage.truth.storage.ended[0].missing is None
-    assert (stage.places, stage.truth.storage.parts.stations) == (["effector", "station 7"], {})
+    stage.until(lambda: bool(stage.truth.done_tasks))
+    assert [(each.on, each.where, each.is_at_place) for each in switched] == [
+        (True, "pick-up", True),
+        (False, "station 7", True),
+    ]
+    assert (stage.places.as_left["station_7"], stage.places.end_is_doubtful) == (1, False)
 
 
-def test_a_part_that_is_carried_back_is_the_next_one_to_be_gripped(stage):
-    parts = stage.truth.storage.parts
-    stage.ask("sis_a palletizing")
-    stage.until(lambda: stage.truth.storage.cells["sis_a"].picks == 1)
-    number = parts.held["ra1"].number
+def test_a_part_that_is_carried_back_leaves_the_places_as_they_were(stage):
+    stage.carry()
     stage.world.request_verb(Verb.CANCEL, "sis_a")
-    stage.until(lambda: stage.places == ["effector", "pick-up"])
-    stage.ask("sis_a palletizing")
-    stage.until(lambda: "ra1" in parts.held)
-    assert parts.held["ra1"].number == number
+    stage.until(lambda: not stage.arm.holding)
+    assert (stage.arm.here, set(stage.places.parts.values())) == ({"pick-up"}, {0})
+    assert not stage.places.is_doubtful
 
 
-@pytest.mark.parametrize(("how", "cause"), [("lose_piece", "fell"), ("crash", "lost with the power")])
-def test_a_part_that_falls_is_on_the_floor(stage, how, cause):
-    causes = []
-    stage.world.watchers.append(
-        lambda: causes.extend(each.cause for each in stage.truth.storage.parts.passages)
-    )
-    stage.ask("sis_a palletizing")
-    stage.until(lambda: stage.truth.storage.cells["sis_a"].picks == 1)
-    stage.body.lose_piece() if how == "lose_piece" else stage.world.crash(ARM)
-    stage.world.advance(0.2)
-    assert (stage.places[-1], causes[-1]) == ("floor", cause)
+def test_what_lay_at_a_station_before_is_none_of_its_task(stage):
+    stage.ask("sis_a 0B 7")
+    stage.until(lambda: bool(stage.truth.done_tasks))
+    stage.ask("sis_a 0B 4")
+    stage.until(lambda: bool(stage.truth.done_tasks) and stage.places.as_left["station_4"] == 1)
+    assert (stage.places.parts["station_7"], stage.places.as_left["station_7"]) == (1, 0)
 
 
 def test_a_task_that_is_asked_for_again_does_not_begin_again(stage):
-    stage.ask("sis_a palletizing #lot7")
-    stage.until(lambda: stage.truth.storage.cells["sis_a"].picks == 1)
-    stage.ask("sis_a palletizing #lot7")
-    stage.until(lambda: bool(stage.truth.storage.ended))
-    assert (stage.truth.storage.ended[0].picks, stage.truth.storage.ended[0].missing) == (1, None)
+    stage.ask("sis_a 0B 7 #lot7")
+    stage.until(lambda: stage.arm.holding)
+    stage.ask("sis_a 0B 7 #lot7")
+    assert stage.truth.begun_tasks == []
+    stage.until(lambda: bool(stage.truth.done_tasks))
+    assert stage.places.as_left["station_7"] == 1
 
 
-def test_what_a_task_that_is_called_done_did_not_do_is_named(stage):
-    stage.ask("sis_a palletizing")
-    stage.until(lambda: stage.arm.on)
-    ended = stage.truth.storage.cells["sis_a"].end("sis_a palletizing", done=True)
-    assert ended.missing == "the effector was switched on at pick-up"
+def test_the_robot_that_brings_a_part_has_come_since_the_task_began(stage):
+    stage.carry()
+    end = stage.places.cell.paths["0B"].nodes[-1]
+    assert end in stage.places.came
+    stage.ask("sis_a 2A 4")
+    stage.until(lambda: bool(stage.truth.begun_tasks))
+    assert end in stage.places.came, "it stands there still"
+    stage.until(lambda: stage.arm.holding)
+    assert stage.places.cell.paths["2A"].nodes[-1] in stage.places.came
 
 
 def test_a_mobile_is_where_it_is_whatever_it_counts(stage):
-    mobile = stage.truth.storage.mobiles["rm_sis_a"]
+    mobile = stage.truth.robot("rm_sis_a")
     stage.world.boards[MOBILE].body.true_node = 1
     stage.ask("sis_a 0A 7")
     stage.until(lambda: mobile.counted == 6 and not mobile.moving)
@@ -272,18 +282,6 @@ def test_a_board_that_was_told_to_stop_is_latched_until_it_is_cleared_or_boots(s
     stage.world.request_verb(Verb.CLEAR)
     stage.world.advance(0.5)
     assert not stage.arm.latched
-
-
-@pytest.mark.parametrize("kept", [True, False])
-def test_a_restarted_plant_goes_on_only_with_a_task_of_which_it_knows_where_it_stands(stage, kept):
-    stage.ask("sis_a palletizing", 0.5)
-    task = stage.truth.storage.cells["sis_a"].task
-    assert task is not None
-    if not kept:
-        del stage.world.disk.facts[Fact.STEP]
-    stage.world.crash()
-    stage.world.advance(0.1)
-    assert stage.truth.storage.cells["sis_a"].task == (task if kept else None)
 
 
 @pytest.mark.sampled(3)

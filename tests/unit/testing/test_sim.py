@@ -11,9 +11,9 @@ from py_trees.composites import Sequence
 from arboleda.model.task import Order
 from arboleda.recipes import Kit, recipe, work
 from arboleda.recipes.storage import storage
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.simulator.invariants.invariant import Look, Trigger, invariant
 from arboleda.testing import Misuse, Sim, shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Dwell
 

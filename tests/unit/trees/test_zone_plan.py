@@ -10,9 +10,9 @@ import pytest
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Crossing, Pose, Workspace
-from arboleda.recipes.storage import plan_problems
-from arboleda.recipes.storage_layout import StorageLayout
+from arboleda.plant_file.storage_form import plan_problems
 from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees.zone_plan import Leg, entered, passed, plan, recovery_zones
 
 from ...cells import with_poses

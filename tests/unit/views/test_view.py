@@ -10,8 +10,8 @@ from py_trees.common import Status
 from arboleda.model.messages import MotionState, OperatorRequest, Verb
 from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import in_json
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import Rig, shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.views import tree_view, view
 
 from ..core.conftest import Hand

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from arboleda.kinds.joints import MoveJoints
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.forms import form_of
 
 ARM = StorageLayout(shipped("sis_a").cell("sis_a")).arm

@@ -5,8 +5,8 @@ from __future__ import annotations
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.messages import MotionState
 from arboleda.model.plant_model import Evidence
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.motion import LINGER_S, OpenMotion
 from arboleda.wire.values import Telemetry
 

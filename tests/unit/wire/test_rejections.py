@@ -6,8 +6,8 @@ import pytest
 
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.payloads import REFUSALS
 from arboleda.wire.rejections import refused
 

@@ -13,11 +13,11 @@ from arboleda.kinds.arm import Arm
 from arboleda.kinds.joints import Joint
 from arboleda.model.commands import StopMode
 from arboleda.model.plant_model import Evidence
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.sim.body import BodyReport
 from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.payloads import Beat, EffectorGoal, Goal, HomeGoal, JointsGoal, StopGoal, Telemetry
 from arboleda.wire.transport import Delivery
 from arboleda_boards.conformance.judge import CHECKS, Judge

@@ -478,6 +478,18 @@ class Cell:
         return {space.robot.name: space for space in self.spaces}
 
     @cached_property
+    def taker(self) -> Workspace:
+        """The workspace of the robot that takes what another one brings; the cell has a handover."""
+        assert self.handover is not None
+        return self.reach[self.handover.taker]
+
+    @cached_property
+    def giver(self) -> Workspace:
+        """The workspace of the robot that brings it."""
+        assert self.handover is not None
+        return self.reach[self.handover.giver]
+
+    @cached_property
     def workspaces(self) -> dict[str, Workspace]:
         """Those of the robots that a recovery brings home."""
         return {space.robot.name: space for space in self.spaces if space.returns}

@@ -108,6 +108,11 @@ class Recipe:
     ends_with: tuple[tuple[str, Value], ...] = ()
     source: str = field(default="", compare=False)
 
+    @property
+    def is_shipped(self) -> bool:
+        """True for a recipe that comes with Arboleda."""
+        return False
+
     def end_of(self, values: Mapping[str, object]) -> dict[str, Value]:
         """The state once a task with these values is done, by place or "role.fact"."""
         return {str(values.get(what, what)): value for what, value in self.ends_with}

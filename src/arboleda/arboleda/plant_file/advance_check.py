@@ -138,9 +138,7 @@ def _place(recipe: Recipe) -> str | None:
 
 def _is_own(recipe: Recipe) -> bool:
     """True for a recipe of the plant; nobody who checks a plant can change those that come with Arboleda."""
-    if isinstance(recipe, WrittenRecipe):
-        return not recipe.function.__module__.startswith("arboleda.recipes.")
-    return _place(recipe) is not None
+    return _place(recipe) is not None and not recipe.is_shipped
 
 
 def _endless(tree: Behaviour) -> Iterator[tuple[str | None, str]]:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from arboleda.kinds import WrittenKind
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect
 from arboleda.model.plant_model import Cell, Evidence, Retry, Robot
-from arboleda.recipes.storage_layout import ARM, MOBILE
 
 from . import handovers, needs, own_kinds, part_places, shared, targets
 from .arrays import arrays
@@ -19,7 +18,7 @@ from .python_uses import KindInPython, PythonUses
 from .registry import COME_WITH_IT, RESERVED
 from .robot_kind import RobotKind
 from .robots import check_absence
-from .shapes import NAME_RULE, DeviceCellShape, DeviceShape, RetryShape, TeachShape, is_name
+from .shapes import NAME_RULE, ROBOT_KEYS, DeviceCellShape, DeviceShape, RetryShape, TeachShape, is_name
 
 CELLS: Place = ("cells",)
 EVIDENCE = {"facts": Evidence.JOINTS}  # what joints are to an arm
@@ -63,8 +62,8 @@ class Kinds:
 
 def is_of_devices(document: Document, place: Place) -> bool:
     """True if a cell is one of devices, going by its keys."""
-    has = document.keys(place)
-    return "devices" in has or (document.has(("kinds",)) and ARM not in has and MOBILE not in has)
+    has = set(document.keys(place))
+    return "devices" in has or (document.has(("kinds",)) and not has.intersection(ROBOT_KEYS))
 
 
 def shared_devices(document: Document, kinds: Kinds) -> dict[str, Robot]:
@@ -83,7 +82,7 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
 
     `common` are the devices that it may share with others, by name.
     """
-    both = [key for key in (ARM, MOBILE) if document.has((*place, key))]
+    both = [key for key in ROBOT_KEYS if document.has((*place, key))]
     for key in both:
         rule = 'a cell has either "arm" and "mobile" or "devices"'
         what = f'{rule}; as one of its devices, it is "{key}: {{kind: {key}, ...}}"'

@@ -13,11 +13,11 @@ from arboleda.drivers.port import DriverSpec, FitsDevice, spec_of
 from arboleda.host.packages import entry_points
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import DriverUse, Link, PlantModel, Robot
-from arboleda.recipes.storage_layout import ARM, MOBILE
 
 from . import settings
 from .document import Document, Place, choice, nearest, shown
 from .python_uses import LONGEST, PythonUses, Spot, error_text, refused
+from .shapes import ROBOT_KEYS
 from .shared import SECTION as SHARED
 
 KEY, SHORT = "driver", "link"
@@ -70,7 +70,7 @@ def with_drivers(document: Document, plant: PlantModel | None, used: PythonUses)
 def named(document: Document) -> Iterator[tuple[str, Place]]:
     """The devices whose key `driver` names none of Arboleda's, with the place of that key."""
     cells: list[Place] = [("cells", cell) for cell in document.keys(("cells",))]
-    places: list[Place] = [(*cell, role) for cell in cells for role in (ARM, MOBILE)]
+    places: list[Place] = [(*cell, role) for cell in cells for role in ROBOT_KEYS]
     for devices in [*((*cell, "devices") for cell in cells), (SHARED,)]:
         places += [(*devices, role) for role in document.keys(devices)]
     for place in places:

@@ -6,15 +6,14 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from arboleda.model.plant_model import STATIONS, Handover, Robot, Workspace
+from arboleda.model.plant_model import Handover, Robot, Workspace
 from arboleda.model.recipe import Recipe
-from arboleda.recipes import storage
-from arboleda.recipes.storage_layout import ARM, MOBILE, PALLETIZING_TARGETS
 
 from .document import Document, Place, choice, nearest, shown
 from .own_recipes import SECTION
 from .paths import check_nodes_show, paths
 from .shapes import MAPPING, HandoverShape
+from .storage_form import NEEDS, fitting
 
 
 def with_paths(
@@ -101,11 +100,7 @@ def recipes(
     """The recipes of storage that fit a cell with a handover; a problem is kept if it offers none."""
     if found is None:
         return ()
-    meet = {role: robot.name for role, robot in roles.items() if role in (ARM, MOBILE)}
-    needs = {storage.storage: STATIONS, storage.palletizing: PALLETIZING_TARGETS}
-    named = meet == {ARM: found.taker, MOBILE: found.giver}
-    offered = tuple(recipe for recipe, group in needs.items() if named and group in groups)
+    offered = fitting(found, roles, groups)
     if not offered and not document.has(SECTION):
-        what = f'storage needs the roles {ARM} (the taker) and {MOBILE} (the giver) and a group "{STATIONS}"'
-        document.problem(place, f'offers no recipe: {what}; or "uses" names a file with recipes', at=place)
+        document.problem(place, f'offers no recipe: {NEEDS}; or "uses" names a file with recipes', at=place)
     return offered

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
+from typing import cast
 
 from arboleda.geometry import bodies, kinematics
 from arboleda.geometry.bodies import Body
@@ -18,7 +19,6 @@ from arboleda.kinds.joints import Joint
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import Cell, PlantModel, Pose
-from arboleda.recipes.storage_layout import StorageLayout
 
 from .arrays import Array
 from .urdf import drawn_arm, robot_urdf
@@ -33,7 +33,7 @@ Outline = Sequence[Sequence[float]]  # counterclockwise corners of a convex shap
 def warnings(plant: PlantModel) -> tuple[str, ...]:
     """The places that cannot be as the file says, or the reason for which they could not be checked."""
     try:
-        cells = [Stand.of(plant, StorageLayout(cell)) for cell in plant.cells if _stores(cell)]
+        cells = [Stand.of(plant, cell) for cell in plant.cells if _hands_over(cell)]
         uneven = [*_uneven(plant)]
     except ArboledaError as error:
         return (f"nobody has looked where things stand: {error}",)
@@ -41,12 +41,9 @@ def warnings(plant: PlantModel) -> tuple[str, ...]:
     return (*found, *_crowded(cells), *uneven)
 
 
-def _stores(cell: Cell) -> bool:
+def _hands_over(cell: Cell) -> bool:
     """True if an arm of the cell takes parts from a mobile robot."""
-    if cell.handover is None:
-        return False
-    taker, giver = (cell.reach[name].robot for name in (cell.handover.taker, cell.handover.giver))
-    return bool(taker.joints and giver.floor_grid)
+    return cell.handover is not None and bool(cell.taker.robot.joints and cell.giver.robot.floor_grid)
 
 
 def _uneven(plant: PlantModel) -> Iterator[str]:
@@ -75,34 +72,41 @@ def _uneven_of(plant: PlantModel, arm: Arm, array: Array, poses: Sequence[Pose])
 
 @dataclass(frozen=True, kw_only=True)
 class Stand:
-    """One cell as it stands in the world, in m: its arm's body, and the outlines of what is on the floor."""
+    """One cell as it stands in the world, in m: its arm's body, and the outlines of what is on the floor.
 
-    cell: StorageLayout
+    The arm takes what the mobile robot brings.
+    """
+
+    cell: Cell
+    arm: Arm
+    mobile: Mobile
     body: Body
     deck_m: float
     base: Outline
     grid: Outline
 
     @classmethod
-    def of(cls, plant: PlantModel, cell: StorageLayout) -> Stand:
-        arm, mobile = (_body(plant, name) for name in (cell.arm.name, cell.mobile.name))
-        x, y = cell.arm.base.x, cell.arm.base.y
+    def of(cls, plant: PlantModel, cell: Cell) -> Stand:
+        arm, mobile = cast(Arm, cell.taker.robot), cast(Mobile, cell.giver.robot)
+        taker, giver = (_body(plant, robot.name) for robot in (arm, mobile))
         return cls(
             cell=cell,
-            body=arm,
-            deck_m=deck(mobile),
-            base=hull([(x, y)], _wide(_fixed(arm))),
-            grid=_grid(cell.mobile, _wide(bodies.links(mobile))),
+            arm=arm,
+            mobile=mobile,
+            body=taker,
+            deck_m=deck(giver),
+            base=hull([(arm.base.x, arm.base.y)], _wide(_fixed(taker))),
+            grid=_grid(mobile, _wide(bodies.links(giver))),
         )
 
     def tool(self, pose: Pose) -> Matrix:
         """The tool's frame at a pose."""
-        return kinematics.tool(self.body, pose.joints, _frame(self.cell.arm.base))
+        return kinematics.tool(self.body, pose.joints, _frame(self.arm.base))
 
     def node(self, node: int) -> Point:
         """The upper end of a part that a mobile carries on this node."""
-        x, y = self.cell.mobile.grid.position(node)
-        frame = _frame(self.cell.mobile.grid.origin)
+        x, y = self.mobile.grid.position(node)
+        frame = _frame(self.mobile.grid.origin)
         return kinematics.at(frame, (x, y, self.deck_m + PART_HEIGHT_M))
 
     def part(self, pose: Pose) -> Point:
@@ -110,9 +114,16 @@ class Stand:
         return kinematics.at(self.tool(pose), (0, 0, PART_HEIGHT_M / 2))
 
     @property
+    def pickups(self) -> dict[str, Pose]:
+        """The pose at which the arm takes what came on each path, by its code."""
+        handover, paths = self.cell.handover, self.cell.giver.paths
+        assert handover is not None
+        return {path.code: self.cell.taker.targets[handover.after(path.code)] for path in paths}
+
+    @property
     def reach_m(self) -> float:
         """The reach of the arm: no point is farther from its foot, in plan, than its tool can be."""
-        frames = kinematics.place(self.body, self.cell.arm.reference)
+        frames = kinematics.place(self.body, self.arm.reference)
         way = bodies.way(self.body)
         moving = [link for link in way if link["moves"]]
         turning = [link for link in moving if link["moves"]["type"] == "turn"]
@@ -120,24 +131,24 @@ class Stand:
         points = [kinematics.at(frames[link["link"]]) for link in way[way.index(moving[0]) :]]
         if upright:
             points = [(x, y, 0.0) for x, y, _ in points]
-        slides = sum(_slide_m(self.cell.arm, frames, link, upright) for link in moving)
+        slides = sum(_slide_m(self.arm, frames, link, upright) for link in moving)
         first = math.hypot(*points[0][:2])
         return first + sum(math.dist(a, b) for a, b in pairwise(points)) + slides
 
 
 def _pickups(stand: Stand) -> Iterator[str]:
     """The pick-ups that are not where the mobile robot brings the part."""
-    cell = stand.cell
-    ends = {(path.nodes[-1], cell.pickup_of(path).name): path for path in reversed(cell.paths)}
+    cell, pickups = stand.cell, stand.pickups
+    ends = {(path.nodes[-1], pickups[path.code].name): path for path in reversed(cell.giver.paths)}
     for (node, _), path in ends.items():
-        pickup, (x, y, top) = cell.pickup_of(path), stand.node(node)
+        pickup, (x, y, top) = pickups[path.code], stand.node(node)
         tool = kinematics.at(stand.tool(pickup))
         beside, over = math.dist(tool[:2], (x, y)), tool[2] - top
         where = f"{cell.name}: {pickup.name} is"
-        part = f"a part on {cell.mobile.name} at node {node}, where path {path.code} ends"
-        away = math.dist((x, y), (cell.arm.base.x, cell.arm.base.y))
+        part = f"a part on {stand.mobile.name} at node {node}, where path {path.code} ends"
+        away = math.dist((x, y), (stand.arm.base.x, stand.arm.base.y))
         if away > stand.reach_m + BESIDE_M:
-            reach = f"{cell.arm.name} reaches {stand.reach_m:.2f} m"
+            reach = f"{stand.arm.name} reaches {stand.reach_m:.2f} m"
             yield f"{cell.name}: node {node} is out of reach, {away:.2f} m away; {reach} (path {path.code})"
         elif beside > BESIDE_M:
             yield f"{where} {_mm(beside)} beside {part}"
@@ -158,10 +169,10 @@ def _stations(stand: Stand) -> Iterator[str]:
 
 def _below(stand: Stand) -> Iterator[str]:
     """The poses at which a part, or at home the tool, would be below the floor."""
-    for pose in stand.cell.space.poses:
+    for pose in stand.cell.taker.poses:
         tool = stand.tool(pose)
         points = [kinematics.at(tool)]
-        if pose.name != stand.cell.home.name:
+        if pose.name != stand.cell.taker.home.name:
             points.append(kinematics.at(tool, (0, 0, PART_HEIGHT_M)))
         low = min(z for _, _, z in points)
         if low < -ROUNDING_M:
@@ -171,8 +182,8 @@ def _below(stand: Stand) -> Iterator[str]:
 
 def _crowded(stands: Sequence[Stand]) -> Iterator[str]:
     """The bases, grids and stations that take the same piece of floor."""
-    floor = [(f"the base of {stand.cell.arm.name}", stand.base) for stand in stands]
-    floor += [(f"the grid of {stand.cell.mobile.name}", stand.grid) for stand in stands]
+    floor = [(f"the base of {stand.arm.name}", stand.base) for stand in stands]
+    floor += [(f"the grid of {stand.mobile.name}", stand.grid) for stand in stands]
     for (one, a), (other, b) in combinations(floor, 2):
         if _overlap(a, b):
             yield f"{one} and {other} overlap"

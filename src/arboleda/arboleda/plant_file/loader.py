@@ -24,7 +24,6 @@ from arboleda.model.plant_model import (
 )
 from arboleda.model.recipe import Recipe
 from arboleda.model.recording import Limits, Recording
-from arboleda.recipes.storage import RECIPES
 from arboleda.store.address import has_password
 from arboleda.store.schemes import objection
 
@@ -206,7 +205,7 @@ def notes(plant: PlantModel) -> tuple[str, ...]:
     sampled = [
         f"{cell.name}: {recipe.name} has {number} combinations of parameters; {MOST} of them were tried"
         for cell, recipe, number in many
-        if number > MOST and recipe not in RECIPES
+        if number > MOST and not recipe.is_shipped
     ]
     return (*own_models, *sampled)
 

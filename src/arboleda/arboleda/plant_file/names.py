@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from arboleda.recipes.storage_layout import ARM, MOBILE
-
 from .document import Document, Place, dotted, shown
-from .shapes import NAME_RULE, is_name
+from .shapes import NAME_RULE, ROBOT_KEYS, TAKER_KEY, is_name
 
 RESERVED = ("plant", "system")  # first words of the plant's own ROS 2 topics
 
@@ -18,8 +16,8 @@ def check_names(document: Document, has_twin: Callable[[Place], bool]) -> None:
     A device that `has_twin` may be drawn under another name.
     """
     cells: list[Place] = [("cells", name) for name in document.keys(("cells",))]
-    arms: list[Place] = [(*cell, ARM) for cell in cells]
-    robots = [place for cell in cells for place in ((*cell, ARM), (*cell, MOBILE))]
+    arms: list[Place] = [(*cell, TAKER_KEY) for cell in cells]
+    robots: list[Place] = [(*cell, key) for cell in cells for key in ROBOT_KEYS]
     in_roles = [(*cell, "devices", role) for cell in cells for role in document.keys((*cell, "devices"))]
     devices = [place for place in in_roles if not document.has((*place, "shared"))]
     devices += [("shared", name) for name in document.keys(("shared",))]

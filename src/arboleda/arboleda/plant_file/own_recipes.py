@@ -25,7 +25,6 @@ from arboleda.model.outside import plain
 from arboleda.model.plant_model import Link
 from arboleda.model.recipe import Recipe
 from arboleda.recipes import WrittenNode
-from arboleda.recipes.storage import RECIPES
 
 from . import tree_includes, user_file
 from .document import Document, Place, nearest, shown
@@ -35,6 +34,7 @@ from .python_uses import LONGEST, PythonUses, Spot, Watch, Written, error_text, 
 from .registry import IN_PYTHON, RESERVED
 from .shapes import NAME_RULE, WORDS, is_name
 from .source_text import source_of
+from .storage_form import TAKEN
 
 SECTION: Place = ("uses",)
 NODE = re.compile("[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
@@ -43,7 +43,6 @@ ENDING, TREES = ".py", ".xml"
 USES = "arboleda_uses_"  # before the names of modules that are files of plants
 READ = "__arboleda_read__"  # of a module: the files that were read for it, with their contents
 LARGEST = 256 * 1024  # bytes of a file
-TAKEN = tuple(each.name for each in RECIPES)
 LINKS = tuple(each.value for each in Link)
 
 

@@ -76,7 +76,7 @@ def _otherwise(cell: Cell, wanted: Mapping[str, Value], end: Scene) -> Iterator[
 
 def _unlike_number(cell: Cell, target: str, wanted: int, end: Scene) -> str | None:
     """The parts at a place in the end where these cannot be so many, whatever was there at the beginning."""
-    place = next(each for each in cell.places if each.target == target)
+    place = next(each for each in cell.counted if each.target == target)
     if end.get(target, CHANGE) is None:
         return None
     change, least, most = (int(end.get(target, what) or 0) for what in (CHANGE, LEAST, MOST))

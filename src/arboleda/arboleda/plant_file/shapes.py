@@ -143,6 +143,10 @@ class TimingShape(Shape):
     piece_debounce_s: Wait = Timing.piece_debounce_s
 
 
+ROBOT_KEYS = TAKER_KEY, GIVER_KEY = "arm", "mobile"
+"""The keys of the two robots of a cell in the short form."""
+
+
 class CellShape(Shape):
     """One cell; its name is its key under `cells:`."""
 

@@ -6,16 +6,25 @@ targets are called `home`, `pickup`, `pickup_b`, `station_7`, and which has path
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
-from arboleda.model.plant_model import STATIONS, Cell, Handover, Pose, Retry, Workspace
+from arboleda.model.plant_model import STATIONS, Cell, Handover, Pose, Retry, Robot, Workspace
 from arboleda.model.plant_model import Path as Route
+from arboleda.model.recipe import Recipe
 from arboleda.model.sentence import OWN
-from arboleda.recipes.storage import RECIPES
-from arboleda.recipes.storage_layout import ARM, HOME, MOBILE, PALLETIZING_TARGETS
+from arboleda.recipes.storage import (
+    ARM,
+    HOME,
+    MOBILE,
+    PALLETIZING_TARGETS,
+    RECIPES,
+    palletizing,
+    storage,
+)
+from arboleda.trees import zone_plan
 
 from . import rack
 from .document import Document, Place
@@ -26,6 +35,8 @@ from .robot_models import ArmModel
 from .robots import arm, arm_model, check_absence, mobile
 from .shapes import CellShape, PoseShape, PositionShape, RetryShape, TeachShape
 
+TAKEN = tuple(each.name for each in RECIPES)  # names that no recipe of a plant can have
+NEEDS = f'storage needs the roles {ARM} (the taker) and {MOBILE} (the giver) and a group "{STATIONS}"'
 SECTIONS = ("paths", "stations", "palletizing")  # they may stand at the top of the file, for all such cells
 
 
@@ -71,6 +82,25 @@ def storage_cell(document: Document, place: Place) -> Cell | None:
         piece_check=shape.piece_check,
         zone_wait_s=shape.zone_wait_s,
     )
+
+
+def fitting(found: Handover, roles: Mapping[str, Robot], groups: Mapping[str, object]) -> tuple[Recipe, ...]:
+    """The recipes of storage that a cell of devices with this handover can do."""
+    meet = {role: robot.name for role, robot in roles.items() if role in (ARM, MOBILE)}
+    if meet != {ARM: found.taker, MOBILE: found.giver}:
+        return ()
+    needs: dict[Recipe, str] = {storage: STATIONS, palletizing: PALLETIZING_TARGETS}
+    return tuple(recipe for recipe, group in needs.items() if group in groups)
+
+
+def plan_problems(cell: Cell) -> dict[str, str]:
+    """Problems of planning the arm's own cycle: a sentence by the name of the pose that is in the way."""
+    if PALLETIZING_TARGETS not in cell.groups or cell.handover is None:
+        return {}
+    _, last = cell.groups[PALLETIZING_TARGETS]
+    place = cell.taker.targets[last]
+    rule = "palletizing ends and waits there, so it must be outside all zones"
+    return {place.name: f"in cell {cell.name}: {zone_plan.lying(place)}; {rule}"} if place.zones else {}
 
 
 def check_sections(document: Document, cells: Sequence[Place]) -> None:

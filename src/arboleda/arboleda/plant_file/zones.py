@@ -9,12 +9,12 @@ from typing import Any, TypeVar
 from arboleda.kinds.declared import UseError
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Cell, Crossing, Interlock, Pose, Robot, Workspace
-from arboleda.recipes.storage import plan_problems
 from arboleda.trees import zone_plan
 
 from .document import Document, Place, choice, nearest, shown
 from .pose_confusion import alike_crossings, confusions
 from .shapes import MAPPING, NAME_RULE, WORDS, ZoneShape, is_name
+from .storage_form import plan_problems
 
 SECTION: Place = ("zones",)
 WAITS = "robots wait there, so it must be outside all zones"

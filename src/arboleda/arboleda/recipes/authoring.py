@@ -64,6 +64,10 @@ class WrittenRecipe(Recipe):
     function: Callable[..., Step]
     unused: tuple[str, ...] = field(default=(), compare=False, metadata={FOR_PEOPLE: True})
 
+    @property
+    def is_shipped(self) -> bool:
+        return self.function.__module__.startswith("arboleda.recipes.")
+
     def __reduce__(self) -> tuple[Callable[..., object], tuple[str, str]]:
         """Its place in its module, by which `pickle` takes it to another process, as it does functions."""
         return _found, (self.function.__module__, self.function.__qualname__)
@@ -151,7 +155,7 @@ def _build(
 
 def check_end(name: str, end: Mapping[str, Value], cell: Cell) -> None:
     """RecipeError where a cell never says whether a task has ended as its recipe says."""
-    places = {place.target: place for place in cell.places}
+    places = {place.target: place for place in cell.counted}
     members: Sequence[tuple[str, Any]] = [each for each in cell.members if each[1].verb_names]
     facts = {f"{role}.{fact}": (device, fact) for role, device in members for fact in device.fact_names}
     for what, value in end.items():

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from arboleda.model.plant_model import STATIONS, Cell
+from arboleda.model.plant_model import STATIONS
 from arboleda.model.sentence import Phrase
-from arboleda.trees import zone_plan
 
 from .authoring import Kit, recipe, work
 from .handles import Pick, Place, Step
 from .parameters import Path, Slot
-from .storage_layout import ARM, HOME, MOBILE, PALLETIZING_TARGETS, StorageLayout
 
+ARM, MOBILE = "arm", "mobile"  # roles
+HOME = "home"
+PALLETIZING_TARGETS = "palletizing"  # the group of the two targets of the arm's own cycle
 NAME = Phrase("step.storage", "storage")
 NAME_OF_CYCLE = Phrase("step.palletizing", "palletizing")
 NAME_OF_ARM = Phrase("text.arm", "arm")
@@ -20,7 +21,7 @@ PATH = Phrase("text.path", "path")
 STATION = Phrase("text.station", "station")
 
 
-@recipe("storage", title=NAME, about="", is_default=True)
+@recipe("storage", title=NAME, about="", is_default=True, ends_with={"station": 1})
 def storage(
     cell: Kit,
     path: Annotated[str, Path(called=PATH)],
@@ -50,12 +51,3 @@ def palletizing(cell: Kit) -> Step:
 
 
 RECIPES = (storage, palletizing)
-
-
-def plan_problems(cell: Cell) -> dict[str, str]:
-    """Problems of planning the arm's own cycle: a sentence by the name of the pose that is in the way."""
-    if PALLETIZING_TARGETS not in cell.groups or cell.handover is None:
-        return {}
-    place = StorageLayout(cell).palletizing.place
-    rule = "palletizing ends and waits there, so it must be outside all zones"
-    return {place.name: f"in cell {cell.name}: {zone_plan.lying(place)}; {rule}"} if place.zones else {}

@@ -18,7 +18,6 @@ from arboleda.recipes.place_questions import NO_PART_YET, NO_ROOM_YET
 from arboleda.trees.part_places import EMPTY, trouble_in
 
 from .record import Record
-from .storage.tasks import NAMES
 from .truth.refused_commands import RefusedCommands
 from .world import World
 
@@ -55,9 +54,9 @@ class Findings:
     """Counter of what is found in the recipes of a plant, as long as no fault has come.
 
     `as_written` counts failures that a recipe asks for: by `cell.fail`, or `AlwaysFailure` of a tree, in a
-    task in which a device or a person has answered, for answers are drawn. Tasks of storage have an invariant
-    of their own, and what a person has ended is none. Neither is a wait for a place that ended in vain once
-    `nobody_asks` for tasks any more.
+    task in which a device or a person has answered, for answers are drawn. Tasks of recipes that come with
+    Arboleda have an invariant of their own, and what a person has ended is none. Neither is a wait for a
+    place that ended in vain once `nobody_asks` for tasks any more.
     """
 
     def __init__(self, world: World, record: Record) -> None:
@@ -120,7 +119,7 @@ class Findings:
     def _ended(self, change: TaskChanged) -> None:
         recipe = self._recipes.pop(change.cell or "", None)
         refused = self._refused.pop(change.cell or "", [])
-        if recipe is None or recipe in NAMES:
+        if recipe is None or self._world.model.cell(change.cell or "").recipe(recipe).is_shipped:
             return
         failed = change.state is TaskState.FAILED and change.reason not in BY_PEOPLE
         if self.nobody_asks and change.sentence.key in UP_TO_OTHERS:

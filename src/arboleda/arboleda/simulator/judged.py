@@ -9,6 +9,7 @@ from .invariants.bridge import BRIDGE
 from .invariants.choices import CHOICES
 from .invariants.commands import COMMANDS
 from .invariants.devices import DEVICES
+from .invariants.grips import GRIPS
 from .invariants.hosts import HOSTS
 from .invariants.kinds import KINDS
 from .invariants.liveness import LIVENESS
@@ -24,17 +25,15 @@ from .invariants.starts import STARTS
 from .invariants.stop import STOP
 from .invariants.tasks import TASKS
 from .invariants.teaching import TEACHING
+from .invariants.texts import TEXTS
 from .invariants.verbs import VERBS
 from .invariants.wire import WIRE
 from .invariants.zones import ZONES
-from .storage.grip import GRIP, OVER_ALL_STARTS
-from .storage.recipe_order import WORK
-from .storage.texts import TEXTS
 
 INVARIANTS: tuple[Invariant, ...] = (
     *ZONES,
     *MOTION,
-    *GRIP,
+    *GRIPS,
     *STOP,
     *COMMANDS,
     *PROOFS,
@@ -44,7 +43,6 @@ INVARIANTS: tuple[Invariant, ...] = (
     *TASKS,
     *CHOICES,
     *TEXTS,
-    *WORK,
     *VERBS,
     *ADVICE,
     *MEMORY,
@@ -53,7 +51,6 @@ INVARIANTS: tuple[Invariant, ...] = (
     *OEE,
     *SCREENS,
     *STARTS,
-    *OVER_ALL_STARTS,
     *DEVICES,
     *KINDS,
     *PLACES,

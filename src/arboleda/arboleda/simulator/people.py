@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from functools import partial
 from itertools import count
 
@@ -14,12 +15,13 @@ from arboleda.model.errors import TextError
 from arboleda.model.facts import Value
 from arboleda.model.messages import TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Cell, Link
+from arboleda.model.recipe import Recipe
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import OrderGoal
 
 from .chance import Dice
 from .hands import do
-from .storage.tasks import only_stores
+from .task_words import task_words
 from .world import World
 
 WAITING = 2  # tasks that the customers of a cell keep in its queue
@@ -159,13 +161,37 @@ class Customers:
 
 
 def text_of(cell: Cell, dice: Dice) -> str:
-    """The text of a task for a cell; for a storage cell as people type it."""
-    if not only_stores(cell):
+    """The text of a task for a cell; where its recipes have a short form, as people type it."""
+    short = ShortForms.of(cell)
+    if short is None or len(cell.recipes) > 2:
         return any_text(cell, dice)
-    if dice.chance(0.2):
-        return f"{cell.name} palletizing"
-    path, station = dice.pick([*cell.paths]), dice.below(len(cell.stations))
-    return f"{cell.name} {path} {station}"
+    return short.plain if dice.chance(0.2) else short.default(dice)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShortForms:
+    """Texts of a cell with a recipe that tasks need not name, and one that takes no value: `plain`."""
+
+    cell: Cell
+    unnamed: Recipe
+    plain: str
+
+    @classmethod
+    def of(cls, cell: Cell) -> ShortForms | None:
+        """Those of a cell that has both."""
+        unnamed = next((each for each in cell.recipes if each.is_default and each.parameters), None)
+        plain = [each.name for each in cell.recipes if not (each.is_default or each.parameters)]
+        return cls(cell=cell, unnamed=unnamed, plain=f"{cell.name} {plain[0]}") if unnamed and plain else None
+
+    def default(self, dice: Dice) -> str:
+        """The text of one of the tasks that do not name their recipe."""
+        values = (dice.pick(task_words(self.cell, each)) for each in self.unnamed.parameters)
+        return " ".join([self.cell.name, *values])
+
+    def first(self, *last: str) -> str:
+        """The same with the first word of each parameter, and at the end with these."""
+        values = [task_words(self.cell, each)[0] for each in self.unnamed.parameters]
+        return " ".join([self.cell.name, *values[: len(values) - 1], *last])
 
 
 def any_text(cell: Cell, dice: Dice) -> str:

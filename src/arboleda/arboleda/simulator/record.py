@@ -50,8 +50,7 @@ from .recorded.time_line import TimeLine
 from .recorded.times import Times
 from .recorded.trails import Trails
 from .recorded.verbs import EarlierState
-from .storage.tasks import stores
-from .storage.works import Works
+from .recorded.zone_users import ZoneUser
 from .world import BRIDGE, World
 
 NO_VERBS: frozenset[Verb] = frozenset()
@@ -88,10 +87,7 @@ class Record:
         self.proofs = Proofs()
         self.bridges = Bridges(model)
         self.others = ForeignCommands()
-        storage = {name: known for name, known in self.cells.items() if stores(known.cell)}
-        self._storage = tuple(storage.values())
         self._people = [robot.name for robot in model.robots.values() if robot.link is Link.SCREEN]
-        self.works = Works(storage, self.robots)
         self.before_requests = EarlierState()
         self.acts = Acts()
         self.teachers = Teachers()
@@ -118,7 +114,7 @@ class Record:
         self.errors: list[InternalError] = []
         self.transitions: list[tuple[KnownCell, CellState, CellState]] = []
         self.differences: list[str] = []
-        self.waiting: list[KnownCell] = []  # whose arm waits for zones
+        self.waiting: list[ZoneUser] = []  # those that wait for zones
         self._requests: tuple[tuple[str, frozenset[str]], ...] = ()
         self.idle: list[KnownCell] = []  # with tasks in the queue, which is not paused
         self.stepped = self.news = self.born = self.begins = self.has_spoken = False
@@ -244,7 +240,6 @@ class Record:
         self.commands.forget()
         self.proofs.forget()
         cuts, self._cuts = self._cuts, self.world.disk.cuts
-        self.works.restart(self.tasks.running, undone=cuts != self._cuts)
         self.starts.restart(undone=cuts != self._cuts)
         self.time_line.begin()
         self.teachers.restart()
@@ -311,8 +306,6 @@ class Record:
                     self._retried(cell.name)
         if self.proofs.of:
             self.proofs.of.clear()
-        if self.works.wrong:
-            self.works.wrong.clear()
         if moment.reports:
             self._hear(bool(moment.requests))
         if moment.requests:
@@ -348,7 +341,6 @@ class Record:
         sent = {each.command.id: each.command for each in self.commands.new}
         if sent:
             self.commands.follow(self._plant.dispatcher.ledger, self._plant.now)
-        self.works.follow(self.tasks, self.commands.new, self._plant.now)
         for cell in self._cells if sent else ():
             cell.look(sent)
             self._follow_steps(cell, sent)
@@ -388,11 +380,11 @@ class Record:
                 has_work = bool(self.tasks.queues[cell.name]) or plant.cells[cell.name].task is not None
                 self.unattended[cell.name] = has_work
 
-    def _is_behind_work(self, cell: KnownCell) -> bool:
-        """True if all who have, or get earlier, the zones that this cell's arm wants were at work."""
-        zones, before, wanted = self._plant.zones, set(), dict(self._requests)[cell.layout.arm.name]
+    def _is_behind_work(self, user: ZoneUser) -> bool:
+        """True if all that have, or get earlier, the zones that this robot wants were at work."""
+        zones, before, wanted = self._plant.zones, set(), dict(self._requests)[user.robot]
         for arm, asked in self._requests:
-            if arm == cell.layout.arm.name:
+            if arm == user.robot:
                 break
             if not wanted.isdisjoint(asked):
                 before.add(arm)
@@ -450,8 +442,6 @@ class Record:
             self.proofs.follow(list(self.commands.open.values()))
             self._follow_homing()
             self._follow_refusals(plant)
-        if self.commands.new or self.tasks.changes:
-            self.works.follow(self.tasks, self.commands.new, plant.now)
         has_requests = bool(self.world.moment.requests)
         if has_requests:
             self.differences += differences(self)
@@ -512,19 +502,22 @@ class Record:
         requests = plant.zones.waiting
         if requests != self._requests:
             self._requests, robots = requests, dict(requests)
-            self.waiting = [cell for cell in self._storage if cell.layout.arm.name in robots]
-        for cell in self.waiting if not self.away else ():
-            cell.wait(plant.now - self.stepped_at, behind_work=self._is_behind_work(cell))
+            users = [user for cell in self._cells for user in cell.zone_users.values()]
+            self.waiting = [user for user in users if user.robot in robots]
+        for user in self.waiting if not self.away else ():
+            state, behind_work = self.cells[user.cell].state, self._is_behind_work(user)
+            user.wait(plant.now - self.stepped_at, state=state, behind_work=behind_work)
         moves: dict[str, list[SentCommand]] = {}
         for each in self.commands.new:
             if each.entry is not None and each.entry.cancelled_at is None:  # not halted at once
                 of_cell = moves.setdefault(each.entry.cell, [])
                 of_cell += [each] if isinstance(each.command, MoveJoints) else []
         holders = plant.zones.holders.values()
-        for cell in self._storage:
-            if cell.name in moves:
-                cell.watch_recovery(moves[cell.name])
-            cell.holds_zones = cell.layout.arm.name in holders
+        for cell in self._cells:
+            for user in cell.zone_users.values():
+                if cell.name in moves:
+                    user.watch_recovery(moves[cell.name])
+                user.holds = user.robot in holders
 
     def _look_at_cells(self) -> bool:
         """Take over the states of the cells; True if any of them changed."""

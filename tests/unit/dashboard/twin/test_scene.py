@@ -13,8 +13,8 @@ from arboleda.geometry import kinematics
 from arboleda.geometry.bodies import Body
 from arboleda.geometry.hull import hull
 from arboleda.model.plant_model import Cell, Crossing, PlantModel, Pose, Workspace
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.views.geometry import places
 
 from ....cells import with_poses

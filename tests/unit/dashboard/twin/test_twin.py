@@ -13,8 +13,8 @@ from arboleda.geometry import kinematics
 from arboleda.geometry.bodies import Body
 from arboleda.model.messages import MotionState, Report, TaskRequest, Verb
 from arboleda.model.plant_model import Cell, Evidence, PlantModel
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.testing import Rig, shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.views import twin_view
 from arboleda.views.geometry import places
 

@@ -63,9 +63,9 @@ def _parts(watched: JudgedWorld, cell: Cell) -> Iterator[tuple[str, object]]:
     places = truth.places.cells.get(cell.name)
     if places is not None and not places.is_doubtful:
         yield from ((f"parts at {target}", parts) for target, parts in places.at_end.items())
-    for ended in truth.storage.ended:
-        if ended.cell.cell.name == cell.name:
-            yield f"parts put down in {cell.name}", ended.places
+    for robot in cell.robots:
+        if robot.name in truth.grips.effectors:
+            yield f"parts put down by {robot.name}", truth.grips.effectors[robot.name].put_down
 
 
 def _known(what: str, value: object, reported: EndState) -> str:

@@ -14,8 +14,7 @@ from arboleda.model.verbs import PARTS, STATION, Devices, Scope
 
 from .. import hands
 from ..chance import Dice
-from ..people import any_text
-from ..storage.tasks import only_stores, stores
+from ..people import ShortForms, any_text
 from ..world import World
 from . import targets
 from .kind import Fault, Kind, Words, kind, no_words, words
@@ -130,9 +129,8 @@ def double_submit(world: World, fault: Fault) -> None:
 
 def _text(world: World, fault: Fault, dice: Dice) -> str:
     cell = world.model.cell(fault.target)
-    if not only_stores(cell):
-        return any_text(cell, dice)
-    return f"{cell.name} {dice.pick([*cell.paths])} {dice.below(len(cell.stations))}"
+    short = ShortForms.of(cell)
+    return any_text(cell, dice) if short is None or len(cell.recipes) > 2 else short.default(dice)
 
 
 def _same_text(world: World, fault: Fault) -> list[str]:
@@ -149,7 +147,10 @@ def _other_text(world: World, fault: Fault) -> list[str]:
 
 def _another_text(world: World, fault: Fault) -> str:
     cell = world.model.cell(fault.target)
-    return f"{cell.name} palletizing" if only_stores(cell) else any_text(cell, Dice(fault.seed, "another"))
+    short = ShortForms.of(cell)
+    if short is None or len(cell.recipes) > 2:
+        return any_text(cell, Dice(fault.seed, "another"))
+    return short.plain
 
 
 def _known_id(world: World, fault: Fault) -> list[str]:
@@ -165,34 +166,35 @@ AGAIN: dict[str, Callable[[World, Fault], list[str]]] = {
     "known id": _known_id,
 }
 
-BAD_TEXTS: dict[str, Callable[[Cell], str]] = {
-    "nothing": lambda cell: "",
-    "blanks": lambda cell: " \t\n ",
-    "a cell": lambda cell: cell.name,
-    "no cell": lambda cell: "nobody palletizing",
-    "no path": lambda cell: f"{cell.name} ?? 0",
-    "no station": lambda cell: f"{cell.name} {next(iter(cell.paths))} 999999",
-    "a foreign digit": lambda cell: f"{cell.name} {next(iter(cell.paths))} \uff10",
-    "no such id": lambda cell: f"{cell.name} palletizing #t-1-1",
-    "an empty id": lambda cell: f"{cell.name} palletizing #",
-    "too many words": lambda cell: f"{cell.name} {next(iter(cell.paths))} 0 now",
-    "too long": lambda cell: f"{cell.name} palletizing " * 100,
-    "a control character": lambda cell: f"{cell.name}\x00 palletizing",
+BAD_TEXTS: dict[str, Callable[[ShortForms], str]] = {
+    "nothing": lambda short: "",
+    "blanks": lambda short: " \t\n ",
+    "a cell": lambda short: short.cell.name,
+    "no cell": lambda short: short.plain.replace(short.cell.name, "nobody", 1),
+    "no path": lambda short: f"{short.cell.name} ?? 0",
+    "no station": lambda short: short.first("999999"),
+    "a foreign digit": lambda short: short.first("\uff10"),
+    "no such id": lambda short: f"{short.plain} #t-1-1",
+    "an empty id": lambda short: f"{short.plain} #",
+    "too many words": lambda short: short.first("0", "now"),
+    "too long": lambda short: f"{short.plain} " * 100,
+    "a control character": lambda short: short.plain.replace(" ", "\x00 ", 1),
 }
 
 
 BAD_NUMBERS = ("a number too high", "a number too low")
 
 
-def _storing(model: PlantModel) -> tuple[str, ...]:
-    """The cells whose tasks have the words of storage."""
-    return tuple(cell.name for cell in model.cells if stores(cell))
+def _short(model: PlantModel) -> tuple[str, ...]:
+    """The cells whose tasks have a short form."""
+    return tuple(cell.name for cell in model.cells if ShortForms.of(cell) is not None)
 
 
 def _misread(model: PlantModel) -> tuple[str, ...]:
     """Those, and the cells with a recipe that takes a number."""
-    counts = (cell.name for cell in model.cells if not stores(cell) and _counting(cell))
-    return (*_storing(model), *counts)
+    short = _short(model)
+    counts = (cell.name for cell in model.cells if cell.name not in short and _counting(cell))
+    return (*short, *counts)
 
 
 def _counting(cell: Cell) -> list[Recipe]:
@@ -201,15 +203,16 @@ def _counting(cell: Cell) -> list[Recipe]:
 
 
 def _bad_words(model: PlantModel, target: str) -> tuple[str, ...]:
-    return tuple(BAD_TEXTS) if stores(model.cell(target)) else BAD_NUMBERS
+    return tuple(BAD_TEXTS) if target in _short(model) else BAD_NUMBERS
 
 
 @kind(targets=_misread, words=_bad_words)
 def bad_task(world: World, fault: Fault) -> None:
     """Somebody asks for a task in words that mean none, or with a number beyond its limits."""
     cell = world.model.cell(fault.target)
-    if fault.word in BAD_TEXTS:
-        world.request_task(BAD_TEXTS[fault.word](cell))
+    short = ShortForms.of(cell)
+    if short is not None and fault.word in BAD_TEXTS:
+        world.request_task(BAD_TEXTS[fault.word](short))
     else:
         world.request_task(_beyond(cell, Dice(fault.seed, "beyond"), is_high=fault.word == BAD_NUMBERS[0]))
 
@@ -225,12 +228,14 @@ def _beyond(cell: Cell, dice: Dice, *, is_high: bool) -> str:
     return " ".join([cell.name, recipe.name, *words])
 
 
-@kind(targets=_storing, weight=0.0)
+@kind(targets=_short, weight=0.0)
 def flood_of_tasks(world: World, fault: Fault) -> None:
     """Somebody asks for more tasks than a plant remembers, and takes each back; never drawn: it is slow."""
+    short = ShortForms.of(world.model.cell(fault.target))
+    assert short is not None
     for number in range(HISTORY + SPARE):
         id = f"flood-{fault.seed}-{number}"
-        world.request_task(f"{fault.target} palletizing #{id}")
+        world.request_task(f"{short.plain} #{id}")
         world.request_verb(Verb.CANCEL, id)
 
 

@@ -126,7 +126,7 @@ class Teacher:
 def _what(robot: Robot, dice: Dice) -> tuple[str, Position | None]:
     """A goal anywhere, be it beyond a limit; or one of the verbs that every robot knows.
 
-    Nobody grips: what is true of parts in cells of storage is followed by their tasks alone.
+    Nobody grips: what is true of parts is followed by tasks alone.
     """
     if robot.floor_grid is not None:
         return "", dice.below(robot.floor_grid.size + 1)

@@ -306,6 +306,32 @@ def _low_place(look: Look, command: Command, cell: Cell) -> str | None:
     return next(iter(low), None)
 
 
+@invariant(Trigger.COMMANDED)
+def tasks_take_their_time(look: Look) -> Iterator[str]:
+    """A task commands nothing before `dwell_s` has passed since it began, and an arm nothing before as long
+    has passed since its effector was told to grip or to let go, unless a recovery or an operator has begun.
+    """
+    for sent in look.record.commands.new:
+        cell = look.record.cells[sent.entry.cell] if sent.entry is not None else None
+        if cell is None or sent.verbs or cell.run.run.recovering or cell.run.manual.teaching is not None:
+            continue
+        since = _waits_since(look, cell, sent)
+        if since is not None and sent.at < since + cell.timing.dwell_s - ROUNDING_S:
+            yield f"{sent} leaves {sent.at - since:.3f} s after what it has to wait for"
+
+
+def _waits_since(look: Look, cell: KnownCell, sent: SentCommand) -> float | None:
+    """The time since which a command has to wait: of an effector that was switched, or of the task."""
+    before = sent.before
+    if before is not None and before.entry is not None and before.entry.cell == cell.name:
+        is_grip = isinstance(before.command, Switch) and before.command.grips is not None
+        is_effector = look.world.model.robots[sent.robot].has_effector
+        if is_grip and is_effector and before.state is State.DONE and not before.verbs:
+            return before.at
+    task = look.record.tasks.open.get(look.record.tasks.running.get(cell.name, ""))
+    return None if task is None else task.began
+
+
 COMMANDS = (
     no_move_after_its_halt,
     no_command_to_unfit,
@@ -317,4 +343,5 @@ COMMANDS = (
     halted_moves_sent_halt,
     held_cells_stand_still,
     low_robots_rise_first,
+    tasks_take_their_time,
 )

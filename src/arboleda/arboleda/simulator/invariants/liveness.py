@@ -162,9 +162,10 @@ def zone_requests_end(look: Look) -> Iterable[str]:
 
 def _overdue(look: Look) -> Iterator[str]:
     """Sentences on arms that wait for too long; no tree is asked while its cell is held."""
-    for cell in look.record.waiting:
-        if cell.state is CellState.EXECUTE and cell.waited_s > cell.cell.zone_wait_s + SLACK_S:
-            yield f"{cell.layout.arm.name} waits for its zones for {cell.waited_s:.3f} s"
+    for user in look.record.waiting:
+        cell = look.record.cells[user.cell]
+        if cell.state is CellState.EXECUTE and user.waited_s > cell.cell.zone_wait_s + SLACK_S:
+            yield f"{user.robot} waits for its zones for {user.waited_s:.3f} s"
 
 
 @invariant(Trigger.END)

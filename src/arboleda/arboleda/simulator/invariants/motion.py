@@ -39,10 +39,9 @@ def nothing_moves_unasked(look: Look) -> Iterator[str]:
     """A body moves, and a fact of it changes, only by a goal that our bridge published, or to a stop."""
     for robot in look.truth.changed:
         yield from _moves_unasked(robot)
-    for cell in look.truth.storage.cells.values():
-        switch = cell.switch
-        if switch is not None and not (switch.by_command or switch.lost_power or switch.by_others):
-            yield f"the effector of {switch.arm} goes {'on' if switch.on else 'off'} unasked"
+    for each in look.truth.grips.switched:
+        if not (each.by_command or each.lost_power or each.by_others):
+            yield f"the effector of {each.arm} goes {'on' if each.on else 'off'} unasked"
 
 
 @invariant(Trigger.CHANGED)

@@ -102,7 +102,7 @@ def recipes_end_as_they_say(look: Look) -> Iterator[str]:
 
 def _is_known(look: Look, cell: str) -> bool:
     """True where somebody can know what a task of the cell did."""
-    if look.world.model.cell(cell).places:
+    if look.world.model.cell(cell).counted:
         return not look.truth.places.cells[cell].end_is_doubtful
     return _is_calm(look)
 

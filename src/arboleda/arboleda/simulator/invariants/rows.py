@@ -17,9 +17,9 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Position
 from arboleda.model.messages import ENDED, MotionState, Reason, TaskChanged
-from arboleda.model.plant_model import Robot
+from arboleda.model.plant_model import Cell, Robot
+from arboleda.model.recipe import Recipe
 from arboleda.model.sentence import Phrase, Sentence
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.trees.tree_nodes import nodes_of
 from arboleda.trees.tree_run import IN_RECOVERY
 
@@ -240,7 +240,7 @@ def ended_at(robot: Robot, last: SentCommand | None, at: Position | None) -> Row
     return {"node": last.command.nodes[-1]} if done else None  # type: ignore[union-attr]
 
 
-def waits_at(cell: KnownCell, text: str, part: Row | None) -> Iterator[str]:
+def waits_at(cell: KnownCell, recipe: Recipe, part: Row | None) -> Iterator[str]:
     """Differences between the shown and the true place of a part that waits in no effector."""
     sent = [leaf.entry for leaf in _acts(cell) if leaf.entry is not None]
     sent.sort(key=lambda entry: entry.sent_at)
@@ -250,8 +250,9 @@ def waits_at(cell: KnownCell, text: str, part: Row | None) -> Iterator[str]:
         goals = [each.q for each in before if isinstance(each, MoveJoints)]
         stored = any(goals[-1] == station.q for station in cell.cell.stations) if goals else True
         expected = None if stored else {"at": "pose", "q": list(goals[-1])}
-    elif text.endswith(" palletizing"):
-        expected = {"at": "pose", "q": list(cell.layout.palletizing.pick.joints)}
+    elif recipe.part_from is not None:
+        first = cell.cell.groups[recipe.part_from][0]
+        expected = {"at": "pose", "q": list(cell.cell.taker.targets[first].joints)}
     else:
         expected = {"at": "mobile"}
     if part != expected:
@@ -263,13 +264,15 @@ def _acts(cell: KnownCell) -> Iterator[Any]:
     return (each for each in nodes if type(each).__name__ == "Act")
 
 
-def place(cell: StorageLayout) -> Row:
-    """The values of a cell that never change."""
+def place(cell: Cell) -> Row:
+    """The values of a cell that never change; it has a handover."""
+    assert cell.handover is not None
+    grid = cell.giver.robot.floor_grid
     return {
-        "arm": cell.arm.name,
-        "mobile": cell.mobile.name,
-        "pitch": cell.mobile.grid.pitch,
-        "columns": cell.mobile.grid.columns,
-        "pickups": [list(pose.joints) for pose in cell.pickups],
+        "arm": cell.taker.robot.name,
+        "mobile": cell.giver.robot.name,
+        "pitch": grid.pitch,
+        "columns": grid.columns,
+        "pickups": [list(pose.joints) for pose in cell.taker.at(cell.handover.targets)],
         "stations": [list(station.joints) for station in cell.stations],
     }

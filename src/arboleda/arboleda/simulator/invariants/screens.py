@@ -17,10 +17,9 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import OperatorRequest
-from arboleda.model.plant_model import Evidence
+from arboleda.model.plant_model import Evidence, Robot
 from arboleda.model.sentence import OWN
 from arboleda.model.verbs import Scope, refusable
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.trees.tree_nodes import nodes_of
 from arboleda.views import diagnostics, geometry, twin_view, view
 from arboleda.wire import status
@@ -29,7 +28,6 @@ from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
 from ..recorded.robots import KnownRobot, StopProgress
 from ..recorded.time_line import UNIX_S
-from ..storage.tasks import NAMES
 from . import rows
 from .invariant import Look, Trigger, invariant
 from .liveness import ready
@@ -62,7 +60,8 @@ def _only_arms_and_mobiles(look: Look) -> bool:
 def _is_own(look: Look, cell: KnownCell) -> bool:
     """True if a cell is at a task of a recipe that does not come with Arboleda."""
     task = cell.run.task
-    return bool(look.world.recipes) or (task is not None and task.order.recipe not in NAMES)
+    shipped = {each.name for each in cell.cell.recipes if each.is_shipped}
+    return bool(look.world.recipes) or (task is not None and task.order.recipe not in shipped)
 
 
 def _lines(look: Look) -> Iterator[str]:
@@ -194,11 +193,12 @@ def _zone(look: Look, zone: str) -> Row:
 
 def _cell(look: Look, cell: KnownCell) -> Row:
     tasks, run, now = look.record.tasks, cell.run, look.record.stepped_at
+    arm, mobile = cell.cell.taker.robot, cell.cell.giver.robot
     expected: Row = {
         "state": cell.state.value,
-        "arm": cell.layout.arm.name,
-        "mobile": cell.layout.mobile.name,
-        "devices": [_device("arm", cell.layout.arm, "effector"), _device("mobile", cell.layout.mobile, None)],
+        "arm": arm.name,
+        "mobile": mobile.name,
+        "devices": [_device("arm", arm, "effector"), _device("mobile", mobile, None)],
         "queue": list(tasks.queues[cell.name]),
         "paused": cell.paused,
     }
@@ -222,7 +222,7 @@ def _cell(look: Look, cell: KnownCell) -> Row:
     return expected
 
 
-def _device(role: str, robot: Arm | Mobile, holds: str | None) -> Row:
+def _device(role: str, robot: Robot, holds: str | None) -> Row:
     place = robot.position_key
     return {"role": role, "name": robot.name, "kind": role, "position": place, "holds": holds, "asked": False}
 
@@ -348,7 +348,7 @@ def _drawn(look: Look, drawn: Row) -> Iterator[str]:
         yield from _unlike(f"{row['name']} as drawn", row, {**wanted, "heard_at": known.heard_at})
         yield from _ends(look, known, row)
     for name, part in drawn["parts"].items():
-        kept = look.record.effector_of(look.record.cells[name].layout.arm.name)
+        kept = look.record.effector_of(look.record.cells[name].cell.taker.robot.name)
         if look.world.model.cell(name).places:
             yield from _in_hands(name, part, drawn["books"][name]["carriers"], kept)
             continue
@@ -357,9 +357,10 @@ def _drawn(look: Look, drawn: Row) -> Iterator[str]:
         if kept != "off" and part is not None and part.get("sure") is not (kept == "on"):
             yield f"the part of {name} is drawn as {part}, its effector is {kept}"
         running = look.record.tasks.open.get(look.record.tasks.running.get(name, ""))
-        own = _is_own(look, look.record.cells[name])
-        if not own and kept == "off" and running is not None and look.record.cells[name].run.tree is not None:
-            yield from rows.waits_at(look.record.cells[name], running.message.text, part)
+        cell = look.record.cells[name]
+        own, task = _is_own(look, cell), cell.run.task
+        if not own and kept == "off" and running is not None and task and cell.run.tree is not None:
+            yield from rows.waits_at(cell, cell.cell.recipe(task.order.recipe), part)
 
 
 def _in_hands(name: str, part: Row | None, carriers: dict[str, bool], kept: str) -> Iterator[str]:
@@ -462,22 +463,22 @@ def plans_show_the_model(look: Look) -> Iterator[str]:
         {"plant": model.name, "zones": list(model.zones), "no_stop": without_stop, "places": placed},
     )
     for cell in model.cells:
-        layout = StorageLayout(cell)
-        grid = layout.mobile.grid
+        arm, mobile = cell.taker.robot, cell.giver.robot
+        grid = mobile.floor_grid
         yield from _unlike(
             cell.name,
             shown[cell.name],
             {
-                "arm": layout.arm.name,
-                "mobile": layout.mobile.name,
+                "arm": arm.name,
+                "mobile": mobile.name,
                 "grid": {"rows": grid.rows, "columns": grid.columns},
-                "paths": {path.code: list(path.nodes) for path in layout.paths},
+                "paths": {path.code: list(path.nodes) for path in cell.giver.paths},
                 "stations": len(cell.stations),
             },
         )
         for robot in cell.robots:
             yield from _unlike(robot.name, stand[robot.name], PLACED[type(robot)](cell, robot))
-        yield from _unlike(f"the place of {cell.name}", around[cell.name], rows.place(layout))
+        yield from _unlike(f"the place of {cell.name}", around[cell.name], rows.place(cell))
     for row in placed["zones"]:
         yield from _spots(look, row)
 

@@ -21,13 +21,11 @@ from arboleda.model.messages import (
 )
 from arboleda.model.plant_model import Cell, Evidence, Workspace
 from arboleda.model.sentence import Sentence
-from arboleda.recipes.storage_layout import StorageLayout
 from arboleda.wire.hop import shown
 
 from ..recorded.cells import KnownCell
 from ..recorded.robots import STOPS, StopProgress
 from ..recorded.scopes import UNSENT
-from ..storage.tasks import NAMES
 from ..truth.mobile import MobileTruth
 from .invariant import Look, Trigger, invariant
 from .revisions import is_offered
@@ -366,8 +364,8 @@ def no_internal_failure(look: Look) -> Iterable[str]:
 def no_task_fails_without_a_fault(look: Look) -> Iterable[str]:
     """As long as nothing has gone wrong and no operator has acted, no task fails, but for what its plant file
     asks for and robots cannot do, for a zone in which another arm works for longer than `zone_wait_s`, and,
-    of other recipes than those of storage, for what a recipe may fail by itself: a check, a time that is up,
-    an answer.
+    of recipes that do not come with Arboleda, for what a recipe may fail by itself: a check, a time that is
+    up, an answer.
     """
     world, record = look.world, look.record
     if world.last_fault_at > -math.inf or world.recipes or not record.undisturbed:
@@ -378,7 +376,8 @@ def no_task_fails_without_a_fault(look: Look) -> Iterable[str]:
 
 
 def _may_fail(look: Look, change: TaskChanged) -> bool:
-    if look.world.plant.intake.tasks[change.task].order.recipe in NAMES:
+    order = look.world.plant.intake.tasks[change.task].order
+    if look.world.model.cell(order.cell).recipe(order.recipe).is_shipped:
         return _cannot_be_done(look, change)
     return change.reason not in ONLY_BY_FAULTS
 
@@ -391,13 +390,12 @@ def _cannot_be_done(look: Look, change: TaskChanged) -> bool:
     """
     order = look.world.plant.intake.tasks[change.task].order
     cell = look.world.model.cell(order.cell)
-    layout = StorageLayout(cell)
-    mobile = look.truth.robot(layout.mobile.name)
+    mobile = look.truth.robot(cell.giver.robot.name)
     if change.reason is Reason.ZONE_UNAVAILABLE:
-        return look.record.cells[order.cell].behind_work
-    if change.reason in PIECES and layout.arm.evidence is not Evidence.IDS:
+        return any(each.behind_work for each in look.record.cells[order.cell].zone_users.values())
+    if change.reason in PIECES and cell.taker.robot.evidence is not Evidence.IDS:
         return True
-    led_there = cell.drive_to_start and layout.mobile.evidence is not Evidence.STATE
+    led_there = cell.drive_to_start and cell.giver.robot.evidence is not Evidence.STATE
     if led_there or "path" not in order.values or not isinstance(mobile, MobileTruth):
         return False
     return mobile.node != cell.paths[order.values["path"]].nodes[0]

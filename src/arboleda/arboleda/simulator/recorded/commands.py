@@ -42,6 +42,7 @@ class SentCommand:
         self.state: State | None = None
         self.deadline = at
         self.cancelled_at: float | None = None
+        self.before: SentCommand | None = None  # the last one of its robot, a stop or halt left out
 
     def bind(self, entry: Entry) -> None:
         """Bind it to its entry in the ledger."""
@@ -90,6 +91,7 @@ class Commands:
         command = sent.command
         known.unnamed = command.id
         if not isinstance(command, Stop):
+            sent.before = self.last.get(command.robot)
             self.last[command.robot] = sent
         if sent.is_work:
             self.last_work[command.robot] = sent

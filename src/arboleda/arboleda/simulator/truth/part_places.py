@@ -5,30 +5,36 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+from arboleda.core import text
 from arboleda.dispatch.ledger import Entry
+from arboleda.model.commands import Position
 from arboleda.model.common_places import with_common_places
 from arboleda.model.grips import Grip
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskState, Verb
-from arboleda.model.plant_model import Cell, Evidence, Place, Workspace
+from arboleda.model.plant_model import Cell, Evidence, Place, Robot, Workspace
+from arboleda.model.recipe import Recipe
 from arboleda.trees.part_places import EMPTY, trouble_in
 
 from ..recorded.scopes import Scopes
 from ..world import World
+from .grips import part_poses
+from .mobile import MobileTruth
 from .robot import RobotTruth
 
 
 class CellPlaces:
-    """True number of parts at each place of one cell. A station of a rack has one or none.
+    """True number of parts at each place of one cell. A station of a rack has one or none, and gets one of
+    each task; what lay there before is taken out by people.
 
     `at_begin` and `at_end` have those when its last task that is done began and ended; what another cell
     meanwhile did with a hand that both share counts as if it was before. `as_left` has those of the places at
-    which that task put or took a part last, and of those where no other cell did. `is_doubtful` once nobody
-    could know them any more, `end_is_doubtful` where that was so when that task ended: a device has lied or
-    lost its power, its effector was stuck and nobody reports that, somebody took a hand's part, a hand took
-    one at a station where none was known, or closed where its robot stood at no target, or a place and
-    another target are one to its robot. The next task begins with what is in the books then, unless a hand
-    still holds something. `late_hands` were in the middle of a grip, on an earlier command, as that task
-    began.
+    which that task put or took a part last, and of those where no other cell did; of a rack only what that
+    task put there. `is_doubtful` once nobody could know them any more, `end_is_doubtful` where that was so
+    when that task ended: a device has lied or lost its power, its effector was stuck and nobody reports that,
+    somebody took a hand's part, a hand took one at a station where none was known, or closed where its robot
+    stood at no target, or a place and another target are one to its robot. The next task begins with what is
+    in the books then, unless a hand still holds something. `late_hands` were in the middle of a grip, on an
+    earlier command, as that task began.
     """
 
     def __init__(self, cell: Cell, robots: Mapping[str, Any]) -> None:
@@ -36,6 +42,7 @@ class CellPlaces:
         self.parts = {place.target: 0 for place in cell.counted}
         self.at_begin = self.at_end = self.as_left = dict(self.parts)
         self._left: dict[str, int] = {}  # by this task, since it began
+        self._put: set[str] = set()  # the stations at which it has put a part, over all starts
         self._moved_by_others: set[str] = set()
         self._began_with = dict(self.parts)
         self.late_hands: frozenset[str] = frozenset()
@@ -45,12 +52,20 @@ class CellPlaces:
         self._places = {place.target: place for place in cell.counted}
         self._rack = frozenset(place.target for place in cell.rack)
         self._hands = {space.hand.name: space for space in cell.spaces if space.hand.held_fact}
+        self._task = ""
+        self._giver: Robot | None = None  # that brings what its task takes
+        self.came: set[Position] = set()  # where the giver has stood since that task began
         self._held = {hand: _holds(robots[hand]) for hand in self._hands if hand in robots}
 
-    def begin(self, booked: Mapping[str, int], in_grip: Iterable[str]) -> None:
+    def begin(self, task: str, recipe: Recipe, booked: Mapping[str, int], in_grip: Iterable[str]) -> None:
         """A task begins: people have filled the supplies and emptied the outputs; these hands are about to
-        close or to open.
+        close or to open. What a task has put at stations counts also if it begins anew in a later start.
         """
+        handover = self.cell.handover
+        is_brought = handover is not None and recipe.alone is None
+        self._giver = self.cell.reach[handover.giver].robot if handover is not None and is_brought else None
+        if task != self._task:
+            self._task, self._put, self.came = task, set(), set()
         self._began_in_grip = frozenset(in_grip)
         if self.is_doubtful:
             self.parts = dict(booked)
@@ -66,7 +81,8 @@ class CellPlaces:
         """The task is done."""
         self.at_begin, self.at_end = self._began_with, dict(self.parts)
         unseen = self._moved_by_others - self._left.keys()
-        self.as_left = {each: n for each, n in (self.parts | self._left).items() if each not in unseen}
+        left = self.parts | self._left | {each: int(each in self._put) for each in self._rack}
+        self.as_left = {each: n for each, n in left.items() if each not in unseen}
         self.end_is_doubtful, self.late_hands = self.is_doubtful, self._began_in_grip
 
     def follow(self, hand: RobotTruth, carrier: RobotTruth | None, *, is_of_others: bool) -> str | None:
@@ -80,10 +96,12 @@ class CellPlaces:
         if now and not is_of_others and carrier is not None and self._is_on_its_way(name, carrier):
             self.is_doubtful = True  # it closes late, and may have the part that it was to take, or none
             return None
+        sentence = self._too_early(name, carrier) if now and carrier is not None else None
         if len(found) != 1:
             # what another cell puts down where this one has no place is no part of its places
-            self.is_doubtful |= bool(found) or not (now or is_of_others)
-            return None
+            is_elsewhere = not (now or is_of_others or self._is_at_uncounted_place(name, carrier))
+            self.is_doubtful |= bool(found) or is_elsewhere
+            return sentence
         place = self._places[found[0]]
         if is_of_others and place.by_people:
             return None  # people see to it for each task
@@ -98,9 +116,7 @@ class CellPlaces:
         """Count a part that a hand took or put; the sentence about what cannot be."""
         now = moved < 0
         if place.target in self._rack:
-            self.is_doubtful |= now and not self.parts[place.target]
-            self.parts[place.target] = 0 if now else 1
-            return None
+            return self._move_in_rack(place.target, name, taken=now, is_of_others=is_of_others)
         self.parts[place.target] += moved
         self._began_with[place.target] += moved * is_of_others
         if now and self.parts[place.target] < 0:
@@ -108,6 +124,40 @@ class CellPlaces:
         if self.parts[place.target] > place.holds:
             return f"{name} lets go of a part at {place.target}, which has {place.holds} already"
         return None
+
+    def _move_in_rack(self, target: str, name: str, *, taken: bool, is_of_others: bool) -> str | None:
+        there, self.parts[target] = self.parts[target], 0 if taken else 1
+        self.is_doubtful |= taken and not there
+        is_second = bool(there) and not taken and target in self._put
+        if not is_of_others:
+            self._put = self._put - {target} if taken else self._put | {target}
+        return f"{name} lets go of a second part of its task at {target}" if is_second else None
+
+    def see(self, giver: RobotTruth) -> None:
+        """Take in where the robot stands that brings parts."""
+        if isinstance(giver, MobileTruth) and not giver.moving:
+            self.came |= {giver.node, giver.counted} if giver.strayed else {giver.node}
+
+    def _too_early(self, name: str, carrier: RobotTruth) -> str | None:
+        """The sentence about a part that is taken at the handover before a robot has brought it."""
+        handover, giver = self.cell.handover, self._giver
+        if handover is None or giver is None or self._hands[name].robot.name != handover.taker:
+            return None
+        targets = self._hands[name].targets
+        here = [each for each in handover.targets if targets[each].name in carrier.here | carrier.stood]
+        paths = self.cell.reach[handover.giver].paths
+        ends = {path.nodes[-1] for path in paths if handover.after(path.code) in here}
+        if not here or giver.evidence is not Evidence.IDS or not ends.isdisjoint(self.came):
+            return None
+        return f"{name} takes hold of a part at {here[0]}, which {giver.name} has not brought"
+
+    def _is_at_uncounted_place(self, name: str, carrier: RobotTruth | None) -> bool:
+        """True at a target where parts come and go, and nobody counts them."""
+        robot = self._hands[name].robot.name
+        poses = part_poses(self.cell, robot, puts=True)
+        return (
+            carrier is not None and poses is not None and not poses.isdisjoint(carrier.here | carrier.stood)
+        )
 
     def set(self, parts: Mapping[str, int]) -> None:
         """Have a person see to it that so many parts are at places.
@@ -122,6 +172,12 @@ class CellPlaces:
     def capacity(self, target: str) -> int:
         """The most parts that a place can have."""
         return self._places[target].holds
+
+    def depends_on(self, robot: str) -> bool:
+        """False for a robot that only brings parts, wherever it is."""
+        handover = self.cell.handover
+        only_brings = handover is not None and handover.giver == robot and not self.has(robot)
+        return not only_brings or any(place.device == robot for place in self._places.values())
 
     def has(self, hand: str) -> bool:
         """True for a hand of one of its robots."""
@@ -189,9 +245,13 @@ class PlacesTruth:
         self._grips: dict[str, Grip] = {}
         self._seen: tuple[object, int] | None = None  # whose books, and which version of them
         self._cells_of: dict[str, list[CellPlaces]] = {}
+        self._brought_to: dict[str, CellPlaces] = {}  # by the robot that brings
         for places in self.cells.values():
             for robot in places.cell.robots:
-                self._cells_of.setdefault(robot.name, []).append(places)
+                if places.depends_on(robot.name):
+                    self._cells_of.setdefault(robot.name, []).append(places)
+            if places.cell.handover is not None:
+                self._brought_to[places.cell.handover.giver] = places
 
     def forget(self) -> None:
         """Forget what happened in the step before."""
@@ -207,6 +267,8 @@ class PlacesTruth:
         """Take in what robots did in this step."""
         for robot in changed:
             name = robot.robot.name
+            if name in self._brought_to:
+                self._brought_to[name].see(robot)
             for places in self._cells_of.get(name, ()):
                 places.is_doubtful |= self._is_doubtful(robot)
                 if not places.has(name):
@@ -250,8 +312,13 @@ class PlacesTruth:
         if places is None or change.request is not None:
             return
         if change.state is TaskState.RUNNING:
-            booked = self._world.plant.cells[places.cell.name].context.places.counts
-            places.begin(booked, filter(self._closes_or_opens, places.tools))
+            run = self._world.plant.cells[places.cell.name]
+            order = text.parse(change.text, self._world.model)
+            in_grip = filter(self._closes_or_opens, places.tools)
+            recipe = self._world.model.cell(places.cell.name).recipe(order.recipe)
+            places.begin(change.task, recipe, run.context.places.counts, in_grip)
+            if places.cell.handover is not None and places.cell.handover.giver in self._robots:
+                places.see(self._robots[places.cell.handover.giver])
         elif change.state is TaskState.DONE:
             places.end()
 

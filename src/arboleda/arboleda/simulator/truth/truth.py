@@ -1,12 +1,12 @@
-"""The truth about a plant, step by step: its robots and devices, their facts and answers, and its storage."""
+"""The truth about a plant, step by step: its robots and devices, their facts and answers, and its parts."""
 
 from __future__ import annotations
 
 import json
 
-from arboleda.model.commands import Command, Motion, Query, Switch
+from arboleda.model.commands import Command, Motion, Query
 from arboleda.model.facts import Value
-from arboleda.model.messages import Fact, OperatorAnswer, Report, TaskChanged, TaskState, Verb
+from arboleda.model.messages import ENDED, Check, Fact, OperatorAnswer, Report, TaskChanged, TaskState, Verb
 from arboleda.model.whole_cells import whole_cell
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import OrderGoal
@@ -14,9 +14,9 @@ from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
 from ..commands import goal as goal_of
-from ..storage.truth import StorageTruth
 from ..world import World
 from .ended_commands import EndedCommand
+from .grips import GripsTruth
 from .part_places import PlacesTruth
 from .refused_commands import RefusedCommands
 from .robots import RobotsTruth
@@ -29,15 +29,19 @@ RELEASE_S = 60.0  # within which an operator's release opens a tool
 class Truth(RobotsTruth):
     """The true facts of robots and devices, since when they are so, and devices' true answers.
 
-    `done_tasks` of this step: the cells whose task is called done, the task, and since when it ran.
+    Of this step: `begun_tasks`, the cells whose task began, and the task; `done_tasks`, those whose task is
+    called done, the task, and since when it ran.
     """
 
     def __init__(self, world: World) -> None:
         super().__init__(world)
-        self.storage = StorageTruth(world, self.robots, self.unseen)
+        self.grips = GripsTruth(world, self.robots, self.unseen)
         self.places = PlacesTruth(world, self.robots, mistaken=self.mistaken, released=self.released)
         self.shared = SharedDevicesTruth(world, self.robots)
+        self.begun_tasks: list[tuple[str, str]] = []
         self.done_tasks: list[tuple[str, str, float]] = []
+        self.unchecked: dict[str, tuple[Check, ...]] = {}  # of those, what nobody confirmed
+        self._at_work = _tasks_at_work(world)
         self._refused_commands = RefusedCommands()
         self._facts = {name: dict(robot.body.true_facts) for name, robot in self.robots.items()}
         self._left: dict[tuple[str, object], float] = {}  # when a fact ceased to be so, a target was left
@@ -79,28 +83,30 @@ class Truth(RobotsTruth):
         return last if last is not None and last.done else None
 
     def _did_more(self) -> bool:
-        return self.storage.has_news
+        return bool(self.begun_tasks or self.grips.stray)
 
     def _forget(self) -> None:
         super()._forget()
-        self.storage.forget()
+        self.grips.forget()
+        if self.begun_tasks:
+            self.begun_tasks = []
         self.places.forget()
 
     def _follow_changes(self) -> None:
         super()._follow_changes()
-        self.storage.follow(self.changed)
+        self.grips.follow(self.changed)
         if self.places.cells:
             self.places.follow(self.changed)
         self._follow_facts()
 
     def _listen(self, reports: list[Report]) -> None:
-        if self.storage.cells:
-            self.storage.hear(reports)
+        if self.grips.effectors:
+            self.grips.hear(reports)
         super()._listen(reports)
 
     def look(self) -> None:
         if self.done_tasks:
-            self.done_tasks = []
+            self.done_tasks, self.unchecked = [], {}
         super().look()
         if self.world.model.shared:
             self.shared.look()
@@ -125,7 +131,7 @@ class Truth(RobotsTruth):
         kept = self.world.plant_process.found.facts.get(Fact.PARTS, {})
         self.places.restart(self.world.moment.last_words, kept)
         self._last.clear()
-        self.storage.restart()
+        self._at_work = _tasks_at_work(self.world)
 
     def _follow_facts(self) -> None:
         """Note since when a fact is not so any more, and robots stand at a target no more."""
@@ -168,22 +174,31 @@ class Truth(RobotsTruth):
     def _take_in(self, message: object) -> None:
         if isinstance(message, TaskChanged):
             self._task(message)
-            self.storage.task(message)
             self.places.task(message)
         else:
             super()._take_in(message)
 
     def _command(self, command: Command) -> None:
         super()._command(command)
-        if isinstance(command, Switch):
-            self.storage.command(command)
+        self.grips.command(command, runs=self._may_grip)
+
+    def _may_grip(self, cell: str) -> bool:
+        """True for a cell with a task at work, or that somebody teaches; where nobody knows which it is."""
+        run = self.world.plant.cells.get(cell)
+        return run is None or cell in self._at_work or run.manual.teaching is not None
 
     def _task(self, change: TaskChanged) -> None:
         cell = change.cell or ""
         if change.state is TaskState.RUNNING and change.request is None:
             self._began[cell] = self.world.now
-        elif change.state is TaskState.DONE and change.request is None:
+            self._at_work[cell] = change.task
+            self.begun_tasks.append((cell, change.task))
+            return
+        if change.state in ENDED and self._at_work.get(cell) == change.task:
+            del self._at_work[cell]
+        if change.state is TaskState.DONE and change.request is None:
             self.done_tasks.append((cell, change.task, self._began.get(cell, self.world.now)))
+            self.unchecked[change.task] = change.unchecked
 
     def _answered(self, answer: OperatorAnswer) -> None:
         super()._answered(answer)
@@ -192,4 +207,8 @@ class Truth(RobotsTruth):
         if answer.verb.row.drops:
             robots = robots_of(self.world.model, answer.scope)
             self._released.update(dict.fromkeys(robots, self.world.now))
-            self.storage.release(robots)
+
+
+def _tasks_at_work(world: World) -> dict[str, str]:
+    """The task at work in each cell that has one."""
+    return {name: run.task.id for name, run in world.plant.cells.items() if run.task is not None}

@@ -1,18 +1,16 @@
-"""Parts of a cell that the storage recipes work in, by what they are to these recipes."""
+"""Parts of a shipped cell, by what they are to the recipes of storage; for tests and benchmarks."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import cast
 
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.commands import Position
 from arboleda.model.plant_model import Cell, Handover, Path, Pose, Workspace
-
-ARM, MOBILE = "arm", "mobile"  # roles of the short form of a plant file
-HOME = "home"
-PALLETIZING_TARGETS = "palletizing"  # the group of the two targets of the arm's own cycle
+from arboleda.recipes.storage import PALLETIZING_TARGETS
 
 
 @dataclass(frozen=True)
@@ -43,21 +41,17 @@ class StorageLayout:
     @cached_property
     def arm(self) -> Arm:
         """The robot that takes the parts."""
-        arm = self.cell.reach[self.handover.taker].robot
-        assert isinstance(arm, Arm)
-        return arm
+        return cast(Arm, self.cell.taker.robot)
 
     @cached_property
     def mobile(self) -> Mobile:
         """The robot that brings them."""
-        mobile = self.cell.reach[self.handover.giver].robot
-        assert isinstance(mobile, Mobile)
-        return mobile
+        return cast(Mobile, self.cell.giver.robot)
 
     @property
     def space(self) -> Workspace:
         """The places of the arm."""
-        return self.cell.reach[self.handover.taker]
+        return self.cell.taker
 
     @property
     def home(self) -> Pose:
@@ -72,11 +66,11 @@ class StorageLayout:
     @property
     def paths(self) -> tuple[Path, ...]:
         """The paths of the mobile robot."""
-        return self.cell.reach[self.handover.giver].paths
+        return self.cell.giver.paths
 
     def path(self, code: str) -> Path:
         """The path with this code."""
-        return self.cell.reach[self.handover.giver].path(code)
+        return self.cell.giver.path(code)
 
     @property
     def pickup(self) -> Pose:

@@ -1,1 +1,0 @@
-"""Storage recipes, as the simulator judges them: tasks step by step, grips, parts and racks."""
