@@ -66,7 +66,7 @@ OF_OTHER_COMMANDS = {
     "arboleda.playback",
     "arboleda.sim",
     "arboleda.simulator",
-    "arboleda.virtual",
+    "arboleda_drivers.virtual",
 }
 OF_ANY_PLANT = {
     "arboleda.client",

@@ -17,7 +17,6 @@ import typer
 from arboleda.host.packages import entry_points
 from arboleda.model.errors import StartError
 from arboleda.model.sentence import Phrase
-from arboleda.runtime import invocation
 from arboleda.views.verb_words import ABOUT
 
 from .loading import loading
@@ -27,7 +26,11 @@ NOT_INSTALLED = Phrase(
     "cli.not_installed",
     "{command} is part of a package that is not installed: {python} -m pip install 'arboleda[{package}]'",
 )
-OF_PACKAGES = {"conformance": "boards", "firmware-config": "boards"}  # extras of `arboleda`, by command
+OF_PACKAGES = {  # extras of `arboleda`, by command
+    "conformance": "boards",
+    "firmware-config": "boards",
+    "virtual": "drivers",
+}
 
 
 class Command(NamedTuple):
@@ -129,9 +132,6 @@ OURS: Mapping[str, Command] = {
     "record": Command(
         "record", "The flight record of a plant: what went into its core and what came out, of every start."
     ),
-    "virtual": Command(
-        "virtual", "Play the controller of another maker over its own protocol, with motion and with faults."
-    ),
     "exercise": Command("exercise", "Exercises with a judge: cells that are not right yet, to be put right."),
 }
 
@@ -169,6 +169,8 @@ class LoadedCommands(Mapping[str, Any]):
 def _known(name: str) -> Command:
     """A command; StartError if its package is not installed, KeyError if there is no such command."""
     if name not in commands() and name in OF_PACKAGES:
+        from arboleda.runtime import invocation  # the overview loads nothing of plants
+
         package = OF_PACKAGES[name]
         raise StartError(NOT_INSTALLED(command=name, python=invocation.python(), package=package))
     return commands()[name]
