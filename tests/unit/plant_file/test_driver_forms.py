@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 import pytest
 
+from arboleda.dashboard.findings import findings
 from arboleda.drivers.port import DriverSpec
 from arboleda.model.errors import ArboledaError
 from arboleda.plant_file import driver_forms, package_drivers
@@ -92,7 +93,12 @@ def test_a_driver_whose_package_is_not_installed_has_the_line_that_installs_it_a
     monkeypatch.setattr(driver_forms, "entry_points", lambda group: EntryPoints())
     rows = {each["name"]: each for each in driver_forms.forms({}, texts("en", "drivers"))}
     assert set(rows) == {"mqtt", "ros", *package_drivers.OF_DEVICES}
-    assert "pip install 'arboleda[drivers]'" in rows["modbus"]["why_not"] and rows["modbus"]["keys"] == []
+    why = rows["modbus"]["why_not"]
+    assert "pip install 'arboleda[drivers]'" in why and rows["modbus"]["keys"] == []
+    assert findings("es")(why).startswith(
+        "el controlador modbus es parte de un paquete que no está instalado: "
+    )
+    assert findings("en")(why) == why
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
