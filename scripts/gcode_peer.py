@@ -9,12 +9,12 @@ import tty
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from arboleda.adapters.gcode import Gcode
-from arboleda.drivers.gcode.settings import MM, Settings
 from arboleda.kinds.joints import Jointed
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.plant_file.loader import load
+from arboleda_drivers.gcode.adapter import Gcode
+from arboleda_drivers.gcode.settings import MM, Settings
 
 PATIENCE_S = 60.0
 GANTRIES = Path(__file__).parents[1] / "examples/gantry"

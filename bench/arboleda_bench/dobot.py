@@ -11,9 +11,9 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 
-from arboleda.drivers.dobot.frames import Mode
-from arboleda.virtual.dobot.machine import ClientText, Frame, Message, VirtualDobot
-from arboleda.virtual.dobot.sockets import Server
+from arboleda_drivers.dobot.frames import Mode
+from arboleda_drivers.dobot.virtual.machine import ClientText, Frame, Message, VirtualDobot
+from arboleda_drivers.dobot.virtual.sockets import Server
 
 from .floor_dobot import ANGLES_DEG
 from .processes import Process

@@ -14,13 +14,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from arboleda.adapters.modbus import Modbus
-from arboleda.adapters.modbus_server import ModbusServer
-from arboleda.drivers.modbus.machine import ModbusDevice
-from arboleda.drivers.modbus.settings import Settings
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ArboledaError
 from arboleda.plant_file.loader import load
+from arboleda_drivers.modbus.adapter import Modbus
+from arboleda_drivers.modbus.machine import ModbusDevice
+from arboleda_drivers.modbus.server import ModbusServer
+from arboleda_drivers.modbus.settings import Settings
 
 from .plc_driver import PATIENCE_S, Driven, figures
 from .result import Result

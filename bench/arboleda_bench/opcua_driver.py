@@ -15,14 +15,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from arboleda.adapters.opcua import OpcUa
-from arboleda.adapters.opcua_server import OpcUaServer
-from arboleda.drivers.opcua.machine import OpcUaDevice
-from arboleda.drivers.opcua.settings import Settings
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ArboledaError
 from arboleda.plant_file.loader import load
-from arboleda.virtual.opcua.program import BeltProgram
+from arboleda_drivers.opcua.adapter import OpcUa
+from arboleda_drivers.opcua.machine import OpcUaDevice
+from arboleda_drivers.opcua.server import OpcUaServer
+from arboleda_drivers.opcua.settings import Settings
+from arboleda_drivers.opcua.virtual.program import BeltProgram
 
 from .plc_driver import PATIENCE_S, Driven, figures
 from .result import Result

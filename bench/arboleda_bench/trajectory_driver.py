@@ -14,11 +14,11 @@ import time
 from typing import Any
 
 from arboleda.drivers import MotionState, MoveJoints
-from arboleda.drivers.joint_trajectory.settings import Settings
 from arboleda.kinds.arm import Arm
 from arboleda.model.errors import ArboledaError
 from arboleda.testing.plants import shipped
 from arboleda.testing.storage_layout import StorageLayout
+from arboleda_drivers.joint_trajectory.settings import Settings
 
 from .reports import Reports
 from .result import Aim, Figure, Result, percentile
@@ -66,7 +66,7 @@ class Driven:
     """The driver, as a plant uses it."""
 
     def __init__(self, arm: Arm) -> None:
-        from arboleda_ros.joint_trajectory import FollowJointTrajectory
+        from arboleda_drivers.joint_trajectory.adapter import FollowJointTrajectory
 
         self._arm, self._number = arm, 0
         self._reports = Reports(PATIENCE_S)

@@ -9,8 +9,8 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
-from arboleda.virtual.dobot.faults import FAULTS
-from arboleda.virtual.dobot.machine import VirtualDobot
+from arboleda_drivers.dobot.virtual.faults import FAULTS
+from arboleda_drivers.dobot.virtual.machine import VirtualDobot
 
 from .dobot_loopback import Loopback
 from .rig import Hear

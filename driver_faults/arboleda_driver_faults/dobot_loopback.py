@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 
-from arboleda.drivers.dobot.machine import DashboardReply, Event, FeedbackData, Machine, Message, SendLine
-from arboleda.drivers.dobot.settings import Settings
-from arboleda.drivers.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
-from arboleda.virtual.dobot.machine import Answer, ClientText, Disconnect, Frame, VirtualDobot
+from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
+from arboleda_drivers.dobot.machine import DashboardReply, Event, FeedbackData, Machine, Message, SendLine
+from arboleda_drivers.dobot.settings import Settings
+from arboleda_drivers.dobot.virtual.machine import Answer, ClientText, Disconnect, Frame, VirtualDobot
 
 
 class Loopback:

@@ -6,14 +6,14 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from arboleda.drivers.gcode.dialects import machine
-from arboleda.drivers.gcode.settings import MM, Settings
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel, Robot
-from arboleda.virtual.gcode.faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
-from arboleda.virtual.gcode.grbl import VirtualGrbl
-from arboleda.virtual.gcode.marlin import VirtualMarlin
-from arboleda.virtual.gcode.moonraker import VirtualMoonraker
+from arboleda_drivers.gcode.dialects import machine
+from arboleda_drivers.gcode.settings import MM, Settings
+from arboleda_drivers.gcode.virtual.faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
+from arboleda_drivers.gcode.virtual.grbl import VirtualGrbl
+from arboleda_drivers.gcode.virtual.marlin import VirtualMarlin
+from arboleda_drivers.gcode.virtual.moonraker import VirtualMoonraker
 
 from .rig import Causes, Hear, Rig
 from .stream_loopback import Loopback

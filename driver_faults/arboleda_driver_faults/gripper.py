@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from arboleda.drivers.gripper_command import machine as gripper_driver
-from arboleda.drivers.gripper_command.machine import Width
-from arboleda.drivers.joint_trajectory import machine as arm_driver
-from arboleda.drivers.joint_trajectory.machine import Trajectory
 from arboleda.model.messages import Reason
-from arboleda.virtual.gripper.machine import Grip, GripperBody
-from arboleda.virtual.trajectory.machine import ArmBody, Points
+from arboleda_drivers.gripper_command import machine as gripper_driver
+from arboleda_drivers.gripper_command.machine import Width
+from arboleda_drivers.gripper_command.virtual.machine import Grip, GripperBody
+from arboleda_drivers.joint_trajectory import machine as arm_driver
+from arboleda_drivers.joint_trajectory.machine import Trajectory
+from arboleda_drivers.joint_trajectory.virtual.machine import ArmBody, Points
 
 from .ros_action import CAUSES, NO_LINK, ActionRig, Part, near, spot
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.adapters.modbus import refused
-from arboleda.adapters.polled import RequestRefused
 from arboleda.drivers import Report
-from arboleda.drivers.modbus.machine import Block, ModbusDevice, Raw, WriteRequest
-from arboleda.drivers.modbus.settings import Settings
 from arboleda.model.commands import Command
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
-from arboleda.virtual.modbus.memory import FAULTS, BeltMemory
+from arboleda_drivers.modbus.adapter import refused
+from arboleda_drivers.modbus.machine import Block, ModbusDevice, Raw, WriteRequest
+from arboleda_drivers.modbus.settings import Settings
+from arboleda_drivers.modbus.virtual.memory import FAULTS, BeltMemory
+from arboleda_drivers.plc.polled import RequestRefused
 
 from .plc import NO_LINK, BeltRig
 from .plc_loopback import LineBroken

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from arboleda.drivers.nav2 import machine as driver
-from arboleda.drivers.nav2.machine import Route
-from arboleda.drivers.nav2.pose import Pose
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
-from arboleda.virtual.nav2.machine import BaseBody, Drive
+from arboleda_drivers.nav2 import machine as driver
+from arboleda_drivers.nav2.machine import Route
+from arboleda_drivers.nav2.pose import Pose
+from arboleda_drivers.nav2.virtual.machine import BaseBody, Drive
 
 from .ros_action import CAUSES, NO_LINK, ActionRig, Part
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from arboleda.adapters.opcua_server import Bad
 from arboleda.drivers import Report
-from arboleda.drivers.opcua.machine import Call, OpcUaDevice, Read
-from arboleda.drivers.opcua.settings import Settings
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
-from arboleda.virtual.opcua.faults import FAULTS
-from arboleda.virtual.opcua.program import BeltProgram
+from arboleda_drivers.opcua.machine import Call, OpcUaDevice, Read
+from arboleda_drivers.opcua.server import Bad
+from arboleda_drivers.opcua.settings import Settings
+from arboleda_drivers.opcua.virtual.faults import FAULTS
+from arboleda_drivers.opcua.virtual.program import BeltProgram
 
 from .plc import NO_LINK, BeltRig
 from .plc_loopback import LineBroken

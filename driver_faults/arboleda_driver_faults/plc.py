@@ -10,7 +10,7 @@ from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel, Robot
-from arboleda.virtual.plc.machine import CLOSED, ENTRY, EXIT, OPEN, Belt
+from arboleda_drivers.plc.virtual.machine import CLOSED, ENTRY, EXIT, OPEN, Belt
 
 from .plc_loopback import Loopback, Wire
 from .rig import START_S, Causes, Hear, Rig

@@ -9,8 +9,8 @@ from __future__ import annotations
 from typing import Protocol
 
 from arboleda.drivers import Report, lost
-from arboleda.drivers.plc.plc_snapshot import UnreadableValue
 from arboleda.model.commands import Command
+from arboleda_drivers.plc.plc_snapshot import UnreadableValue
 
 from .rig import Hear
 

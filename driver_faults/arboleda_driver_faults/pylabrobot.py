@@ -13,15 +13,15 @@ from typing import Any
 from pylabrobot.heating_shaking import HeaterShaker, HeaterShakerBackend
 from pylabrobot.resources import Coordinate
 
-from arboleda.adapters.pylabrobot import Bench
-from arboleda.drivers.link import Close, CommandNotSent, CommandRequest, Open
-from arboleda.drivers.pylabrobot.machine import Machine
-from arboleda.drivers.pylabrobot.messages import Event
-from arboleda.drivers.pylabrobot.settings import MachineMapping
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import MotionState, Reason, Report
 from arboleda.model.plant_model import PlantModel, Robot
-from arboleda.virtual.faults import Faults
+from arboleda_drivers.connections.link import Close, CommandNotSent, CommandRequest, Open
+from arboleda_drivers.pylabrobot.adapter import Bench
+from arboleda_drivers.pylabrobot.machine import Machine
+from arboleda_drivers.pylabrobot.messages import Event
+from arboleda_drivers.pylabrobot.settings import MachineMapping
+from arboleda_drivers.virtual.faults import Faults
 
 from .rig import START_S, Causes, Hear, Rig
 

@@ -43,7 +43,7 @@ from arboleda.model.messages import (
 from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.model.sentence import OWN
 from arboleda.simulator.disk import Disk
-from arboleda.virtual.faults import Faults
+from arboleda_drivers.virtual.faults import Faults
 
 START_S, EPOCH = 100.0, 7
 TASKS = 4

@@ -6,13 +6,13 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.drivers.ros_action.events import ListedGoal, Measurement
-from arboleda.drivers.ros_action.machine import Machine
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import Cell, PlantModel, Robot
-from arboleda.virtual.faults import Faults
-from arboleda.virtual.ros_action.machine import Body, VirtualServer
+from arboleda_drivers.ros_action.events import ListedGoal, Measurement
+from arboleda_drivers.ros_action.machine import Machine
+from arboleda_drivers.ros_action.virtual.machine import Body, VirtualServer
+from arboleda_drivers.virtual.faults import Faults
 
 from .rig import Causes, Hear, Rig
 from .ros_action_loopback import Loopback

@@ -7,8 +7,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from arboleda.drivers.nav2.localisation import MapPose
-from arboleda.drivers.ros_action.events import (
+from arboleda.model.commands import Command
+from arboleda.model.messages import Report
+from arboleda_drivers.nav2.localisation import MapPose
+from arboleda_drivers.ros_action.events import (
     CancelAll,
     CancelAnswer,
     CommandNotSent,
@@ -22,11 +24,14 @@ from arboleda.drivers.ros_action.events import (
     SendGoal,
     ServersFound,
 )
-from arboleda.drivers.ros_action.events import Message as Told
-from arboleda.drivers.ros_action.machine import Machine
-from arboleda.model.commands import Command
-from arboleda.model.messages import Report
-from arboleda.virtual.ros_action.machine import CancelDecision, CancelRequest, GoalRequest, VirtualServer
+from arboleda_drivers.ros_action.events import Message as Told
+from arboleda_drivers.ros_action.machine import Machine
+from arboleda_drivers.ros_action.virtual.machine import (
+    CancelDecision,
+    CancelRequest,
+    GoalRequest,
+    VirtualServer,
+)
 
 LOOK_S = 0.1  # as often as the driver looks which servers there are
 

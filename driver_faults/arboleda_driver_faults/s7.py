@@ -7,14 +7,14 @@ from functools import partial
 from typing import TypeVar
 
 from arboleda.drivers import Report
-from arboleda.drivers.plc.handshake import Read
-from arboleda.drivers.s7.addresses import address
-from arboleda.drivers.s7.machine import LEAST_PDU, S7Device, WriteRequest
-from arboleda.drivers.s7.settings import Settings
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
-from arboleda.virtual.s7.memory import FAULTS, BeltMemory
+from arboleda_drivers.plc.handshake import Read
+from arboleda_drivers.s7.addresses import address
+from arboleda_drivers.s7.machine import LEAST_PDU, S7Device, WriteRequest
+from arboleda_drivers.s7.settings import Settings
+from arboleda_drivers.s7.virtual.memory import FAULTS, BeltMemory
 
 from .plc import NO_LINK, BeltRig
 from .plc_loopback import LineBroken

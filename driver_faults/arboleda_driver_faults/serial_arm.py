@@ -6,15 +6,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal
 
-from arboleda.drivers.serial_arm.machine import Machine
-from arboleda.drivers.serial_arm.packets import Instruction, PacketReader
-from arboleda.drivers.serial_arm.servos import MAKERS
-from arboleda.drivers.serial_arm.settings import Settings
 from arboleda.kinds.arm import Arm
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel, Robot
-from arboleda.virtual.serial_arm.faults import FAULTS
-from arboleda.virtual.serial_arm.machine import VirtualServos
+from arboleda_drivers.serial_arm.machine import Machine
+from arboleda_drivers.serial_arm.packets import Instruction, PacketReader
+from arboleda_drivers.serial_arm.servos import MAKERS
+from arboleda_drivers.serial_arm.settings import Settings
+from arboleda_drivers.serial_arm.virtual.faults import FAULTS
+from arboleda_drivers.serial_arm.virtual.machine import VirtualServos
 
 from .rig import Causes, Hear, Rig
 from .stream_loopback import Loopback

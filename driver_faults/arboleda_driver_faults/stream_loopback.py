@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 
-from arboleda.drivers.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
-from arboleda.drivers.stream import Event, Message, Received, StreamMachine, Write
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
-from arboleda.virtual.pty_line import LineMachine
+from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
+from arboleda_drivers.connections.stream import Event, Message, Received, StreamMachine, Write
+from arboleda_drivers.virtual.pty_line import LineMachine
 
 
 class Loopback:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.drivers.ur.settings import Settings
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
-from arboleda.virtual.ur.faults import FAULTS
-from arboleda.virtual.ur.machine import VirtualUr
+from arboleda_drivers.ur.settings import Settings
+from arboleda_drivers.ur.virtual.faults import FAULTS
+from arboleda_drivers.ur.virtual.machine import VirtualUr
 
 from .rig import Hear
 from .storage import StorageRig

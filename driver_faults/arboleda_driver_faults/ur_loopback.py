@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 
-from arboleda.drivers.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
-from arboleda.drivers.ur.machine import DASHBOARD, PRIMARY, RTDE, Machine, Message
-from arboleda.drivers.ur.port_data import Received, Send
-from arboleda.drivers.ur.settings import Settings
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
-from arboleda.virtual.ur.machine import ClientData, Disconnect, Event, Joined, ToClient, VirtualUr
+from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
+from arboleda_drivers.ur.machine import DASHBOARD, PRIMARY, RTDE, Machine, Message
+from arboleda_drivers.ur.port_data import Received, Send
+from arboleda_drivers.ur.settings import Settings
+from arboleda_drivers.ur.virtual.machine import ClientData, Disconnect, Event, Joined, ToClient, VirtualUr
 
 PORTS = (DASHBOARD, RTDE, PRIMARY)
 BY_HAND = -1  # the client that is another one than the driver

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.drivers.vda5050.settings import Settings
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel, Robot
-from arboleda.virtual.vda5050.faults import FAULTS
-from arboleda.virtual.vda5050.machine import VirtualAgv
+from arboleda_drivers.vda5050.settings import Settings
+from arboleda_drivers.vda5050.virtual.faults import FAULTS
+from arboleda_drivers.vda5050.virtual.machine import VirtualAgv
 
 from .rig import Hear, Rig
 from .vda5050_loopback import Loopback

@@ -9,22 +9,22 @@ from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from arboleda.adapters.vda5050.messages import Headers, from_bytes, to_bytes
 from arboleda.drivers import NotSent
-from arboleda.drivers.vda5050.machine import LogLine, Message, Publish, Vehicle
-from arboleda.drivers.vda5050.settings import Settings
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
-from arboleda.virtual.vda5050.machine import (
+from arboleda_drivers.vda5050.machine import LogLine, Message, Publish, Vehicle
+from arboleda_drivers.vda5050.messages import Headers, from_bytes, to_bytes
+from arboleda_drivers.vda5050.settings import Settings
+from arboleda_drivers.vda5050.virtual.machine import (
     Connect,
     ConnectionCut,
     OutgoingMessage,
     VehicleMessage,
     VirtualAgv,
 )
-from arboleda.virtual.vda5050.machine import Message as Said
-from arboleda.virtual.vda5050.words import BROKEN
+from arboleda_drivers.vda5050.virtual.machine import Message as Said
+from arboleda_drivers.vda5050.virtual.words import BROKEN
 
 
 class Loopback:

@@ -1,6 +1,6 @@
 """Machines of the bench, on simulators of PyLabRobot; for real ones put their backends here."""
 
-from arboleda.adapters.pylabrobot import machine
+from arboleda_drivers.pylabrobot.adapter import machine
 
 
 @machine("liquid_handler")

@@ -13,18 +13,7 @@ setup(
     install_requires=["setuptools"],
     extras_require={"test": ["pytest"]},
     entry_points={
-        "arboleda.drivers": [
-            "follow_joint_trajectory = arboleda_ros.joint_trajectory:FollowJointTrajectory",
-            "follow_waypoints = arboleda_ros.nav2:FollowWaypoints",
-            "gripper_command = arboleda_ros.gripper_command:GripperCommand",
-            "navigate_to_pose = arboleda_ros.nav2:NavigateToPose",
-        ],
         "arboleda.links": ["ros = arboleda_ros.link:connect"],
-        "arboleda.virtual": [
-            "gripper = arboleda_ros.virtual.gripper:controller",
-            "nav2 = arboleda_ros.virtual.nav2:controller",
-            "trajectory = arboleda_ros.virtual.trajectory:controller",
-        ],
         "console_scripts": [
             "orchestrator = arboleda_ros.nodes:orchestrator",
             "mqtt_bridge = arboleda_ros.nodes:mqtt_bridge",

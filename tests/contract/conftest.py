@@ -9,7 +9,6 @@ import subprocess
 import threading
 import time
 from collections.abc import Callable, Iterator
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -21,9 +20,6 @@ from arboleda.wire.transport import Connection, Delivery
 
 from ..patience import PATIENCE_S
 from ..shared import need_tool
-
-MESSAGES = all(map(find_spec, ("control_msgs", "nav2_msgs")))  # no wheels have them
-collect_ignore = [] if MESSAGES else ["test_virtual_actions.py"]
 
 NEW_KEY = ("-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes")
 

@@ -17,6 +17,7 @@ from typing import Any
 
 import pytest
 from asyncua import Client, Node, ua
+from packages.arboleda_drivers.tests.real.opcua.test_opcua_node import PACKAGES
 
 from arboleda.model.plant_model import OpcUaView
 from arboleda.oee.figures import Oee
@@ -27,7 +28,6 @@ from arboleda.testing import shipped
 from ..patience import PATIENCE_S
 from ..shared import need_tool
 from .test_groot2 import children
-from .test_opcua_node import PACKAGES
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("asyncua")]
 

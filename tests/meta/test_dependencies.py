@@ -7,6 +7,7 @@ from importlib.metadata import requires
 from pathlib import Path
 
 from packaging.requirements import Requirement
+from tests.packages import PACKAGES
 
 ROOT = Path(__file__).parents[2]
 KEY = re.compile(r"<(?:exec_)?depend>(?:python3-)?([\w-]+)</")
@@ -25,6 +26,12 @@ def asked_of_pip() -> list[str]:
     return re.findall(r'^ *"([^";]+)', block[1], re.MULTILINE)
 
 
+def asked_of_packages() -> set[str]:
+    """The dependencies of packages beside the cell runner, without the packages themselves."""
+    lines = [line for name in PACKAGES for line in requires(name) or () if "extra ==" not in line]
+    return {line.replace(" ", "") for line in lines if Requirement(line).name not in {"arboleda", *PACKAGES}}
+
+
 def key(dependency: str) -> str:
     """The rosdep key of a library, without `python3-`."""
     name = re.split(r"[<>=]", dependency)[0].lower()
@@ -34,7 +41,7 @@ def key(dependency: str) -> str:
 def test_the_requirements_beside_ros_2_have_the_bounds_of_pyproject() -> None:
     requirements = without_comments("requirements-ros.txt")
     assert requirements
-    assert set(requirements) <= set(asked_of_pip())
+    assert set(requirements) <= {*asked_of_pip(), *asked_of_packages()}
 
 
 def test_each_library_comes_by_one_way_beside_ros_2() -> None:

@@ -20,32 +20,21 @@ from arboleda_boards.conformance.judge import CHECKS, DEVICE_CHECKS
 PACKAGE = Path(__file__).parents[2] / "src/arboleda/arboleda"
 WORDS = PACKAGE / "web/languages"
 SEEING = ("invariants", "recorded", "truth")  # what an invariant saw is said there
-DRIVEN = (
-    *(
-        "device_feed",
-        "dobot",
-        "gcode",
-        "modbus",
-        "opcua",
-        "opcua_login",
-        "opcua_session",
-        "polled",
-        "pylabrobot",
-    ),
-    *("s7", "serial_arm", "stream", "ur", "vda5050/*"),
-)
+OF_BOARDS = PACKAGES["arboleda_boards"]
+OF_CLASS = PACKAGES["arboleda_class"]
+OF_MAKERS = PACKAGES["arboleda_drivers"]
 AT_A_START = {  # of a driver, which `check` says, too
     *("addresses.py", "checks.py", "health.py", "limits.py", "nodes.py", "paths.py", "port.py", "reading.py"),
-    *("registers.py", "settings.py", "stream.py", "variables.py"),
+    *("keys.py", "registers.py", "settings.py", "stream.py", "variables.py"),
 }
 FILES = (
     *sorted(PACKAGE.glob("plant_file/*.py")),
     *sorted(PACKAGE.glob("kinds/*.py")),
     *sorted(PACKAGE.glob("campaigns/*.py")),
     *sorted(PACKAGE.glob("campaigns/proof/*.py")),
-    *sorted(PACKAGES["arboleda_boards"].glob("conformance/*.py")),
-    PACKAGES["arboleda_class"] / "exercises/trial_run.py",
-    *sorted(PACKAGES["arboleda_class"].glob("playground/*.py")),
+    *sorted(OF_BOARDS.glob("conformance/*.py")),
+    OF_CLASS / "exercises/trial_run.py",
+    *sorted(OF_CLASS.glob("playground/*.py")),
     *(file for folder in SEEING for file in sorted(PACKAGE.glob(f"simulator/{folder}/*.py"))),
     PACKAGE / "simulator/findings.py",
     PACKAGE / "wire/strict.py",
@@ -58,13 +47,17 @@ FILES = (
     PACKAGE / "runtime/version_desk.py",
     *sorted(PACKAGE.glob("runtime/make/*.py")),
     *sorted(PACKAGE.glob("runtime/proposals/*.py")),
-    *sorted(PACKAGE.glob("drivers/**/*.py")),  # settings, and why there is no link or nothing is sent
-    *sorted(file for name in DRIVEN for file in PACKAGE.glob(f"adapters/{name}.py")),
+    *sorted(PACKAGE.glob("drivers/*.py")),  # settings, and why there is no link or nothing is sent
+    *sorted(
+        file
+        for file in OF_MAKERS.glob("*/*.py")
+        if file.parent.name != "virtual" and file.name != "server.py"
+    ),
 )
 RUNNING = [
     file
     for file in FILES
-    if ("drivers" in file.parts or "adapters" in file.parts) and file.name not in AT_A_START
+    if {PACKAGE / "drivers", OF_MAKERS} & {*file.parents} and file.name not in AT_A_START
 ]
 WRITING = {"from_above.py", "badge.py", "junit.py", "page.py", "pytest_file.py", "urdf.py"}  # other files
 HELPING = {"command.py"}  # in words of cli.yaml
@@ -79,6 +72,7 @@ OF_OTHERS = {  # by which errors of PyYAML are known
     "unexpected end of stream",
     "did not find expected",
 }
+OF_CALLS = {"has not succeeded", "is not there", "was refused"}  # behind the name of a call, as by its server
 TO_DEVICES = {  # and in examples of a plant file
     "brake release",
     "close popup",
@@ -107,7 +101,7 @@ def sentences(node: ast.AST) -> Iterator[tuple[int, str]]:
             SENTENCE.search(text)
             and not OF_LOG.search(text)
             and not VERBATIM.match(text)
-            and text not in OF_OTHERS | TO_DEVICES
+            and text not in OF_OTHERS | OF_CALLS | TO_DEVICES
         ):
             yield node.lineno, text
     for each in ast.iter_child_nodes(node):

@@ -65,9 +65,9 @@ OF_OTHER_COMMANDS = {
     "arboleda.playback",
     "arboleda.sim",
     "arboleda.simulator",
-    "arboleda.virtual",
     "arboleda_class.exercises",
     "arboleda_class.playground",
+    "arboleda_drivers.virtual",
 }
 OF_ANY_PLANT = {
     "arboleda.client",

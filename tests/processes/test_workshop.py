@@ -16,7 +16,6 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.runtime.make.workshop import ENDING, Workshop
 from arboleda.web.desks.draft import DraftRefused
-from arboleda.web.languages import texts
 
 Processes: TypeAlias = "SimpleQueue[subprocess.Popen[bytes]]"
 OWN_TREE = Path(__file__).parents[2] / "examples/own_tree/plant.yaml"
@@ -115,8 +114,9 @@ def test_drivers_of_the_plants_own_files_are_offered_with_those_of_arboleda() ->
     files = PlantFiles(plant="plant.yaml", contents={each: (folder / each).read_bytes() for each in names})
     workshop = Workshop(lambda: folder / "plant.yaml")
     try:
-        known = {each["name"]: each for each in workshop.drivers(files, files, texts("en", "drivers"))}
+        known = {each["name"]: each for each in workshop.drivers(files, files, "es")}
         assert {"line_tcp", "modbus", "mqtt"} <= known.keys() and "dobot" not in known
+        assert known["modbus"]["about"].startswith("Un PLC")
         assert ("host", True) in [(each["name"], each["required"]) for each in known["line_tcp"]["keys"]]
         told = workshop.driver(files, files, "line_tcp", {"host": "10.0.0.7", "port": "4712"})
         assert told == {"line_tcp": {"host": "10.0.0.7", "port": 4712}}

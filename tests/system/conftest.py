@@ -12,7 +12,6 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import redirect_stderr, redirect_stdout, suppress
-from importlib.util import find_spec
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -29,8 +28,6 @@ from ..postgres import Server
 from ..shared import need_tool
 from ..workers import shared_between_workers
 from .two_hosts import Hosts
-
-collect_ignore = [] if find_spec("control_msgs") else ["test_mixed_ros2.py"]  # no wheels have it
 
 ROOT = Path(__file__).parents[2]
 WIDE = {"COLUMNS": "200"}  # of the terminal that a command takes itself to be in

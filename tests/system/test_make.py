@@ -8,12 +8,12 @@ from typing import Any
 
 import httpx
 import pytest
+from packages.arboleda_drivers.tests.real.modbus.bench import ModbusWire
 
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.versions import Versions
 
 from ..chromium import leave
-from ..contract.drivers.modbus import ModbusWire
 from ..lengths import sample
 from ..patience import PATIENCE_MS, PATIENCE_S
 from ..ports import unused_port

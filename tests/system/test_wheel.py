@@ -10,6 +10,7 @@ from zipfile import ZipFile
 
 import pytest
 from packaging.metadata import Metadata
+from tests.packages import PACKAGES as BESIDE
 
 from arboleda import __version__
 
@@ -23,14 +24,23 @@ Command = Callable[..., "subprocess.CompletedProcess[str]"]
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Built from a clone, as a release is: nothing that lies about here can slip into it."""
-    folder = tmp_path_factory.mktemp("release")
-    subprocess.run(["git", "clone", "--quiet", ROOT, folder / "clone"], check=True)
+def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A release is made of one: nothing that lies about here can slip into it."""
+    folder = tmp_path_factory.mktemp("clone")
+    subprocess.run(["git", "clone", "--quiet", ROOT, folder], check=True)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wheel(clone: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return built(clone, tmp_path_factory.mktemp("release"))
+
+
+def built(source: Path, folder: Path) -> Path:
     building = f"from setuptools import build_meta; build_meta.build_wheel({str(folder)!r})"
-    subprocess.run([sys.executable, "-c", building], cwd=folder / "clone", check=True, capture_output=True)
-    (built,) = folder.glob("*.whl")
-    return built
+    subprocess.run([sys.executable, "-c", building], cwd=source, check=True, capture_output=True)
+    (found,) = folder.glob("*.whl")
+    return found
 
 
 @pytest.fixture
@@ -76,6 +86,14 @@ def test_it_holds_the_packages_and_nothing_else_and_what_it_says_of_itself_is_va
     assert held == wanted | {f"arboleda/{file}" for file in examples}
     assert str(said.version) == __version__
     assert said.description_content_type == "text/markdown" and "ros" in (said.provides_extra or ())
+
+
+@pytest.mark.parametrize("name", BESIDE)
+def test_the_wheel_of_a_package_beside_it_holds_the_package(name: str, clone: Path, tmp_path: Path) -> None:
+    wanted = {file for file in tracked(f"packages/{name}/src/{name}") if "/README." not in file}
+    with ZipFile(built(clone / "packages" / name, tmp_path)) as opened:
+        held = {file for file in opened.namelist() if file.startswith(f"{name}/")}
+    assert held == wanted
 
 
 @pytest.mark.system

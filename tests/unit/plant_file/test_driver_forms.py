@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from importlib.metadata import EntryPoints
 from typing import Any, Literal
 
 import pytest
 
+from arboleda.dashboard.findings import findings
 from arboleda.drivers.port import DriverSpec
 from arboleda.model.errors import ArboledaError
-from arboleda.plant_file import driver_forms
+from arboleda.plant_file import driver_forms, package_drivers
 from arboleda.web.languages import LANGUAGES, contents, texts
 
 
@@ -83,6 +85,20 @@ def test_what_does_not_fit_its_field_is_refused_with_its_name(told: dict[str, st
 def test_an_unknown_driver_is_refused() -> None:
     with pytest.raises(ArboledaError, match="'moon' is no driver"):
         driver_forms.written("moon", {}, OWN)
+
+
+def test_a_driver_whose_package_is_not_installed_has_the_line_that_installs_it_and_no_keys(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(driver_forms, "entry_points", lambda group: EntryPoints())
+    rows = {each["name"]: each for each in driver_forms.forms({}, texts("en", "drivers"))}
+    assert set(rows) == {"mqtt", "ros", *package_drivers.OF_DEVICES}
+    why = rows["modbus"]["why_not"]
+    assert "pip install 'arboleda[drivers]'" in why and rows["modbus"]["keys"] == []
+    assert findings("es")(why).startswith(
+        "el controlador modbus es parte de un paquete que no está instalado: "
+    )
+    assert findings("en")(why) == why
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -300,6 +300,14 @@ def test_an_installed_package_brings_a_driver(
         sys.modules.pop("my_plc", None)
 
 
+def test_a_driver_whose_package_is_not_installed_is_named_with_the_line_that_installs_it(
+    load: Callable[..., PlantModel], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(drivers, "entry_points", lambda group: EntryPoints())
+    with pytest.raises(ConfigError, match=r"driver modbus is part .* -m pip install 'arboleda\[drivers\]'"):
+        load("driver: {modbus: {host: 10.0.0.7}}")
+
+
 def test_a_device_that_cells_share_has_a_driver(load: Callable[..., PlantModel]) -> None:
     own = "oven: {shared: oven}\n      spare: {kind: oven}\nshared:\n  oven: {kind: oven, "
     text = PLANT.replace("oven: {kind: oven, ", own)

@@ -27,11 +27,12 @@ GROUP = "arboleda.commands"
 LEFT_OUT = Phrase(
     "cli.left_out", "the commands of the installed package {package} are left out, as it does not load: {why}"
 )
-OF_PACKAGES = {
+OF_PACKAGES = {  # extras of `arboleda`, by command
     "conformance": "boards",
     "exercise": "class",
     "firmware-config": "boards",
-}  # extras of `arboleda`, by command
+    "virtual": "drivers",
+}
 
 
 class Command(NamedTuple):
@@ -132,9 +133,6 @@ OURS: Mapping[str, Command] = {
     ),
     "record": Command(
         "record", "The flight record of a plant: what went into its core and what came out, of every start."
-    ),
-    "virtual": Command(
-        "virtual", "Play the controller of another maker over its own protocol, with motion and with faults."
     ),
 }
 

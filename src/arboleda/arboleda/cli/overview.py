@@ -30,7 +30,6 @@ SECTIONS: Mapping[str, tuple[str, ...]] = {
             "tree",
             "nodes",
             "urdf",
-            "virtual",
             "certs",
         ),
     ),

@@ -26,6 +26,7 @@ class Clock(Protocol):
     def __call__(self) -> float: ...
 
 
+GROUP = "arboleda.drivers"  # of entry points: the drivers that a package brings
 MARK = "__arboleda_driver__"
 METHODS = ("start", "send", "stop")
 

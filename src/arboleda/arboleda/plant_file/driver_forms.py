@@ -9,21 +9,18 @@ from enum import Enum
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
-from arboleda.drivers.port import DriverSpec, spec_of
+from arboleda.drivers.port import GROUP, DriverSpec, spec_of
 from arboleda.host.packages import entry_points
 from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain, quoted
 
-from .drivers import GROUP, OF_DEVICES
+from . import package_drivers
+from .drivers import OF_DEVICES
 from .python_uses import LONGEST, error_text
 from .yaml_flow import flow
 from .yaml_marks import YamlFault, parse
 
 Row = dict[str, Any]
-OF_ROBOTS = frozenset(
-    {"dobot", "follow_joint_trajectory", "follow_waypoints", "gcode", "navigate_to_pose", "serial_arm", "ur"}
-)
-"""Those that come with Arboleda and reach only arms and mobile robots, which are of no declared kind."""
 FORMS = {bool: "bool", int: "int", float: "number", str: "text"}
 FITS: Mapping[str, tuple[type, ...]] = {"int": (int,), "number": (int, float), "bool": (bool,)}
 WHAT = {"int": "a whole number", "number": "a number", "bool": "true or false"}
@@ -109,8 +106,8 @@ def keys(spec: DriverSpec, words: Mapping[str, str] | None = None) -> Iterator[K
 
 
 def _known(own: Mapping[str, DriverSpec]) -> list[str]:
-    installed = {point.name for point in entry_points(group=GROUP)} - OF_ROBOTS
-    return sorted(own.keys() | installed)
+    installed = {point.name for point in entry_points(group=GROUP)} | package_drivers.OF_DEVICES
+    return sorted(own.keys() | (installed - package_drivers.OF_ROBOTS))
 
 
 def _form(name: str, own: Mapping[str, DriverSpec], words: Mapping[str, str]) -> Row:
@@ -127,6 +124,8 @@ def _spec(name: str, own: Mapping[str, DriverSpec]) -> DriverSpec:
     if name in own:
         return own[name]
     point = next(iter(entry_points(group=GROUP).select(name=name)), None)
+    if point is None and name in package_drivers.ALL:
+        raise ArboledaError(package_drivers.not_installed(name))
     if point is None:
         raise ArboledaError(f"{quoted(name)} is no driver that this plant can name")
     try:

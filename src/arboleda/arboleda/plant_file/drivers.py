@@ -9,19 +9,18 @@ from typing import Any
 
 from pydantic.errors import PydanticSchemaGenerationError
 
-from arboleda.drivers.port import DriverSpec, FitsDevice, spec_of
+from arboleda.drivers.port import GROUP, DriverSpec, FitsDevice, spec_of
 from arboleda.host.packages import entry_points
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import DriverUse, Link, PlantModel, Robot
 
-from . import settings
+from . import package_drivers, settings
 from .document import Document, Place, choice, nearest, shown
 from .python_uses import LONGEST, PythonUses, Spot, error_text, refused
 from .shapes import ROBOT_KEYS
 from .shared import SECTION as SHARED
 
 KEY, SHORT = "driver", "link"
-GROUP = "arboleda.drivers"
 HOW = 'one of your own is a class with @driver("its name") before it, in a file that "uses" names'
 
 
@@ -153,6 +152,9 @@ def _installed(document: Document, place: Place, name: str, used: PythonUses) ->
     points = {point.name: point for point in entry_points(group=GROUP)}
     point = points.get(name)
     if point is None and not used.is_whole:
+        return None
+    if point is None and name in package_drivers.ALL:
+        document.problem(place, package_drivers.not_installed(name))
         return None
     if point is None:
         known = [*COME_WITH_IT, *used.drivers, *points]

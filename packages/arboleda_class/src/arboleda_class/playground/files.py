@@ -11,8 +11,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from arboleda.model.errors import ArboledaError
+from arboleda_class.exercises.work import LARGEST, MOST, Work, packed, zip_name
 
-from ..exercises.work import LARGEST, MOST, Work, packed, zip_name
 from .building import Texts
 
 

@@ -7,10 +7,10 @@ from typing import Any
 
 from arboleda.campaigns.plants import Plant
 from arboleda.model.plant_model import PlantModel
+from arboleda_class.exercises.exercise import PLANT, exercise
+from arboleda_class.exercises.judge import Again, Judge
+from arboleda_class.exercises.trial_run import run_trial
 
-from ..exercises.exercise import PLANT, exercise
-from ..exercises.judge import Again, Judge
-from ..exercises.trial_run import run_trial
 from .building import Texts, built
 from .film import Film
 

@@ -86,7 +86,7 @@ class MakeBench(MakeApi):
         return self._workshop.translate(spoken([language]), lines)
 
     def drivers(self, language: str) -> list[Row]:
-        return self._workshop.drivers(*self._desk.files, texts(spoken([language]), "drivers"))
+        return self._workshop.drivers(*self._desk.files, spoken([language]))
 
     def add_device(self, editor: str, device: Mapping[str, Any]) -> Row:
         return self._desk.set_all(editor, self._values(device))

@@ -94,9 +94,9 @@ class Workshop:
             translated: list[str] = self._ask("translate", language, lines)
             return translated
 
-    def drivers(self, base: PlantFiles, files: PlantFiles, words: Mapping[str, str]) -> list[Row]:
+    def drivers(self, base: PlantFiles, files: PlantFiles, language: str) -> list[Row]:
         """The drivers that a device of a declared kind can have, with a field for each setting."""
-        found: list[Row] = self._answer(base, files, "drivers", dict(words))
+        found: list[Row] = self._answer(base, files, "drivers", language)
         return found
 
     def driver(self, base: PlantFiles, files: PlantFiles, name: str, texts: Mapping[str, str]) -> Any:

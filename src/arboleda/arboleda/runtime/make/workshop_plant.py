@@ -24,6 +24,7 @@ from arboleda.plant_file import draft_check, driver_forms, loader
 from arboleda.recipes.authoring import WrittenRecipe
 from arboleda.simulator.faults import ON_ONE_HOST
 from arboleda.views import forms, tree_view
+from arboleda.web.languages import texts
 
 Row = dict[str, Any]
 UNREAD = "the draft cannot be read yet; its problems say why"
@@ -89,9 +90,10 @@ class WorkshopPlant:
         """As `PlantApi.copied`."""
         return desk.copied(self._read, cell, recipe, name)
 
-    def drivers(self, words: Mapping[str, str]) -> list[Row]:
+    def drivers(self, language: str) -> list[Row]:
         """The drivers that a device of a declared kind can have, with a field for each setting."""
-        return driver_forms.forms(self._drivers, words)
+        rows = driver_forms.forms(self._drivers, texts(language, "drivers"))
+        return [{**row, "why_not": findings(language)(row["why_not"])} for row in rows]
 
     def driver(self, name: str, texts: Mapping[str, str]) -> Any:
         """The value of the key `driver` for what was written in its fields."""

@@ -1,0 +1,12 @@
+"""Commands of the command line that this package adds."""
+
+from __future__ import annotations
+
+from arboleda.cli.commands import Command
+
+COMMANDS = {
+    "virtual": Command(
+        "arboleda_drivers.virtual.command",
+        "Play the controller of another maker over its own protocol, with motion and with faults.",
+    ),
+}

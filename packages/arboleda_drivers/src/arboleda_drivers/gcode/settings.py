@@ -1,0 +1,105 @@
+"""The keys of the driver in a plant file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from arboleda.drivers.port import DriverError
+from arboleda.kinds.joints import Jointed
+from arboleda.model.facts import HEALTH
+from arboleda.model.plant_model import Evidence, Robot
+from arboleda_drivers.connections.stream import StreamAddress
+
+LETTERS = ("X", "Y", "Z", "A", "B", "C")  # in the order of a position
+MM = 1000.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings(StreamAddress):
+    """Settings of the driver `gcode`: the line, and the letter of each axis with its zero.
+
+    `zeros_mm` are the positions of the machine at which the axes of the model are at 0; `stop_keeps_place`
+    declares that a machine with Marlin loses no step where it stops without braking. Moonraker is at a host.
+    """
+
+    baud: int = 115200
+    dialect: Literal["grbl", "marlin", "moonraker"] = "grbl"
+    axes: tuple[Literal["X", "Y", "Z"], ...] = ("X", "Y", "Z")
+    zeros_mm: tuple[float, ...] = ()
+    homing: bool = True
+    stop_keeps_place: bool = False
+    speed_percent: int = 50
+    poll_s: float = 0.1
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.axes or len(set(self.axes)) < len(self.axes):
+            raise DriverError("axes needs a letter for each axis, each once")
+        if self.zeros_mm and len(self.zeros_mm) != len(self.axes):
+            raise DriverError(f"zeros_mm has {len(self.zeros_mm)} numbers for {len(self.axes)} axes")
+        if not 1 <= self.speed_percent <= 100:
+            raise DriverError(f"speed_percent is {self.speed_percent}; allowed: 1 to 100")
+        if not 0.05 <= self.poll_s <= 0.5:
+            raise DriverError(f"poll_s is {self.poll_s:g}; allowed: 0.05 to 0.5")
+        if self.stop_keeps_place and self.dialect != "marlin":
+            raise DriverError(
+                "stop_keeps_place is for dialect: marlin; others keep their place by themselves"
+            )
+        if self.dialect == "moonraker" and self.serial:
+            raise DriverError("dialect: moonraker needs host and port, not serial; its port is 7125")
+        if self.dialect == "moonraker" and not self.homing:
+            raise DriverError("homing: false is not for moonraker; Klipper moves only what was homed")
+
+    @property
+    def reported_facts(self) -> tuple[str, ...]:
+        """The facts that the machine tells; only GRBL knows of a door."""
+        return (HEALTH, "door", "mode") if self.dialect == "grbl" else (HEALTH, "mode")
+
+    @property
+    def home_clears_faults(self) -> bool:
+        """True for GRBL, where homing begins with a reset if that is needed; others need one by hand."""
+        return self.dialect == "grbl"
+
+    @property
+    def model_speed_share(self) -> float:
+        """The share of the model's speed at which the machine is moved."""
+        return self.speed_percent / 100
+
+    @property
+    def zeros(self) -> tuple[float, ...]:
+        """The machine's position at the model's zero, mm."""
+        return self.zeros_mm or (0.0,) * len(self.axes)
+
+    def joints(self, position: tuple[float, ...]) -> tuple[float, ...]:
+        """The axes of the model, m, at a position of the machine, mm."""
+        rows = zip(self.axes, self.zeros, strict=True)
+        return tuple((position[LETTERS.index(letter)] - zero) / MM for letter, zero in rows)
+
+    def words(self, q: tuple[float, ...]) -> str:
+        """The words of G-code for the axes at `q`, m."""
+        rows = zip(self.axes, q, self.zeros, strict=True)
+        return "".join(f"{letter}{at * MM + zero:.3f}" for letter, at, zero in rows)
+
+    def problems(self, device: Robot) -> Iterable[tuple[tuple[str | int, ...], str]]:
+        """Settings that do not fit a device, each as its keys and a sentence."""
+        if not isinstance(device, Jointed):
+            yield (), f"{device.name} has no axes; this driver moves robots of axes"
+            return
+        if len(self.axes) != len(device.joints):
+            yield (
+                ("axes",),
+                f"there are {len(self.axes)} letters for the {len(device.joints)} axes of {device.name}",
+            )
+        for joint in device.joints:
+            if joint.unit != "m":
+                yield ("axes",), f"{joint.name} turns; this driver moves axes that slide"
+        if device.home_at_start and not self.homing:
+            yield (
+                ("homing",),
+                f"homing: false contradicts home_at_start: true of {device.name}: without switches only a "
+                "person knows where it stands; keep one of them",
+            )
+        if device.evidence is not Evidence.IDS:
+            yield (), f"{device.name} has evidence: {device.evidence.value}; this driver proves ids"

@@ -1,0 +1,56 @@
+"""The command `arboleda virtual trajectory`."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from arboleda.cli.language import say
+from arboleda.model.sentence import Phrase
+from arboleda_drivers.ros_action.virtual.options import JointStates, Lan, Rate
+from arboleda_drivers.virtual.serving import FaultNames, FaultPort, serve, with_faults
+
+from .machine import FAULTS
+
+NAME = "trajectory"
+NAMES = Phrase("cli.virtual.names", "it needs one or several names, each once")
+HELP = with_faults(
+    "Play an arm behind a joint_trajectory_controller of ros2_control: the action FollowJointTrajectory and "
+    "joint states. It is a plain action server of rclpy, and stands in for ros2_control. Any client of that "
+    "action can use it.",
+    FAULTS,
+)
+
+
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command(NAME, help=HELP)(run)
+
+
+def run(
+    action: Annotated[
+        str, typer.Option(help="The action's name.")
+    ] = "joint_trajectory_controller/follow_joint_trajectory",
+    joint_states: JointStates = "joint_states",
+    joints: Annotated[
+        str, typer.Option(help="Names of its joints, with commas.")
+    ] = "joint1,joint2,joint3,joint4,joint5,joint6",
+    rate: Rate = 50.0,
+    lan: Lan = False,
+    fault: FaultNames = None,
+    fault_port: FaultPort = 4717,
+) -> None:
+    names = tuple(each.strip() for each in joints.split(",") if each.strip())
+    if not names or len(set(names)) < len(names):
+        raise typer.BadParameter(say(NAMES()), param_hint="--joints")
+    from .server import controller  # it loads rclpy
+
+    serve(
+        lambda faults: controller(
+            faults, action=action, joint_states=joint_states, joints=names, rate=rate, lan=lan
+        ),
+        FAULTS,
+        fault,
+        fault_port,
+    )

@@ -1,0 +1,1 @@
+"""Devices behind Modbus: addresses of values, requests, and reports."""

@@ -1,0 +1,200 @@
+"""The driver `modbus`: PLCs over Modbus TCP, RTU and RTU over TCP, by pymodbus."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Hashable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from arboleda.drivers import Command, Report, Robot, driver
+from arboleda.drivers.port import DriverError
+from arboleda_drivers.modbus.machine import Block, ModbusDevice, Raw, WriteRequest
+from arboleda_drivers.modbus.settings import Settings
+from arboleda_drivers.plc import polled
+
+if TYPE_CHECKING:
+    from pymodbus.client.base import ModbusBaseSyncClient
+
+MISSING = "pymodbus and pyserial are not installed, which it needs: pip install 'arboleda[modbus]'"
+PARITIES = {"even": "E", "odd": "O", "none": "N"}
+WORDS = {
+    1: "illegal_function",
+    2: "illegal_address",
+    3: "illegal_value",
+    4: "device_failure",
+    5: "acknowledged_only",
+    6: "device_busy",
+    8: "parity_error",
+    10: "no_gateway_path",
+    11: "no_gateway_answer",
+}
+"""The exception codes of the standard."""
+
+
+class Line(polled.Line):
+    """Connection to a PLC, or a serial line."""
+
+    def __init__(self, settings: Settings) -> None:
+        super().__init__()
+        self._settings = settings
+        self._client: ModbusBaseSyncClient | None = None
+
+    def open(self) -> None:
+        """Connect, unless connected; raises ConnectionError if nobody answers."""
+        if self._client is None:
+            self._client = _client(self._settings)
+        if not self._client.connect():
+            raise ConnectionError(f"{self._settings.peer} is not there")
+
+    def hang_up(self) -> None:
+        if self._client is not None:
+            self._client.close()
+
+    def read(self, unit: int, block: Block) -> list[int]:
+        """The values of a block."""
+        self.open()
+        read: Any = getattr(self._client, READS[block.table])
+        answer = read(block.address, count=block.length, device_id=unit)
+        _check(answer, f"to show {block.table} {block.address}", CODES[block.table])
+        values = answer.bits if block.table in ("coil", "discrete") else answer.registers
+        whole = -(-block.length // 8) * 8 if block.table in ("coil", "discrete") else block.length
+        if len(values) != whole:
+            raise ConnectionError(
+                f"{self._settings.peer} has answered with {len(values)} values, not {whole}"
+            )
+        return [int(value) for value in values[: block.length]]
+
+    def write(self, unit: int, put: WriteRequest) -> None:
+        """Write the values of a put."""
+        self.open()
+        client: Any = self._client
+        values: list[Any] = list(put.values)
+        if put.table == "coil":
+            values = [bool(value) for value in values]
+        one, many = (
+            (client.write_coil, client.write_coils)
+            if put.table == "coil"
+            else (client.write_register, client.write_registers)
+        )
+        answer = (
+            one(put.address, values[0], device_id=unit)
+            if len(values) == 1
+            else many(put.address, values, device_id=unit)
+        )
+        code = WRITES[put.table, len(values) == 1]
+        _check(answer, f"to take {put.table} {put.address}", code)
+        if answer.address != put.address:
+            raise ConnectionError(f"{self._settings.peer} has answered to another write")
+
+
+READS = {
+    "coil": "read_coils",
+    "discrete": "read_discrete_inputs",
+    "holding": "read_holding_registers",
+    "input": "read_input_registers",
+}
+
+
+CODES = {"coil": 1, "discrete": 2, "holding": 3, "input": 4}
+WRITES = {("coil", True): 5, ("holding", True): 6, ("coil", False): 15, ("holding", False): 16}
+"""The function codes of the standard; True: of one value."""
+
+
+LINES: polled.Lines[Line] = polled.Lines()
+
+
+@driver("modbus", settings=Settings)
+class Modbus(polled.Polled[Settings, Line]):
+    """Driver of one device behind Modbus."""
+
+    protocol = "modbus"
+    lines = LINES
+
+    def prepare(self, device: Robot) -> None:
+        need_library()
+        self._device = ModbusDevice(device, self._settings)
+
+    def address(self) -> Hashable:
+        settings = self._settings
+        if settings.serial:
+            return (settings.serial,)
+        return (settings.host, settings.port, settings.timeout_s, settings.framing)
+
+    def make_line(self) -> Line:
+        return Line(self._settings)
+
+    def begin(self, line: Line) -> None:
+        self._device.begin(self._read(line, self._device.first_blocks))
+
+    def read(self, line: Line, at: float) -> Report:
+        return self._device.report(at, self._read(line, self._device.blocks))
+
+    def give(self, line: Line, command: Command) -> None:
+        for put in self._device.order(command):
+            line.write(self._settings.unit, put)
+
+    def beat(self, line: Line, number: int) -> None:
+        place = self._settings.heartbeat
+        if place is not None:
+            value = number % 2 if place.table == "coil" else number
+            line.write(
+                self._settings.unit, WriteRequest(table=place.table, address=place.address, values=(value,))
+            )
+
+    def _read(self, line: Line, blocks: Sequence[Block]) -> Raw:
+        raw: dict[tuple[str, int], int] = {}
+        for block in blocks:
+            values = line.read(self._settings.unit, block)
+            raw |= {(block.table, block.address + at): value for at, value in enumerate(values)}
+        return raw
+
+
+def _client(settings: Settings) -> ModbusBaseSyncClient:
+    from pymodbus import FramerType
+    from pymodbus.client import ModbusSerialClient, ModbusTcpClient
+
+    timeout, retries = settings.timeout_s, 0  # a write that is repeated is a command given twice
+    if not settings.serial:
+        framer = FramerType.RTU if settings.framing == "rtu" else FramerType.SOCKET
+        return ModbusTcpClient(
+            settings.host, port=settings.port, framer=framer, timeout=timeout, retries=retries
+        )
+    parity = PARITIES[settings.parity]
+    return ModbusSerialClient(
+        settings.serial,
+        baudrate=settings.baud,
+        parity=parity,
+        stopbits=2 if parity == "N" else 1,
+        timeout=timeout,
+        retries=retries,
+    )
+
+
+def refused(what: str, code: int) -> polled.RequestRefused:
+    """The error of an exception code."""
+    word = WORDS.get(code, f"code_{code}")
+    return polled.RequestRefused(f"the PLC refuses {what}: {word} (exception code {code})", word)
+
+
+def _check(answer: Any, what: str, code: int) -> None:
+    """Raises RequestRefused for an exception code, ConnectionError for the answer to another request.
+
+    pymodbus takes such an answer as well.
+    """
+    if answer.function_code & 0x7F != code:
+        raise ConnectionError(
+            f"the PLC was asked {what}, and has answered with function {answer.function_code}"
+        )
+    if answer.isError():
+        raise refused(what, answer.exception_code)
+
+
+def need_library() -> None:
+    """Raises DriverError with install advice if pymodbus is missing; otherwise silences its log."""
+    try:
+        import pymodbus
+        import serial
+    except ImportError as error:
+        raise DriverError(MISSING) from error
+    assert pymodbus.__name__ and serial.__name__
+    logging.getLogger("pymodbus.logging").setLevel(logging.CRITICAL)  # the plant reports the same

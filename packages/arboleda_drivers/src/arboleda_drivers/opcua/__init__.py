@@ -1,0 +1,1 @@
+"""Devices behind OPC UA: nodes of values, method calls, and reports."""

@@ -1,0 +1,367 @@
+"""State machine for one device behind an action server: its goal, its stops, and its measurements."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from arboleda.drivers.port import lost
+from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.outside import plain
+
+from .events import (
+    CancelAll,
+    CancelAnswer,
+    CommandNotSent,
+    CommandRequest,
+    Event,
+    GoalAnswer,
+    GoalList,
+    GoalResult,
+    MakeCall,
+    Measurement,
+    Message,
+    SendGoal,
+    ServersFound,
+    Status,
+    UnusableMessage,
+)
+from .goal import SETTLE_S, Goal
+from .goal_history import GoalHistory
+from .health import Call, CallAnswer, Health, HealthReading, HealthWatch
+from .mover import Mover, NoGoal
+
+ANSWER_S = 2.0  # a server answers a goal or a cancel in milliseconds
+SPARE_S = 0.5  # the plant's own deadline comes first
+GONE_S = 1.0  # a restarted server is away for a moment, and discovery takes another
+REPORT_S = 0.1  # a report at least so often
+LONGEST_WORD = 120
+
+
+class Machine:
+    """State machine of one device behind one action; `step` takes events and returns actions and reports."""
+
+    def __init__(self, mover: Mover, action: str, health: Health | None = None) -> None:
+        self._mover, self._action = mover, action
+        self._health = HealthWatch(health)
+        self._history = GoalHistory(mover.name)
+        self._out: list[Message] = []
+        self._servers: tuple[int, ...] = ()
+        self._server: int | None = None  # the last one that was there alone
+        self._alone_at = -math.inf  # the time at which it was
+        self._why = ""  # the reported reason for a missing link
+        self._goal: Goal | None = None
+        self._homing: str | None = None
+        self._cancel_at: float | None = None  # time since which a cancel is unanswered
+        self._cancelled_at = -math.inf  # time of the last cancel
+        self._stop_id = ""
+        self._latched = False
+        self._ids: dict[str, str] = {}
+        self._measured_at = math.inf  # time of the first measurement
+        self._news = False
+        self._reported_at = -math.inf
+
+    def step(self, now: float, events: Sequence[Event]) -> list[Message]:
+        """Take events and the time, and return the messages to act on; at most one of them is a report."""
+        for event in events:
+            self._take(now, event)
+        why = self._missing(now)
+        if why:
+            self._lose(now, why)
+        else:
+            self._pass_time(now)
+            due = self._news or now >= self._reported_at + REPORT_S
+            if due and now >= self._measured_at + SETTLE_S:  # before, nobody knows whether the device rests
+                self._out.append(self._report(now))
+        out, self._out = self._out, []
+        return out
+
+    def _take(self, now: float, event: Event) -> None:
+        if isinstance(event, CommandRequest):
+            self._ask(now, event.command)
+        elif isinstance(event, ServersFound):
+            self._find(now, event.servers)
+        elif isinstance(event, Measurement):
+            self._see(now, event)
+        elif isinstance(event, GoalAnswer):
+            self._hear_answer(now, event)
+        elif isinstance(event, GoalResult):
+            self._hear_end(now, event)
+        elif isinstance(event, GoalList):
+            self._history.list(event.goals)
+        elif isinstance(event, HealthReading):
+            self._see_health(now, event)
+        elif isinstance(event, CallAnswer):
+            self._hear_call(now, event)
+        elif isinstance(event, UnusableMessage):
+            self._lose(now, event.why)
+        else:
+            self._hear_cancel(now, event)
+
+    def _pass_time(self, now: float) -> None:
+        goal = self._goal
+        if self._cancel_at is not None and now >= self._cancel_at + ANSWER_S:
+            self._cancel(now)
+        if self._homing is not None and not self._health.is_well and (why := self._health.overdue(now)):
+            self._end_homing(failure=why)
+        if goal is None:
+            return
+        if not goal.accepted and not goal.stopped and now >= goal.sent_at + ANSWER_S:
+            # It may still be accepted later, and is cancelled then.
+            self._drop(failed=goal.id, failure="goal_not_answered")
+            self._cancel(now)
+        elif not goal.stopped and now >= goal.over_at:
+            # No step of a task waits for it any more, and nobody halts a switch.
+            self._drop(failed=goal.id, failure="not_ended")
+            self._cancel(now)
+        elif goal.unknown_at is not None and now >= goal.unknown_at + GONE_S:
+            self._drop(failed=goal.id, failure="goal_unknown_to_the_server")
+        elif goal.succeeded_at is not None:
+            self._believe(now, goal, goal.succeeded_at)
+        elif goal.stopped and self._cancel_at is None:
+            # The server has cancelled all it has, and the device rests: no result is waited for.
+            since = self._cancelled_at + ANSWER_S
+            if now >= since and self._mover.rests(now, self._cancelled_at):
+                self._drop()
+
+    def _believe(self, now: float, goal: Goal, since: float) -> None:
+        """Accept a result once a later measurement shows the goal, or rest elsewhere.
+
+        The plant compares positions and facts in any case, and says that the goal was not reached.
+        """
+        if not self._mover.has_measured_since(since):
+            return
+        there = self._mover.is_at(goal.what)
+        if not there and not self._mover.rests(now, since):
+            return
+        if not there:
+            self._cancel(now)  # a server that reported a wrong end may still carry it out
+        objection = self._mover.objection(goal.what)
+        self._mover.settle(goal.what)
+        if objection:
+            self._end(failed=goal.id, failure=objection)
+        elif there and goal.advance(now):
+            self._send(goal)
+        else:
+            self._history.end()
+            self._end(done=goal.id)
+
+    # The link.
+
+    def _missing(self, now: float) -> str:
+        """The reason why the device cannot be reached; "" if it can."""
+        if now >= self._alone_at + GONE_S and not self._servers:
+            return f"there is no action server {self._action}"
+        if now >= self._alone_at + GONE_S:
+            return f"there are {len(self._servers)} action servers {self._action}; one is needed"
+        return self._mover.missing(now) or self._health.missing
+
+    def _find(self, now: float, servers: tuple[int, ...]) -> None:
+        self._servers = servers
+        if len(servers) != 1:
+            return
+        self._alone_at = now
+        if servers[0] == self._server:
+            return
+        if self._server is not None:  # it was started anew, and knows of no goal
+            self._forget()
+        self._server, self._news = servers[0], True
+
+    def _lose(self, now: float, why: str) -> None:
+        """Lose the link, and open work; a goal that still runs is cancelled once the server is back."""
+        if self._goal is not None:
+            self._goal.stopped, self._goal.succeeded_at = True, None
+            self._cancel_at = -math.inf  # at once, where it is back
+        self._homing, self._stop_id = None, ""
+        if why != self._why:
+            self._why = why
+            self._out.append(lost(self._mover.name, at=now, why=why))
+
+    def _forget(self) -> None:
+        self._goal = self._homing = self._cancel_at = None
+        self._history.forget()
+        self._stop_id, self._ids = "", {}
+        self._mover.settle(None)
+
+    def _see(self, now: float, measurement: Measurement) -> None:
+        if not self._mover.see(now, measurement):
+            return
+        self._measured_at = min(self._measured_at, now)
+        if self._homing is not None and self._health.is_well:
+            self._end_homing()
+
+    # Its health.
+
+    def _see_health(self, now: float, reading: HealthReading) -> None:
+        if not self._health.see(reading.value):
+            return
+        self._news = True
+        if self._goal is not None and not self._health.is_well:
+            self._drop(failed=self._goal.id, failure=self._health.word)
+            self._cancel(now)
+
+    def _hear_call(self, now: float, answer: CallAnswer) -> None:
+        if self._homing is None:
+            return
+        following = self._health.answered(now, answer)
+        if isinstance(following, Call):
+            self._out.append(MakeCall(call=following))
+        elif following is not None:
+            self._end_homing(failure=following)
+
+    def _begin_homing(self, now: float, id: str) -> None:
+        """Begin homing, which moves nothing: the device has to be heard, and to be out of a stop."""
+        if not self._health.is_well and not self._health.can_clear:
+            self._reject(id, self._health.word)
+            return
+        self._homing = id
+        self._tell(accepted=id)
+        if not self._health.is_well:
+            self._out.append(MakeCall(call=self._health.clear(now)))
+
+    def _end_homing(self, *, failure: str = "") -> None:
+        id, self._homing = self._homing or "", None
+        if failure:
+            self._tell(failed=id, failure=plain(failure, LONGEST_WORD))
+        else:
+            self._tell(done=id)
+
+    # Commands.
+
+    def _ask(self, now: float, command: Command) -> None:
+        why = self._missing(now)
+        if why:
+            self._out.append(CommandNotSent(why=why))
+        elif isinstance(command, Stop):
+            self._ask_stop(now, command)
+        elif self._homing is not None or (self._goal is not None and not self._mover.replaces):
+            self._reject(command.id, "busy")
+        elif isinstance(command, Home):
+            self._begin_homing(now, command.id)
+        elif not self._health.is_well:
+            self._reject(command.id, self._health.word)
+        else:
+            self._begin(now, command)
+
+    def _begin(self, now: float, command: Command) -> None:
+        try:
+            parts = self._mover.goals(command)
+        except NoGoal as error:
+            self._out.append(CommandNotSent(why=str(error)))
+            return
+        if self._goal is not None:
+            self._drop(failed=self._goal.id, failure="replaced_by_the_next")
+        over_at = math.inf if command.at_most_s is None else now + command.at_most_s + SPARE_S
+        self._goal = Goal(id=command.id, parts=parts, sent_at=now, over_at=over_at)
+        self._history.begin(command)
+        self._send(self._goal)
+
+    def _send(self, goal: Goal) -> None:
+        self._out.append(SendGoal(id=goal.key, uuid=self._history.send(goal), goal=goal.what))
+        self._news = True
+
+    def _ask_stop(self, now: float, command: Stop) -> None:
+        if command.mode is not StopMode.HALT:
+            self._latched = command.mode is StopMode.LATCH
+        self._news = True
+        if command.mode is StopMode.CLEAR:
+            self._tell(accepted=command.id)
+            return
+        self._homing = None
+        if self._goal is not None:
+            self._goal.stopped, self._goal.succeeded_at = True, None
+        self._stop_id = command.id
+        self._cancel(now)
+
+    def _cancel(self, now: float) -> None:
+        self._cancel_at, self._news = now, True
+        self._out.append(CancelAll())
+
+    # Answers of the server.
+
+    def _hear_answer(self, now: float, answer: GoalAnswer) -> None:
+        goal = self._goal
+        self._history.answer(answer.id, accepted=answer.accepted)
+        if goal is None or answer.id != goal.key:
+            if answer.accepted:  # nobody waits for it any more
+                self._cancel(now)
+        elif not answer.accepted:
+            self._end(**({} if goal.stopped else {"rejected": goal.id, "refusal": "goal_refused"}))
+        else:
+            goal.accepted = True
+            if goal.stopped:  # a cancel that came before it cannot have included it
+                self._cancel(now)
+            else:
+                self._tell(accepted=goal.id)
+
+    def _hear_end(self, now: float, end: GoalResult) -> None:
+        goal = self._goal
+        if goal is None or end.id != goal.key:
+            return
+        failure = self._mover.failure(end, goal.what)
+        if goal.stopped:
+            self._drop()
+        elif end.status is Status.UNKNOWN:
+            goal.unknown_at = now  # most likely it was started anew, which is seen only at the next look
+        elif failure:
+            self._drop(failed=goal.id, failure=failure)
+        else:
+            goal.succeeded_at = now
+
+    def _hear_cancel(self, now: float, answer: CancelAnswer) -> None:
+        if self._cancel_at is None:
+            return
+        if answer.refused and self._goal is not None:
+            self._reject(self._stop_id, "cancel_refused")
+            self._stop_id = ""
+            return  # repeated after ANSWER_S
+        self._cancel_at, self._cancelled_at = None, now
+        self._history.leave_behind()
+        self._tell(accepted=self._stop_id)
+        self._stop_id = ""
+
+    # What the plant hears.
+
+    def _drop(self, **ids: str) -> None:
+        """End a goal without knowing how far it has led."""
+        self._mover.settle(None)
+        self._end(**ids)
+
+    def _end(self, *, failure: str = "", **ids: str) -> None:
+        self._goal = None
+        self._tell(**ids, failure=plain(failure, LONGEST_WORD))
+
+    def _tell(self, **ids: str) -> None:
+        self._ids |= {name: id for name, id in ids.items() if id}
+        self._news = True
+
+    def _reject(self, id: str, word: str) -> None:
+        if id:
+            self._tell(rejected=id, refusal=word)
+
+    def _state(self, now: float) -> MotionState:
+        at_work = self._goal is not None or self._cancel_at is not None
+        # A device that waits at an obstacle rests, and goes on by itself; a grip may never end.
+        goes_on = self._history.has_earlier_goal and not self._mover.replaces
+        if at_work or goes_on or not self._mover.rests(now):
+            return MotionState.MOVING
+        if self._latched:
+            return MotionState.STOP_LATCHED
+        if not self._health.is_well:
+            return MotionState.FAULT if self._homing is None else MotionState.NOT_HOMED
+        return MotionState.STOPPED
+
+    def _report(self, now: float) -> Report:
+        self._news, self._reported_at, self._why = False, now, ""
+        report = Report(
+            at=now,
+            robot=self._mover.name,
+            boot_id=self._server,
+            state=self._state(now),
+            homed=self._homing is None,
+            receipt=self._history.receipt,
+            tokens=self._history.tokens,
+            **self._mover.shows(busy=self._goal is not None) | self._health.shows,
+        )
+        return report.again(now, **self._ids)

@@ -1,0 +1,1 @@
+"""Devices behind a Siemens S7: absolute addresses, what is written, and reports."""

@@ -1,0 +1,160 @@
+"""A press, played by hand over any protocol that has words for what it says: a `Wire`."""
+
+from __future__ import annotations
+
+import queue
+import shutil
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Protocol
+
+from tests.packages import ROOT
+from tests.patience import PATIENCE_S
+
+from arboleda.model.messages import MotionState
+from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file.loader import load
+
+from .bench import ASK, HALT, LATCH, OTHER, WORK, Ref
+
+BEAT_S = 0.1
+NAME = "press"
+EXAMPLE = ROOT / "examples/own_driver"
+DRIVER = "{line_tcp: {host: 127.0.0.1, port: 4711}}"
+CODES = {"stopped": MotionState.STOPPED, "moving": MotionState.MOVING, "latched": MotionState.STOP_LATCHED}
+STOPS = {2: HALT, 1: LATCH, 0: "clear"}
+MEANS = {"close": WORK, "open": OTHER, "measure": ASK}
+GUARD = {WORK: "closed", OTHER: "open"}
+RECIPES = """
+from arboleda.recipes import recipe, work
+
+@recipe("work")
+def close(cell):
+    return cell.device("press").close()
+
+@recipe("other")
+def open_(cell):
+    return cell.device("press").open()
+
+@recipe("ask")
+def measure(cell):
+    seen = cell.device("press").measure()
+    return work(seen, cell.choose(seen, {"good": [], "bad": cell.fail("the part is out of measure")}))
+"""
+
+
+def plant(folder: Path, driver: str) -> PlantModel:
+    """The plant of the example, with the press behind this driver."""
+    shutil.copytree(EXAMPLE, folder)
+    (folder / "recipes.py").write_text(RECIPES, "utf-8")
+    file = folder / "plant.yaml"
+    text = file.read_text("utf-8")
+    assert DRIVER in text
+    file.write_text(text.replace(DRIVER, driver), "utf-8")
+    return load(file)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Order:
+    """What the press was told: a verb or a stop, as its protocol has it."""
+
+    ref: Ref
+    word: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Words:
+    """What the press says; ids are the refs of orders."""
+
+    state: str = "stopped"
+    guard: str = "open"
+    boot: int = 1
+    accepted: Ref = None
+    done: Ref = None
+    rejected: tuple[Ref, str] | None = None
+    failed: tuple[Ref, str] | None = None
+    answered: tuple[Ref, str] | None = None
+
+
+class Wire(Protocol):
+    """One protocol; what connects it is given who gets each order, in any thread."""
+
+    def say(self, words: Words) -> None: ...
+    def vanish(self) -> None: ...
+    def come_back(self) -> None: ...
+    def close(self) -> None: ...
+
+
+class Press:
+    """It says its words again and again, until it is hushed."""
+
+    def __init__(self, connect: Callable[[Callable[[Order], None]], Wire]) -> None:
+        self._words = Words()
+        self._orders: queue.Queue[Order] = queue.Queue()
+        self._works: dict[Ref, str] = {}
+        self._quiet, self._ending = threading.Event(), threading.Event()
+        self._wire = connect(self._orders.put)
+        self._thread = threading.Thread(target=self._speak, name="press", daemon=True)
+        self._thread.start()
+
+    def told(self) -> tuple[str, Ref]:
+        order = self._orders.get(timeout=PATIENCE_S)
+        word = MEANS.get(order.word, order.word)
+        self._works[order.ref] = word
+        return word, order.ref
+
+    def accepts(self, ref: Ref) -> None:
+        self._say(accepted=ref, state="moving" if self._works[ref] in GUARD else self._words.state)
+
+    def finishes(self, ref: Ref, *, there: bool = True) -> None:
+        guard = GUARD[self._works[ref]] if there else self._words.guard
+        self._say(done=ref, state="stopped", guard=guard)
+
+    def rejects(self, ref: Ref) -> str:
+        self._say(rejected=(ref, "ocupado"))
+        return "(ocupado)"
+
+    def gives_up(self, ref: Ref) -> str:
+        self._say(failed=(ref, "atasco"), state="stopped")
+        return "gave up (atasco)"
+
+    def rests(self) -> None:
+        self._say(state="stopped")
+
+    def answers(self, ref: Ref, word: str) -> None:
+        self._say(answered=(ref, word))
+
+    def hush(self) -> None:
+        self._quiet.set()
+
+    def boots(self) -> None:
+        self._words = Words(boot=self._words.boot + 1)
+        self._wire.say(self._words)
+
+    def vanish(self) -> None:
+        self._quiet.set()
+        self._wire.vanish()
+
+    def come_back(self) -> None:
+        self._words = Words()
+        self._wire.come_back()
+        self._quiet.clear()
+
+    def latches(self) -> None:
+        self._say(state="latched")
+
+    def close(self) -> None:
+        self._ending.set()
+        self._thread.join()
+        self._wire.close()
+
+    def _say(self, **words: Any) -> None:
+        self._words = replace(self._words, **words)
+        self._wire.say(self._words)
+
+    def _speak(self) -> None:
+        while not self._ending.wait(BEAT_S):
+            if not self._quiet.is_set():
+                self._wire.say(self._words)

@@ -1,0 +1,101 @@
+"""The press behind Modbus TCP: registers that a test sets by hand, on pymodbus' server."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+
+from arboleda_drivers.modbus.server import ModbusServer
+
+from ..contract.bench import HALT, LATCH
+from ..contract.press import Order, Words
+from ..plc.bench import bench
+
+DRIVER = """
+          modbus:
+            host: 127.0.0.1
+            port: %d
+            timeout_s: 2.0
+            boot: {input: 0}
+            state: {input: 1, words: {stopped: 0, moving: 1, latched: 2}}
+            sequence:
+              write: {holding: 2}
+              accepted: {input: 2}
+              done: {input: 3}
+              rejected: {input: 4}
+              reason: {input: 5, words: {ocupado: 1}}
+              failed: {input: 6}
+              failure: {input: 7, words: {atasco: 1}}
+            facts: {guard: {discrete: 0, words: {open: 0, closed: 1}}, strokes: {input: 8}}
+            verbs:
+              open: {write: [{holding: 0, value: 1}]}
+              close: {write: [{holding: 0, value: 2}]}
+              press: {write: [{holding: 0, value: 3}, {holding: 1, value: $strokes}]}
+              measure: {write: [{holding: 0, value: 4}], answer: {input: 9, words: {good: 1, bad: 2}}}
+            halt: [{coil: 0, value: true}]
+            latch: [{coil: 1, value: true}]
+            clear: [{coil: 1, value: false}]"""
+VERBS = {1: "open", 2: "close", 3: "press", 4: "measure"}
+STATES = {"stopped": 0, "moving": 1, "latched": 2}
+ANSWERS = {"good": 1, "bad": 2}
+
+
+class ModbusWire:
+    """A PLC whose program is the test."""
+
+    def __init__(self) -> None:
+        self.told: Callable[[Order], None] = lambda order: None
+        self._changed = threading.Lock()
+        self._holding = [0, 0, 0]
+        self.say(Words())  # a driver that reads zeros first finds a board that has booted then
+        self._silent = threading.Event()
+        self._server = ModbusServer(self, trace=self._pass)
+        self.port = self._server.start()
+
+    def connect(self, told: Callable[[Order], None]) -> ModbusWire:
+        self.told = told
+        return self
+
+    def read(self, table: str, address: int, count: int) -> list[int] | int:
+        with self._changed:
+            held = self._inputs if table == "input" else [self._guard]
+            return (held + [0] * 16)[address : address + count]
+
+    def write(self, table: str, address: int, values: list[int]) -> int | None:
+        if table == "coil":
+            word = {(0, 1): HALT, (1, 1): LATCH, (1, 0): "clear"}[address, values[0]]
+            self.told(Order(ref=None, word=word))
+            return None
+        self._holding[address : address + len(values)] = values
+        if address + len(values) == 3:
+            self.told(Order(ref=self._holding[2], word=VERBS[self._holding[0]]))
+        return None
+
+    def say(self, words: Words) -> None:
+        pairs = (words.rejected, words.failed, words.answered)
+        rejected, failed, answered = (pair or (0, "") for pair in pairs)
+        done = answered[0] if words.answered is not None else words.done or 0
+        said = [words.boot, STATES[words.state], words.accepted or 0, done, rejected[0], 1, failed[0], 1, 0]
+        with self._changed:
+            self._inputs = [*said, ANSWERS.get(answered[1], 1)]
+            self._guard = int(words.guard == "closed")
+
+    def vanish(self) -> None:
+        self._server.stop()
+
+    def come_back(self) -> None:
+        self._server = ModbusServer(self, port=self.port, trace=self._pass)
+        self._server.start()
+
+    def hush(self) -> None:
+        """A PLC that is asked and does not answer."""
+        self._silent.set()
+
+    def close(self) -> None:
+        self._server.stop()
+
+    def _pass(self, sent: bool, packet: bytes) -> bytes:
+        return b"" if sent and self._silent.is_set() else packet
+
+
+BENCH = bench(ModbusWire, DRIVER)

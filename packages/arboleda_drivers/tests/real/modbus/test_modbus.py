@@ -1,0 +1,299 @@
+"""The driver modbus against servers of pymodbus, and against its simulator; TCP and a serial line."""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import subprocess
+import sys
+import threading
+import time
+import tty
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pymodbus.client import ModbusTcpClient
+from tests.packages import ROOT
+from tests.patience import PATIENCE_S
+
+from arboleda.drivers import MotionState, Report
+from arboleda.kinds.declared import Device
+from arboleda.plant_file.loader import load
+from arboleda_drivers.modbus.adapter import LINES, Modbus
+from arboleda_drivers.modbus.registers import Register
+from arboleda_drivers.modbus.server import ModbusServer
+from arboleda_drivers.modbus.settings import Settings
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("pymodbus", "serial")]
+
+EXAMPLE = ROOT / "examples/plc_conveyor/plant.yaml"
+
+LONGEST_S = 5.0  # that a plant file may wait for an answer
+
+
+class Memory:
+    """A PLC that does nothing; `refuses` is an exception code for writes."""
+
+    def __init__(self) -> None:
+        self.inputs = [0] * 16
+        self.written: queue.Queue[tuple[str, int, list[int]]] = queue.Queue()
+        self.refuses: int | None = None
+
+    def read(self, table: str, address: int, count: int) -> list[int] | int:
+        return ((self.inputs if table == "input" else []) + [0] * 256)[address : address + count]
+
+    def write(self, table: str, address: int, values: list[int]) -> int | None:
+        self.written.put((table, address, values))
+        return self.refuses
+
+
+class Heard:
+    """What a driver says."""
+
+    def __init__(self) -> None:
+        self._reports: queue.Queue[Report] = queue.Queue()
+
+    def __call__(self, report: Report) -> None:
+        self._reports.put(report)
+
+    def until(self, fits: Callable[[Report], bool]) -> Report:
+        """The first report from now on that fits."""
+        while not fits(report := self._reports.get(timeout=PATIENCE_S)):
+            pass
+        return report
+
+
+@pytest.fixture(scope="module")
+def belt() -> Device:
+    (robot,) = load(EXAMPLE).robots.values()
+    assert isinstance(robot, Device)
+    return robot
+
+
+def settings(belt: Device, **changes: Any) -> Settings:
+    """The mapping of the example, without what a test does not play, and patient."""
+    assert belt.driver is not None and isinstance(belt.driver.settings, Settings)
+    return replace(
+        belt.driver.settings, **{"alive": None, "heartbeat": None, "timeout_s": LONGEST_S} | changes
+    )
+
+
+@contextmanager
+def driven(belt: Device, at: Settings) -> Iterator[tuple[Modbus, Heard]]:
+    made, heard = Modbus(at), Heard()
+    made.start([belt], heard, time.monotonic)
+    try:
+        yield made, heard
+    finally:
+        made.stop()
+
+
+@contextmanager
+def served(memory: Memory, **where: Any) -> Iterator[int]:
+    server = ModbusServer(memory, **where)
+    try:
+        yield server.start()
+    finally:
+        server.stop()
+
+
+def load_command(belt: Device, id: str = "c1") -> Any:
+    return belt.kind.command(id=id, robot="belt", verb="load", values={})
+
+
+def is_heard(report: Report) -> bool:
+    return report.state is MotionState.STOPPED
+
+
+def is_lost(report: Report) -> bool:
+    return report.state is MotionState.NO_LINK
+
+
+def test_an_exception_code_rejects_the_command(belt: Device) -> None:
+    memory = Memory()
+    with served(memory) as port, driven(belt, settings(belt, port=port)) as (driver, heard):
+        heard.until(is_heard)
+        memory.refuses = 6
+        driver.send(load_command(belt))
+        report = heard.until(lambda report: report.rejected is not None)
+        assert (report.rejected, report.refusal) == ("c1", "device_busy")
+        heard.until(is_heard)  # the link stays
+
+
+def test_a_command_whose_answer_does_not_come_loses_the_link_and_is_not_repeated(belt: Device) -> None:
+    memory, silent = Memory(), threading.Event()
+
+    def trace(sent: bool, packet: bytes) -> bytes:
+        return b"" if sent and silent.is_set() else packet
+
+    with (
+        served(memory, trace=trace) as port,
+        driven(belt, settings(belt, port=port, timeout_s=0.3)) as (driver, heard),
+    ):
+        heard.until(is_heard)
+        silent.set()
+        with pytest.raises(Exception, match=r"No response|not connected"):
+            driver.send(load_command(belt))
+        heard.until(is_lost)
+        silent.clear()
+        heard.until(is_heard)
+        assert memory.written.qsize() <= 1
+
+
+def test_two_devices_of_one_plc_share_a_connection(belt: Device) -> None:
+    other = replace(belt, name="other")
+    with served(Memory()) as port:
+        first, second = settings(belt, port=port), settings(belt, port=port, unit=2)
+        with driven(belt, first) as (_, heard), driven(other, second) as (_, more):
+            heard.until(is_heard)
+            more.until(is_heard)
+            one, two = Modbus(first), Modbus(second)
+            line = LINES.take(one.address(), one.make_line)
+            assert LINES.take(two.address(), two.make_line) is line
+            LINES.give_back(one.address())
+            LINES.give_back(two.address())
+
+
+def test_a_serial_line_speaks_rtu(belt: Device) -> None:
+    memory = Memory()
+    with pair() as (ours, theirs), served(memory, serial=theirs):
+        loads(belt, memory, settings(belt, host="", serial=ours, parity="none"))
+
+
+def test_a_gateway_speaks_rtu_over_tcp(belt: Device) -> None:
+    memory, sent = Memory(), []
+
+    def note(is_sent: bool, packet: bytes) -> bytes:
+        sent.append(packet)
+        return packet
+
+    with served(memory, framing="rtu", trace=note) as port:
+        loads(belt, memory, settings(belt, port=port, unit=7, framing="rtu"))
+    assert all(packet[0] == 7 for packet in sent), "the unit is the first byte of RTU"
+
+
+def loads(belt: Device, memory: Memory, at: Settings) -> None:
+    """A load is written there, and what the PLC then shows makes it done."""
+    with driven(belt, at) as (driver, heard):
+        heard.until(is_heard)
+        driver.send(load_command(belt))
+        assert memory.written.get(timeout=PATIENCE_S) == ("holding", 0, [1])
+        table, address, (number,) = memory.written.get(timeout=PATIENCE_S)
+        memory.inputs[10] = 1
+        memory.inputs[3] = memory.inputs[4] = number
+        report = heard.until(lambda report: report.done is not None)
+        assert (table, address, report.done) == ("holding", 3, "c1")
+        assert dict(report.facts or ())["part_at"] == "entry"
+
+
+@contextmanager
+def pair() -> Iterator[tuple[str, str]]:
+    """Two ends of a serial line: two pseudo terminals, and threads that carry bytes between them.
+
+    They know no parity.
+    """
+    ends = [os.openpty() for _ in range(2)]
+    for _, slave in ends:
+        tty.setraw(slave)
+
+    def carry(source: int, drain: int) -> None:
+        while data := os.read(source, 1024):
+            if data == b"\x00end":
+                return
+            os.write(drain, data)
+
+    threads = [threading.Thread(target=carry, args=(ends[at][0], ends[1 - at][0])) for at in range(2)]
+    for thread in threads:
+        thread.start()
+    try:
+        yield os.ttyname(ends[0][1]), os.ttyname(ends[1][1])
+    finally:
+        for _, slave in ends:
+            os.write(slave, b"\x00end")
+        for thread in threads:
+            thread.join()
+        for end in ends:
+            for each in end:
+                os.close(each)
+
+
+CELLS = {"value": {"bits": 0, "uint16": 0, "uint32": 0, "float32": 0.0, "string": " "}}
+CELLS |= {"action": dict.fromkeys(CELLS["value"])}
+SIMULATED = {
+    "setup": {
+        "co size": 64,
+        "di size": 64,
+        "hr size": 64,
+        "ir size": 64,
+        "shared blocks": True,
+        "type exception": False,
+        "defaults": CELLS,
+    },
+    "invalid": [],
+    "write": [[0, 63]],
+    "uint16": [{"addr": [0, 63], "value": 0}],
+    **{name: [] for name in ("bits", "uint32", "float32", "string", "repeat")},
+}
+
+
+@pytest.fixture
+def simulator(tmp_path: Path, free_port: int) -> Iterator[int]:
+    """The simulator that comes with pymodbus, as a process of its own: 64 registers, inputs are holdings."""
+    server = {"comm": "tcp", "host": "127.0.0.1", "port": free_port, "framer": "socket"}
+    setup = {"server_list": {"server": server}, "device_list": {"device": SIMULATED}}
+    file = tmp_path / "setup.json"
+    file.write_text(json.dumps(setup), "utf-8")
+    code = "import sys; from pymodbus.server.simulator.main import main; sys.exit(main())"
+    where = ["--json_file", str(file), "--http_host", "127.0.0.1", "--http_port", "0", "--log", "error"]
+    process = subprocess.Popen([sys.executable, "-c", code, *where], cwd=tmp_path)
+    try:
+        yield free_port
+    finally:
+        process.kill()
+        process.wait()
+
+
+def moved(settings: Settings, by: int) -> Settings:
+    """The same mapping with its inputs further on, where the simulator has no command of ours."""
+
+    def on(place: Register) -> Register:
+        return replace(place, input=place.address + by, discrete=None)
+
+    sequence = settings.sequence
+    assert sequence is not None and settings.state is not None and settings.boot is not None
+    echoes = {name: on(getattr(sequence, name)) for name in ("accepted", "done", "rejected", "reason")}
+    verbs = {
+        name: replace(verb, answer=verb.answer and on(verb.answer)) for name, verb in settings.verbs.items()
+    }
+    return replace(
+        settings,
+        boot=on(settings.boot),
+        state=on(settings.state),
+        facts={name: on(place) for name, place in settings.facts.items() if name != "gate"}
+        | {"gate": replace(settings.facts["gate"], discrete=None, input=by + 13)},
+        verbs=verbs,
+        sequence=replace(sequence, failed=None, failure=None, **echoes),
+    )
+
+
+def test_the_simulator_of_pymodbus_is_spoken_to(belt: Device, simulator: int) -> None:
+    """A plain client of pymodbus is the program of the PLC: it sees the order, and sets what is shown."""
+    mapping = moved(settings(belt, port=simulator), by=20)
+    program = ModbusTcpClient("127.0.0.1", port=simulator, timeout=PATIENCE_S)
+    with driven(belt, mapping) as (driver, heard), closing(program):
+        heard.until(is_heard)
+        driver.send(
+            belt.kind.command(id="c1", robot="belt", verb="advance", values={"to": "exit", "speed_mm_s": 200})
+        )
+        assert program.read_holding_registers(0, count=4).registers == [2, 2, 200, 1]
+        program.write_registers(22, [1, 1])
+        assert heard.until(lambda report: report.accepted == "c1").state is MotionState.MOVING
+        program.write_register(30, 2)
+        program.write_registers(22, [0, 1, 1])
+        report = heard.until(lambda report: report.done == "c1")
+        assert (report.state, dict(report.facts or ())["part_at"]) == (MotionState.STOPPED, "exit")

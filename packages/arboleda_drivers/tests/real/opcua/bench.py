@@ -1,0 +1,119 @@
+"""The press behind OPC UA: variables that a test sets by hand, on asyncua's server."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from arboleda_drivers.opcua.server import OpcUaServer
+
+from ..contract.bench import HALT, LATCH
+from ..contract.press import Order, Words
+from ..plc.bench import bench
+
+DRIVER = """
+          opcua:
+            url: opc.tcp://127.0.0.1:%d
+            security: none
+            boot: ns=2;s=boot
+            state: {node: ns=2;s=state}
+            sequence:
+              accepted: ns=2;s=accepted
+              done: ns=2;s=done
+              rejected: ns=2;s=rejected
+              reason: {node: ns=2;s=reason, words: {ocupado: 1}}
+              failed: ns=2;s=failed
+              failure: {node: ns=2;s=failure, words: {atasco: 1}}
+            facts: {guard: {node: ns=2;s=guard}, strokes: {node: ns=2;s=strokes}}
+            verbs:
+              open: {call: ns=2;s=Open, on: ns=2;s=Device}
+              close: {call: ns=2;s=Close, on: ns=2;s=Device}
+              press: {call: ns=2;s=Press, on: ns=2;s=Device, given: [{value: $strokes, type: uint16}]}
+              measure: {call: ns=2;s=Measure, on: ns=2;s=Device, answer: {node: ns=2;s=seen}}
+            halt: {call: ns=2;s=Halt, on: ns=2;s=Device}
+            latch: {call: ns=2;s=Latch, on: ns=2;s=Device}
+            clear: {call: ns=2;s=Clear, on: ns=2;s=Device}"""
+STOPS = {"Halt": HALT, "Latch": LATCH, "Clear": "clear"}
+TEXTS = dict.fromkeys(("state", "guard", "seen"), "string")
+NUMBERS = ("strokes", "boot", "reason", "failure", "accepted", "rejected", "failed", "done")
+
+
+@cache
+def _folder() -> TemporaryDirectory[str]:
+    """Where the nodes that every server has are kept, until the tests are over."""
+    return TemporaryDirectory()
+
+
+class OpcUaWire:
+    """A PLC whose program is the test."""
+
+    variables: Mapping[str, str] = TEXTS | dict.fromkeys(NUMBERS, "uint16")
+    methods: Mapping[str, Sequence[str]] = {
+        **dict.fromkeys(("Open", "Close", "Measure"), ("uint16",)),
+        "Press": ("uint16", "uint16"),
+        **dict.fromkeys(STOPS, ()),
+    }
+
+    def __init__(self) -> None:
+        self.told: Callable[[Order], None] = lambda order: None
+        self._silent = threading.Event()
+        self._shown: dict[str, object] = {}
+        self.say(Words())
+        self.port = 0
+        self.come_back()
+
+    def connect(self, told: Callable[[Order], None]) -> OpcUaWire:
+        self.told = told
+        return self
+
+    def show(self) -> Mapping[str, object]:
+        return self._shown
+
+    def call(self, method: str, given: Sequence[object]) -> str | None:
+        self.told(Order(ref=given[-1] if given else None, word=STOPS.get(method, method.lower())))
+        return None
+
+    def beat(self, value: object) -> None:
+        """Nobody watches over this press."""
+
+    def is_mute(self) -> bool:
+        return self._silent.is_set()
+
+    def say(self, words: Words) -> None:
+        rejected, failed, answered = (
+            pair or (0, "") for pair in (words.rejected, words.failed, words.answered)
+        )
+        done = answered[0] if words.answered is not None else words.done or 0
+        self._shown = {
+            "state": words.state,
+            "guard": words.guard,
+            "seen": answered[1] or "good",
+            "strokes": 0,
+            "boot": words.boot,
+            "reason": 1,
+            "failure": 1,
+            "accepted": words.accepted or 0,
+            "rejected": rejected[0],
+            "failed": failed[0],
+            "done": done,
+        }
+
+    def vanish(self) -> None:
+        self._server.stop()
+
+    def come_back(self) -> None:
+        self._server = OpcUaServer(self, port=self.port, kept=Path(_folder().name) / "nodes")
+        self.port = self._server.start()
+
+    def hush(self) -> None:
+        """A PLC that is asked and does not answer."""
+        self._silent.set()
+
+    def close(self) -> None:
+        self._server.stop()
+
+
+BENCH = bench(OpcUaWire, DRIVER)

@@ -1,1 +1,0 @@
-"""Devices behind Modbus, without a socket: addresses of values, requests, and reports."""

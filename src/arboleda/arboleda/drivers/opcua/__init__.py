@@ -1,1 +1,0 @@
-"""Devices behind OPC UA, without a socket: nodes of values, method calls, and reports."""

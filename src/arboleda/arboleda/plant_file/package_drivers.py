@@ -1,0 +1,18 @@
+"""Drivers of the package `arboleda_drivers`: a plant file that names one is told what to install."""
+
+from __future__ import annotations
+
+OF_ROBOTS = frozenset(
+    {"dobot", "follow_joint_trajectory", "follow_waypoints", "gcode", "navigate_to_pose", "serial_arm", "ur"}
+)
+"""They reach only arms and mobile robots, which are of no declared kind."""
+OF_DEVICES = frozenset({"gripper_command", "modbus", "opcua", "pylabrobot", "s7", "vda5050"})
+ALL = OF_ROBOTS | OF_DEVICES
+
+
+def not_installed(name: str) -> str:
+    """The sentence for a driver whose package is not there."""
+    return (
+        f"the driver {name} is part of a package that is not installed: "
+        "python -m pip install 'arboleda[drivers]'"
+    )
