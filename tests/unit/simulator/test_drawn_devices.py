@@ -16,7 +16,7 @@ from arboleda.bt_xml.running.node import Node, Result
 from arboleda.campaigns.plants import Plant
 from arboleda.campaigns.random_plants import RandomPlants, keep, loaded, of_devices
 from arboleda.campaigns.setting import Setting
-from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.obstacles import Obstacles
 from arboleda.plant_file import loader, meeting_points
 from arboleda.recipes.place_questions import PlaceHandle
 from arboleda.simulator.invariants.part_places import done_tasks_leave_nothing_behind
@@ -262,7 +262,7 @@ def test_check_says_where_arms_on_one_base_can_meet(drawn: list[DrawnDevices]) -
 BUGS = {
     "a command passes over a need of late work": (
         26,
-        edit(Dispatcher._obstacle_to, "obstacle = None  # its last", "return None  # its last"),
+        edit(Obstacles.to, "obstacle = None  # its last", "return None  # its last"),
     ),
     "a task answers for the part in a hand that another cell has": (
         16,
@@ -295,7 +295,7 @@ BUGS = {
 def test_a_bug_is_found_by_what_is_drawn_for_it(
     monkeypatch: pytest.MonkeyPatch, seed: int, bug: Edit
 ) -> None:
-    rates = {"rates": {"ends_late": 12.0}} if bug.function is Dispatcher._obstacle_to else None
+    rates = {"rates": {"ends_late": 12.0}} if bug.function is Obstacles.to else None
     setting = Setting(plants=OfDevices(), cycles=12, level="none", faults_data=rates)
     bug.make(monkeypatch)
     result = setting.run(seed)

@@ -532,7 +532,11 @@ class Cell:
         return {path.code: path for space in self.spaces for path in space.paths}
 
     def recipe(self, name: str) -> Recipe:
-        return next(recipe for recipe in self.recipes if recipe.name == name)
+        """The recipe of this name; ArboledaError where the cell has none."""
+        for recipe in self.recipes:
+            if recipe.name == name:
+                return recipe
+        raise ArboledaError(f"{name} is not a recipe of {self.name}")
 
     def start_of(self, robot: str) -> Position | None:
         """The position of a virtual robot at first; None for one that has no place."""
