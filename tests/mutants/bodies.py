@@ -190,7 +190,7 @@ PLANTED_PARTS = (
         edit(
             CellRun.go_on,
             "for act in self.run.interrupted():\n        act.send()",
-            "self._look(self.run.begin(lambda: self.keeping.make(self.task.order)))",
+            "self.look(self.run.begin(lambda: self.keeping.make(self.task.order)))",
         ),
         weather={"operator_hold": 30.0},
     ),
