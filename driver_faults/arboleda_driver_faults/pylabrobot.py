@@ -210,7 +210,7 @@ class Loopback:
             loop.create_task(self._bench.do(message))
 
     def _events_of(self, session: object) -> Any:
-        """What takes the events of a session, as long as it is the last one."""
+        """Receiver of the events of a session, as long as it is the last one."""
         self._session = session
 
         def take(event: Event) -> None:

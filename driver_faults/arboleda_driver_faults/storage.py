@@ -1,4 +1,4 @@
-"""What campaigns share of a plant whose cell of storage has its arm behind a driver."""
+"""Plant whose cell of storage has its arm behind a driver, for the campaigns of several drivers."""
 
 from __future__ import annotations
 

@@ -57,9 +57,9 @@ def test_a_leader_that_was_frozen_steps_down_and_moves_nothing(hosts: Hosts, tmp
 
 
 def test_a_planned_handover_fails_no_task_and_needs_nobody_to_resume(
-    hosts: Hosts, arboleda: Callable[..., Any], tmp_path: Path
+    hosts: Hosts, arboleda: Callable[..., Any], tmp_path: Path, page_ports: tuple[int, int]
 ) -> None:
-    hosts.at_work()
+    hosts.at_work(page_ports)
     waited_at = find_running(tmp_path / "b").url
     asked = arboleda("handover", "--state", str(tmp_path / "a"))
     assert asked.wait() == 0, asked.output

@@ -76,9 +76,9 @@ class Hosts:
         self.up("b", "--standby", *at_b)
         self.until(lambda: "process" in self.ask("b").get("sentence", ""))
 
-    def at_work(self) -> None:
+    def at_work(self, ports: Sequence[int] = ()) -> None:
         """The same, and it drives."""
-        self.led_by_a()
+        self.led_by_a(ports)
         self.drives()
 
     def drives(self) -> None:

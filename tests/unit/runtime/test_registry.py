@@ -15,6 +15,7 @@ from arboleda.runtime import holdings, registry
 from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.part_list import PartList
 from arboleda.runtime.registry import Factory, Phase
+from arboleda.runtime.standby import factories as standby
 from arboleda.testing import shipped
 
 Install = Callable[[str, str], None]
@@ -117,11 +118,11 @@ class Noted:
 def listed(monkeypatch: pytest.MonkeyPatch) -> Callable[..., PartList]:
     """Parts of the runner before and after one of a package, `acme`."""
 
-    def made(notes: list[str], *, broken: str, own: str = "") -> PartList:
-        def factory(phase: Phase, *part: Any) -> Factory:
-            return Factory(phase=phase, make=lambda _: [Noted(part[0], notes, part[1])])
+    def made(notes: list[str], *, broken: str, own: str = "", is_needed: bool = False) -> PartList:
+        def factory(phase: Phase, *part: Any, **more: bool) -> Factory:
+            return Factory(phase=phase, make=lambda _: [Noted(part[0], notes, part[1])], **more)
 
-        package = factory(Phase.RECORD, "package", broken)
+        package = factory(Phase.RECORD, "package", broken, is_needed=is_needed)
         monkeypatch.setattr("arboleda.runtime.part_list.packaged", lambda _: [("acme", package)])
         parts = PartList()
         parts.make(None, [factory(Phase.READY, "last", own), factory(Phase.LINKS, "first", "")])
@@ -150,6 +151,19 @@ def test_a_part_of_the_runner_that_breaks_keeps_the_plant_from_starting(
     parts = listed([], broken="", own="start")
     with pytest.raises(ValueError, match="the shelf is full"):
         parts.start()
+
+
+def test_a_part_that_the_plant_needs_keeps_it_from_starting_though_it_is_of_a_package(
+    listed: Callable[..., PartList],
+) -> None:
+    parts = listed([], broken="start", is_needed=True)
+    with pytest.raises(ValueError, match="the shelf is full"):
+        parts.start()
+
+
+def test_the_part_that_keeps_the_lead_is_needed() -> None:
+    (kept,) = (each for each in standby.FACTORIES if each.make is standby.lease)
+    assert kept.is_needed
 
 
 def test_a_shared_memory_is_refused_where_nothing_keeps_the_lead(

@@ -100,7 +100,7 @@ class CellRun:
 
     @property
     def not_ready(self) -> Sentence | None:
-        """Why an idle cell would not start a task; None where it would, or is not idle."""
+        """The reason why an idle cell would not start a task; None where it would, or is not idle."""
         if self.state is not CellState.IDLE:
             return None
         if self.manual.teaching is not None:

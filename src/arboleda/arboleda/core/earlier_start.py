@@ -56,7 +56,7 @@ def trail_of(run: CellRun) -> str | None:
 
 
 def stop_of(cell: Cell, model: PlantModel, latches: Latches) -> CellState | None:
-    """How far a cell came out of a stop of an earlier start; None where it was not stopped."""
+    """State of a cell that was stopped in an earlier start, on its way out; None where it was not stopped."""
     if _was_stopped(cell, model, latches.stopped):
         return CellState.ABORTED
     return CellState.STOPPED if _was_stopped(cell, model, latches.cleared) else None

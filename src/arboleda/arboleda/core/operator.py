@@ -158,7 +158,7 @@ class Operator:
         return news
 
     def refusal(self, request: OperatorRequest) -> Sentence | None:
-        """Why a request would be refused now; None where it would be done."""
+        """The reason why a request would be refused now; None where it would be done."""
         try:
             self._planned(request, scope_of(request))
         except VerbRefusal as refused:

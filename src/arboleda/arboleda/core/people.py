@@ -72,7 +72,7 @@ class People:
         self._guard.run(jog.cell, partial(self._take_jog, run.manual.teaching, jog))
 
     def jog_refusal(self, jog: Jog) -> Sentence | None:
-        """Why nothing would move, were this button pressed now; None where something would."""
+        """The reason why this button would move nothing now; None where something would."""
         run = self._cells.get(jog.cell)
         if run is None:
             return NO_SCOPE(scope=quoted(jog.cell), known=(*self._cells,))

@@ -227,11 +227,11 @@ class Plant:
         return self._advisor.advice(cell)
 
     def refusal(self, request: OperatorRequest) -> Sentence | None:
-        """Why a request of an operator would be refused now; None where it would be done."""
+        """The reason why a request of an operator would be refused now; None where it would be done."""
         return self._operator.refusal(request)
 
     def jog_refusal(self, jog: Jog) -> Sentence | None:
-        """Why nothing would move, were this button pressed now; None where something would."""
+        """The reason why this button would move nothing now; None where something would."""
         return self._people.jog_refusal(jog)
 
     def prospects(self, text: str) -> list[Prospect]:

@@ -296,11 +296,11 @@ class Belief:
         return self.homed is False or self.state is MotionState.NOT_HOMED
 
     def obstacle(self, *, was: bool) -> Failure | None:
-        """Why no command may go to this robot, None where it is ready; `was`: in words that stay true."""
+        """The reason why this robot takes no command, if there is one; `was`: in words that stay true."""
         return self._failure(self.trouble, was=was)
 
     def unreachable(self, *, was: bool = False) -> Failure | None:
-        """Why it could not even be asked something, stopped and unhomed as it may be."""
+        """The reason why the robot cannot even be asked something, be it stopped or not homed."""
         trouble = self.trouble
         lost = trouble is not None and trouble.reason is Reason.LINK_LOST
         return self._failure(trouble if lost else None, was=was)
@@ -323,13 +323,13 @@ class Belief:
         return Failure(reason=trouble.reason, sentence=sentence(robot=self.robot.name, **trouble.more))
 
     def _unanswered(self) -> Trouble:
-        """Why its bridge takes no command of this plant: it has not heard it yet, or obeys a later one."""
+        """The reason why its bridge takes no command: it has not heard this plant, or obeys a later one."""
         if self.plant is None or self.plant < self.plant_epoch:
             return UNANSWERED
         return FENCED._replace(more={"obeyed": self.plant, "ours": self.plant_epoch})
 
     def _unreached(self) -> Trouble:
-        """Why it is not heard, as far as anybody says so."""
+        """The reason why the robot is not heard, if anybody has told one."""
         if self.lost is not None:
             return LOST._replace(more={"why": self.lost})
         return OFFLINE if self.heard_at is not None else UNHEARD

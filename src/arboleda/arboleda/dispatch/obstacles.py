@@ -56,7 +56,7 @@ class Obstacles:
         self._effectors = effectors
 
     def of(self, robot: str, *, was: bool = False) -> Failure | None:
-        """Why a robot takes no command now."""
+        """The reason why a robot takes no command now."""
         if robot in self._latches.stopped:
             return self._beliefs[robot].stopped(was=was)
         return self._beliefs[robot].obstacle(was=was)
@@ -67,11 +67,11 @@ class Obstacles:
         return self.to(command, by_hand=False) or barrier(command)
 
     def to_opening(self, robot: str) -> Failure | None:
-        """Why an effector cannot be opened by hand now."""
+        """The reason why an effector cannot be opened by hand now."""
         return self.to(self._beliefs[robot].robot.let_go(id=""), by_hand=True)
 
     def to(self, command: Command, *, by_hand: bool, was: bool = False) -> Failure | None:
-        """Why a command cannot leave now; by hand an effector is opened even while its arm is stopped."""
+        """The reason why a command cannot leave; by hand an effector opens even while its arm is stopped."""
         robot = command.robot
         if (busy := self._busy_with(command)) is not None:
             now, before = BUSY_MOVING if isinstance(busy.command, Motion) else BUSY_WORKING

@@ -21,7 +21,7 @@ def entry_points(group: str) -> metadata.EntryPoints:
 
 
 def registered(group: str, shipped: Mapping[str, str]) -> list[metadata.EntryPoint]:
-    """What is registered under a group, by name: the `shipped` rows, which are no packages of their own yet,
+    """Entry points of a group, by name: the `shipped` rows, whose packages are still folders of this one,
     and the entry points of installed packages. Nothing of it is loaded."""
     rows = [metadata.EntryPoint(name, value, group) for name, value in shipped.items()]
     others = [each for each in entry_points(group) if each.name not in shipped]

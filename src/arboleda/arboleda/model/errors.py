@@ -48,7 +48,7 @@ class PayloadError(ArboledaError):
 
 
 class Refused(ArboledaError):
-    """What is asked for is not done as things are, and nothing was changed; the sentence says why."""
+    """Refusal of a request as things are; nothing was changed, and the sentence says why."""
 
 
 class StartError(ArboledaError):

@@ -29,7 +29,7 @@ class MotionState(int, Enum):
 
 
 class Reason(str, Enum):
-    """Why something failed; one per failure."""
+    """Reason of a failure; one each."""
 
     LINK_LOST = "link_lost"
     REBOOTED = "rebooted"

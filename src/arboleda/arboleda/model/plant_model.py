@@ -186,7 +186,7 @@ class Robot:
         return None
 
     def objection(self, report: Report) -> str | None:
-        """Why it cannot have said this; None where it can."""
+        """The reason why the robot cannot have said this; None where it can."""
         return None
 
     @property

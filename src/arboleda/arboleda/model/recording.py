@@ -1,4 +1,4 @@
-"""What is recorded of one start of a plant, and how much is kept of all its records."""
+"""Record of one start of a plant: its settings, and the limits of all records together."""
 
 from __future__ import annotations
 

@@ -115,7 +115,7 @@ class App:
 
     @property
     def offers(self) -> Offers:
-        """What the parts of this process offer."""
+        """The things that the parts of this process offer."""
         return self._assembly
 
     @property

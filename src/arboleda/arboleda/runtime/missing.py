@@ -1,4 +1,4 @@
-"""What a start needs of packages beside the runner, and refuses to do without."""
+"""Refusal of a start that lacks a package which its plant needs."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ OPCUA = Phrase("package.opcua_view", "`opcua_view` of the plant file")
 
 
 class LeadKeeper(Protocol):
-    """What renews the lead of this process until the plant ends."""
+    """Part that renews the lead of this process until the plant ends."""
 
     def stop(self) -> None: ...
 
 
 class OpcUaView(Protocol):
-    """What shows the plant over OPC UA."""
+    """Part that shows the plant over OPC UA."""
 
     def stop(self) -> None: ...
 

@@ -21,15 +21,15 @@ LEFT_OUT = "the package {package} is left out of this plant: {why}"
 
 class _Made(NamedTuple):
     part: Part
-    package: str  # "" for a part of the runner
+    package: str  # that is left out where the part breaks; "" for one that the plant needs
 
 
 class PartList:
     """PartList: makes, starts and ends parts.
 
-    A part of the runner that cannot start keeps the plant from starting. A package beside it may be for a
-    count or a card on the page: where such a package breaks, the robots work without it, and `notes` say so.
-    What the plant cannot do without refuses with a StartError, whoever raises it.
+    A part of the runner that cannot start keeps the plant from starting, and so does a part of a package that
+    the plant needs. Another package may be for a count or a card on the page: where it breaks, the robots work
+    without it, and `notes` say so. A StartError is raised, whoever raises it.
     """
 
     def __init__(self) -> None:
@@ -46,8 +46,9 @@ class PartList:
         known = [*(("", each) for each in own), *packaged(self.leave_out)]
         for package, factory in sorted(known, key=lambda each: each[1].phase):
             if package not in self._left_out:
-                with self._sparing(package):
-                    self._made += [_Made(part, package) for part in factory.make(assembly)]
+                spared = "" if factory.is_needed else package
+                with self._sparing(spared):
+                    self._made += [_Made(part, spared) for part in factory.make(assembly)]
 
     def start(self) -> None:
         """Start every part in order."""

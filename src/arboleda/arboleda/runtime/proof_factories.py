@@ -1,4 +1,4 @@
-"""What simulating and proving add to a running plant: reports, faults by hand, and a demonstration."""
+"""Factories of reports, of faults by hand, and of the demonstration."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from .registry import Assembly, Factory, Phase
 
 
 def reports(assembly: Assembly) -> Iterator[Part]:
-    """What has reports of failures written, where there is a record: those that are asked for and, if wanted,
-    one of each failure."""
+    """The part that has reports written where there is a record: those that are asked for and, if wanted, one
+    of each failure."""
     plant, wanted = assembly.ask(Orchestrator), assembly.options.recording
     if plant is None:
         return

@@ -41,12 +41,14 @@ class Factory:
 
     `make` is called once, in the order of phases, before anything starts. What it needs of the parts before
     it, it asks of the assembly; what is made later, it asks for when it uses it. It makes nothing where that
-    is not wanted. A StartError says that the plant must not start. Where `make` raises anything else, the
-    factory's package is left out of the plant, and people are told.
+    is not wanted. A StartError says that the plant must not start. Where `make` or one of its parts raises
+    anything else, the factory's package is left out of the plant, and people are told. Without a factory that
+    `is_needed` the plant does not start.
     """
 
     phase: Phase
     make: Callable[[Assembly], Iterable[Part]]
+    is_needed: bool = False
 
 
 @dataclass(kw_only=True, eq=False)

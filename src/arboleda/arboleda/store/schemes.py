@@ -55,7 +55,7 @@ def objection(address: str) -> str:
 
 
 def databases(address: str) -> Databases:
-    """What speaks with the database of an address; StartError."""
+    """The databases that an address belongs to; StartError where none can be used."""
     wrong = objection(address)
     if wrong:
         raise StartError(f"The address of a store {wrong}." if wrong == NO_ADDRESS else f"{wrong}.")

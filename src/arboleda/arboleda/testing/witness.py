@@ -65,7 +65,7 @@ class Witness:
         self.part[arm.robot.name] = "effector" if arm.holding else where
 
     def _missing(self, cell: str, order: Order) -> Iterator[str]:
-        """What a task that is called done did not do."""
+        """The deeds that a task lacks which is called done."""
         model, places = self.rig.model.cell(cell), self.truth.places.cells[cell]
         arm = self.truth.grips.effectors.get(model.taker.robot.name)
         if arm is None:

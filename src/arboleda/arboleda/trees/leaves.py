@@ -259,7 +259,7 @@ class Act(Leaf):
         return Status.SUCCESS
 
     def _obstacle(self) -> Failure | None:
-        """Why the command is in vain whatever becomes of it, unless it failed for a cause of its own."""
+        """The reason why the command is in vain anyway, unless it failed for a cause of its own."""
         ended = self.entry.failure if self.entry is not None and not self.entry.open else None
         if ended is not None and ended.reason not in RETRYABLE:
             return None
@@ -594,7 +594,7 @@ class TakeDevices(Take):
         return super().update()
 
     def _objection(self) -> Failure | None:
-        """Why it would wait in vain for a device that no cell holds."""
+        """The reason why waiting for a device that no cell holds is in vain."""
         for device in self.shared.unused(self.devices):
             if self.shared.may_hold(device):
                 sentence = PART_IN_FREE(cell=self.cell, device=device)

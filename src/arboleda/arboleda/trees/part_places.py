@@ -208,7 +208,7 @@ class Places:
         return FULL(robot=hand, place=here, parts=self.parts(here), cell=self._cell.name)
 
     def _to_leave(self, robot: str) -> Sentence | None:
-        """Why a robot must not leave with what it holds: a device holds the same part."""
+        """The reason why a robot must not leave with what it holds: a device holds the same part."""
         space = self._cell.reach[robot]
         here, grips = self._target(space), self._dispatcher.effectors.grips
         place = self._places.get(here or "")
@@ -221,7 +221,7 @@ class Places:
         return self._without_part(command.robot) if command.works_on_part else None
 
     def _without_part(self, device: str) -> Sentence | None:
-        """Why a device cannot take hold of a part, or work on one; what a hand or a cart has there counts."""
+        """The reason why a device cannot take or work on a part; parts in a hand or on a cart there count."""
         targets = self._of_device.get(device)
         if not targets or any(map(self.parts, targets)):
             return None

@@ -1,4 +1,4 @@
-"""What the parts of a running plant offer each other, by kind: who asks need not know who made it."""
+"""Things that the parts of a running plant offer each other, by kind; no part knows which one made them."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ class PlantApi(Protocol):
         return spelled(self.model, cell=cell, recipe=recipe, values=values, id=id)
 
     def ask(self, kind: type[Thing]) -> Thing | None:
-        """What a part of this process offers of that kind, as `DraftApi`; None where no part does."""
+        """The thing of a kind, as `DraftApi`, that a part of this process offers; None where no part does."""
         return None
 
     @abstractmethod

@@ -53,7 +53,7 @@ def _folder(module: str) -> str:
 
 
 def _exists(module: str) -> bool:
-    """Whether the module is there, be it that a package around it cannot be imported."""
+    """True if the module is there; also where a package around it cannot be imported."""
     try:
         return find_spec(module) is not None
     except ModuleNotFoundError as error:

@@ -65,14 +65,14 @@ def abandon(cell: CellRun, robots: frozenset[str]) -> None:
 
 
 def not_holdable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
-    """Why a cell cannot be held."""
+    """The reason why a cell cannot be held."""
     if cell.state is CellState.EXECUTE:
         return None
     return NOT_AT_WORK(cell=cell.cell.name, state=cell.state.sentence)
 
 
 def not_resumable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
-    """Why neither the task nor the queue of a cell can go on."""
+    """The reason why neither the task nor the queue of a cell can go on."""
     if cell.manual.teaching is not None:
         return cell.manual.teaching.sentence
     if cell.state is CellState.IDLE:
@@ -85,7 +85,7 @@ def not_resumable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
 
 
 def not_retryable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
-    """Why the step of a cell that failed cannot be given anew."""
+    """The reason why the step of a cell that failed cannot be given anew."""
     if cell.manual.teaching is not None:
         return cell.manual.teaching.sentence
     refusal = _held(cell, robots)
@@ -97,7 +97,7 @@ def not_retryable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
 
 
 def not_abandonable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
-    """Why a held cell cannot give up what it does."""
+    """The reason why a held cell cannot give up what it does."""
     if cell.manual.teaching is not None:
         return cell.manual.teaching.sentence
     refusal = _held(cell, robots)

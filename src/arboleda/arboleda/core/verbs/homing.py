@@ -90,7 +90,7 @@ class Homing:
         return self._dispatcher.home(name, cell.cell.name, self._clock())
 
     def not_free(self, robots: frozenset[str]) -> Sentence | None:
-        """Why robots may not set out for their reference: from where they stand they may cross any zone."""
+        """The reason why robots may not home: from where they stand they may cross any zone."""
         taken: dict[str, str] = {}
         for cell in self._scopes.of_robots(robots):
             for name, space in cell.cell.workspaces.items():

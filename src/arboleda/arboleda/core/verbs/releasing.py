@@ -107,7 +107,7 @@ class Releasing:
         return [*filter(cell.context.devices.answers_for, found)] if cell.cell.shared else found
 
     def _none_able(self, robots: frozenset[str], first: str) -> Sentence:
-        """Why nothing can be released: nothing holds parts, or what does is with another cell."""
+        """The reason why nothing can be released: nothing holds parts, or what does is with another cell."""
         for device in sorted(robots.intersection(self._dispatcher.model.shared)):
             holder = self._zones.holder(device)
             if holder is not None and self._dispatcher.model.robots[device].held_fact is not None:

@@ -118,7 +118,7 @@ def scopes(model: PlantModel) -> dict[str, frozenset[str]]:
 
 
 def scope_of(request: OperatorRequest | OperatorAnswer) -> str:
-    """Whom or what a request names; only task ids tell capitals apart."""
+    """The scope that a request names; only task ids tell capitals apart."""
     scope = request.scope.strip()
     return scope if Scope.TASK in request.verb.row.scopes else scope.lower()
 

@@ -35,7 +35,7 @@ class Stops:
                 self._dispatcher.latches.latch(robot.name)
 
     def not_clearable(self, cell: CellRun, robots: frozenset[str]) -> Sentence | None:
-        """Why robots of a cell cannot be cleared."""
+        """The reason why robots of a cell cannot be cleared."""
         if cell.state not in (CellState.ABORTED, CellState.CLEARING):
             return ONLY_ABORTED(cell=cell.cell.name, state=cell.state.sentence)
         others = self._kept_stopped(cell, robots)
@@ -83,7 +83,7 @@ class Stops:
 
 
 def not_resettable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
-    """Why a cell cannot be reset."""
+    """The reason why a cell cannot be reset."""
     if cell.state is CellState.STOPPED:
         return None
     if cell.state in STOPPING:

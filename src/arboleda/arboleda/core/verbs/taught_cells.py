@@ -85,7 +85,7 @@ class TaughtCells:
 
 
 def not_taught(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
-    """Why the manual mode of a cell cannot be ended."""
+    """The reason why the manual mode of a cell cannot be ended."""
     return NOT_TAUGHT(cell=cell.cell.name) if cell.manual.teaching is None else None
 
 

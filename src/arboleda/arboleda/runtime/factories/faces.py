@@ -1,4 +1,4 @@
-"""What shows the plant: the HTTP server with its page, and Groot2; and systemd, who is told that it runs."""
+"""Factories of the HTTP server with its page, of the view for Groot2, and of the notices to systemd."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class _Announcement:
 
 
 def groot2(assembly: Assembly) -> Iterator[Part]:
-    """What shows trees to Groot2, if wanted; on the address of the HTTP API."""
+    """The part that shows trees to Groot2, if wanted; on the address of the HTTP API."""
     model, options = assembly.model, assembly.options
     is_wanted = model.groot2_port is not None if options.groot2 is None else options.groot2
     running = assembly.ask(Orchestrator)
@@ -85,7 +85,7 @@ def groot2(assembly: Assembly) -> Iterator[Part]:
 
 
 def systemd(assembly: Assembly) -> Iterator[Part]:
-    """What tells systemd that the plant runs, if that has started it."""
+    """The part that tells systemd that the plant runs, if systemd has started it."""
     running = assembly.ask(Orchestrator)
     if running is not None:
         part = systemd_part(os.environ, lambda: running.stepped_at)

@@ -1,4 +1,4 @@
-"""What reaches the robots: the broker, ROS 2, the bridge, drivers, and the boards that play real ones."""
+"""Factories of all that reaches robots: broker, ROS 2, bridge, drivers, and virtual boards."""
 
 from __future__ import annotations
 

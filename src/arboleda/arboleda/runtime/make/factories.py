@@ -1,4 +1,4 @@
-"""What changing a plant adds to one that runs: drafts, versions, teaching, tries, and proposals."""
+"""Factories for changing a plant that runs: drafts, versions, teaching, tries, and proposals."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def _of_files(assembly: Assembly, local: LocalPlant, recording: Recording) -> li
 
 
 def hang_up(assembly: Assembly) -> Iterator[Part]:
-    """What puts the plant's files to work at a SIGHUP."""
+    """The part that puts the plant's files to work at a SIGHUP."""
     if assembly.ask(VersionsApi) is not None:
         from ..parts.hang_up import HangUpPart
         from ..version_desk import VersionDesk

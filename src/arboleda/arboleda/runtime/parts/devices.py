@@ -24,7 +24,7 @@ Seen = TypeVar("Seen")
 
 
 class DeviceBench(Protocol):
-    """What makes of virtual boards the machine that runs: one that does more to them than let time pass."""
+    """Bench for virtual boards: makes of them a machine that does more to them than let time pass."""
 
     def __call__(self, model: PlantModel, devices: Devices, *, now: float) -> Machine[Any, Any]: ...
 

@@ -1,4 +1,4 @@
-"""What leading on several hosts, the OEE and the OPC UA view add to a running plant."""
+"""Factories for leading on several hosts, for the OEE, and for the OPC UA view."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LOG = logging.getLogger(__name__)
 
 
 def lease(assembly: Assembly) -> Iterator[Part]:
-    """What keeps the lead, of a plant whose memory several hosts reach."""
+    """The part that keeps the lead of a plant whose memory several hosts reach."""
     memory = assembly.holdings.memory
     if memory.renew_s is None:
         return
@@ -53,7 +53,7 @@ def _hand_over(plant: Orchestrator, memory: PlantMemory, end: Callable[[], None]
 
 
 def cell_times(assembly: Assembly) -> Iterator[Part]:
-    """What keeps the times of the cells for the OEE, and tells the OEE."""
+    """The part that keeps the times of the cells for the OEE, and the desk that tells the OEE."""
     plant, held = assembly.ask(Orchestrator), assembly.holdings
     if plant is None:
         return
@@ -67,7 +67,7 @@ def cell_times(assembly: Assembly) -> Iterator[Part]:
 
 
 def opcua_view(assembly: Assembly) -> Iterator[Part]:
-    """What shows the plant over OPC UA, if wanted; on the address of the HTTP API."""
+    """The part that shows the plant over OPC UA, if wanted; on the address of the HTTP API."""
     view, plant = assembly.model.opcua_view, assembly.ask(Orchestrator)
     if view is None or plant is None:
         return
@@ -87,7 +87,7 @@ def opcua_view(assembly: Assembly) -> Iterator[Part]:
 
 
 def resumption(assembly: Assembly) -> Iterator[Part]:
-    """What goes on with the cells that the leader before held for the change alone."""
+    """The part that goes on with cells which the leader before held for the change alone."""
     memory, plant = assembly.holdings.memory, assembly.ask(Orchestrator)
     if plant is not None and memory.renew_s is not None:
         from .handover import CellResumption
@@ -96,7 +96,7 @@ def resumption(assembly: Assembly) -> Iterator[Part]:
 
 
 FACTORIES = (
-    Factory(phase=Phase.LINKS, make=lease),
+    Factory(phase=Phase.LINKS, make=lease, is_needed=True),  # two processes would lead one plant
     Factory(phase=Phase.RECORD, make=cell_times),
     Factory(phase=Phase.VIEWS, make=opcua_view),
     Factory(phase=Phase.AFTER, make=resumption),

@@ -98,7 +98,7 @@ def unchecked_is_as_said(look: Look) -> Iterator[str]:
 
 
 def _may_be_unchecked(look: Look, cell: str, task: str, *, silent: bool) -> tuple[bool, ...]:
-    """Whether a task may say that its grip is unchecked; a recipe of the plant may choose."""
+    """The answers that a task may give to whether its grip is unchecked; a recipe of the plant may choose."""
     model, known = look.world.model.cell(cell), look.world.plant.intake.tasks.get(task)
     if silent:
         return (True,)

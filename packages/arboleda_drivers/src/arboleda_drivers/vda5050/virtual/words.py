@@ -13,7 +13,7 @@ EDGE_KEYS = ("edgeId", "sequenceId", "released")
 
 
 class Vehicle(Protocol):
-    """What a state tells of a vehicle."""
+    """Content of a state message: how a vehicle is."""
 
     node: str
     sequence: int

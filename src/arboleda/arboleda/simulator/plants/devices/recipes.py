@@ -36,7 +36,7 @@ PHASES = (1, 2, 2, 3, 4)
 
 @dataclass(frozen=True, kw_only=True)
 class Beside:
-    """What recipes have beside their own steps, each with dice of its own."""
+    """Additions to the steps of recipes, each with dice of its own."""
 
     trials: Trials
     late: LateWork

@@ -79,7 +79,7 @@ def _ends_of(recipe: Recipe, step: Step) -> tuple[tuple[str, Value], ...]:
 
 
 def _told(step: Step) -> dict[str, list[Tell]]:
-    """What a step tells each device, in its order."""
+    """The orders of a step to each device, one after the other."""
     found: dict[str, list[Tell]] = {}
     for each in walk(step):
         if isinstance(each, Tell):
