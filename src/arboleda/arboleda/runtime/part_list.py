@@ -28,7 +28,7 @@ class PartList:
     """PartList: makes, starts and ends parts.
 
     A part of the runner that cannot start keeps the plant from starting, and so does a part of a package that
-    the plant needs. Another package may be for a count or a card on the page: where it breaks, the robots work
+    the plant needs. Another package may be for a count or a card on the page: where it breaks, robots work
     without it, and `notes` say so. A StartError is raised, whoever raises it.
     """
 
