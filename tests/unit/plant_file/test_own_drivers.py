@@ -304,7 +304,7 @@ def test_a_driver_whose_package_is_not_installed_is_named_with_the_line_that_ins
     load: Callable[..., PlantModel], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(drivers, "entry_points", lambda group: EntryPoints())
-    with pytest.raises(ConfigError, match=r"driver modbus is part .* -m pip install 'arboleda\[drivers\]'"):
+    with pytest.raises(ConfigError, match=r"driver modbus needs .* type pip install 'arboleda\[drivers\]'"):
         load("driver: {modbus: {host: 10.0.0.7}}")
 
 

@@ -165,6 +165,6 @@ def test_without_this_package_they_are_refused_with_the_line_that_installs_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(sys.modules, "arboleda_class.notebook", None)
-    refused = pytest.raises(ImportError, match=r"World .* -m pip install 'arboleda\[class\]'")
+    refused = pytest.raises(ImportError, match=r"World needs .* type pip install 'arboleda\[class\]'")
     with pytest.warns(DeprecationWarning, match="World"), refused:
         arboleda.testing.World  # noqa: B018 - the name is looked up, as by `from ... import`

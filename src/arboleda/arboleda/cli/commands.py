@@ -16,7 +16,7 @@ import typer
 
 from arboleda.host.packages import entry_points
 from arboleda.model.outside import quoted
-from arboleda.model.packages import MISSING, PackageMissing
+from arboleda.model.packages import BOARDS, CLASS, DRIVERS, MISSING, PackageMissing
 from arboleda.model.sentence import Phrase
 from arboleda.views.verb_words import ABOUT
 
@@ -28,10 +28,10 @@ LEFT_OUT = Phrase(
     "cli.left_out", "the commands of the installed package {package} are left out, as it does not load: {why}"
 )
 OF_PACKAGES = {  # extras of `arboleda`, by command
-    "conformance": "boards",
-    "exercise": "class",
-    "firmware-config": "boards",
-    "virtual": "drivers",
+    "conformance": BOARDS,
+    "exercise": CLASS,
+    "firmware-config": BOARDS,
+    "virtual": DRIVERS,
 }
 
 

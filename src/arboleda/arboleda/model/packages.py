@@ -5,6 +5,7 @@ from __future__ import annotations
 from .errors import ArboledaError
 from .sentence import Phrase
 
+BOARDS, CLASS, DRIVERS = "boards", "class", "drivers"
 FLEET, MAKE, PROOFS = "fleet", "make", "proofs"
 THIS = Phrase("package.this", "This")
 MISSING = Phrase(

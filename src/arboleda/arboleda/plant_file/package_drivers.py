@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from arboleda.model.packages import DRIVERS, MISSING
+from arboleda.model.sentence import OWN
+
 OF_ROBOTS = frozenset(
     {"dobot", "follow_joint_trajectory", "follow_waypoints", "gcode", "navigate_to_pose", "serial_arm", "ur"}
 )
@@ -12,7 +15,4 @@ ALL = OF_ROBOTS | OF_DEVICES
 
 def not_installed(name: str) -> str:
     """The sentence for a driver whose package is not there."""
-    return (
-        f"the driver {name} is part of a package that is not installed: "
-        "python -m pip install 'arboleda[drivers]'"
-    )
+    return str(MISSING(what=OWN(text=f"the driver {name}"), package=DRIVERS))

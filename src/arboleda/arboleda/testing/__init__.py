@@ -5,7 +5,6 @@ Each name here is imported when it is first used, as pytest loads this package i
 
 from __future__ import annotations
 
-import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 from warnings import warn
@@ -46,5 +45,7 @@ def _moved(name: str) -> Any:
     try:
         return getattr(import_module(NOTEBOOK), name)
     except ModuleNotFoundError as error:
-        install = f"{sys.executable} -m pip install 'arboleda[class]'"
-        raise ImportError(f"{name} is part of a package that is not installed: {install}") from error
+        from arboleda.model.packages import CLASS, MISSING
+        from arboleda.model.sentence import OWN
+
+        raise ImportError(str(MISSING(what=OWN(text=name), package=CLASS))) from error
