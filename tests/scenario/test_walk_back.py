@@ -176,6 +176,9 @@ def test_who_cannot_say_that_it_booted_is_put_right_by_hand_once(stage: Stage) -
     assert rig.operate(Verb.HOME, "ra1", by_hand=True) is None
     rig.wait(5.0)
     assert ways(rig) == ["abandon"]
+    restart(rig)
+    rig.wait(5.0)
+    assert ways(rig) == ["abandon"]
     assert rig.operate(Verb.ABANDON, CELL) is None
     assert outcome(rig) is TaskState.FAILED
     assert rig.outcomes()[ID].reason is Reason.REBOOTED

@@ -98,7 +98,6 @@ class WalkBack:
         self.begun = begun
         self._nodes = nodes
         self.due: float | None = None
-        self._displaced: dict[str, int | None] = {}  # the boots after which devices have to be put right
         self._reporting_since: float | None = None  # since when all of its devices are heard and stand still
 
     def judge(self, context: Context) -> Finding:
@@ -109,8 +108,6 @@ class WalkBack:
         echoes: dict[str, Echo] = {}
         self.due = None
         for name, belief in beliefs.items():
-            if belief.displaced:
-                self._displaced[name] = belief.boot_id
             obstacle = context.robots.obstacle(name)
             if obstacle is not None or belief.moves:
                 waits = obstacle.sentence if obstacle else STILL_MOVING(robot=name)
@@ -241,8 +238,6 @@ class WalkBack:
         if not self._is_numbered(belief):
             return None
         if belief.boot_id != known.boot:
-            if self._displaced.get(name) != belief.boot_id and not belief.robot.says_homed:
-                belief.displaced = True
             return Trouble(Reason.REBOOTED, BOOTED(robot=name))
         if not known.explains(belief.receipt):
             return _more(name)

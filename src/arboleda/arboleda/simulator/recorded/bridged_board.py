@@ -129,10 +129,10 @@ class BridgedBoard:
         if link.silent_at <= now:
             self._lose()
         begins = bool(commands.orders) and commands.begins
-        self._beats.compare(published, link, begins=begins, late=late)
+        returned_late = bool(telemetry.maybe) and telemetry.is_reported_late(reports)
+        self._beats.compare(published, link, begins=begins or returned_late, late=late)
         if commands.orders or published:
-            returned = link.rose or (bool(telemetry.maybe) and telemetry.is_reported_late(reports))
-            commands.compare(reports, published, returned=returned, late=late)
+            commands.compare(reports, published, returned=link.rose or returned_late, late=late)
         if reports or telemetry.counted or link.fell:
             telemetry.compare(reports)
         new = telemetry.is_new_plant or telemetry.is_foreign_new

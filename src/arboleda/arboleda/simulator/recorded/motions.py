@@ -69,7 +69,11 @@ class Beats:
         self._wrong = wrong
 
     def compare(self, published: list[Publication], link: KnownLink, *, begins: bool, late: bool) -> None:
-        """Compare what left in a step with what had to; `begins`: a motion was given in it."""
+        """Compare what left in a step with what had to.
+
+        `begins`: a motion was given in it, or a board came back whose counter began anew, and which may
+        have forgotten the epoch of the bridge. `late`: the bridge was away before.
+        """
         motion = self._motion
         arrived, self.has_arrived = self.has_arrived, False
         ended = not motion.is_open
