@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -13,8 +14,9 @@ from arboleda.simulator.moment import BridgeStep
 from arboleda.simulator.recorded.bridge import Bridges
 from arboleda.simulator.recorded.reported_telemetry import REPORTS
 from arboleda.simulator.world import World
+from arboleda.wire.board import Message
 from arboleda.wire.hop import FromPlant
-from arboleda.wire.transport import Delivery
+from arboleda.wire.transport import Delivery, Publication
 
 SETTLED_S = 3.0
 
@@ -109,3 +111,35 @@ def test_a_report_names_any_plant_that_was_heard_in_its_step(
     step.out = [replace(each, plant=heard[plant]) if each is report else each for each in step.out]
     bridges.look([step])
     assert not bridges.wrong[REPORTS]
+
+
+def test_a_board_whose_numbers_began_anew_unseen_is_fenced_in_the_step_in_which_they_count(
+    world: World, bridges: Bridges
+) -> None:
+    steps: list[BridgeStep] = []
+    world.watchers.append(lambda: steps.extend(world.moment.bridged))
+    world.advance(1.0)
+    bridges.look(steps)
+    assert not any(bridges.wrong.values())
+    heard = (event for step in steps for event in step.events if isinstance(event, Delivery))
+    telemetry = next(event for event in heard if b'"epoca_min"' in event.payload)
+
+    def take(now: float, *events: Delivery | FromPlant) -> list[Message]:
+        out = world.bridge.step(now, events)
+        bridges.look([BridgeStep(bridge=world.bridge, now=now, events=list(events), out=out)])
+        assert not any(bridges.wrong.values())
+        return out
+
+    def begun_anew(at: float, number: int) -> Delivery:
+        fields = {**json.loads(telemetry.payload), "epoca_min": 0, "seq": number}
+        return telemetry._replace(at=at, payload=json.dumps(fields).encode())
+
+    lost_at = world.now + world.model.timing.stale_after_s + 1.0
+    take(lost_at, begun_anew(lost_at, 1))
+    take(lost_at, begun_anew(lost_at, 2))
+    now = lost_at + world.model.timing.stale_after_s
+    beat = FromPlant(at=now, message=Heartbeat(epoch=world.plant.epoch))
+    out = take(now, begun_anew(now, 3), beat)
+    assert f"{telemetry.topic.split('/')[0]}/latido" in [
+        each.topic for each in out if isinstance(each, Publication)
+    ]
