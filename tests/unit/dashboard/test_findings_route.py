@@ -9,7 +9,7 @@ import pytest
 from fastapi import FastAPI
 from starlette.types import Receive, Scope, Send
 
-from arboleda.dashboard import findings_route
+from arboleda.dashboard.make import findings_route
 from arboleda.web.access.auth import Role
 from arboleda.web.api import answer_in_sentences
 

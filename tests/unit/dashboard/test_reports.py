@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from fastapi import FastAPI
 
-from arboleda.dashboard import reports
+from arboleda.dashboard.proofs import reports
 from arboleda.model.errors import ArboledaError
 
 from ...in_process import Caller, without_threads

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.dashboard.faces import versions
+from arboleda.dashboard.make import version_rows
 from arboleda.dashboard.wording import words
 
 AT = "2026-11-25T20:39:13+00:00"
@@ -27,7 +27,7 @@ def listed(number: int | None) -> dict[str, Any]:
 
 
 def test_the_last_version_comes_first_and_the_one_at_work_has_no_way_back() -> None:
-    face = versions.face(listed(2), words("en"))
+    face = version_rows.face(listed(2), words("en"))
     assert face["now"] == "Version 2 is at work since 2026-11-25 20:39:13 UTC."
     assert [each["back"] for each in face["rows"]] == ["", "Back to version 1"]
     assert face["rows"][0]["title"] == "Version 2, 2026-11-25 20:39:13 UTC, ana"
@@ -38,22 +38,24 @@ def test_the_last_version_comes_first_and_the_one_at_work_has_no_way_back() -> N
 
 
 def test_a_cell_that_takes_it_later_is_named_in_each_language() -> None:
-    assert versions.face(listed(2), words("en"))["cells"] == ["line takes version 2 once its task has ended."]
-    assert versions.face(listed(2), words("es"))["cells"] == [
+    assert version_rows.face(listed(2), words("en"))["cells"] == [
+        "line takes version 2 once its task has ended."
+    ]
+    assert version_rows.face(listed(2), words("es"))["cells"] == [
         "line adopta la versión 2 en cuanto termine su tarea."
     ]
 
 
 def test_what_no_version_has_is_said_to_be_of_the_start() -> None:
-    face = versions.face(listed(None), words("en"))
+    face = version_rows.face(listed(None), words("en"))
     assert face["now"].startswith("At work is what the plant was started with at 2026")
     assert all(each["back"] for each in face["rows"])
 
 
 def test_a_restart_is_offered_where_it_can_be_had_and_called_off_where_somebody_wants_it() -> None:
-    assert versions.face(listed(2), words("en"))["restart"] is None
-    offered = versions.face(listed(2) | {"restart": {"by": "", "can": True}}, words("en"))["restart"]
+    assert version_rows.face(listed(2), words("en"))["restart"] is None
+    offered = version_rows.face(listed(2) | {"restart": {"by": "", "can": True}}, words("en"))["restart"]
     assert (offered["button"], offered["wanted"]) == ("Restart once all cells rest", False)
-    wanted = versions.face(listed(2) | {"restart": {"by": "ana", "can": True}}, words("en"))["restart"]
+    wanted = version_rows.face(listed(2) | {"restart": {"by": "ana", "can": True}}, words("en"))["restart"]
     assert wanted["said"].startswith("The plant restarts once all its cells rest, as ana wants.")
     assert (wanted["button"], wanted["wanted"]) == ("Do not restart", True)

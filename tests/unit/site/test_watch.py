@@ -12,7 +12,7 @@ import pytest
 from starlette.types import Message, Receive, Scope, Send
 
 from arboleda.dashboard import frames
-from arboleda.dashboard.site.side import LastSeenPlant
+from arboleda.dashboard.fleet.site.side import LastSeenPlant
 from arboleda.runtime.endpoints import Place
 from arboleda.site import watch
 from arboleda.site.reach import ANSWER_S, NO_ANSWER

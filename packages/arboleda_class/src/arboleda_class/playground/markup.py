@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from arboleda.dashboard import fault_form, header, links, panel, tasks, timeline, trees
+from arboleda.dashboard import header, links, panel, tasks, timeline, trees
 from arboleda.dashboard.body import Parts, body, script_data
 from arboleda.dashboard.page_api import Layout
+from arboleda.dashboard.proofs import fault_form
 from arboleda.dashboard.tags import rows, tag
 from arboleda.dashboard.twin import pane
 from arboleda.dashboard.wording import Words, words
