@@ -51,7 +51,7 @@ class Spot:
 class Section:
     """Section of the page. `build` draws it with `tags`, or nothing where this plant has no use for it.
 
-    `name` is for parts of their own. The tab says `tab.<name>`, or the name where there are no such words; the
+    `name` is for parts of their own. The tab says `tab.<name>`, or the name where it has no words; the
     element is `part-<name>`.
     """
 
