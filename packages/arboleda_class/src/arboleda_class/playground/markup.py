@@ -12,8 +12,8 @@ from arboleda.dashboard.proofs import fault_form
 from arboleda.dashboard.tags import rows, tag
 from arboleda.dashboard.twin import pane
 from arboleda.dashboard.wording import Words, words
-from arboleda.simulator.mishaps import MISHAPS
 from arboleda.web.languages import texts
+from arboleda_proofs.simulator.mishaps import MISHAPS
 
 PARTS: Parts = {
     "cells": trees.build,
