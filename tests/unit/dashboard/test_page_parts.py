@@ -20,9 +20,9 @@ from arboleda.dashboard.desk import Desk
 from arboleda.dashboard.feed import Feed
 from arboleda.dashboard.page_part import GROUP
 from arboleda.dashboard.wording import words
-from arboleda.testing import shipped
 from arboleda.views import view
 from arboleda.web.access.auth import Role
+from arboleda_proofs.testing import shipped
 
 CODE = """
 from arboleda.dashboard.asset_files import Assets

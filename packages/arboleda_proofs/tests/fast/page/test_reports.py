@@ -9,8 +9,8 @@ import pytest
 from fastapi import FastAPI
 from tests.in_process import Caller, without_threads
 
-from arboleda.dashboard.proofs import reports
 from arboleda.model.errors import ArboledaError
+from arboleda_proofs.page import reports
 
 CONTENT = "<!doctype html><p>why</p>"
 

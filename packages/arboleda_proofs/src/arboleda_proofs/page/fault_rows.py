@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from ..faces import Face
-from ..faces.moment import Moment, seconds
+from arboleda.dashboard.faces import Face
+from arboleda.dashboard.faces.moment import Moment, seconds
+
 from .fault_acts import END
 
 

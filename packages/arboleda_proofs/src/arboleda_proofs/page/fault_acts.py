@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from fastapi.concurrency import run_in_threadpool
 
+from arboleda.dashboard.page_part import Request
 from arboleda.model.errors import ArboledaError
 from arboleda.web.desks.faults import FaultsApi
-
-from ..page_part import Request
 
 BEGIN, END = "fault", "end_fault"
 

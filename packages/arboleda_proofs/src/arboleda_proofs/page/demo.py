@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+from arboleda.dashboard.faces import Face
+from arboleda.dashboard.faces.moment import Moment
+from arboleda.dashboard.page_part import Request, Spot
+from arboleda.dashboard.tags import live, tag
 from arboleda.web.desks.demonstration import DemonstrationApi
-
-from ..faces import Face
-from ..faces.moment import Moment
-from ..page_part import Request, Spot
-from ..tags import live, tag
 
 END = "end_demo"
 LINES = ("cells", "trouble", "more")

@@ -8,18 +8,17 @@ from fastapi import FastAPI, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, Response
 
+from arboleda.dashboard.page_api import PageApi
+from arboleda.dashboard.page_part import Spot
+from arboleda.dashboard.sandbox import POLICY
+from arboleda.dashboard.shell import language_of
+from arboleda.dashboard.tags import of_task
+from arboleda.dashboard.wording import Words, words
 from arboleda.model.errors import ArboledaError
 from arboleda.model.packages import PROOFS
 from arboleda.web.access import login
 from arboleda.web.desks.reports import ReportsApi
 from arboleda.web.missing import missing
-
-from ..page_api import PageApi
-from ..page_part import Spot
-from ..sandbox import POLICY
-from ..shell import language_of
-from ..tags import of_task
-from ..wording import Words, words
 
 PATH = "/report"
 LOOK_S = 1

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from arboleda.dashboard.page_api import PageApi
+from arboleda.dashboard.page_part import Spot
+from arboleda.dashboard.tags import rows, tag
+from arboleda.dashboard.wording import Words
 from arboleda.model.sentence import Sentence
 from arboleda.web.desks.faults import FaultsApi
-
-from ..page_api import PageApi
-from ..page_part import Spot
-from ..tags import rows, tag
-from ..wording import Words
 
 LASTING_S = (2, 5, 15, 60)
 
