@@ -46,7 +46,10 @@ class AddedParts:
     def __init__(self, leave_out: LeaveOut | None = None) -> None:
         self._tell = leave_out or _log
         self._parts: list[_Added] = []
+        self._left_out: set[str] = set()
         for point in registered(GROUP, PAGE):
+            if package_of(point) in self._left_out:
+                continue
             try:
                 part = point.load()
                 if not isinstance(part, PagePart):
@@ -101,6 +104,7 @@ class AddedParts:
         return Drawing(seen, Spot(plant=plant, layout=layout, words=words), self._leave_out)
 
     def _leave_out(self, package: str, error: BaseException) -> None:
+        self._left_out.add(package)
         self._parts = [each for each in self._parts if each.package != package]
         self._tell(package, error)
 
