@@ -22,7 +22,6 @@ setup(
         "arboleda.commands": ["proofs = arboleda_proofs.commands:COMMANDS"],
         "arboleda.extras": [
             "case = arboleda_proofs.commands.record_case:export",
-            "mend = arboleda_proofs.campaigns.mending.answer:mend_of",
         ],
         "arboleda.languages": ["proofs = arboleda_proofs"],
         "arboleda.page": ["proofs = arboleda_proofs.page.page_part:PAGE"],

@@ -13,7 +13,7 @@ from packages.arboleda_drivers.tests.real.modbus.bench import DRIVER, ModbusWire
 
 from arboleda.drivers import lost
 from arboleda.model.plant_model import DriverUse, Robot
-from arboleda_proofs.campaigns.draft import reaching
+from arboleda_make.trying.processes import reaching
 
 SECONDS = 20.0  # nothing waits for them but what fails
 AT_ONCE = 0.2

@@ -9,6 +9,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from tests.packages import PACKAGES
 
 import arboleda
 import arboleda.kinds
@@ -17,9 +18,25 @@ from arboleda.model.plant_model import Cell, Robot
 from arboleda.plant_file.registry import COME_WITH_IT
 
 ROOT = Path(arboleda.__file__).parent
+ROOTS = (ROOT, PACKAGES["arboleda_proofs"], PACKAGES["arboleda_make"])
 ENGINE = ("model", "dispatch", "trees", "core")
-ABOVE = ("cli", "playback", "site", "campaigns", "runtime", "plant_file", "web", "store")
-PACKAGES = (*ENGINE, *ABOVE, "wire", "views", "adapters", "sim", "simulator", "dashboard", "testing")
+ABOVE = (
+    "cli",
+    "playback",
+    "site",
+    "campaigns",
+    "runtime",
+    "plant_file",
+    "web",
+    "store",
+    "drafts",
+    "versions",
+    "teaching",
+    "trying",
+    "mending",
+    "proposals",
+)
+ROOMS = (*ENGINE, *ABOVE, "wire", "views", "adapters", "sim", "simulator", "dashboard", "testing")
 NAMED_AS_ROLES = {
     "plant_file/robot_models.py",  # of the files of models that come with it
     "plant_file/robots.py",
@@ -51,6 +68,12 @@ def _concrete() -> set[str]:
     ]
     classes = [each for module in modules for each in vars(module).values() if inspect.isclass(each)]
     return {each.__name__ for each in classes if issubclass(each, Robot | Cell)} - {"Robot", "Cell"}
+
+
+def _files(package: str) -> Iterator[tuple[str, Path]]:
+    """The modules of a package of the runner, or of one beside it, by their places in it."""
+    for root in ROOTS:
+        yield from ((str(path.relative_to(root)), path) for path in sorted((root / package).rglob("*.py")))
 
 
 @cache
@@ -87,11 +110,11 @@ def test_a_question_is_found(code):
 
 
 @pytest.mark.sampled(8)
-@pytest.mark.parametrize("package", PACKAGES)
+@pytest.mark.parametrize("package", ROOMS)
 def test_no_module_asks_which_kind_a_device_is(package):
     found = [
-        f"{path.relative_to(ROOT)} {each}"
-        for path in sorted((ROOT / package).rglob("*.py"))
+        f"{name} {each}"
+        for name, path in _files(package)
         for each in _questions(path.read_text(), _concrete())
     ]
     assert not found, (
@@ -102,13 +125,13 @@ def test_no_module_asks_which_kind_a_device_is(package):
 def _names_of_kinds(package: str) -> dict[str, set[str]]:
     """By its file, the names of kinds that the code of a package has as a text of their own."""
     names = {
-        str(path.relative_to(ROOT)): {
+        name: {
             node.value
             for node in _nodes(code)
             if isinstance(node, ast.Constant) and isinstance(node.value, str)
         }
         & KINDS
-        for path in sorted((ROOT / package).rglob("*.py"))
+        for name, path in _files(package)
         if (code := path.read_text()) and any(name in code for name in KINDS)
     }
     return {

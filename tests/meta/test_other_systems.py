@@ -7,10 +7,13 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from tests.packages import PACKAGES
+
 from ..lesser_host import NOWHERE, OF_UNIX
 
 TESTS = Path(__file__).parents[1]
 PACKAGE = TESTS.parent / "src/arboleda/arboleda"
+ROOTS = (PACKAGE, PACKAGES["arboleda_proofs"], PACKAGES["arboleda_make"])
 HOST = PACKAGE / "host"
 GUARDED = {  # not reached where there are none
     "adapters/clock.py: time.clock_gettime",
@@ -37,7 +40,7 @@ def uses_of_unix(path: Path) -> Iterator[str]:
 
 
 def test_what_not_every_system_has_stands_in_one_place() -> None:
-    files = [path for path in PACKAGE.rglob("*.py") if HOST not in path.parents]
-    found = {f"{path.relative_to(PACKAGE)}: {use}" for path in files for use in uses_of_unix(path)}
+    files = [(root, path) for root in ROOTS for path in root.rglob("*.py") if HOST not in path.parents]
+    found = {f"{path.relative_to(root)}: {use}" for root, path in files for use in uses_of_unix(path)}
     assert found == GUARDED
     assert {use for path in HOST.glob("*.py") for use in uses_of_unix(path)}  # else nothing is looked for

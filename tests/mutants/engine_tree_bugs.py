@@ -365,8 +365,8 @@ OF_WALK_BACK = (
     bug(
         WALK,
         "A boot meanwhile is not compared.",
-        "        if belief.boot_id != known.boot:\n            if self._displaced",
-        "        if False:\n            if self._displaced",
+        "        if belief.boot_id != known.boot:\n            return",
+        "        if False:\n            return",
     ),
     bug(
         WALK,

@@ -22,11 +22,11 @@ from time import process_time
 
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader, plant_check
+from arboleda.plant_file.answer import check_answer
 from arboleda.plant_file.mend import Mend, edited
-from arboleda_proofs.campaigns.mending.answer import check_answer, run_answer
-from arboleda_proofs.campaigns.mending.search import texts_of
+from arboleda_make.mending.search import mend_of, texts_of
 from arboleda_proofs.campaigns.plants import Plant
-from arboleda_proofs.campaigns.proof.calm import calm_runs
+from arboleda_proofs.campaigns.proof.calm import calm_runs, run_findings
 from arboleda_proofs.campaigns.proof.end_state import EndState
 from arboleda_proofs.campaigns.proof.scenario import scenarios
 from arboleda_proofs.campaigns.workers import collect_rarely
@@ -62,11 +62,12 @@ def followed(file: Path) -> tuple[str, ...]:
 
 def _answered(file: Path) -> Mend | None:
     """The mend of what `check` answers; where that finds nothing, of the runs of `prove` without faults."""
-    answer = check_answer(file)
+    answer = check_answer(file, mending=mend_of)
     if answer.findings:
         return answer.mend
     model = Plant(declared=loader.load(file)).model
-    return run_answer(file, calm_runs(model, scenarios(model))).mend
+    findings = tuple(each for calm in calm_runs(model, scenarios(model)) for each in run_findings(calm))
+    return mend_of(file, findings) if findings else None
 
 
 def judged(folder: Path, bug: ProofBug) -> Followed:

@@ -12,9 +12,10 @@ import pytest
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file import draft_check, draft_process
+from arboleda.plant_file import draft_check
 from arboleda.plant_file.draft_check import CheckResult
-from arboleda.plant_file.draft_process import CheckProcess
+from arboleda_make.drafts import process as draft_process
+from arboleda_make.drafts.process import CheckProcess
 
 FOLDER = Path(__file__).parents[2] / "examples/own_tree"
 CONTENTS = {name: (FOLDER / name).read_bytes() for name in ("plant.yaml", "tend.xml")}

@@ -14,8 +14,8 @@ import pytest
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
-from arboleda.runtime.make.workshop import ENDING, Workshop
 from arboleda.web.desks.draft import DraftRefused
+from arboleda_make.trying.workshop import ENDING, Workshop
 
 Processes: TypeAlias = "SimpleQueue[subprocess.Popen[bytes]]"
 OWN_TREE = Path(__file__).parents[2] / "examples/own_tree/plant.yaml"

@@ -33,10 +33,6 @@ from arboleda.model.verbs import Arguments
 from arboleda.plant_file import draft_check, loader
 from arboleda.runtime import at_work
 from arboleda.runtime.parts.orchestrator import PutToWork
-from arboleda.runtime.plant_folder import PlantFolder
-from arboleda.runtime.proposals.desk import ProposalDesk
-from arboleda.runtime.proposals.tasks import AssistantTasks
-from arboleda.runtime.version_desk import VersionDesk
 from arboleda.store.task_rows import TaskQuery
 from arboleda.views import view
 from arboleda.web.access.auth import Door, Role
@@ -45,6 +41,10 @@ from arboleda.web.access.names import names_for
 from arboleda.web.api import make_app
 from arboleda.web.desks.proposals import ProposalsApi
 from arboleda.web.plant_api import PlantApi, Snapshot
+from arboleda_make.drafts.plant_folder import PlantFolder
+from arboleda_make.proposals.desk import ProposalDesk
+from arboleda_make.proposals.tasks import AssistantTasks
+from arboleda_make.versions.desk import VersionDesk
 from arboleda_proofs.testing import Rig
 
 from ..threads import run_here

@@ -11,11 +11,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from arboleda.assistant.envelope import NOTE, answered
 from arboleda.model.messages import Verb
 from arboleda.web import limits
 from arboleda.web.access.auth import Role
 from arboleda.web.desks.draft import DraftRefused
+from arboleda_make.assistant.envelope import NOTE, answered
 
 from ..lengths import length, sample
 from .assistant_site import HOST, REST, TREE, Caller, Site, bearer
@@ -203,7 +203,7 @@ def injected(hash: str) -> Iterator[tuple[Any, ...]]:
 
 @pytest.mark.long
 def test_text_of_outside_stays_text_wherever_it_stands(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("arboleda.runtime.proposals.desk.MOST_OPEN", 10_000)
+    monkeypatch.setattr("arboleda_make.proposals.desk.MOST_OPEN", 10_000)
     found = unmoved(site, Caller(site), injected(proposed(site)))
     assert len(found) >= length(100, whole=400) and 202 not in found
     assert not [each for each in site.desk.listed() if each["stage"] == "approved"]

@@ -9,7 +9,7 @@ from typing import Any
 import httpx
 import pytest
 
-from arboleda.bt_xml.editing.tree_text import TreeText, walk
+from arboleda_make.editing.tree_text import TreeText, walk
 
 from ..chromium import leave
 from ..patience import PATIENCE_MS, PATIENCE_S

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from arboleda.bt_xml import leaves
-from arboleda.bt_xml.editing import copy_recipe
 from arboleda.cli.nodes import of_plant
 from arboleda.core.plant import Plant
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import advance_check
 from arboleda.plant_file.loader import load
+from arboleda_make.editing import copy_recipe
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 
 from ..kinds.test_asked_places import PLANT, RECIPES, ends, written

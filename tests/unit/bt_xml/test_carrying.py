@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.bt_xml.editing import carry, desk
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.plant_file.loader import load
+from arboleda_make.editing import carry, desk
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 PLANT = """name: lab

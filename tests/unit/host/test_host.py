@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 
 from arboleda.host import addresses, boot, files, limits, locks, processor_alarm, users
-from arboleda.runtime.parts import hang_up
+from arboleda_make.versions import hang_up
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file.draft_process import CheckProcess
+from arboleda_make.drafts.process import CheckProcess
 
 FOLDER = Path(__file__).parents[3] / "examples/own_tree"
 CONTENTS = {name: (FOLDER / name).read_bytes() for name in ("plant.yaml", "tend.xml")}

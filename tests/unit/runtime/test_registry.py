@@ -60,7 +60,7 @@ def test_a_part_of_a_package_is_offered_and_tells_people(tmp_path: Path, put: In
 
 def test_a_package_is_loaded_only_when_a_plant_is_put_together(tmp_path: Path, put: Install) -> None:
     put("acme", COUNTER)
-    assert [each.name for each in registry.registered(registry.GROUP, {})] == ["acme"]
+    assert "acme" in [each.name for each in registry.registered(registry.GROUP, {})]
     assert "acme" not in sys.modules
 
 

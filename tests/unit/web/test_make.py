@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from arboleda.bt_xml.editing.errors import EditError
 from arboleda.web.access.auth import Role
 from arboleda.web.desks.draft import DraftRefused
 from arboleda.web.desks.make import MakeApi
+from arboleda_make.editing.errors import EditError
 
 STATE = {"file": "plant.yaml", "editor": None, "changes": [], "waiting": [], "undo": 0, "redo": 0}
 STATE |= {"values": {}}

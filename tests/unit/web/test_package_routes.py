@@ -13,6 +13,7 @@ from tests.added_package import install
 from tests.in_process import Caller
 from tests.web_plant import Plant
 
+from arboleda.host.packages import package_of, registered
 from arboleda.web import missing, routes
 from arboleda.web.api import make_app
 from arboleda.web.routes import routers
@@ -82,7 +83,7 @@ def test_a_package_whose_routes_break_is_left_out_and_named(
 def bare() -> Caller:
     """The routes of the runner alone."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(routes, "ROUTES", {})
+        patch.setattr(routes, "registered", lambda group, shipped: [])
         return Caller(make_app(Plant()))
 
 
@@ -117,12 +118,12 @@ def test_a_path_that_nobody_knows_is_no_missing_package(bare: Caller, web: Calle
 
 def test_every_path_of_a_package_is_known_as_its_own() -> None:
     with pytest.MonkeyPatch.context() as patch:
-        for package in {name.partition(".")[0] for name in ROUTES}:
-            rows = {name: each for name, each in ROUTES.items() if name.startswith(f"{package}.")}
-            patch.setattr(routes, "ROUTES", rows)
-            known = missing.PATHS[package]
-            mine = [path for each in routers(None)[len(routes.OWN) :] for path in paths(each)]
-            assert mine and all(known.fullmatch(path) for path in mine), mine
+        points = registered(routes.GROUP, ROUTES)
+        for package, known in missing.PATHS.items():
+            mine = [each for each in points if package_of(each) == package]
+            patch.setattr(routes, "registered", lambda group, shipped, mine=mine: mine)
+            found = [path for each in routers(None)[len(routes.OWN) :] for path in paths(each)]
+            assert found and all(known.fullmatch(path) for path in found), found
 
 
 def test_no_path_of_the_runner_is_a_package_s(bare: Caller) -> None:

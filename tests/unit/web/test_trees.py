@@ -10,11 +10,11 @@ import pytest
 from tests.in_process import Caller
 from tests.web_plant import Plant
 
-from arboleda.bt_xml.editing.errors import EditError
 from arboleda.plant_file import loader
 from arboleda.web import limits
 from arboleda.web.access.auth import Role
-from arboleda.web.routes import trees
+from arboleda_make.editing.errors import EditError
+from arboleda_make.routes import trees
 
 OWN_TREE = Path(__file__).parents[3] / "examples/own_tree/plant.yaml"
 

@@ -6,7 +6,6 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from exercises.works import Sample, handed_in, samples, two
 from tests.lengths import length
 from typer.testing import CliRunner
 
@@ -19,6 +18,8 @@ from arboleda_class.exercises.work import SHEET, packed, works
 from arboleda_proofs.campaigns.proof.outcome import End
 from arboleda_proofs.campaigns.words import task_is, task_is_to
 from arboleda_proofs.simulator.faults import KINDS
+
+from ..exercises.works import Sample, handed_in, samples, two
 
 LEAST = {True: 3, False: 10}  # works of each exercise that are right, and wrong ones
 QUICK = length(("query_first", "night"), ("query_first", "need", "night"))

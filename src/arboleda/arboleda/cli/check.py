@@ -20,7 +20,7 @@ from arboleda.plant_file.answer import check_answer
 from arboleda.plant_file.findings import Source
 from arboleda.plant_file.user_file import check_writable
 
-from . import apply, nodes
+from . import nodes
 from .language import finding, say
 from .plant_options import IN_FOLDER, PLANT_VARIABLE, is_typed, plant_here
 
@@ -32,6 +32,7 @@ FOR_TREES = Phrase("cli.check.for_trees", "--plant and --cell are for files of t
 FOR_PLANTS = Phrase("cli.check.for_plants", "--json and --mend are for plant files")
 NOTE = Phrase("cli.check.note", "{file}: note: {note}")
 GOOD = Phrase("cli.check.good", "{file}: good: plant {plant}; cells {cells}")
+WARNING = Phrase("cli.check.warning", "{file}: warning: {warning}")
 MEND_IS = Phrase("cli.check.mend", "{file}: mend: {mend}")
 NO_MEND = Phrase(
     "cli.check.no_mend",
@@ -156,7 +157,7 @@ def _in_words(file: Path, *, ends: bool) -> None:
     for note in (*loader.notes(model), *unstated.notes(model)):
         print(say(NOTE(file=str(file), note=finding(note))))
     for warning in plant_check.warnings(model):
-        print(say(apply.WARNING(file=str(file), warning=finding(warning))))
+        print(say(WARNING(file=str(file), warning=finding(warning))))
     cells = tuple(cell.name for cell in model.cells)
     print(say(GOOD(file=str(file), plant=model.name, cells=cells)))
     for line in (*loader.offers(model, missed), *(advance_check.ends(model) if ends else ())):

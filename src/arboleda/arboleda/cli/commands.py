@@ -16,7 +16,7 @@ import typer
 
 from arboleda.host.packages import entry_points
 from arboleda.model.outside import quoted
-from arboleda.model.packages import BOARDS, CLASS, DRIVERS, MISSING, PROOFS, PackageMissing
+from arboleda.model.packages import BOARDS, CLASS, DRIVERS, MAKE, MISSING, PROOFS, PackageMissing
 from arboleda.model.sentence import Phrase
 from arboleda.views.verb_words import ABOUT
 
@@ -28,14 +28,17 @@ LEFT_OUT = Phrase(
     "cli.left_out", "the commands of the installed package {package} are left out, as it does not load: {why}"
 )
 OF_PACKAGES = {  # extras of `arboleda`, by command
+    "apply": MAKE,
     "conformance": BOARDS,
     "exercise": CLASS,
     "fault": PROOFS,
     "firmware-config": BOARDS,
+    "mcp": MAKE,
     "prove": PROOFS,
     "replay": PROOFS,
     "report": PROOFS,
     "simulate": PROOFS,
+    "versions": MAKE,
     "virtual": DRIVERS,
 }
 
@@ -84,15 +87,6 @@ OURS: Mapping[str, Command] = {
     "examples": Command(
         "examples", "List the examples that come with Arboleda, or write one to a folder, to be changed."
     ),
-    "apply": Command(
-        "apply",
-        "Check a plant file and all that it uses, show how it differs from what is at work, and "
-        "put it to work.",
-    ),
-    "versions": Command(
-        "apply",
-        "List the versions of a plant file that were put to work, oldest first, with what each has changed.",
-    ),
     "tasks": Command(
         "tasks", "List tasks and their outcomes, also of earlier starts, whether the plant runs or not."
     ),
@@ -112,9 +106,6 @@ OURS: Mapping[str, Command] = {
     ),
     "backup": Command("backup", "Copy the plant's memory to a file, while the plant runs or not."),
     "restore": Command("backup", "Put a backup in the place of the plant's memory; the plant must not run."),
-    "mcp": Command(
-        "mcp", "Let an assistant (a language model) look at a plant, try its plant file, and propose changes."
-    ),
     "logs": Command(
         "logs", "Show what became of tasks and cells and what operators did, of all starts that are recorded."
     ),

@@ -6,8 +6,8 @@ import re
 from functools import cache
 from pathlib import Path
 
-from arboleda.bt_xml.editing.errors import EditError
-from arboleda.bt_xml.editing.tree_text import TreeText
+from arboleda_make.editing.errors import EditError
+from arboleda_make.editing.tree_text import TreeText
 
 HERE = Path(__file__).parents[4]
 RULES = Path(__file__).parents[1]

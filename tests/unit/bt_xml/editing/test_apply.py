@@ -10,9 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.bt_xml.editing.apply import apply
-from arboleda.bt_xml.editing.errors import EditError
-from arboleda.bt_xml.editing.operations import (
+from arboleda.bt_xml.markup import Element
+from arboleda_make.editing.apply import apply
+from arboleda_make.editing.errors import EditError
+from arboleda_make.editing.operations import (
     AddTree,
     Extract,
     Insert,
@@ -28,8 +29,7 @@ from arboleda.bt_xml.editing.operations import (
     Unwrap,
     Wrap,
 )
-from arboleda.bt_xml.editing.tree_text import TreeText, kind_of, steps, walk
-from arboleda.bt_xml.markup import Element
+from arboleda_make.editing.tree_text import TreeText, kind_of, steps, walk
 
 from .corpus import texts
 

@@ -6,15 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.bt_xml.editing import desk
-from arboleda.bt_xml.editing.errors import EditError
-from arboleda.bt_xml.editing.marks import marks
-from arboleda.bt_xml.editing.picture import picture
-from arboleda.bt_xml.editing.tree_text import TreeText
 from arboleda.bt_xml.nodes import BUILT_IN
 from arboleda.bt_xml.runnable import INSTEAD
 from arboleda.plant_file import loader
 from arboleda.web.languages import LANGUAGES, contents
+from arboleda_make.editing import desk
+from arboleda_make.editing.errors import EditError
+from arboleda_make.editing.marks import marks
+from arboleda_make.editing.picture import picture
+from arboleda_make.editing.tree_text import TreeText
 
 from ..findings import mistakes, tree, warnings
 from .corpus import HERE, texts

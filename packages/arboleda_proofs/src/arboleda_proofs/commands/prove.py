@@ -12,6 +12,8 @@ import typer
 
 from arboleda.cli.language import language, say
 from arboleda.cli.plant_options import IN_FOLDER, PLANT_VARIABLE, StateFolder, folder, is_typed, plant_here
+from arboleda.host.packages import extra
+from arboleda.model.packages import MAKE
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_writable
 
@@ -150,6 +152,8 @@ def prove(
             check_writable(file)
     if pairs and budget == ALL:
         raise typer.BadParameter(say(PAIRS_TAKE(all=ALL)))
+    if mend:  # it is asked for at the end: a package that is missing is named before
+        extra("mend", MAKE, "--mend")
     request = ProofRequest(
         plant=plant,
         recipes=tuple(recipe or ()),

@@ -10,7 +10,7 @@ import pytest
 from arboleda.drivers.address import address
 from arboleda.model.errors import ArboledaError
 from arboleda.plant_file.loader import load
-from arboleda_proofs.campaigns.draft import reaching
+from arboleda_make.trying.processes import reaching
 
 EXAMPLE = Path(__file__).parents[5] / "examples/plc_conveyor/plant.yaml"
 

@@ -12,8 +12,8 @@ from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load_with_files
 from arboleda.recorder import reader
+from arboleda_make.trying.processes import noticing, simulating, tryout
 from arboleda_proofs.campaigns import plants
-from arboleda_proofs.campaigns.draft import noticing, simulating, tryout
 
 PLANT = """name: lab
 uses: [shine.xml]

@@ -8,13 +8,14 @@ import shutil
 from pathlib import Path
 
 import pytest
-from tests.unit.campaigns.test_simulate_record import Said, lines_in, said
 from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
 from arboleda.recorder import reader
 from arboleda_proofs.playback.report.reading import incident_of
+
+from ..campaigns.test_simulate_record import Said, lines_in, said
 
 __all__ = ["said"]
 Asked = list[tuple[float, str]]

@@ -12,6 +12,7 @@ from arboleda.model.commands import Command, Question
 from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, TaskChanged
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file.findings import Finding, Source
 from arboleda_proofs.simulator.plant_process import Fuse, Side
 
 from .end_state import EndState
@@ -147,3 +148,13 @@ def calm_runs(model: PlantModel, scenarios: Iterable[Scenario]) -> Iterator[Calm
                 others = [calm.scenario.with_answer(who, word) for word in words]
                 waiting += [each for each in others if each.answers not in tried]
                 tried |= {each.answers for each in others}
+
+
+def run_findings(calm: Calm) -> Iterator[Finding]:
+    """The findings of a run without faults, and of the same task once more."""
+    outcome, task = calm.run.outcome, calm.scenario.name
+    if not calm.is_sound:
+        words = ": ".join(outcome.broken) if outcome.broken else calm.finding or outcome.words
+        yield Finding(source=Source.RUN, sentence=f"{task}: {words}", task=task)
+    elif calm.again:
+        yield Finding(source=Source.RUN, sentence=f"{task}, once more: {calm.again}", task=task)

@@ -5,19 +5,17 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
-from pathlib import Path
 from typing import TypeVar
 
 from rich.console import Console
 from rich.text import Text
 
+from arboleda.host.packages import extra
 from arboleda.model.counting import counted
+from arboleda.model.packages import MAKE
 from arboleda.plant_file.answer import Answer
 
 from ..campaign import Campaign, Runs
-from ..mending.answer import run_answer
-from ..mending.noticing import noticing_mend
 from ..plants import notes
 from ..screen import Show, ends_of, progress
 from ..seed_campaign import BROKEN, HELD, INTERRUPTED
@@ -25,7 +23,7 @@ from ..workers import Workers
 from . import proof_report, proof_summary
 from .badge import badge
 from .breaches import breaches_of
-from .calm import Calm, calm_runs
+from .calm import Calm, calm_runs, run_findings
 from .checks import checks
 from .junit import as_junit
 from .kept import Kept
@@ -199,14 +197,16 @@ class ProofCampaign:
     def _answer(self) -> Answer:
         """The findings of the runs without faults; where it is wanted, with what would mend them, or notice
         what nobody notices."""
+        findings = tuple(each for calm in self._calm for each in run_findings(calm))
         plant = self._request.plant
         if plant is None or not self._request.mend:
-            return run_answer(Path(), self._calm, within_s=0.0)
+            return Answer(findings=findings)
         with progress(self._console, "looking for a mend", None):
-            answer = run_answer(plant, self._calm, within_s=MEND_S)
-            if answer.findings:
-                return answer
-            return replace(answer, mend=noticing_mend(plant, self._tally, within_s=MEND_S))
+            if findings:
+                mend = extra("mend", MAKE, "--mend")(plant, findings, within_s=MEND_S)
+            else:
+                mend = extra("notice", MAKE, "--mend")(plant, self._tally, within_s=MEND_S)
+            return Answer(findings=findings, mend=mend)
 
     def _try_checks(self) -> None:
         """Try the checks of all that nobody notices and that will be named; a check takes a few runs."""

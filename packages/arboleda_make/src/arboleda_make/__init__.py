@@ -1,0 +1,1 @@
+"""Changing a plant: drafts, versions, teaching, tries, and proposals of assistants."""

@@ -1,0 +1,338 @@
+"""DraftApi of the plant in this process: its draft, kept in its state directory, and the one who edits it."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any, Protocol
+
+from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.outside import plain, quoted
+from arboleda.model.plant_files import PlantFiles
+from arboleda.plant_file.changes import changes
+from arboleda.plant_file.draft_check import CheckResult, root_of
+from arboleda.plant_file.restart import needing_restart
+from arboleda.plant_file.tree_file import ENDING
+from arboleda.plant_file.versions import Version, Versions, version_of
+from arboleda.plant_file.yaml_edit import EditRefused
+from arboleda.plant_file.yaml_marks import parse
+from arboleda.runtime import at_work
+from arboleda.web.desks.draft import DraftApi, DraftRefused, Place, State
+from arboleda_make.drafts.draft import Draft, draft_of
+
+from .file import DraftFile
+from .plant_folder import NOT_OURS, PlantFolder
+
+LOG = logging.getLogger("arboleda.operators")
+UNKNOWN = "this plant does not keep what it was started with (record: off), so there is nothing to draft from"
+NOBODY = "nobody edits this draft; begin to edit it first"
+OTHER = "{name} edits this draft since {since}; take it over to edit it"
+MOVED = "{files}: changed by hand since this draft was begun; discard the draft, or bring the file back"
+KNOWN = "{file} is there already; choose another name"
+NOTHING = "the draft changes nothing"
+NO_PLANT = "no plant runs in this process that could take it"
+NO_TREES = "{file} is no file of trees of this plant"
+OURS = "these files are your own already, and can be changed"
+MEANWHILE = "the draft was changed while it was checked; try again"
+SINCE = "the draft has changed since its check, and nothing was set; check it again"
+WorkBy = Callable[[Version, CheckResult, str], State]
+
+
+class Checker(Protocol):
+    """Process that checks files as if they were in a folder, until `stop`."""
+
+    def check(self, files: PlantFiles, plant_file: Path) -> CheckResult: ...
+    def stop(self) -> None: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Editor:
+    """Editor of a draft: the id of a page or tool, the name that others see, and since when, in UTC."""
+
+    id: str
+    name: str
+    since: str
+
+
+class DraftDesk(DraftApi):
+    """DraftDesk: one draft and one editor, for threads of a server; `process` checks drafts.
+
+    `work_by` puts a version to work whose files are in their place; whoever writes these holds `writing`.
+    """
+
+    def __init__(
+        self,
+        folder: PlantFolder,
+        state: Path,
+        process: Checker,
+        work_by: WorkBy | None = None,
+        writing: threading.Lock | None = None,
+    ) -> None:
+        self._folder = folder
+        self._state = state
+        self._file = DraftFile(state)
+        self._process = process
+        self._work_by = work_by
+        self._writing = writing or threading.Lock()
+        self._turns = threading.Lock()
+        self._editor: Editor | None = None
+        self._draft: Draft | None = None
+
+    def start(self) -> None:
+        """Nothing: a draft is opened when somebody looks at it."""
+
+    def stop(self) -> None:
+        """End a check that is under way; the draft stays for the next start. Idempotent."""
+        self._process.stop()
+
+    def state(self) -> State:
+        with self._turns:
+            return self._shown()
+
+    def take(self, editor: str, name: str) -> State:
+        with self._turns:
+            self._opened()
+            before, self._editor = self._editor, Editor(id=editor, name=name, since=_now())
+            if before is not None and before.id != editor:
+                LOG.info("the draft is taken over by %s from %s", plain(name), plain(before.name))
+            return self._shown()
+
+    def set(self, editor: str, place: Place, value: Any, of: str | None = None) -> State:
+        def step(draft: Draft) -> Draft:
+            if of is not None and of != _digest(draft):
+                raise EditRefused(SINCE)
+            return draft.with_value(tuple(place), value)
+
+        return self._step(editor, step)
+
+    def set_all(self, editor: str, values: Sequence[tuple[Place, Any]]) -> State:
+        """The same as `set` for several values, in one step."""
+        return self._step(
+            editor, lambda draft: draft.with_values((tuple(place), value) for place, value in values)
+        )
+
+    def remove(self, editor: str, place: Place) -> State:
+        return self._step(editor, lambda draft: draft.without(tuple(place)))
+
+    def undo(self, editor: str) -> State:
+        return self._step(editor, Draft.undo)
+
+    def redo(self, editor: str) -> State:
+        return self._step(editor, Draft.redo)
+
+    def discard(self, editor: str) -> State:
+        with self._turns:
+            self._must_edit(editor)
+            self._close()
+            return self._shown()
+
+    def check(self) -> State:
+        with self._turns:
+            draft = self._opened()
+        found = self._process.check(draft.files, self._folder.ours)
+        offers = [each.plain for each in found.unstated]
+        answer = {"problems": found.problems, "warnings": found.warnings, "offers": offers}
+        return answer | {"digest": _digest(draft)}
+
+    def keep(self, editor: str, note: str) -> State:
+        found, version = self._checked_and_kept(editor, note)
+        number = None if version is None else version.number
+        return {"version": number, "problems": found.problems, "warnings": found.warnings}
+
+    def apply(self, editor: str, note: str) -> State:
+        if self._work_by is None:
+            raise DraftRefused(NO_PLANT)
+        found, version = self._checked_and_kept(editor, note)
+        if version is None:
+            answer: State = {"version": None, "cells": {}, "cancelled": (), "restart": ()}
+            return answer | {"problems": found.problems, "warnings": found.warnings}
+        return self._work_by(version, found, version.by)
+
+    def trees(self, file: str) -> State:
+        with self._turns:
+            contents = self._opened().files.contents
+        if file not in contents or not file.endswith(ENDING):
+            raise DraftRefused(NO_TREES.format(file=quoted(file)))
+        return {"file": file, "text": contents[file].decode("utf-8", "replace")}
+
+    def set_trees(self, editor: str, file: str, text: str) -> State:
+        def step(draft: Draft) -> Draft:
+            return draft.with_recipe(self._folder.tree_name(draft, file), text.encode("utf-8", "replace"))
+
+        return self._step(editor, step)
+
+    def add_trees(self, editor: str, file: str, text: str) -> State:
+        """The same as `set_trees` for a file that the draft does not have; DraftRefused if it has it."""
+
+        def step(draft: Draft) -> Draft:
+            name = self._folder.tree_name(draft, file)
+            if name in draft.files.contents:
+                raise EditRefused(KNOWN.format(file=quoted(file)))
+            return draft.with_recipe(name, text.encode())
+
+        return self._step(editor, step)
+
+    @property
+    def files(self) -> tuple[PlantFiles, PlantFiles]:
+        """The files that the draft began with, and those of the draft."""
+        with self._turns:
+            draft = self._opened()
+        return draft.base, draft.files
+
+    def remove_trees(self, editor: str, file: str) -> State:
+        return self._step(editor, lambda draft: draft.without_recipe(file))
+
+    def own(self, editor: str) -> State:
+        with self._turns:
+            self._must_edit(editor, owns=False)
+            if self._folder.is_ours:
+                raise DraftRefused(OURS)
+            file = self._folder.own(self._started())
+            LOG.info("the plant's files are copied to %s", plain(str(file.parent)))
+            self._close()
+            return self._shown()
+
+    def _checked_and_kept(self, editor: str, note: str) -> tuple[CheckResult, Version | None]:
+        """The verdict on the draft, and the version that it is now; None where there are problems."""
+        with self._turns:
+            self._must_edit(editor)
+            draft = self._opened()
+            self._must_fit(draft)
+        found = self._process.check(draft.files, self._folder.ours)
+        if found.problems:
+            return found, None
+        with self._turns, self._writing:
+            self._must_edit(editor)
+            if self._draft is not draft:
+                raise DraftRefused(MEANWHILE)
+            self._must_fit(draft)
+            version = self._kept(draft, found.read, note)
+            self._close()
+        LOG.info("version %d of the plant is kept, by %s", version.number, plain(version.by))
+        return found, version
+
+    def _step(self, editor: str, step: Callable[[Draft], Draft]) -> State:
+        with self._turns:
+            self._must_edit(editor)
+            try:
+                draft = step(self._opened())
+            except EditRefused as error:
+                raise DraftRefused(error.sentence) from error
+            self._file.write(draft)
+            self._draft = draft
+            return self._shown()
+
+    def _must_edit(self, editor: str, *, owns: bool = True) -> None:
+        if self._editor is None:
+            raise DraftRefused(NOBODY)
+        if self._editor.id != editor:
+            raise DraftRefused(OTHER.format(name=plain(self._editor.name), since=self._editor.since))
+        if owns and not self._folder.is_ours:
+            raise DraftRefused(NOT_OURS)
+
+    def _must_fit(self, draft: Draft) -> None:
+        """Raise DraftRefused where there is nothing to keep, or what somebody else wrote would be lost."""
+        if not draft.changes:
+            raise DraftRefused(NOTHING)
+        now = self._on_disk().contents
+        if moved := [name for name, each in draft.base.contents.items() if now.get(name) != each]:
+            raise DraftRefused(MOVED.format(files=", ".join(moved)))
+
+    def _kept(self, draft: Draft, read: PlantFiles | None, note: str) -> Version:
+        """The version that the files are now; before it, if none has that, what was at work."""
+        by = self._editor.name if self._editor else ""
+        kept, started = Versions(self._folder.ours), self._started()
+        if kept.last() is None:
+            kept.keep(replace(started, note="as the plant was started"))
+        fresh = version_of(read or draft.files, at=_now(), by=by, note=note)
+        if read is None:
+            fresh = replace(fresh, others=started.others)
+        version = kept.keep(replace(fresh, changes=tuple(each.words for each in draft.changes)))
+        try:
+            kept.bring_back(replace(version, files=draft.files))
+        except StartError:
+            kept.forget(version)
+            raise
+        return version
+
+    def _shown(self) -> State:
+        draft, editor = self._opened(), self._editor
+        root, _ = parse(draft.files.contents[draft.files.plant])
+        contents = draft.files.contents
+        return {
+            "file": draft.files.plant.rpartition("/")[2],
+            "digest": _digest(draft),
+            "editor": None if editor is None else {"name": editor.name, "since": editor.since},
+            "changes": [each.words for each in draft.changes],
+            "waiting": [each.words for each in changes(self._started().files, self._on_disk())],
+            "undo": len(draft.past),
+            "redo": len(draft.future),
+            "values": root.value,
+            "trees": sorted(name for name in contents if name.endswith(ENDING)),
+            "restart": needing_restart(draft.changes),
+            "is_ours": self._folder.is_ours,
+            "set_aside": list(self._file.lost),
+        }
+
+    def _opened(self) -> Draft:
+        """The draft that there is, in this process or from an earlier start; else a new one of the files, as
+        they are now: what changes nothing is begun anew once they were changed elsewhere."""
+        if self._draft is None:
+            self._draft = self._saved() or draft_of(self._on_disk())
+        if self._draft.files == self._draft.base and self._draft.base != (now := self._on_disk()):
+            self._close()
+            self._draft = draft_of(now)
+        return self._draft
+
+    def _close(self) -> None:
+        self._file.remove()
+        self._draft = None
+
+    def _saved(self) -> Draft | None:
+        """The draft of an earlier start; None where the plant's files have become all that it was to change:
+        that start ended before it could forget the draft."""
+        saved = self._file.read()
+        if saved is not None and _is_in(saved, self._on_disk()):
+            self._file.remove()
+            return None
+        return saved
+
+    def _started(self) -> Version:
+        found = at_work.known(self._state)
+        if found is None:
+            raise DraftRefused(UNKNOWN)
+        return found
+
+    def _on_disk(self) -> PlantFiles:
+        """Plant file and trees as they are now."""
+        files, plant_file = self._started().files, self._folder.file
+        if plant_file is None:
+            return files
+        root = root_of(files, plant_file)
+        try:
+            contents = {
+                name: (plant_file if name == files.plant else root / name).read_bytes()
+                for name in files.contents
+            }
+        except OSError as error:
+            raise ArboledaError(f"{error.filename} cannot be read: {error.strerror}") from error
+        return replace(files, contents=contents)
+
+
+def _is_in(draft: Draft, files: PlantFiles) -> bool:
+    """True where each file that a draft knows is as the draft has it; one that it removes is gone."""
+    names = {*draft.base.contents, *draft.files.contents}
+    return all(files.contents.get(name) == draft.files.contents.get(name) for name in names)
+
+
+def _digest(draft: Draft) -> str:
+    """The digest of the files of a draft, which another step makes another."""
+    return version_of(draft.files, at="").digest
+
+
+def _now() -> str:
+    return datetime.now(timezone.utc).isoformat(timespec="seconds")

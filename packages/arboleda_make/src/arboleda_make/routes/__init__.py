@@ -1,0 +1,1 @@
+"""Routes of drafts, trees, tries, teaching, proposals and versions."""

@@ -1,0 +1,148 @@
+"""Teaching of cells: what devices can be told, buttons that are held, targets where robots stand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, TypeVar
+
+from fastapi import APIRouter, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+from starlette.exceptions import HTTPException
+
+from arboleda.web.access.auth import require
+from arboleda.web.desks import teach
+from arboleda.web.plant_api import PlantApi
+from arboleda.web.schema.bodies import ResponseModel, Sentence, Teaching
+from arboleda.web.schema.plain_json import PlainJson, explained
+from arboleda.web.schema.queries import Answers, described_body, read_body
+
+MAY = "teaching"
+REFUSED: Answers = {
+    403: {"model": Sentence, "description": "Only operators may."},
+    404: {"model": Sentence, "description": "This plant is not taught from here."},
+    409: {"model": Sentence, "description": "Nothing moves, or no target is made, and why."},
+    422: {"model": Sentence, "description": "The request is wrong."},
+}
+Word = Annotated[str, Field(min_length=1, max_length=64)]
+Number = Annotated[int, Field(ge=0, lt=2**53)]
+Value = bool | int | float | Annotated[str, Field(max_length=200)]
+
+
+class _Request(BaseModel):
+    """Body: these keys and no others, of exactly these types."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+
+class WayAlong(_Request):
+    axis: Literal["x", "y", "z"]
+    frame: Literal["base", "tool"] = "base"
+    sign: Literal[-1, 1] = 1
+    mm: float | None = Field(default=None, gt=0, le=100, description="Its length; without, on and on.")
+
+
+class ButtonState(_Request):
+    """Button that is held; said again at least every 0.1 s, with the same number, or the robot is halted."""
+
+    session: Number = Field(description="The act that began the teaching, as `teach` has answered it.")
+    number: Number = Field(description="Higher with each press; one that has ended never begins again.")
+    robot: Word
+    held: bool = Field(default=True, description="False: it was let go of.")
+    goal: list[float] | int | None = Field(
+        default=None, description="Degrees or millimetres of each joint, or a node."
+    )
+    along: WayAlong | None = None
+    verb: str = Field(default="", max_length=64, description="home, grip, let_go, or a verb of the device.")
+    values: dict[Word, Value] = Field(default={}, max_length=32)
+
+    @model_validator(mode="after")
+    def _check_one(self) -> ButtonState:
+        given = [self.goal is not None, self.along is not None, bool(self.verb)]
+        if self.held and given.count(True) != 1:
+            raise ValueError("exactly one of goal, along and verb is needed")
+        return self
+
+    def button(self) -> teach.Button:
+        along = None if self.along is None else teach.Along(**self.along.model_dump())
+        return teach.Button(**self.model_dump(exclude={"along"}), along=along)
+
+
+class NewTarget(_Request):
+    """Target of the draft, made or moved to where the robot stands now."""
+
+    robot: Word
+    target: Word
+    editor: Annotated[str, Field(min_length=8, max_length=64, description="An id of your own.")]
+    name: Annotated[str, Field(min_length=1, max_length=40, description="What others see.")]
+    approach_mm: float | None = Field(default=None, ge=0, le=10_000, description="Without it as it was.")
+    zone: str = Field(default="", max_length=64, description="A zone of the plant file in which it lies.")
+
+
+class TeachState(ResponseModel):
+    cell: str
+    teaching: Teaching | None
+    refusal: str | None = Field(description="Why nobody can begin to teach it now.")
+    devices: list[dict[str, Any]] = Field(description="Where each stands, its joints, nodes and verbs.")
+    targets: list[dict[str, Any]] = Field(description="By robot; `draft`: as the draft has it.")
+    drafts: bool = Field(description="Whether there is a plant file in which targets can be kept.")
+
+
+class Pressed(ResponseModel):
+    teaching: Teaching | None
+    robot: dict[str, Any]
+
+
+class MadeTarget(ResponseModel):
+    at: list[float] | int
+    place: list[str] = Field(description="Where it stands in the plant file.")
+
+
+Body = TypeVar("Body", bound=_Request)
+
+
+def routes(side: PlantApi) -> APIRouter:
+    """Register the routes."""
+    api = APIRouter(prefix="/api/teach")
+
+    @api.get("/{cell}", response_model=TeachState, responses=REFUSED)
+    async def state(cell: str, request: Request) -> JSONResponse:
+        """Teacher of a cell, the commands that its devices take, and its targets."""
+        desk = _desk(side, request)
+        return await _answered(lambda: desk.state(cell))
+
+    @api.post(
+        "/{cell}/jog", response_model=Pressed, responses=REFUSED, openapi_extra=described_body(ButtonState)
+    )
+    async def jog(cell: str, request: Request) -> JSONResponse:
+        """Hold a button of a cell that is taught, or let go of it."""
+        desk = _desk(side, request)
+        body = read_body(await request.body(), ButtonState)
+        return await _answered(lambda: desk.press(cell, body.button()))
+
+    @api.post(
+        "/{cell}/here", response_model=MadeTarget, responses=REFUSED, openapi_extra=described_body(NewTarget)
+    )
+    async def here(cell: str, request: Request) -> JSONResponse:
+        """Make a target in the draft where a robot stands now, or move one there."""
+        desk = _desk(side, request)
+        body = read_body(await request.body(), NewTarget)
+        return await _answered(lambda: desk.here(cell, teach.Target(**body.model_dump())))
+
+    return api
+
+
+async def _answered(act: Callable[[], teach.State]) -> JSONResponse:
+    try:
+        return PlainJson(await run_in_threadpool(act))
+    except teach.TeachRefused as refused:
+        return PlainJson(explained({"sentence": refused.sentence}), status_code=409)
+
+
+def _desk(side: PlantApi, request: Request) -> teach.TeachApi:
+    require(request.scope["arboleda.role"], MAY)
+    desk = side.ask(teach.TeachApi)
+    if desk is None:
+        raise HTTPException(404, "This plant is not taught from here.")
+    return desk

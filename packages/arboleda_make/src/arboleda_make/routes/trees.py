@@ -1,0 +1,81 @@
+"""Trees as XML: what they can be made of in a cell, and edits of a text, of which nothing is kept here."""
+
+from __future__ import annotations
+
+import asyncio
+
+from fastapi import APIRouter, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel, ConfigDict
+
+from arboleda.web.access.auth import DRAW, require
+from arboleda.web.languages import FIRST, spoken, texts
+from arboleda.web.plant_api import PlantApi
+from arboleda.web.schema.bodies import Sentence
+from arboleda.web.schema.plain_json import PlainJson
+from arboleda.web.schema.queries import WRONG, Answers, described, described_body, query_of, read_body
+from arboleda_make.editing import desk
+
+from .tree_answers import CopyForm, Drawn, EditForm, Nodes, TreeCopy, TreeFile, TreeForm, operation_of
+
+REFUSED: Answers = {
+    403: {"model": Sentence, "description": "The role is not enough."},
+    422: {"model": Sentence, "description": "The text cannot be read, or the operation cannot be done."},
+}
+
+
+class PaletteFilter(BaseModel):
+    """Cell for which a tree is drawn, and the language of what its nodes are about."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    cell: str
+    language: str = FIRST
+
+
+def routes(side: PlantApi) -> APIRouter:
+    """Register the routes. One edit is worked on at a time: each is work for a processor."""
+    api = APIRouter(prefix="/api/trees")
+    turn = asyncio.Lock()
+
+    @api.get("", response_model=list[TreeFile])
+    async def trees() -> JSONResponse:
+        """The files of trees that are recipes of this plant, as they were read."""
+        return PlainJson(desk.tree_files(side.model))
+
+    @api.get("/palette", response_model=list[Nodes], responses=WRONG, openapi_extra=described(PaletteFilter))
+    async def palette(request: Request) -> JSONResponse:
+        """All nodes that a tree can have in a cell: of its devices, in Python, and those of Arboleda."""
+        wanted = query_of(request, PaletteFilter)
+        words = texts(spoken([wanted.language]), "nodes")
+        return PlainJson(await run_in_threadpool(desk.palette, side.model, wanted.cell, words))
+
+    @api.post("/check", response_model=Drawn, responses=REFUSED, openapi_extra=described_body(TreeForm))
+    async def check(request: Request) -> JSONResponse:
+        """A file as an editor shows it, with what `check` says of each node in a cell."""
+        require(request.scope["arboleda.role"], DRAW)
+        form = read_body(await request.body(), TreeForm)
+        async with turn:
+            return PlainJson(await run_in_threadpool(desk.drawn, side.model, form.cell, form.text))
+
+    @api.post("/copy", response_model=TreeCopy, responses=REFUSED, openapi_extra=described_body(CopyForm))
+    async def copy(request: Request) -> JSONResponse:
+        """A recipe in Python as a tree that does the same; refused where no tree in XML can say it."""
+        require(request.scope["arboleda.role"], DRAW)
+        form = read_body(await request.body(), CopyForm)
+        async with turn:
+            text = await run_in_threadpool(desk.copied, side.model, form.cell, form.recipe, form.name)
+            return PlainJson({"text": text})
+
+    @api.post("/edit", response_model=Drawn, responses=REFUSED, openapi_extra=described_body(EditForm))
+    async def edit(request: Request) -> JSONResponse:
+        """The same file after an operation, which leaves every other byte of it as it was."""
+        require(request.scope["arboleda.role"], DRAW)
+        form = read_body(await request.body(), EditForm)
+        operation = operation_of(form.operation)
+        async with turn:
+            found = await run_in_threadpool(desk.drawn, side.model, form.cell, form.text, operation)
+            return PlainJson(found)
+
+    return api

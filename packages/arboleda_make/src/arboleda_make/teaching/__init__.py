@@ -1,0 +1,1 @@
+"""Teaching: targets and verbs that a person shows with the devices."""
