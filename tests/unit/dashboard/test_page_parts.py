@@ -178,7 +178,7 @@ def test_a_package_is_loaded_only_when_a_page_is_made(put: Install) -> None:
 def test_files_of_packages_lie_below_those_of_the_page() -> None:
     head = shell.head(words("en"), own("page.js"), added=loaded().assets)
     below = own("").rstrip("/")
-    assert f'"{below}/arboleda.dashboard.make-' in head and "/part.js" in head and "/draw.css" in head
+    assert f'"{below}/arboleda_make.page-' in head and "/part.js" in head and "/draw.css" in head
 
 
 def test_without_packages_the_page_names_what_installs_them(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,5 +4,4 @@ packages. They are read beside the entry points of installed packages, and loade
 
 PAGE = {
     "fleet": "arboleda.dashboard.fleet.page_part:PAGE",
-    "make": "arboleda.dashboard.make.page_part:PAGE",
 }

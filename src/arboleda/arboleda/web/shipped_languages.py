@@ -4,5 +4,4 @@ They are read beside the entry points of installed packages.
 
 LANGUAGES = {
     "fleet": "arboleda.dashboard.fleet",
-    "make": "arboleda.dashboard.make",
 }

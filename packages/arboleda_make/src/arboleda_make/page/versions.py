@@ -6,13 +6,13 @@ from fastapi import FastAPI, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse, Response
 
+from arboleda.dashboard.page_api import PageApi
+from arboleda.dashboard.page_part import Spot
+from arboleda.dashboard.shell import language_of
+from arboleda.dashboard.tags import tag
+from arboleda.dashboard.wording import words as words_of
 from arboleda.web.desks.versions import VersionsApi
 
-from ..page_api import PageApi
-from ..page_part import Spot
-from ..shell import language_of
-from ..tags import tag
-from ..wording import words as words_of
 from .version_rows import face
 
 

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+from arboleda.dashboard.faces import Face
+from arboleda.dashboard.faces.moment import Moment
+from arboleda.dashboard.page_api import Layout
+from arboleda.dashboard.page_part import Spot
+from arboleda.dashboard.tags import link, live, tag, way
+from arboleda.dashboard.wording import Words
 from arboleda.views.view import standing
 from arboleda.web.desks.make import MakeApi
-
-from ..faces import Face
-from ..faces.moment import Moment
-from ..page_api import Layout
-from ..page_part import Spot
-from ..tags import link, live, tag, way
-from ..wording import Words
 
 STEPS = ("hold", "10", "1", "0.1")  # what a button of an axis does: on and on, or so many degrees or mm
 LONGEST_NAME = 40

@@ -6,11 +6,10 @@ from fastapi import FastAPI, HTTPException, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, Response
 
+from arboleda.dashboard.page_api import PageApi
+from arboleda.dashboard.sandbox import POLICY
 from arboleda.web.access.auth import require
 from arboleda.web.desks.make import MakeApi
-
-from ..page_api import PageApi
-from ..sandbox import POLICY
 
 PATH = "/proof"
 MAY = "looking at what was proved of a draft"

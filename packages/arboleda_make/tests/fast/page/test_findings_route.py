@@ -10,9 +10,9 @@ from fastapi import FastAPI
 from starlette.types import Receive, Scope, Send
 from tests.in_process import Caller, without_threads
 
-from arboleda.dashboard.make import findings_route
 from arboleda.web.access.auth import Role
 from arboleda.web.api import answer_in_sentences
+from arboleda_make.page import findings_route
 
 FOUND = {"lines": ['the key "a" is missing', "cells.b: there is nothing to undo"]}
 SAID = {"lines": ['es: the key "a" is missing', "es: cells.b: there is nothing to undo"]}

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from fastapi import FastAPI
 
+from arboleda.dashboard.asset_files import Assets
+from arboleda.dashboard.page_api import PageApi
+from arboleda.dashboard.page_part import OtherRecord, PagePart, Place, Section
+from arboleda.dashboard.past.side import PastSide
 from arboleda.web.desks.make import MakeApi
 
-from ..asset_files import Assets
-from ..page_api import PageApi
-from ..page_part import OtherRecord, PagePart, Place, Section
-from ..past.side import PastSide
 from . import findings_route, make_panel, proof, teach_panel, tree_editor, versions
 
 if TYPE_CHECKING:

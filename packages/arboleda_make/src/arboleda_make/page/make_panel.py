@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from arboleda.dashboard.page_part import Spot
+from arboleda.dashboard.tags import tag, way
+from arboleda.dashboard.wording import Words
 from arboleda.web.desks.make import MakeApi
-
-from ..page_part import Spot
-from ..tags import tag, way
-from ..wording import Words
 
 PANELS = ("draft", "cells", "try", "prove", "device", "proposals")
 STEPS = ("undo", "redo", "check", "discard")

@@ -6,13 +6,12 @@ from fastapi import FastAPI, HTTPException, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 
+from arboleda.dashboard.page_api import PageApi
+from arboleda.dashboard.shell import language_of
 from arboleda.web.access.auth import require
 from arboleda.web.desks.make import MakeApi
 from arboleda.web.schema.bodies import FindingLines
 from arboleda.web.schema.queries import read_body
-
-from ..page_api import PageApi
-from ..shell import language_of
 
 PATH = "/findings.json"
 MAY = "reading what was found in a draft"

@@ -6,13 +6,12 @@ import json
 from pathlib import Path
 from typing import Any
 
+from arboleda.dashboard.past.past import Past
+from arboleda.dashboard.past.side import Start
 from arboleda.model.sentence import Phrase
 from arboleda.recorder import reader
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.views import Views
-
-from ..past.past import Past
-from ..past.side import Start
 
 TITLES = {"title": "make.of_draft", "leave": "make.back", "back": {"tab": "make"}}
 NOTHING_TRIED = Phrase("record.nothing_tried", "Nothing of the draft has been tried yet.")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.dashboard.make import version_rows
 from arboleda.dashboard.wording import words
+from arboleda_make.page import version_rows
 
 AT = "2026-11-25T20:39:13+00:00"
 
