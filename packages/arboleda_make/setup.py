@@ -10,7 +10,7 @@ setup(
     python_requires=">=3.10",
     package_dir={"": "src"},
     packages=find_packages("src"),
-    package_data={"arboleda_make": ["languages/*/*.yaml", "py.typed"]},
+    package_data={"arboleda_make": ["languages/*/*.yaml", "page/assets/*", "py.typed"]},
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/arboleda_make"]),
         ("share/arboleda_make", ["package.xml"]),
@@ -24,6 +24,7 @@ setup(
             "notice = arboleda_make.mending.noticing:noticing_mend",
         ],
         "arboleda.languages": ["make = arboleda_make"],
+        "arboleda.page": ["make = arboleda_make.page.page_part:PAGE"],
         "arboleda.parts": ["make = arboleda_make.factories:FACTORIES"],
         "arboleda.routes": [
             "make.draft = arboleda_make.routes.draft:routes",

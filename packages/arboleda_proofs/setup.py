@@ -10,7 +10,9 @@ setup(
     python_requires=">=3.10",
     package_dir={"": "src"},
     packages=find_packages("src"),
-    package_data={"arboleda_proofs": ["languages/*/*.yaml", "playback/report/*.html", "py.typed"]},
+    package_data={
+        "arboleda_proofs": ["languages/*/*.yaml", "page/assets/*", "playback/report/*.html", "py.typed"]
+    },
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/arboleda_proofs"]),
         ("share/arboleda_proofs", ["package.xml"]),
@@ -22,6 +24,7 @@ setup(
             "case = arboleda_proofs.commands.record_case:export",
         ],
         "arboleda.languages": ["proofs = arboleda_proofs"],
+        "arboleda.page": ["proofs = arboleda_proofs.page.page_part:PAGE"],
         "arboleda.parts": ["proofs = arboleda_proofs.running.factories:FACTORIES"],
         "arboleda.routes": [
             "proofs.faults = arboleda_proofs.routes.faults:routes",

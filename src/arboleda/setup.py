@@ -9,6 +9,8 @@ setup(
     package_data={
         "arboleda": [
             "dashboard/assets/*",
+            "dashboard/*/assets/*",
+            "dashboard/*/languages/*/*.yaml",
             "examples/*/*.py",
             "examples/*/*.xml",
             "examples/*/*.yaml",

@@ -53,7 +53,11 @@ def _texts(of: ast.expr) -> Iterator[str]:
 
 FILES = [
     *sorted(path for path in CLI.glob("*.py") if path.name not in NO_SENTENCES),
-    *(path for code in PACKAGES.values() for path in sorted([*code.rglob("command.py"), *code.glob("commands/[a-z]*.py")])),
+    *(
+        path
+        for code in PACKAGES.values()
+        for path in sorted([*code.rglob("command.py"), *code.glob("commands/[a-z]*.py")])
+    ),
 ]
 
 

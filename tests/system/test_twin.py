@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.dashboard.shell import assets
+from arboleda.dashboard.asset_files import own_address
 from arboleda.geometry import bodies
 from arboleda.geometry.part_size import PART_HEIGHT_M
 from arboleda.kinds.arm import Arm
@@ -345,7 +345,7 @@ def test_without_webgl_the_plant_is_drawn_from_above_by_outlines(
         "[...document.querySelectorAll('.twin-flat .labels text')].map(each => each.textContent)"
     )
     assert {"ra1", "rm_sis_c", "sis_b"} <= set(names)
-    draw = f"async ([shape, place]) => (await import('{assets()}/twin_flat.js')).footprint(shape, place)"
+    draw = f"async ([shape, place]) => (await import('{own_address()}/twin_flat.js')).footprint(shape, place)"
     moved = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 2, 3, 9, 1]  # column by column: shifted to 2, 3, 9
     lying = [1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1]  # its z points against y
     for shape, box in FOOTPRINTS:

@@ -10,12 +10,12 @@ from contextlib import contextmanager
 from typing import TypeVar
 
 import pytest
+from arboleda.dashboard.site.side import LastSeenPlant, RequestOutcome
 from fastapi import FastAPI
 from fastapi.responses import JSONResponse
 from tests.patience import PATIENCE_S
 from tests.web_plant import TOKENS, VIEW, Plant
 
-from arboleda.dashboard.site.side import LastSeenPlant, RequestOutcome
 from arboleda.model.messages import Verb
 from arboleda.runtime.endpoints import Place
 from arboleda.site.watch import NOT_STOPPED, Site

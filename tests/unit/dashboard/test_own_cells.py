@@ -9,6 +9,7 @@ from arboleda.dashboard import page
 from arboleda.dashboard.body import parts_of
 from arboleda.dashboard.faces import Face
 from arboleda.dashboard.faces.links import says
+from arboleda.dashboard.page_part import put_nothing
 from arboleda.dashboard.page_state import PageState
 from arboleda.dashboard.wording import words
 from arboleda.model.messages import Event
@@ -128,8 +129,9 @@ def test_the_failed_step_of_a_recipe_of_ones_own_is_named() -> None:
 
 
 def test_there_is_no_twin_where_nothing_is_drawn() -> None:
-    assert "twin" not in parts_of(page.PARTS, view.layout(model()))
-    assert list(parts_of(page.PARTS, view.layout(shipped()))) == list(page.PARTS)
+    parts = page.all_parts({}, put_nothing)
+    assert "twin" not in parts_of(parts, view.layout(model()))
+    assert list(parts_of(parts, view.layout(shipped()))) == list(parts)
 
 
 def test_the_time_line_tells_of_every_device() -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.dashboard.site.face import face, whole_oee
-from arboleda.dashboard.site.side import LastSeenPlant
+from arboleda.dashboard.fleet.site.face import face, whole_oee
+from arboleda.dashboard.fleet.site.side import LastSeenPlant
 from arboleda.dashboard.wording import words
 from arboleda.model.sentence import OWN
 

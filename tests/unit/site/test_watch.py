@@ -14,7 +14,7 @@ from tests.in_process import Machine, without_threads
 from tests.web_plant import QUEUED, VIEW
 
 from arboleda.dashboard import frames
-from arboleda.dashboard.site.side import LastSeenPlant
+from arboleda.dashboard.fleet.site.side import LastSeenPlant
 from arboleda.runtime.endpoints import Place
 from arboleda.site import watch
 from arboleda.site.reach import ANSWER_S, NO_ANSWER

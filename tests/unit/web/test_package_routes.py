@@ -97,6 +97,9 @@ def bare() -> Caller:
         ("POST", "/api/assistants/tasks", "make"),
         ("POST", "/api/faults", "proofs"),
         ("GET", "/api/tasks/t-1/report", "proofs"),
+        ("GET", "/oee.json", "fleet"),
+        ("GET", "/proof", "make"),
+        ("GET", "/report", "proofs"),
     ],
 )
 def test_what_is_not_installed_is_named_with_the_line_that_installs_it(

@@ -28,7 +28,7 @@ def body(
         header(list(shown))
         with tag("div", id="parts"):
             for name, build_part in shown.items():
-                label = wording(f"tab.{name}")
+                label = wording.of("tab", name)
                 with tag("section", id=f"part-{name}", classes="part", data_part=name, aria_label=label):
                     build_part(layout, wording)
         trees.detail(wording)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import time
-from collections.abc import Awaitable
+from collections.abc import Awaitable, Mapping
 from concurrent.futures import Future
 from typing import TypeVar
 
@@ -16,14 +16,13 @@ from arboleda.model.messages import Outcome, Verb
 from arboleda.model.sentence import in_json
 from arboleda.store.task_rows import PAGE
 from arboleda.web.access.auth import SUBMIT, allowed
-from arboleda.web.desks.demonstration import DemonstrationApi
-from arboleda.web.desks.faults import FaultsApi
 
-from . import demo, fault_form, outcomes
+from . import outcomes
 from .feed import Feed
 from .open_page import OpenPage
 from .outcomes import Said
 from .page_api import PageApi
+from .page_part import Act, Request
 from .toolkit import Client
 from .wording import Words
 
@@ -38,8 +37,11 @@ Answer = TypeVar("Answer")
 class Desk(OpenPage):
     """Desk: the only way from the events of a page to the plant."""
 
-    def __init__(self, client: Client, plant: PageApi, feed: Feed, words: Words) -> None:
+    def __init__(
+        self, client: Client, plant: PageApi, feed: Feed, words: Words, acts: Mapping[str, Act] | None = None
+    ) -> None:
         super().__init__(client, words, feed.note_shown)
+        self._acts = acts or {}  # of packages
         self._plant = plant
         self._feed = feed
 
@@ -47,43 +49,22 @@ class Desk(OpenPage):
         """Do what the page asks for; `more` is True for what was done by hand, or has a verb's arguments."""
         if act == DOWNLOAD:
             self._download()
-        elif act not in {SUBMIT, demo.END, fault_form.BEGIN, fault_form.END} and act not in VERBS:
+        elif act not in self._acts and act != SUBMIT and act not in VERBS:
             return
         elif not allowed(self.role, act):
             self.say(self._words("page.not_allowed", act=self._name(act)), good=False)
         elif act == SUBMIT:
             await self._submit(of)
-        elif act == demo.END:
-            demonstration = self._plant.ask(DemonstrationApi)
-            if demonstration is not None:
-                demonstration.end()
-            self.say(self._words("demo.ended"), good=True)
-        elif act in (fault_form.BEGIN, fault_form.END):
-            await self._provoke(act, of, more)
+        elif act not in VERBS:
+            words, plant = self._words, self._plant
+            request = Request(act=act, of=of, more=more, plant=plant, words=words, say=self.say)
+            await self._acts[act].take(request)
         elif act != Verb.STOP or not self._is_stopped(of):
             await self._operate(Verb(act), of, more)
 
     def _name(self, act: str) -> str:
-        known = {demo.END: "demo.end", fault_form.BEGIN: "faults.title", fault_form.END: "faults.end"}
-        return self._words(known[act]) if act in known else self._words.of("verb", act)
-
-    async def _provoke(self, act: str, of: str, more: object) -> None:
-        """Have a fault begin at a virtual device, or end the one of this number."""
-        desk, wanted = self._plant.ask(FaultsApi), more if isinstance(more, dict) else {}
-        kind, seconds = str(wanted.get("kind", "")), wanted.get("seconds")
-        if desk is None or not (kind if act == fault_form.BEGIN else of.isdecimal()):
-            return
-        try:
-            if act == fault_form.END:
-                await run_in_threadpool(desk.end, "", int(of))
-                self.say(self._words("faults.ended"), good=True)
-                return
-            instant = {offer.kind for offer in desk.offers() if not offer.lasts}
-            lasting = float(seconds) if isinstance(seconds, int | float) and kind not in instant else None
-            begun = await run_in_threadpool(desk.begin, kind, of, lasting)
-            self.say(f"{begun.robot}: {self._words.say(begun.about)}", good=True)
-        except ArboledaError as error:
-            self.say(self._words.say(error.sentence), good=False)
+        added = None if act in VERBS else self._acts.get(act)
+        return self._words.of("verb", act) if added is None else self._words.flat.get(added.name, act)
 
     async def _submit(self, text: str) -> None:
         # The plant may look its id up in the history, and a stop must not wait for that.

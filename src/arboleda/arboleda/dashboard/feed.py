@@ -13,9 +13,10 @@ from typing import Any
 from arboleda.store.task_rows import TaskRow
 
 from .faces import Face
+from .faces.moment import Moment
 from .frames import BEAT_S, Frames, Viewer
 from .page_api import PageApi
-from .page_state import PageState
+from .page_state import PageState, nothing_added
 
 FRAMES_HZ = 10.0
 WAITING = 200  # snapshots between two frames; past that the oldest are dropped
@@ -26,8 +27,9 @@ log = logging.getLogger(__name__)
 class Feed:
     """`add` and `remove` viewers, `run` in the server's event loop. The plant's thread only appends."""
 
-    def __init__(self, plant: PageApi) -> None:
+    def __init__(self, plant: PageApi, added: Callable[[Moment], Face] = nothing_added) -> None:
         self._plant = plant
+        self._added = added
         self._snapshots: deque[tuple[float, dict[str, Any]]] = deque(maxlen=WAITING)
         self._story: PageState | None = None
         self._frames = Frames()
@@ -64,7 +66,7 @@ class Feed:
 
     def begin(self) -> None:
         """Listen to the plant; `turn` takes in its news."""
-        self._story = PageState(self._plant.layout(), self._plant.past_acts())
+        self._story = PageState(self._plant.layout(), self._plant.past_acts(), self._added)
         self._unwatch = self._plant.watch(self._tell)
         self._tell(self._plant.snapshot())
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from arboleda.web.languages import texts
 
 from .page_api import Layout
 from .tags import link, live, rows, tag, way
 from .wording import LANGUAGES, Words
+
+OF_PLANT: dict[str, Any] = {"title": "", "leave": "record.leave", "back": {}}
 
 
 def build(layout: Layout, words: Words, parts: list[str], role: str | None) -> None:
@@ -26,18 +30,19 @@ def build(layout: Layout, words: Words, parts: list[str], role: str | None) -> N
 
 
 def of_record(layout: Layout, words: Words, parts: list[str], role: str | None, *, beside: bool) -> None:
-    """Draw the header of a record, which has no stop; `beside` a running plant it links back to that."""
-    tried = bool(layout.get("tried"))
+    """Draw the header of a record, which has no stop; `beside` a running plant it links back to that. A
+    record that is none of the plant's own says in `layout["titles"]` what it is, and where it leads back to.
+    """
+    titles = layout.get("titles", OF_PLANT)
     with tag("header", classes="top"):
         with tag("div", classes="brand"):
-            tag("h1", words("make.of_draft", plant=layout["plant"]) if tried else layout["plant"])
+            tag("h1", words(titles["title"], plant=layout["plant"]) if titles["title"] else layout["plant"])
             rows("counts", [""], classes="counts")
             live("p", "sum", classes="sum")
         _tabs(words, parts)
         if beside:
-            leave, back = ("make.back", {"tab": "make"}) if tried else ("record.leave", {})
-            to = {"at": None, "task": None, "record": None, **back}
-            way(words(leave), to, classes="act record-leave")
+            to = {"at": None, "task": None, "record": None, **titles["back"]}
+            way(words(titles["leave"]), to, classes="act record-leave")
         _tools(words, role, sounds=False)
         tag("p", words("record.reading"), id="connection", role="status", data_lost=words("record.lost"))
         tag("div", id="answer", role="status", aria_live="polite")
@@ -67,7 +72,7 @@ def _stop(words: Words, label: str, does: str) -> None:
 def _tabs(words: Words, parts: list[str]) -> None:
     with tag("nav", classes="tabs", aria_label=words("page.parts")):
         for name in parts:
-            link(words(f"tab.{name}"), tab=name, classes="tab", data_tab=name)
+            link(words.of("tab", name), tab=name, classes="tab", data_tab=name)
 
 
 def _tools(words: Words, role: str | None, *, sounds: bool = True) -> None:

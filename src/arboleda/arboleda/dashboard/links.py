@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from . import panel, versions
+from . import panel
 from .cell_filter import cell_filter
 from .page_api import Layout
+from .page_part import Place, Put, put_nothing
 from .tags import live, rows, tag
 from .wording import Words
 
 COLUMNS = ("robot", "kind", "presence", "telemetry", "ready", "homed", "facts", "command", "boot", "refused")
 
 
-def build(layout: Layout, words: Words) -> None:
+def build(layout: Layout, words: Words, put: Put = put_nothing) -> None:
     with tag("div", classes="box"):
         tag("h2", words("tab.links"))
         with tag("div", classes="facts"):
@@ -19,12 +20,7 @@ def build(layout: Layout, words: Words) -> None:
                 live("p", key, classes="fact")
         cell_filter("links", layout, words)
         rows("links", [words(f"column.{name}") for name in COLUMNS], classes="links")
-
-
-def with_versions(layout: Layout, words: Words) -> None:
-    """Draw the links, and the versions of the plant's files below them."""
-    build(layout, words)
-    versions.build(words)
+    put(Place.LINKS)
 
 
 def of_record(layout: Layout, words: Words) -> None:

@@ -3,154 +3,112 @@
 from __future__ import annotations
 
 import time
-from functools import cached_property
-from typing import TYPE_CHECKING, Annotated
+from functools import partial
+from typing import Annotated
 
 from fastapi import FastAPI, Query, Request
 from fastapi.concurrency import run_in_threadpool
-from fastapi.responses import JSONResponse, Response
+from fastapi.responses import JSONResponse
 
-from arboleda.model.packages import FLEET
-from arboleda.oee.rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
-from arboleda.web.access.auth import Role
-from arboleda.web.desks.make import MakeApi
-from arboleda.web.desks.oee import OeeApi
-from arboleda.web.desks.versions import VersionsApi
-from arboleda.web.missing import missing
 
-from . import (
-    demo,
-    fault_form,
-    findings_route,
-    header,
-    links,
-    make,
-    panel,
-    proof,
-    reports,
-    shell,
-    tasks,
-    teach_panel,
-    timeline,
-    tree_editor,
-    trees,
-)
+from . import header, links, missing_packages, panel, shell, tasks, timeline, trees
+from .added import AddedParts, LeaveOut, LeftOut
+from .asset_files import own
 from .body import Parts, body
 from .desk import Desk
-from .faces import history, oee, versions
+from .faces import history
 from .feed import Feed
 from .frames import Background
 from .page_api import Layout, PageApi
+from .page_part import Place, Put
 from .past import page as past_page
 from .past.frame_queue import BESIDE_S, FrameQueue
-from .past.side import PastSide
+from .past.other import LastOther
 from .past.stills import Stills
 from .shell import is_operator, language_of, role_shown
 from .toolkit import Client, app, ui
 from .twin import pane, window
 from .twin.show import Show
-from .wording import words
+from .wording import Words, words
 
-if TYPE_CHECKING:
-    from .past.tried import TriedPlants
-
-PARTS: Parts = {
-    "cells": trees.build,
-    "twin": pane.build,
-    "tasks": tasks.build,
-    "panel": panel.build,
-    "teach": teach_panel.build,
-    "make": make.build,
-    "draw": tree_editor.build,
-    "links": links.with_versions,
-    "events": timeline.build,
-}
-FROM_CARDS = ("teach",)
-"""Parts that no tab of the header leads to, but the card of a cell."""
-OF_OPERATORS = ("make", "teach")
+OWN = ("cells", "twin", "tasks", "panel", "links", "events")
 Asked = Annotated[str, Query(alias="words", max_length=100)]
-Hours = Annotated[float, Query(gt=0, le=1000)]
 Most = Annotated[int, Query(ge=1, le=200)]
 
 
-def mount(server: FastAPI, plant: PageApi) -> None:
-    """Put the page at `/` of this app; StartError where this process shows a page already."""
-    feed, show = Feed(plant), Show(plant)
+def mount(server: FastAPI, plant: PageApi, leave_out: LeaveOut | None = None) -> None:
+    """Put the page at `/` of this app; StartError where this process shows a page already. `leave_out` is
+    told of a package that breaks, and is called in the server's event loop, too."""
+    added = AddedParts(leave_out)
+    feed, show = Feed(plant, added.face), Show(plant)
     stills, turns = Stills(), FrameQueue(BESIDE_S)
-    tried = Tried(plant)
-    shown: dict[tuple[str, str | None], tuple[Layout, str]] = {}
+    others = {name: LastOther(partial(each.side, plant)) for name, each in added.records.items()}
+    shown: dict[tuple[object, ...], tuple[Layout, Parts, str]] = {}
 
-    def made(layout: Layout, language: str, role: str | None) -> str:
-        """The HTML, made anew once a version has changed what the plant is."""
-        known = shown.get((language, role))
-        if known is None or known[0] is not layout:
-            known = shown[language, role] = layout, drawn(layout, language, role)
-        return known[1]
-
-    def drawn(layout: Layout, language: str, role: str | None) -> str:
-        wording, parts = words(language), parts_for(role)
-
-        def top(names: list[str]) -> None:
-            header.build(layout, wording, [name for name in names if name not in FROM_CARDS], role)
-            if layout.get("demo"):
-                demo.build(wording)
-            if role != Role.VIEWER.value:
-                fault_form.drawer(layout, wording)
-
-        return body(layout, wording, parts, header=top)
+    def made(layout: Layout, language: str, role: str | None) -> tuple[Parts, str]:
+        """The parts and their HTML, made anew once a version has changed what the plant is, or a package was
+        left out."""
+        of = (language, role, *added.packages)
+        if of not in shown or shown[of][0] is not layout:
+            shown[of] = (layout, *drawn(added, plant, layout, words(language), role))
+        return shown[of][1:]
 
     def build(request: Request, client: Client) -> None:
-        if past_page.is_of_draft(request) and is_operator(request):
-            past_page.open_page(client, *tried.last(), turns, request, beside=True)
-            return
         if past_page.is_of_record(request):
-            past_page.open_page(client, plant, stills, turns, request, beside=True)
+            other = others.get(past_page.record_named(request)) if is_operator(request) else None
+            side, drawings = (plant, stills) if other is None else other.last()
+            past_page.open_page(client, side, drawings, turns, request, beside=True)
             return
         wording, layout = words(language_of(request)), plant.layout()
         window.open_window(client, show)
-        open_page(client, Desk(client, plant, feed, wording), feed)
-        html = made(layout, wording.language, role_shown(request))
-        shell.fill(layout, wording, PARTS, script="page.js", made=html)
+        open_page(client, Desk(client, plant, feed, wording, added.acts), feed)
+        parts, html = made(layout, wording.language, role_shown(request))
+        shell.fill(layout, wording, parts, script=own("page.js"), made=html, added=added.assets)
 
-    window.serve(server, plant, show, stills, tried=tried.last)
+    scenes = {
+        name: window.OtherScene(last=others[name].last, may=each.may) for name, each in added.records.items()
+    }
+    window.serve(server, plant, show, stills, others=scenes)
     _serve_tasks(server, plant, feed)
-    reports.serve(server, plant)
-    proof.serve(server, plant)
-    findings_route.serve(server, plant)
-    shell.serve(server, plant.layout(), build)
+    added.serve(server, plant)
+    shell.serve(server, plant.layout(), build, added.assets)
     _keep_running(feed, show)
 
 
-def parts_for(role: str | None) -> Parts:
-    """The parts of the page of a role: only operators make or teach something."""
+def drawn(
+    added: AddedParts, plant: PageApi, layout: Layout, wording: Words, role: str | None
+) -> tuple[Parts, str]:
+    """The parts of the page for a role, and their HTML; without a package that breaks."""
+    drawing = added.drawing(plant, layout, wording, role)
+    parts = all_parts(drawing.parts, drawing.put)
+
+    def top(names: list[str]) -> None:
+        header.build(layout, wording, [name for name in names if name not in drawing.without_tab], role)
+        drawing.put(Place.TOP)
+
+    try:
+        return parts, body(layout, wording, parts, header=top)
+    except LeftOut:
+        return drawn(added, plant, layout, wording, role)
+
+
+def all_parts(added: Parts, put: Put) -> Parts:
+    """The parts in their order; no package takes the place of one of the runner's."""
+
+    def last(layout: Layout, wording: Words) -> None:
+        links.build(layout, wording, put)
+        missing_packages.build(wording)
+
     return {
-        name: part
-        for name, part in PARTS.items()
-        if name not in OF_OPERATORS or role in (None, Role.OPERATOR.value)
+        "cells": partial(trees.build, put=put),
+        "twin": partial(pane.build, put=put),
+        "tasks": partial(tasks.build, put=put),
+        "panel": panel.build,
+        **{name: build for name, build in added.items() if name not in OWN},
+        "links": last,
+        "events": timeline.build,
     }
-
-
-class Tried:
-    """Tried: the last tryout of the draft, with the twin of its own at moments of it."""
-
-    def __init__(self, plant: PageApi) -> None:
-        self._plant = plant
-        self._known: tuple[PastSide, Stills] | None = None
-
-    def last(self) -> tuple[PastSide, Stills]:
-        """The tryout and its drawings; an ArboledaError says that there is none."""
-        desk = self._plant.ask(MakeApi)
-        side = self._plants.last(None if desk is None else desk.tried())
-        if self._known is None or self._known[0] is not side:
-            self._known = side, Stills()
-        return self._known
-
-    @cached_property
-    def _plants(self) -> TriedPlants:
-        from .past.tried import TriedPlants  # slow to load, and only needed for a record
-
-        return TriedPlants()
 
 
 def _serve_tasks(server: FastAPI, plant: PageApi, feed: Feed) -> None:
@@ -167,23 +125,6 @@ def _serve_tasks(server: FastAPI, plant: PageApi, feed: Feed) -> None:
         rows = await run_in_threadpool(plant.history, query)
         return JSONResponse(history.face(rows, words(language_of(request)), time.time()))
 
-    async def figures(request: Request, hours: Hours = 24.0) -> JSONResponse:
-        query = OeeQuery(since_s=time.time() - hours * 3600)
-        desk = plant.ask(OeeApi)
-        if desk is None:
-            raise missing(FLEET)
-        rows = await run_in_threadpool(desk.oee, query)
-        return JSONResponse(oee.face(rows, words(language_of(request))))
-
-    async def versions_kept(request: Request) -> Response:
-        desk = plant.ask(VersionsApi)
-        listed = None if desk is None else await run_in_threadpool(desk.listed)
-        if listed is None:
-            return Response(status_code=404)
-        return JSONResponse(versions.face(listed, words(language_of(request))))
-
-    server.add_api_route("/versions.json", versions_kept, include_in_schema=False)
-    server.add_api_route("/oee.json", figures, include_in_schema=False)
     server.add_api_route("/task.json", one_task, include_in_schema=False)
     server.add_api_route("/history.json", kept, include_in_schema=False)
 

@@ -19,8 +19,7 @@ class PageApi(PlantApi, Protocol):
     """PlantApi with what only the page shows; all data is plain and never changed by the page."""
 
     def layout(self) -> Layout:
-        """`views.view.layout`: what never changes. With `recorded` there is a `past`, with `demo` a
-        demonstration, `faults` are what can be provoked at virtual devices {robot, kind, about, lasts}."""
+        """`views.view.layout`: what never changes. With `recorded` there is a `past`."""
 
     def positions(self) -> dict[str, Any]:
         """`views.twin_view.positions` as of now, and `now` on the plant's clock."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import takewhile
 from typing import Any
 
@@ -16,11 +17,20 @@ from .wording import words
 Row = dict[str, Any]
 
 
-class PageState:
-    """Trees and events of a plant; pure: `see` each snapshot in order, then ask for a `face`."""
+def nothing_added(_: Moment) -> Face:
+    """Face of a page to which packages add nothing."""
+    return {}
 
-    def __init__(self, layout: Row, past_acts: list[Row]) -> None:
+
+class PageState:
+    """Trees and events of a plant; pure: `see` each snapshot in order, then ask for a `face`, which has what
+    is `added` to it."""
+
+    def __init__(
+        self, layout: Row, past_acts: list[Row], added: Callable[[Moment], Face] = nothing_added
+    ) -> None:
         self.layout = layout
+        self._added = added
         self.chronicle = Chronicle(past_acts)
         self.trees: dict[str, TreeMemory] = {cell["name"]: TreeMemory() for cell in layout["cells"]}
         self.ended: dict[str, EndedTree] = {}  # by task, while the snapshot shows it
@@ -54,7 +64,7 @@ class PageState:
     def face(self, language: str, links: Row) -> Face:
         """The contents of a page in this language; empty before the first snapshot."""
         moment = self._moment(language, links)
-        return {} if moment is None else whole_page.face(moment)
+        return {} if moment is None else self._added(moment) | whole_page.face(moment)
 
     def task_face(self, id: str, language: str, kept: TaskRow | None = None) -> Face:
         """The page of one task in this language, known or not; empty before the first snapshot.

@@ -1,12 +1,9 @@
-"""The shell of every page: its head, a header, its parts, and the address of its files."""
+"""The shell of every page: its head, a header, and its parts."""
 
 from __future__ import annotations
 
-import hashlib
 import json
-from collections.abc import Callable
-from functools import cache
-from importlib import resources
+from collections.abc import Callable, Sequence
 
 from fastapi import FastAPI, Request
 
@@ -15,6 +12,7 @@ from arboleda.web.access.auth import Role
 from arboleda.web.api import refuse
 from arboleda.web.languages import spoken
 
+from .asset_files import Assets, own, own_address, own_folder
 from .body import Parts, parts_of, script_data
 from .page_api import Layout
 from .page_budget import PageBudget
@@ -22,21 +20,27 @@ from .toolkit import Client, app, ui
 from .wording import Words
 
 RECONNECT_S = 30.0
-STYLES = ("page", "twin", "record", "draw", "teach", "make")
+STYLES = ("page", "twin", "record")
 LANGUAGE_COOKIE = "arboleda_language"
 _here: list[FastAPI] = []
 
 
-def serve(server: FastAPI, layout: Layout, build: Callable[[Request, Client], None]) -> None:
-    """Put the page that `build` makes at `/` of this app, after all else that it serves; StartError where
-    this process shows a page already."""
+def serve(
+    server: FastAPI,
+    layout: Layout,
+    build: Callable[[Request, Client], None],
+    added: Sequence[Assets] = (),
+) -> None:
+    """Put the page that `build` makes at `/` of this app, after all else that it serves, with the files that
+    are `added` to the page's own; StartError where this process shows a page already."""
     if _here:
         raise StartError(
             "This process shows the page of another plant already; NiceGUI has one page a process."
         )
     _here.append(server)
     unopened = PageBudget()
-    app.add_static_files(assets(), str(resources.files(__package__).joinpath("assets")), max_cache_age=3600)
+    for address, folder in [*((each.address, each.folder) for each in added), (own_address(), own_folder())]:
+        app.add_static_files(address, folder, max_cache_age=3600)
 
     @ui.page("/", title=f"{layout['plant']} · Arboleda")
     def page(request: Request, client: Client) -> None:
@@ -53,7 +57,7 @@ def serve(server: FastAPI, layout: Layout, build: Callable[[Request, Client], No
         binding_refresh_interval=None,
         reconnect_timeout=RECONNECT_S,
         show_welcome_message=False,
-        favicon=str(resources.files(__package__) / "assets" / "tree.svg"),
+        favicon=str(own_folder() / "tree.svg"),
     )
 
 
@@ -74,23 +78,28 @@ def is_operator(request: Request) -> bool:
     return bool(request.scope["arboleda.role"] is Role.OPERATOR)
 
 
-def fill(layout: Layout, wording: Words, parts: Parts, *, script: str, made: str) -> None:
-    """Fill the page of one browser with what was `made` of its parts; `script` is its entry."""
+def fill(
+    layout: Layout,
+    wording: Words,
+    parts: Parts,
+    *,
+    script: str,
+    made: str,
+    added: Sequence[Assets] = (),
+) -> None:
+    """Fill the page of one browser with what was `made` of its parts; `script` is its entry's address."""
     shown = parts_of(parts, layout)
-    ui.add_head_html(head(wording, script, *(["twin.js"] if "twin" in shown else [])))
+    ui.add_head_html(head(wording, script, *([own("twin.js")] if "twin" in shown else []), added=added))
     ui.html(made, sanitize=False).classes("app")
 
 
-def head(wording: Words, *scripts: str) -> str:
+def head(wording: Words, *scripts: str, added: Sequence[Assets] = ()) -> str:
     """The page's head: its styles, its scripts, and the few words that these use themselves."""
-    data = json.dumps(script_data(wording)).replace("<", "\\u003c")
-    styles = "".join(f'<link rel="stylesheet" href="{assets()}/{name}.css">' for name in STYLES)
-    modules = "".join(f'<script type="module" src="{assets()}/{name}"></script>' for name in scripts)
-    return f"{styles}<script>window.arboledaPage = {data};</script>{modules}"
-
-
-@cache
-def assets() -> str:
-    """The address of the page's files: another one whenever one has changed, as browsers keep them."""
-    files = sorted(resources.files(__package__).joinpath("assets").iterdir(), key=lambda file: file.name)
-    return f"/arboleda/{hashlib.sha256(b''.join(file.read_bytes() for file in files)).hexdigest()[:12]}"
+    loaded = [each.of(each.script) for each in added if each.script]
+    data = json.dumps(script_data(wording) | {"added": loaded}).replace("<", "\\u003c")
+    sheets = [own(f"{name}.css") for name in STYLES]
+    sheets += [each.of(f"{name}.css") for each in added for name in each.styles]
+    styles = "".join(f'<link rel="stylesheet" href="{sheet}">' for sheet in sheets)
+    early = "".join(f'<link rel="modulepreload" href="{each}">' for each in loaded)
+    modules = "".join(f'<script type="module" src="{script}"></script>' for script in scripts)
+    return f"{styles}{early}<script>window.arboledaPage = {data};</script>{modules}"

@@ -85,9 +85,10 @@ def way(label: str | None, there: dict[str, str | None], *, classes: str = "", *
     return tag("a", label, classes=classes, href=href, data_go=json.dumps(there), **attributes)
 
 
-def report(key: str) -> Tag:
-    """A link to the report of the task whose id is the state of `text/<key>`; the script leads it there."""
-    return live("a", key, classes="act to-report", target="_blank", data_report="")
+def of_task(key: str, address: str, *, classes: str = "") -> Tag:
+    """A link to what this address has on the task whose id is the state of `text/<key>`; the script leads it
+    there."""
+    return live("a", key, classes=classes, target="_blank", data_of_task=address)
 
 
 def act_button(label: str, act: str, of: str, does: str, *, classes: str = "", **attributes: Any) -> Tag:

@@ -5,22 +5,21 @@ from __future__ import annotations
 from . import task_form
 from .cell_filter import cell_filter
 from .page_api import Layout
-from .tags import link, live, report, rows, tag, way
+from .page_part import Place, Put, put_nothing
+from .tags import link, live, rows, tag, way
 from .trees import answers_table, zooms
 from .wording import Words
 
 KEPT = ("state", "text", "accepted", "asked_by", "ended", "took", "attempts", "why", "id")
-OEE = ("cell", "oee", "availability", "performance", "quality", "planned", "counted", "missing")
-HOURS = (1, 8, 24, 168)
 COLUMNS = ("state", "text", "started", "ended", "took", "why", "id", "acts")
 
 
-def build(layout: Layout, words: Words) -> None:
+def build(layout: Layout, words: Words, put: Put = put_nothing) -> None:
     task_form.build(layout, words)
     with tag("div", classes="lists"):
-        _one(layout, words)
+        _one(layout, words, put)
         _list(layout, words, COLUMNS)
-        _oee(words)
+        put(Place.TASKS)
         _history(words)
 
 
@@ -48,22 +47,6 @@ def _list(layout: Layout, words: Words, names: tuple[str, ...]) -> None:
         rows("tasks", columns, empty=words("tasks.none"), classes="tasks")
 
 
-def _oee(words: Words) -> None:
-    """Draw the table of the cells' OEE; the script fills it once it is looked at."""
-    with tag("div", classes="box"):
-        with tag("div", classes="box-head"):
-            tag("h2", words("oee.title"))
-            with tag("label", classes="search"):
-                tag("span", words("oee.hours"))
-                with tag("select", id="oee-hours"):
-                    for hours in HOURS:
-                        chosen = {"selected": "true"} if hours == 24 else {}
-                        tag("option", words(f"oee.last_{hours}"), value=str(hours), **chosen)
-        columns = [words(f"column.{name}") for name in OEE]
-        rows("oee", columns, empty=words("oee.none"), classes="oee")
-        tag("p", words("oee.about"), classes="hint")
-
-
 def _history(words: Words) -> None:
     """Draw the table of the tasks of all starts; the script fills it once it is looked at."""
     with tag("div", classes="box"):
@@ -81,7 +64,7 @@ def _history(words: Words) -> None:
         tag("button", words("history.more"), id="history-more", type="button", classes="act", hidden="true")
 
 
-def _one(layout: Layout, words: Words) -> None:
+def _one(layout: Layout, words: Words, put: Put = put_nothing) -> None:
     """Draw the page of the task that the address names; the script fills it."""
     with tag("article", id="task", classes="box", hidden="true"):
         with tag("div", classes="box-head"):
@@ -95,7 +78,7 @@ def _one(layout: Layout, words: Words) -> None:
         live("p", "task.note", classes="note")
         if layout.get("recorded"):
             way(None, {"at": "task"}, classes="to-record", data_live="task.record")
-            report("task.report")
+        put(Place.TASK)
         with tag("div", classes="tree-box"):
             with tag("div", classes="tree-tools"):
                 zooms(words)

@@ -7,22 +7,22 @@ from typing import Any
 from arboleda.views.view import devices_once
 
 from .page_api import Layout
-from .tags import link, live, report, rows, tag, way
+from .page_part import Place, Put, put_nothing
+from .tags import link, live, rows, tag, way
 from .wording import Words
 
 FEW, CROWD = 4, 6  # cells: so few have all their trees on a wall screen, a crowd has small cards
 
 
-def build(layout: Layout, words: Words) -> None:
+def build(layout: Layout, words: Words, put: Put = put_nothing) -> None:
     once = [*devices_once(layout["cells"])]
     rows("for_all", [""], classes="for-all")
     with tag("div", classes=f"cells {_size(len(layout['cells']))}"):
         for cell in layout["cells"]:
             with tag("article", classes="cell", data_cell=cell["name"]):
                 _card(cell, [device for of, device in once if of == cell["name"]], words)
-                if layout.get("recorded"):
-                    report(f"{cell['name']}.report")
-                tree_box(cell, words)
+                put(Place.CARD, cell["name"])
+                tree_box(cell, words, put)
                 with tag("div", classes="changes"):
                     tag("h2", words("cells.changes", cell=cell["name"]))
                     if layout.get("recorded"):
@@ -38,7 +38,7 @@ def _size(cells: int) -> str:
     return "few" if cells <= FEW else "many"
 
 
-def beside(layout: Layout, words: Words) -> None:
+def beside(layout: Layout, words: Words, put: Put = put_nothing) -> None:
     """Draw the tree of the chosen cell beside another view of that cell."""
     for cell in layout["cells"]:
         name = cell["name"]
@@ -47,7 +47,7 @@ def beside(layout: Layout, words: Words) -> None:
                 tag("h2", name)
                 live("span", f"{name}.state", classes="pill")
             live("p", f"{name}.task", classes="task")
-            tree_box(cell, words)
+            tree_box(cell, words, put)
 
 
 def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words) -> None:
@@ -97,14 +97,14 @@ def answers_table(name: str, words: Words) -> None:
     rows(name, [words(f"column.{each}") for each in ("by", "question", "answer")], classes="heard")
 
 
-def tree_box(layout: dict[str, Any], words: Words) -> None:
+def tree_box(layout: dict[str, Any], words: Words, put: Put) -> None:
     """Draw the box of a cell's tree; the offers of an idle cell stand above it."""
     cell = layout["name"]
     with tag("div", classes="tree-box"):
         with tag("div", classes="tree-tools"):
             live("span", f"{cell}.feedback", classes="feedback")
             _offer(cell, classes="act offer")
-            _teach(cell, words)
+            put(Place.TREE, cell)
             zooms(words)
         with tag("div", classes="empty"):
             tag("p", words("cells.no_tree"))
@@ -112,16 +112,12 @@ def tree_box(layout: dict[str, Any], words: Words) -> None:
                 welcome = words("cells.welcome", text=recipe["example"], form=recipe["form"])
                 tag("p", welcome, classes="example")
             _offer(cell, classes="act primary offer")
-            _teach(cell, words)
+            put(Place.TREE, cell)
         tag("div", classes="tree", data_tree=cell, role="tree", aria_label=words("cells.tree", cell=cell))
 
 
 def _offer(cell: str, classes: str) -> None:
     link(None, tab="tasks", cell=cell, classes=classes, data_live=f"{cell}.offer")
-
-
-def _teach(cell: str, words: Words) -> None:
-    link(words("teach.open"), tab="teach", cell=cell, classes="act to-teach")
 
 
 def zooms(words: Words) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from fastapi import FastAPI
 
-from arboleda.dashboard.site import page
+from arboleda.dashboard.fleet.site import page
 from arboleda.runtime import tokens
 from arboleda.runtime.endpoints import Find
 from arboleda.runtime.waiting import interruptible, until, until_interrupted

@@ -8,8 +8,8 @@ from collections import defaultdict
 from collections.abc import Iterator
 from typing import Any
 
+from arboleda.dashboard.fleet.site.side import LastSeenPlant, RequestOutcome
 from arboleda.dashboard.frames import ended
-from arboleda.dashboard.site.side import LastSeenPlant, RequestOutcome
 from arboleda.model.errors import ArboledaError
 from arboleda.model.sentence import BOTH, Phrase, Sentence
 from arboleda.runtime.endpoints import Find, Place
@@ -90,7 +90,7 @@ class WatchedPlant:
 
 
 class Site:
-    """Site: the plants as `arboleda.dashboard.site.side.SiteSide`."""
+    """Site: the plants as `arboleda.dashboard.fleet.site.side.SiteSide`."""
 
     def __init__(self, find: Find) -> None:
         self._find = find

@@ -35,7 +35,7 @@ from . import limits, stream
 from .access import login
 from .access.auth import SUBMIT, Forbidden, require
 from .limits import LATER_S
-from .missing import refuse_path
+from .missing import missing, package_missing
 from .plant_api import PlantApi
 from .request import METRICS, is_api
 from .routes import LeaveOut, installed
@@ -70,13 +70,15 @@ class NotFound(BaseRoute):
         if scope["type"] != "http":
             return Match.NONE, {}
         methods = self._methods(scope)
-        ours = methods or is_api(scope["path"])
+        ours = methods or is_api(scope["path"]) or package_missing(scope["path"], self._packages)
         return (Match.FULL if ours else Match.NONE), {"arboleda.methods": methods}
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         methods = ", ".join(scope["arboleda.methods"])
         if not methods:
-            refuse_path(scope["path"], self._packages)
+            package = package_missing(scope["path"], self._packages)
+            if package is not None:
+                raise missing(package)
             raise HTTPException(404, "There is nothing here; /api/docs lists what there is.")
         raise HTTPException(405, f"Here one can {methods} only.", {"allow": methods})
 

@@ -8,9 +8,12 @@ from collections.abc import Collection
 from arboleda.model.packages import FLEET, MAKE, MISSING, PROOFS, THIS, PackageMissing
 
 PATHS = {
-    FLEET: re.compile(r"/api/oee"),
-    MAKE: re.compile(r"/api/(draft|make|proposals|teach|trees|versions)(/.*)?|/api/assistants/tasks"),
-    PROOFS: re.compile(r"/api/faults(/.*)?|/api/tasks/[^/]+/report"),
+    FLEET: re.compile(r"/api/oee|/oee\.json"),
+    MAKE: re.compile(
+        r"/api/(draft|make|proposals|teach|trees|versions)(/.*)?|/api/assistants/tasks"
+        r"|/(findings|versions)\.json|/proof"
+    ),
+    PROOFS: re.compile(r"/api/faults(/.*)?|/api/tasks/[^/]+/report|/report"),
 }
 
 
@@ -19,8 +22,7 @@ def missing(package: str) -> PackageMissing:
     return PackageMissing(MISSING(what=THIS(), package=package))
 
 
-def refuse_path(path: str, installed: Collection[str]) -> None:
-    """Raise PackageMissing for a path of a package that is not among the installed ones."""
-    for package, paths in PATHS.items():
-        if package not in installed and paths.fullmatch(path):
-            raise missing(package)
+def package_missing(path: str, installed: Collection[str]) -> str | None:
+    """The package of a path, if it is not among the installed ones."""
+    lacking = (package for package in PATHS if package not in installed)
+    return next((package for package in lacking if PATHS[package].fullmatch(path)), None)

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from arboleda.dashboard import fault_form, header, links, panel, tasks, timeline, trees
+from arboleda.dashboard import header, links, panel, tasks, timeline, trees
 from arboleda.dashboard.body import Parts, body, script_data
 from arboleda.dashboard.page_api import Layout
 from arboleda.dashboard.tags import rows, tag
 from arboleda.dashboard.twin import pane
 from arboleda.dashboard.wording import Words, words
 from arboleda.web.languages import texts
+from arboleda_proofs.page import fault_form
 from arboleda_proofs.simulator.mishaps import MISHAPS
 
 PARTS: Parts = {

@@ -33,11 +33,11 @@ function applyText(name, [text, state]) {
   for (const element of document.querySelectorAll(`[data-live="${CSS.escape(name)}"]`)) {
     if (element.textContent !== text) element.textContent = text;
     element.dataset.s = state;
-    if (element.dataset.report !== undefined) element.href = reportOf(state);
+    if (element.dataset.ofTask) element.href = ofTask(element.dataset.ofTask, state);
   }
 }
 
-const reportOf = (task) => `/report?${new URLSearchParams({ task, lang: window.arboledaPage.language })}`;
+const ofTask = (path, task) => `${path}?${new URLSearchParams({ task, lang: window.arboledaPage.language })}`;
 
 function applyBar(name, share) {
   for (const element of document.querySelectorAll(`[data-bar="${CSS.escape(name)}"]`)) {

@@ -1,24 +1,17 @@
 // The behaviour of a running plant's page: where one may be, scopes, and whether news still comes.
 
 import * as acts from "./acts.js";
-import * as demo from "./demo.js";
-import * as draw from "./draw.js";
-import * as faults from "./faults.js";
 import * as form from "./form.js";
 import * as history from "./history.js";
 import * as frames from "./frames.js";
 import { onChange } from "./live.js";
-import * as make from "./make.js";
-import * as oee from "./oee.js";
 import * as place from "./place.js";
 import * as question from "./question.js";
 import * as scope from "./scope.js";
 import * as shell from "./shell.js";
 import * as sound from "./sound.js";
 import * as task from "./task.js";
-import * as teach from "./teach.js";
 import * as tree from "./tree.js";
-import * as versions from "./versions.js";
 
 window.arboleda = {
   live(number, patch) {
@@ -37,14 +30,28 @@ function arrive(there) {
   scope.arrive(cell);
   form.offer(cell);
   task.show(named);
-  if (tab === "tasks") versions.openAnew(), history.show(), oee.show();
-  if (tab === "draw") draw.show(cell);
-  if (tab === "teach") teach.show(cell);
-  else teach.leave();
-  make.show(tab === "make");
-  if (tab === "links") versions.show();
+  if (tab === "tasks") history.show();
+  for (const each of added) attempt(() => each.arrive?.(there));
   tree.close();
   tree.refit();
+}
+
+// Modules of packages, in the order of their names. They begin after the page itself: a stop does not wait for them.
+const loading = Promise.all(window.arboledaPage.added.map((address) => import(address).catch((error) => (console.error(error), null))));
+let added = [];
+
+async function add() {
+  added = (await loading).filter(Boolean);
+  for (const each of added) attempt(() => each.start()), attempt(() => each.arrive?.(place.here()));
+}
+
+// A module that breaks keeps none of the others from going on.
+async function attempt(act) {
+  try {
+    await act();
+  } catch (error) {
+    console.error(error);
+  }
 }
 
 let begun = false;
@@ -54,17 +61,10 @@ function begin() {
   begun = true;
   shell.start();
   acts.start();
-  demo.start();
-  faults.start();
-  draw.start();
-  make.start();
   form.start();
   task.start();
-  teach.start();
   history.start();
-  oee.start();
   tree.start();
-  versions.start();
   scope.start();
   onChange(shell.alarm);
   sound.start();
@@ -74,4 +74,4 @@ function begin() {
   frames.start();
 }
 
-shell.whenReady(begin);
+shell.whenReady(() => (begin(), add()));

@@ -80,7 +80,7 @@ async function make() {
 }
 
 async function fetchScene() {
-  const answer = await fetch(`/twin/scene.json${new URLSearchParams(location.search).get("record") === "draft" ? "?record=draft" : ""}`);
+  const answer = await fetch(`/twin/scene.json${here().record ? `?${new URLSearchParams({ record: here().record })}` : ""}`);
   const said = await answer.json();
   if (!answer.ok) throw new Error(words().twin_failed.replace("{why}", said.sentence));
   return said;

@@ -59,16 +59,9 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
         f"text/{name}.queue": [_queue(moment, cell), "paused" if cell["paused"] else ""],
         f"text/{name}.offer": [_offered(words, cell, stands), ""],
         f"text/{name}.act": _act(moment, cell),
-        f"text/{name}.taught": [_taught(words, cell), stands],
         f"text/{name}.trouble": [trouble(moment, cell), state],
         f"bar/{name}.progress": progress(memory.rows, memory.statuses) if cell["task"] else None,
     }
-
-
-def _taught(words: Words, cell: Row) -> str:
-    """The person who teaches a cell; records of before that know of nobody."""
-    teaching = cell.get("teaching")
-    return words("teach.by", teacher=teaching["teacher"]) if teaching else ""
 
 
 def _devices(moment: Moment, name: str, devices: list[Row], robots: dict[str, Row]) -> Face:

@@ -23,7 +23,6 @@ def face(moment: Moment) -> Face:
         "text/standbys": _standbys(moment),
         "text/memory": memory(moment),
         "text/strays": _strays(moment),
-        "text/demo": ["", "on" if moment.links.get("demo") else "off"],
         "list/standbys": [[each["host"], each["url"]] for each in moment.links["standbys"] if each["url"]],
         "rows/links": [robot["name"] for robot in moment.snapshot["robots"]],
     }

@@ -7,12 +7,11 @@ from typing import Any
 
 from arboleda.views.view import standing, waited_for
 
-from . import Face, cells, faults, links, panel, part_places, questions, stop, tasks, timeline
+from . import Face, cells, links, panel, part_places, questions, stop, tasks, timeline
 from .moment import Moment
 
 PARTS = (
     stop.face,
-    faults.face,
     cells.face,
     part_places.face,
     questions.face,

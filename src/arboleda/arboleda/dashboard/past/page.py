@@ -7,6 +7,7 @@ import re
 from fastapi import FastAPI, Request
 
 from .. import header, links, shell, tasks, timeline, trees
+from ..asset_files import own
 from ..body import Parts, body
 from ..toolkit import Client, ui
 from ..twin import pane, window
@@ -18,7 +19,6 @@ from .stills import Stills
 from .visitor import Arrival, Visitor
 
 KEY, OF_TASK, START = "at", "task", "record"  # keys of the page's address
-DRAFT = "draft"  # in the place of a start
 EPOCH = re.compile(r"[0-9]{1,10}", re.ASCII)
 PARTS: Parts = {
     "cells": trees.build,
@@ -34,9 +34,9 @@ def is_of_record(request: Request) -> bool:
     return KEY in request.query_params
 
 
-def is_of_draft(request: Request) -> bool:
-    """True if the address is one of the last tryout of the draft."""
-    return is_of_record(request) and request.query_params.get(START) == DRAFT
+def record_named(request: Request) -> str:
+    """The name of the record that the address names in the place of a start, "" for none."""
+    return request.query_params.get(START, "") if is_of_record(request) else ""
 
 
 def mount(server: FastAPI, side: PastSide) -> None:
@@ -75,7 +75,7 @@ def open_page(
         header=lambda parts: header.of_record(layout, wording, parts, role, beside=beside),
         footer=lambda: bar.build(layout, wording),
     )
-    shell.fill(layout, wording, PARTS, script="record.js", made=made)
+    shell.fill(layout, wording, PARTS, script=own("record.js"), made=made)
 
 
 def arrival(request: Request) -> Arrival:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..page_api import Layout
+from ..page_part import Put, put_nothing
 from ..tags import tag
 from ..trees import beside
 from ..wording import Words
@@ -11,7 +12,7 @@ TOOLS = {"reset": "⌂", "top": "▦", "in": "+", "out": "−"}  # noqa: RUF001 
 KINDS = ("measured", "estimated", "stale", "unknown", "goal", "part")
 
 
-def build(layout: Layout, words: Words) -> None:
+def build(layout: Layout, words: Words, put: Put = put_nothing) -> None:
     with tag("div", classes="box twin"):
         with tag("div", classes="box-head"):
             tag("h2", words("tab.twin"))
@@ -21,7 +22,7 @@ def build(layout: Layout, words: Words) -> None:
             tag("p", words("twin.loading"), id="twin-note", role="status", data_flat=words("twin.flat"))
         _legend(layout, words)
         tag("ul", id="twin-robots", classes="twin-robots", aria_label=words("twin.robots"))
-    beside(layout, words)
+    beside(layout, words, put)
 
 
 def _cells(layout: Layout, words: Words) -> None:

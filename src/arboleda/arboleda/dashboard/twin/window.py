@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from fastapi import FastAPI, Request, Response
@@ -18,7 +19,6 @@ from .show import Show
 from .twin import Twin
 
 SCENE = "/twin/scene.json"
-OF_DRAFT, MAY = "draft", "looking at what was tried of a draft"
 EVENT = "arboleda-twin"
 LOOK, LEAVE, DRAWN = "look", "leave", "drawn"
 
@@ -75,19 +75,28 @@ class TwinOpening(Protocol):
     def open(self, twin: Twin) -> None: ...
 
 
-Tried = Callable[[], tuple[DrawablePlant, TwinOpening]]
+@dataclass(frozen=True, kw_only=True)
+class OtherScene:
+    """Scene of a record that is none of the plant's own, with what shows it; `may` is what only operators
+    may."""
+
+    last: Callable[[], tuple[DrawablePlant, TwinOpening]]
+    may: str
 
 
-def serve(server: FastAPI, plant: DrawablePlant, *shows: TwinOpening, tried: Tried | None = None) -> None:
-    """Answer the browser's `SCENE`, and open the shows once the first browser asks; `tried` has the plant of
-    the draft as it was simulated last, and what shows that."""
+def serve(
+    server: FastAPI, plant: DrawablePlant, *shows: TwinOpening, others: Mapping[str, OtherScene] | None = None
+) -> None:
+    """Answer the browser's `SCENE`, and open the shows once the first browser asks; `others` are by the names
+    of their records."""
     store = _Store(plant, shows)
 
     def answer(request: Request, record: str = "") -> Response:
-        if tried is None or record != OF_DRAFT:
+        other = (others or {}).get(record)
+        if other is None:
             return store.answer()
-        require(request.scope["arboleda.role"], MAY)
-        drawn, show = tried()
+        require(request.scope["arboleda.role"], other.may)
+        drawn, show = other.last()
         return _Store(drawn, (show,)).answer()
 
     server.add_api_route(SCENE, answer, include_in_schema=False)

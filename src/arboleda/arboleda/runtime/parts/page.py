@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,9 +13,6 @@ from arboleda.model.sentence import Phrase
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.recorder.errors import NoRecord
 from arboleda.views import view
-from arboleda.web.desks.demonstration import DemonstrationApi
-from arboleda.web.desks.faults import FaultsApi
-from arboleda.web.desks.make import MakeApi
 
 from ..registry import Assembly
 from .local_plant import LocalPlant
@@ -37,8 +33,8 @@ class PagePlant(LocalPlant):
     def __init__(self, plant: Orchestrator, assembly: Assembly) -> None:
         super().__init__(plant, assembly.holdings.history, assembly)
         self._drawn: PlantModel | None = None
-        self._offered: tuple[bool, ...] = ()
         self._layout: dict[str, Any] = {}
+        self._leave_out = assembly.leave_out
         self._past_acts = assembly.holdings.past_acts
         is_recorded = assembly.options.recording is not None
         self._recorded_in = assembly.holdings.state.path if is_recorded else None
@@ -52,21 +48,12 @@ class PagePlant(LocalPlant):
         """Put the page on the server's application."""
         from arboleda.dashboard import page  # it takes most of a second, and not all plants have a page
 
-        page.mount(app, self)
+        page.mount(app, self, self._leave_out)
 
     def layout(self) -> dict[str, Any]:
-        model, faults = self.model, self.ask(FaultsApi)
-        demo, make = self.ask(DemonstrationApi), self.ask(MakeApi)
-        offered = demo is not None, make is not None, faults is not None
-        if self._drawn is not model or self._offered != offered:  # parts made after the page offer more
-            beside = {
-                "recorded": self._recorded_in is not None,
-                "demo": demo is not None,
-                "draft": make is not None,
-                "faults": [] if faults is None else [asdict(each) for each in faults.offers()],
-            }
-            self._drawn, self._offered = model, offered
-            self._layout = view.layout(model) | beside
+        if self._drawn is not self.model:
+            self._drawn = self.model
+            self._layout = view.layout(self._drawn) | {"recorded": self._recorded_in is not None}
         return self._layout
 
     def past(self, epoch: int | None = None) -> Past:

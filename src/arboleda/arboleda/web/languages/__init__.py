@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 
-from arboleda.host.packages import entry_points
+from arboleda.host.packages import registered
+
+from ..shipped_languages import LANGUAGES as SHIPPED
 
 if TYPE_CHECKING:
     from importlib.abc import Traversable  # where Python 3.10 has it, and 3.14 no more
@@ -46,7 +48,7 @@ def contents(language: str, part: str) -> dict[str, Any]:
 def _folders() -> Iterator[Traversable]:
     """The folders of languages: first this one, then those of other packages."""
     yield resources.files(__package__)
-    for each in entry_points(GROUP):
+    for each in registered(GROUP, SHIPPED):
         with suppress(ImportError):  # of a package that does not load nothing is said
             yield resources.files(each.module) / "languages"
 

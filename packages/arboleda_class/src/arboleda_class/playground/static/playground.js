@@ -48,7 +48,7 @@ async function start() {
 // The parts of a plant's page that the playground has, in the order in which the page itself begins them.
 async function page() {
   const module = (name) => import(`./assets/${name}.js`);
-  const [acts, faults, form, question, place, scope, sound, task] = await Promise.all(["acts", "faults", "form", "question", "place", "scope", "sound", "task"].map(module));
+  const [acts, faults, form, question, place, scope, sound, task] = await Promise.all(["acts", "proofs/faults", "form", "question", "place", "scope", "sound", "task"].map(module));
   [live, shell, tree] = await Promise.all(["live", "shell", "tree"].map(module));
   if (at("twin")) await module("twin");
   shell.start();

@@ -1,0 +1,34 @@
+"""Route `/findings.json`: gives a page the findings of its draft in its own language."""
+
+from __future__ import annotations
+
+from fastapi import FastAPI, HTTPException, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import JSONResponse
+
+from arboleda.dashboard.page_api import PageApi
+from arboleda.dashboard.shell import language_of
+from arboleda.web.access.auth import require
+from arboleda.web.desks.make import MakeApi
+from arboleda.web.schema.bodies import FindingLines
+from arboleda.web.schema.queries import read_body
+
+PATH = "/findings.json"
+MAY = "reading what was found in a draft"
+NO_DRAFT = "This plant has no draft."
+
+
+def serve(server: FastAPI, plant: PageApi) -> None:
+    """Add the route to the server of a plant."""
+
+    async def findings(request: Request) -> JSONResponse:
+        require(request.scope["arboleda.role"], MAY)
+        make = plant.ask(MakeApi)
+        if make is None:
+            raise HTTPException(404, NO_DRAFT)
+        asked = read_body(await request.body(), FindingLines)
+        return JSONResponse(
+            {"lines": await run_in_threadpool(make.translate, language_of(request), asked.lines)}
+        )
+
+    server.add_api_route(PATH, findings, methods=["POST"], include_in_schema=False)

@@ -1,0 +1,53 @@
+"""What changing a plant adds to its page."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+from fastapi import FastAPI
+
+from arboleda.dashboard.asset_files import Assets
+from arboleda.dashboard.page_api import PageApi
+from arboleda.dashboard.page_part import OtherRecord, PagePart, Place, Section
+from arboleda.dashboard.past.side import PastSide
+from arboleda.web.desks.make import MakeApi
+
+from . import findings_route, make_panel, proof, teach_panel, tree_editor, versions
+
+if TYPE_CHECKING:
+    from .tried import TriedPlants
+
+
+def serve(server: FastAPI, plant: PageApi) -> None:
+    """Answer what the scripts ask for."""
+    for each in (versions, proof, findings_route):
+        each.serve(server, plant)
+
+
+def tried(plant: PageApi) -> PastSide:
+    """The last tryout of the draft; an ArboledaError says that there is none."""
+    desk = plant.ask(MakeApi)
+    return _tried().last(None if desk is None else desk.tried())
+
+
+@cache
+def _tried() -> TriedPlants:
+    from .tried import TriedPlants  # slow to load, and only needed for a record
+
+    return TriedPlants()
+
+
+PAGE = PagePart(
+    assets=Assets(package=__package__, script="part.js", styles=("draw", "teach", "make")),
+    sections=(
+        Section(place=Place.PART, name="teach", build=teach_panel.build, for_operators=True),
+        Section(place=Place.TAB, name="make", build=make_panel.build, for_operators=True),
+        Section(place=Place.TAB, name="draw", build=tree_editor.build),
+        Section(place=Place.TREE, build=teach_panel.way_from_tree),
+        Section(place=Place.LINKS, build=versions.build),
+    ),
+    face=teach_panel.face,
+    serve=serve,
+    records={"draft": OtherRecord(side=tried, may="looking at what was tried of a draft")},
+)

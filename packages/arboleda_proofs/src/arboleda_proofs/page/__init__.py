@@ -1,0 +1,1 @@
+"""The page's sections on proofs: faults by hand, reports of failures, the demonstration."""

@@ -1,0 +1,64 @@
+"""Form of faults by hand: with whom, for how long, and a button for each kind."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from arboleda.dashboard.page_api import PageApi
+from arboleda.dashboard.page_part import Spot
+from arboleda.dashboard.tags import rows, tag
+from arboleda.dashboard.wording import Words
+from arboleda.model.sentence import Sentence
+from arboleda.web.desks.faults import FaultsApi
+
+LASTING_S = (2, 5, 15, 60)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Target:
+    """Whom something can befall: how scripts and people call it, and the kinds with their words."""
+
+    name: str
+    label: str
+    kinds: Mapping[str, Sentence]
+
+
+def targets(plant: PageApi) -> list[Target]:
+    """The virtual devices of a plant that runs, with what can be provoked there; none: no drawer."""
+    desk, kinds = plant.ask(FaultsApi), dict[str, dict[str, Sentence]]()
+    for offer in () if desk is None else desk.offers():
+        kinds.setdefault(offer.robot, {})[offer.kind] = offer.about
+    return [Target(name=name, label=name, kinds=each) for name, each in kinds.items()]
+
+
+def drawer(spot: Spot) -> None:
+    """Draw the drawer of a plant that runs: the form, and what goes on, each with a button that ends it."""
+    words, found = spot.words, targets(spot.plant)
+    if not found:
+        return
+    with tag("details", id="faults", classes="fault-drawer"):
+        tag("summary", words("faults.title"))
+        form(words, found)
+        tag("p", words("faults.about"), classes="hint")
+    rows("faults", [""], classes="fault-rows")
+
+
+def form(words: Words, targets: Sequence[Target]) -> None:
+    """Draw the form; `assets/faults.js` has only those buttons shown that are possible."""
+    with tag("div", classes="fault-choices"):
+        with tag("label", classes="field"):
+            tag("span", words("faults.whom"))
+            with tag("select", id="fault-target"):
+                for each in targets:
+                    tag("option", each.label, value=each.name, data_kinds=" ".join(each.kinds))
+        with tag("label", classes="field"):
+            tag("span", words("faults.how_long"))
+            with tag("select", id="fault-seconds"):
+                for seconds in LASTING_S:
+                    chosen = {"selected": "true"} if seconds == LASTING_S[1] else {}
+                    tag("option", f"{seconds} s", value=str(seconds), **chosen)
+    with tag("div", classes="fault-buttons"):
+        kinds = {kind: about for each in targets for kind, about in each.kinds.items()}
+        for kind, about in kinds.items():
+            tag("button", words.say(about), type="button", classes="act", data_fault=kind)

@@ -1,0 +1,33 @@
+"""What the proofs add to the page of a plant."""
+
+from __future__ import annotations
+
+from arboleda.dashboard.asset_files import Assets
+from arboleda.dashboard.faces import Face
+from arboleda.dashboard.faces.moment import Moment
+from arboleda.dashboard.page_part import Act, PagePart, Place, Section
+
+from . import demo, fault_acts, fault_form, fault_rows, reports
+
+
+def face(moment: Moment) -> Face:
+    """The faults that go on, and whether a demonstration does."""
+    return fault_rows.face(moment) | demo.face(moment)
+
+
+PAGE = PagePart(
+    assets=Assets(package=__package__, script="part.js", styles=("proofs",)),
+    sections=(
+        Section(place=Place.TOP, build=demo.build),
+        Section(place=Place.TOP, build=fault_form.drawer, for_operators=True),
+        Section(place=Place.CARD, build=reports.way_from_cell),
+        Section(place=Place.TASK, build=reports.way_from_task),
+    ),
+    acts={
+        demo.END: Act(name="demo.end", take=demo.end),
+        fault_acts.BEGIN: Act(name="faults.title", take=fault_acts.begin),
+        fault_acts.END: Act(name="faults.end", take=fault_acts.end),
+    },
+    face=face,
+    serve=reports.serve,
+)

@@ -1,0 +1,126 @@
+"""What a package adds to the page of a plant: sections, requests that they make, and what changes in them.
+
+A package registers a `PagePart` under the entry point group `arboleda.page`, under its own name or as
+PACKAGE.WHAT where it has several.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import TYPE_CHECKING, Protocol
+
+from .asset_files import Assets
+from .faces import Face
+from .faces.moment import Moment
+from .page_api import Layout, PageApi
+from .past.side import PastSide
+from .wording import Words
+
+if TYPE_CHECKING:
+    from fastapi import FastAPI  # a page without a server needs none
+
+GROUP = "arboleda.page"
+
+
+class Place(Enum):
+    """Place of a section on the page."""
+
+    TAB = "a part of its own, to which a tab of the header leads"
+    PART = "a part of its own, to which links of other sections lead"
+    TOP = "below the header, whichever part is shown"
+    CARD = "below the card of each cell"
+    TREE = "among the tools of the tree of each cell"
+    TASK = "in the page of one task"
+    TASKS = "between the tasks of this start and those of all starts"
+    LINKS = "below the links"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spot:
+    """Spot at which a section is drawn; `cell` is the one at `CARD` and `TREE`, "" elsewhere."""
+
+    plant: PageApi
+    layout: Layout
+    words: Words
+    cell: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Section:
+    """Section of the page. `build` draws it with `tags`, or nothing where this plant has no use for it.
+
+    `name` is for parts of their own. The tab says `tab.<name>`, or the name where it has no words; the
+    element is `part-<name>`.
+    """
+
+    place: Place
+    build: Callable[[Spot], None]
+    name: str = ""
+    for_operators: bool = False
+
+
+class Say(Protocol):
+    """Shows an answer on the page; `good` is None while the outcome is unknown."""
+
+    def __call__(self, sentence: str, *, good: bool | None) -> None: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """Request of one browser, whose role allows it; `more` is whatever the script sent with it."""
+
+    act: str
+    of: str
+    more: object
+    plant: PageApi
+    words: Words
+    say: Say
+
+
+@dataclass(frozen=True, kw_only=True)
+class Act:
+    """What a page can ask for: `name` is the key of its words, `take` does it, in the server's event loop."""
+
+    name: str
+    take: Callable[[Request], Awaitable[None]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OtherRecord:
+    """Record beside those of the plant's starts. An ArboledaError of `side` says why there is none.
+
+    Operators may look at it; `may` says in English what others may not.
+    """
+
+    side: Callable[[PageApi], PastSide]
+    may: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class PagePart:
+    """What a package adds to the page.
+
+    The module `assets.script` exports `start()`, and `arrive(there)` where it wants to know to which tab,
+    cell and task somebody goes. `acts` are by the words with which a script asks for them. `face` is what
+    changes over time. `serve` adds addresses to the server. `records` are by their names in the page's
+    address.
+    """
+
+    assets: Assets | None = None
+    sections: tuple[Section, ...] = ()
+    acts: Mapping[str, Act] = field(default_factory=dict)
+    face: Callable[[Moment], Face] | None = None
+    serve: Callable[[FastAPI, PageApi], None] | None = None
+    records: Mapping[str, OtherRecord] = field(default_factory=dict)
+
+
+class Put(Protocol):
+    """Draws the sections that packages have for a place, and a cell if each cell has one."""
+
+    def __call__(self, place: Place, cell: str = "") -> None: ...
+
+
+def put_nothing(place: Place, cell: str = "") -> None:
+    """Put of a page to which packages add nothing."""

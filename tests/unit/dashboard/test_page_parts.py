@@ -1,0 +1,200 @@
+"""Packages add to the page: what they add stands in its place, and one that breaks is left out and named."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from fastapi import FastAPI
+from tests.added_package import install
+
+from arboleda.dashboard import added, page, shell
+from arboleda.dashboard.added import AddedParts
+from arboleda.dashboard.asset_files import own
+from arboleda.dashboard.desk import Desk
+from arboleda.dashboard.feed import Feed
+from arboleda.dashboard.page_part import GROUP
+from arboleda.dashboard.wording import words
+from arboleda.views import view
+from arboleda.web.access.auth import Role
+from arboleda_proofs.testing import shipped
+
+CODE = """
+from arboleda.dashboard.asset_files import Assets
+from arboleda.dashboard.page_part import Act, OtherRecord, PagePart, Place, Section
+from arboleda.dashboard.tags import live, tag
+
+HEARD = []
+
+
+def card(spot):
+    live("p", f"{spot.cell}.ended")
+
+
+def panel(spot):
+    tag("h2", f"Shelf of {spot.layout['plant']}")
+
+
+async def take(request):
+    HEARD.append((request.of, request.more))
+    request.say("taken", good=True)
+
+
+def face(moment):
+    return {f"text/{cell['name']}.ended": ["7", ""] for cell in moment.snapshot["cells"]}
+
+
+def serve(server, plant):
+    server.add_api_route("/shelf.json", lambda: plant.layout()["plant"])
+
+
+PAGE = PagePart(
+    sections=(
+        Section(place=Place.CARD, build=card),
+        Section(place=Place.TAB, name="zones", build=panel, for_operators=True),
+    ),
+    acts={"fetch": Act(name="zones.title", take=take)},
+    face=face,
+    serve=serve,
+)
+"""
+LAYOUT = view.layout(shipped())
+IN_ORDER = ["cells", "twin", "tasks", "panel", "teach", "make", "draw", "links", "events"]
+Install = Callable[..., None]
+Told = list[tuple[str, str]]
+
+
+@pytest.fixture
+def put(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
+    """Installs a package `acme` with this code."""
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    yield lambda code=CODE: install(tmp_path / "site", "acme", code, group=GROUP, what="PAGE")
+    sys.modules.pop("acme", None)
+
+
+def html(parts: AddedParts, role: str | None = None, plant: Any = None) -> str:
+    return page.drawn(parts, plant or Plant(), LAYOUT, words("en"), role)[1]
+
+
+class Plant:
+    """A plant of which no part offers anything."""
+
+    def ask(self, kind: type) -> Any:
+        return None
+
+    def layout(self) -> dict[str, Any]:
+        return LAYOUT
+
+
+def now() -> Any:
+    cell = {"name": "lab", "teaching": None, "state": "idle", "not_ready": None}
+    return SimpleNamespace(snapshot={"cells": [cell]}, links={}, words=words("en"))
+
+
+def loaded(told: Told | None = None) -> AddedParts:
+    told = [] if told is None else told
+    return AddedParts(lambda package, error: told.append((package, str(error))))
+
+
+def test_the_parts_of_the_page_are_in_their_order() -> None:
+    parts, _ = page.drawn(loaded(), Plant(), LAYOUT, words("en"), None)  # type: ignore[arg-type]
+    assert list(parts) == IN_ORDER
+
+
+def test_a_viewer_sees_no_part_that_is_for_operators() -> None:
+    viewed = html(loaded(), Role.VIEWER.value)
+    assert "part-draw" in viewed and "part-make" not in viewed and "part-teach" not in viewed
+
+
+def test_what_a_package_adds_is_drawn_in_its_place(put: Install) -> None:
+    put()
+    told: Told = []
+    shown = html(loaded(told))
+    assert told == []
+    assert shown.index("part-zones") < shown.index("part-links")
+    assert f"<h2>Shelf of {LAYOUT['plant']}</h2>" in shown
+    assert all(f'data-live="{cell["name"]}.ended"' in shown for cell in LAYOUT["cells"])
+    assert "part-zones" not in html(loaded(), Role.VIEWER.value)
+
+
+def test_what_changes_in_it_comes_with_the_frames(put: Install) -> None:
+    put()
+    assert loaded().face(now())["text/lab.ended"] == ["7", ""]
+
+
+def test_its_script_asks_its_own_code(put: Install) -> None:
+    put()
+    parts, said = loaded(), list[Any]()
+    client: Any = SimpleNamespace(
+        environ={"asgi.scope": {"arboleda.role": Role.OPERATOR}}, run_javascript=said.append
+    )
+    plant: Any = Plant()
+    desk = Desk(client, plant, Feed(plant), words("en"), parts.acts)
+    asyncio.run(desk.take("fetch", "lab", {"count": 2}))
+    assert sys.modules["acme"].HEARD == [("lab", {"count": 2})] and "taken" in said[0]
+    client.environ = {"asgi.scope": {"arboleda.role": Role.VIEWER}}
+    asyncio.run(desk.take("fetch", "lab", None))
+    assert len(sys.modules["acme"].HEARD) == 1 and "Shared zones" in said[1]
+
+
+@pytest.mark.parametrize(
+    ("code", "why"),
+    [
+        ("import no_such_library", "No module named"),
+        ("PAGE = 7", "acme:PAGE is no PagePart"),
+        (CODE.replace("PagePart(\n", 'PagePart(assets=Assets(package="acme"),\n'), "acme"),
+        (CODE.replace("Shelf of {", "{1 / 0}{"), "division by zero"),
+        (CODE.replace('["7", ""]', "1 / 0"), "division by zero"),
+        (CODE.replace('server.add_api_route("/shelf.json", ', "print(1 / 0, "), "division by zero"),
+    ],
+)
+def test_a_package_that_breaks_is_left_out_and_named(put: Install, code: str, why: str) -> None:
+    put(code)
+    told: Told = []
+    parts = loaded(told)
+    parts.serve(FastAPI(), Plant())  # type: ignore[arg-type]
+    parts.face(now())
+    shown = html(parts)
+    assert [package for package, _ in told] == ["acme"] and why in told[0][1]
+    assert "acme" not in parts.packages and "zones.title" not in parts.acts
+    assert "part-zones" not in shown and ".ended" not in shown and "part-make" in shown
+
+
+def test_a_package_takes_no_part_of_the_runner(put: Install) -> None:
+    put(CODE.replace('name="zones"', 'name="links"'))
+    assert "Shelf of" not in html(loaded())
+
+
+def test_a_package_is_loaded_only_when_a_page_is_made(put: Install) -> None:
+    put()
+    assert "acme" in added.installed() and "acme" not in sys.modules
+
+
+def test_files_of_packages_lie_below_those_of_the_page() -> None:
+    head = shell.head(words("en"), own("page.js"), added=loaded().assets)
+    below = own("").rstrip("/")
+    assert f'"{below}/arboleda_make.page-' in head and "/part.js" in head and "/draw.css" in head
+
+
+def test_without_packages_the_page_names_what_installs_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(added, "PAGE", {})
+    monkeypatch.setattr(added, "registered", lambda *_: [])
+    shown = html(loaded())
+    gone = (
+        "part-make",
+        "part-draw",
+        "part-teach",
+        "to-teach",
+        "to-report",
+        "rows-oee",
+        "versions-box",
+        "fault-drawer",
+    )
+    assert [each for each in gone if each in shown] == []
+    for package in ("fleet", "make", "proofs"):
+        assert f"pip install 'arboleda[{package}]'" in shown.replace("&#x27;", "'")
