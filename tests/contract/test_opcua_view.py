@@ -22,8 +22,8 @@ from packages.arboleda_drivers.tests.real.opcua.test_opcua_node import PACKAGES
 from arboleda.model.plant_model import OpcUaView
 from arboleda.oee.figures import Oee
 from arboleda.runtime.build import Options, build
-from arboleda.runtime.parts.opcua_view import OpcUaViewOptions, OpcUaViewPart
 from arboleda.testing import shipped
+from arboleda_fleet.opcua_view.part import OpcUaViewOptions, OpcUaViewPart
 
 from ..patience import PATIENCE_S
 from ..shared import need_tool

@@ -18,11 +18,11 @@ from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import Fact, Journal, Remember, TaskChanged, TaskState, Verb
 from arboleda.model.sentence import OWN
 from arboleda.store.plant_memory import Standby, Superseded
-from arboleda.store.postgres.history import PostgresHistory
-from arboleda.store.postgres.leaders import PostgresLeaders
-from arboleda.store.postgres.leadership import PostgresLeadership
-from arboleda.store.postgres.memory import PostgresMemory
 from arboleda.store.task_rows import TaskQuery
+from arboleda_fleet.postgres.history import PostgresHistory
+from arboleda_fleet.postgres.leaders import PostgresLeaders
+from arboleda_fleet.postgres.leadership import PostgresLeadership
+from arboleda_fleet.postgres.memory import PostgresMemory
 
 from ..patience import PATIENCE_S
 
@@ -196,7 +196,7 @@ def test_a_server_that_cannot_be_used_is_one_sentence_with_what_to_do(
     sentence = refusal(database.replace(USER, guest), plant)
     assert "permission denied" in sentence and "let this user use and make schemas and tables" in sentence
     with monkeypatch.context() as patch:
-        patch.setattr("arboleda.store.postgres.server.OLDEST", 99)
+        patch.setattr("arboleda_fleet.postgres.server.OLDEST", 99)
         assert "and this needs 99 or newer" in refusal(database, plant)
     monkeypatch.setenv("PGPASSWORD", "a-wrong-one")
     sentence = refusal(database, plant)
@@ -305,7 +305,7 @@ def test_a_server_that_says_nothing_counts_as_away_and_is_heard_again(
         postgres.freeze(on=True)
         try:
             with monkeypatch.context() as patch:
-                patch.setattr("arboleda.store.postgres.server.ANSWER_S", 1.0)
+                patch.setattr("arboleda_fleet.postgres.server.ANSWER_S", 1.0)
                 for ask in (lambda: memory.keep(LATCH), memory.renew, others.leader):
                     with pytest.raises(ArboledaError, match="gave no answer for 1 s"):
                         ask()

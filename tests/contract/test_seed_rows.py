@@ -9,7 +9,7 @@ import pytest
 from tests.postgres import Server
 
 from arboleda.model.errors import StartError
-from arboleda.store.postgres.seeds import SeedRow, SeedRows
+from arboleda_fleet.postgres.seeds import SeedRow, SeedRows
 
 from ..patience import PATIENCE_S
 

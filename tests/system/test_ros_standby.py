@@ -20,7 +20,7 @@ from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 
 from arboleda.runtime.state import find_running
-from arboleda.store.postgres.memory import PostgresMemory
+from arboleda_fleet.postgres.memory import PostgresMemory
 from arboleda_kills.processes import paths
 
 from ..patience import PATIENCE_S

@@ -13,14 +13,14 @@ import pytest
 from fastapi import FastAPI
 from fastapi.responses import JSONResponse
 
-from arboleda.dashboard.site.side import LastSeenPlant, RequestOutcome
 from arboleda.model.messages import Verb
 from arboleda.runtime.endpoints import Place
-from arboleda.site.watch import NOT_STOPPED, Site
 from arboleda.web.access.auth import Door, Role
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import names_for
 from arboleda.web.server import Server
+from arboleda_fleet.site.side import LastSeenPlant, RequestOutcome
+from arboleda_fleet.site.watch import NOT_STOPPED, Site
 
 from ...patience import PATIENCE_S
 from ...web_plant import TOKENS, VIEW, Plant
@@ -48,7 +48,7 @@ def standby(plant: str) -> Iterator[str]:
 @pytest.fixture(autouse=True)
 def patience(monkeypatch: pytest.MonkeyPatch) -> None:
     """A plant answers whenever it comes to that."""
-    monkeypatch.setattr("arboleda.site.reach.ANSWER_S", PATIENCE_S)
+    monkeypatch.setattr("arboleda_fleet.site.reach.ANSWER_S", PATIENCE_S)
 
 
 def called(name: str, seconds: float = 60.0) -> Plant:

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import httpx
 
-from arboleda.runtime.standby.leader import LeaderInfo
-from arboleda.runtime.standby.waiting_room import WaitingRoom
+from arboleda.runtime.leader import LeaderInfo
 from arboleda.runtime.web_options import WebOptions
+from arboleda_fleet.standby.waiting_room import WaitingRoom
 
 from ...patience import PATIENCE_S
 

@@ -22,13 +22,13 @@ from arboleda.cli.remote_plant import NoLeader, RemotePlant
 from arboleda.client import NoAnswer
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Verb
-from arboleda.runtime.standby.leader import LeaderInfo
-from arboleda.runtime.standby.waiting_room import WaitingRoom
+from arboleda.runtime.leader import LeaderInfo
 from arboleda.runtime.state import StateDir
 from arboleda.runtime.tokens import TOKENS as FILE
 from arboleda.runtime.web_options import WebOptions
 from arboleda.web import stream
 from arboleda.web.access.auth import Role
+from arboleda_fleet.standby.waiting_room import WaitingRoom
 
 from ...guarded_plant import guarded
 from ...in_process import Machine

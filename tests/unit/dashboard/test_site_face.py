@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.dashboard.site.face import face, whole_oee
-from arboleda.dashboard.site.side import LastSeenPlant
 from arboleda.dashboard.wording import words
 from arboleda.model.sentence import OWN
+from arboleda_fleet.site.face import face, whole_oee
+from arboleda_fleet.site.side import LastSeenPlant
 
 SILENT = OWN(text="no answer in 2.5 s")
 

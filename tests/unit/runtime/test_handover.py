@@ -12,11 +12,11 @@ from arboleda.adapters import clock
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import OWN
-from arboleda.runtime.standby import handover
-from arboleda.runtime.standby import lease as lease_part
-from arboleda.runtime.standby.handover import CellResumption, hold_all
-from arboleda.runtime.standby.lease import LeasePart
 from arboleda.store.plant_memory import PlantMemory, Superseded
+from arboleda_fleet.standby import handover
+from arboleda_fleet.standby import lease as lease_part
+from arboleda_fleet.standby.handover import CellResumption, hold_all
+from arboleda_fleet.standby.lease import LeasePart
 
 from ...threads import AtOnce, stand_in
 

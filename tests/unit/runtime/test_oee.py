@@ -15,15 +15,15 @@ from arboleda.core.cell_states import CellState
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskChanged, TaskState, Verb
 from arboleda.oee.figures import SEEN_S, Oee
-from arboleda.oee.rows import OeeQuery, figures
 from arboleda.runtime.build import Options, build
-from arboleda.runtime.parts.cell_times import CellTimes
 from arboleda.runtime.state import STORE
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
-from arboleda.web.desks.oee import OeeApi
+from arboleda.web.desks.oee import OeeApi, OeeQuery
+from arboleda_fleet.oee.cell_times import CellTimes
+from arboleda_fleet.oee.rows import figures
 
 BEGAN = 1_000_000.0  # Unix time of the rig's first second
 

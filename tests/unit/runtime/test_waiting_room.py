@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from arboleda.runtime import tokens
-from arboleda.runtime.standby.leader import LeaderInfo
-from arboleda.runtime.standby.waiting_room import WaitingRoom
+from arboleda.runtime.leader import LeaderInfo
 from arboleda.runtime.web_options import WebOptions
+from arboleda_fleet.standby.waiting_room import WaitingRoom
 
 from ...in_process import ORIGIN, Caller
 

@@ -11,8 +11,8 @@ import pytest
 from arboleda.model.errors import TextError
 from arboleda.model.sentence import Phrase
 from arboleda.runtime.endpoints import Place
-from arboleda.site.choosing import Choice, TaskRefused, chosen
-from arboleda.site.reach import PlantRefusal, PlantSilent
+from arboleda_fleet.site.choosing import Choice, TaskRefused, chosen
+from arboleda_fleet.site.reach import PlantRefusal, PlantSilent
 
 from ...web_plant import Plant
 

@@ -12,11 +12,11 @@ import pytest
 from starlette.types import Message, Receive, Scope, Send
 
 from arboleda.dashboard import frames
-from arboleda.dashboard.site.side import LastSeenPlant
 from arboleda.runtime.endpoints import Place
-from arboleda.site import watch
-from arboleda.site.reach import ANSWER_S, NO_ANSWER
-from arboleda.site.watch import NOT_STOPPED, NOT_YET, STANDS_BY, STOPPED, STOPPED_ALL, Site
+from arboleda_fleet.site import watch
+from arboleda_fleet.site.reach import ANSWER_S, NO_ANSWER
+from arboleda_fleet.site.side import LastSeenPlant
+from arboleda_fleet.site.watch import NOT_STOPPED, NOT_YET, STANDS_BY, STOPPED, STOPPED_ALL, Site
 
 from ...in_process import Machine, without_threads
 from ...web_plant import QUEUED, VIEW

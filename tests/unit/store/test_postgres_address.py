@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from arboleda.model.errors import StartError
-from arboleda.store.postgres.memory import PostgresMemory
+from arboleda_fleet.postgres.memory import PostgresMemory
 
 
 @pytest.mark.parametrize(

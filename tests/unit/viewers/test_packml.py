@@ -9,8 +9,8 @@ import pytest
 from arboleda.core.cell_states import CellState
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
-from arboleda.viewers.packml import STATES, Counts, tags
 from arboleda.views import view
+from arboleda_fleet.opcua_view.packml import STATES, Counts, tags
 
 CELL: dict[str, Any] = {
     "name": "line",

@@ -11,7 +11,6 @@ from rich.text import Text
 from arboleda.campaigns.defaults import CYCLES, LEVEL, SEED, SEEDS
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_new, check_writable
-from arboleda.runtime.standby.postgres import refuse_without_library
 from arboleda.simulator.levels import CRASHES, LEVELS
 
 from .language import language, say
@@ -202,7 +201,6 @@ def simulate(
     for note in request.notes:
         console.print(Text(note, style="dim"), soft_wrap=True)
     if worker:
-        refuse_without_library()
         from arboleda.campaigns.shared import work
 
         raise typer.Exit(work(request, console, store, json))

@@ -11,11 +11,10 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse, Response
 
 from arboleda.model.packages import FLEET
-from arboleda.oee.rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
 from arboleda.web.access.auth import Role
 from arboleda.web.desks.make import MakeApi
-from arboleda.web.desks.oee import OeeApi
+from arboleda.web.desks.oee import OeeApi, OeeQuery
 from arboleda.web.desks.versions import VersionsApi
 from arboleda.web.missing import missing
 

@@ -3,7 +3,6 @@ They are read beside the entry points of installed packages, and loaded by name 
 """
 
 ROUTES = {
-    "fleet.oee": "arboleda.web.routes.oee:routes",
     "make.draft": "arboleda.web.routes.draft:routes",
     "make.make": "arboleda.web.routes.make:routes",
     "make.proposals": "arboleda.web.routes.proposals:routes",
