@@ -10,7 +10,9 @@ from typing import Any
 import pytest
 from fastapi.routing import APIRoute
 from tests.added_package import install
+from tests.packages import PACKAGES, leave_out
 
+from arboleda.host.packages import package_of, registered
 from arboleda.web import missing, routes
 from arboleda.web.api import make_app
 from arboleda.web.routes import routers
@@ -80,9 +82,10 @@ def test_a_package_whose_routes_break_is_left_out_and_named(
 
 
 @pytest.fixture(scope="module")
-def bare() -> Caller:
+def bare(tmp_path_factory: pytest.TempPathFactory) -> Caller:
     """The routes of the runner alone."""
     with pytest.MonkeyPatch.context() as patch:
+        leave_out(patch, tmp_path_factory.mktemp("nothing"), *PACKAGES)
         patch.setattr(routes, "ROUTES", {})
         return Caller(make_app(Plant()))
 
@@ -114,13 +117,12 @@ def test_a_path_that_nobody_knows_is_no_missing_package(bare: Caller, web: Calle
 
 
 def test_every_path_of_a_package_is_known_as_its_own() -> None:
-    with pytest.MonkeyPatch.context() as patch:
-        for package in {name.partition(".")[0] for name in ROUTES}:
-            rows = {name: each for name, each in ROUTES.items() if name.startswith(f"{package}.")}
-            patch.setattr(routes, "ROUTES", rows)
-            known = missing.PATHS[package]
-            mine = [path for each in routers(None)[len(routes.OWN) :] for path in paths(each)]
-            assert mine and all(known.fullmatch(path) for path in mine), mine
+    brought: dict[str, list[str]] = {}
+    for point in registered(routes.GROUP, ROUTES):
+        brought.setdefault(package_of(point), []).extend(paths(point.load()(None)))
+    assert brought.keys() == missing.PATHS.keys()
+    for package, mine in brought.items():
+        assert mine and all(missing.PATHS[package].fullmatch(path) for path in mine), mine
 
 
 def test_no_path_of_the_runner_is_a_package_s(bare: Caller) -> None:

@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.postgres import Server
+from tests.system.two_hosts import PATIENCE_S, Hosts
 
 from arboleda.runtime.state import find_running
-
-from ..postgres import Server
-from .two_hosts import PATIENCE_S, Hosts
 
 pytestmark = pytest.mark.system
 

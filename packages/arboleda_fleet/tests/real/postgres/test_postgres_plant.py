@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-
-from ..postgres import PASSWORD, Server
+from tests.postgres import PASSWORD, Server
 
 pytestmark = pytest.mark.system
 

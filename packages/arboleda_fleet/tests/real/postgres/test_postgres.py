@@ -11,6 +11,7 @@ from contextlib import closing, contextmanager, suppress
 
 import psycopg
 import pytest
+from tests.patience import PATIENCE_S
 from tests.postgres import DATABASE, PASSWORD, USER, Server
 
 from arboleda.core.leading import LEASE_S, RENEW_S
@@ -23,8 +24,6 @@ from arboleda_fleet.postgres.history import PostgresHistory
 from arboleda_fleet.postgres.leaders import PostgresLeaders
 from arboleda_fleet.postgres.leadership import PostgresLeadership
 from arboleda_fleet.postgres.memory import PostgresMemory
-
-from ..patience import PATIENCE_S
 
 LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
 QUEUED = TaskChanged(task="a", text="sis_a 0B 1", cell="sis_a", state=TaskState.QUEUED)

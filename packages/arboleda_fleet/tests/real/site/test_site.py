@@ -12,6 +12,9 @@ from typing import TypeVar
 import pytest
 from fastapi import FastAPI
 from fastapi.responses import JSONResponse
+from tests.contract.web.conftest import running
+from tests.patience import PATIENCE_S
+from tests.web_plant import TOKENS, VIEW, Plant
 
 from arboleda.model.messages import Verb
 from arboleda.runtime.endpoints import Place
@@ -21,10 +24,6 @@ from arboleda.web.access.names import names_for
 from arboleda.web.server import Server
 from arboleda_fleet.site.side import LastSeenPlant, RequestOutcome
 from arboleda_fleet.site.watch import NOT_STOPPED, Site
-
-from ...patience import PATIENCE_S
-from ...web_plant import TOKENS, VIEW, Plant
-from .conftest import running
 
 T = TypeVar("T")
 

@@ -8,14 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.chromium import leave
+from tests.patience import PATIENCE_MS
+from tests.system.conftest import Process, paths
+from tests.system.page import connected, running, until
+from tests.system.test_accessible import Eye
 
 from arboleda.cli.client import PlantClient
-
-from ..chromium import leave
-from ..patience import PATIENCE_MS
-from .conftest import Process, paths
-from .page import connected, running, until
-from .test_accessible import Eye
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright", "axe_playwright_python")]
 MAIN = "from arboleda.cli.main import main; main()"

@@ -7,6 +7,7 @@ from datetime import timedelta
 
 import psycopg
 import pytest
+from tests.lengths import length
 from tests.postgres import Server
 
 from arboleda.core.leading import LEASE_S, WANTED_S
@@ -16,8 +17,6 @@ from arboleda.store.plant_memory import Superseded
 from arboleda_fleet.postgres.leader_row import END_LEASE, LAST_SEEN
 from arboleda_fleet.postgres.leadership import PostgresLeadership
 from arboleda_fleet.postgres.memory import LEAD, PostgresMemory
-
-from ..lengths import length
 
 NOW = 1000.0
 AGES_S = (0.1, LEASE_S + 1.0, WANTED_S - 5.0, WANTED_S + 5.0, -3600.0)  # or the clock is set back

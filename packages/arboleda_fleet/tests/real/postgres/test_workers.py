@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-
-from ..postgres import Server
+from tests.postgres import Server
 
 pytestmark = pytest.mark.system
 
@@ -26,7 +25,7 @@ def test_seeds_that_workers_share_come_to_the_same_as_alone(
 ) -> None:
     import sys
 
-    from .conftest import paths
+    from tests.system.conftest import paths
 
     def simulate(*options: str) -> Any:
         main = "from arboleda.cli.main import main; main()"

@@ -6,12 +6,11 @@ import threading
 from uuid import uuid4
 
 import pytest
+from tests.patience import PATIENCE_S
 from tests.postgres import Server
 
 from arboleda.model.errors import StartError
 from arboleda_fleet.postgres.seeds import SeedRow, SeedRows
-
-from ..patience import PATIENCE_S
 
 
 def done(seed: int) -> SeedRow:

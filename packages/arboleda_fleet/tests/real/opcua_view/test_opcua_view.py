@@ -18,16 +18,15 @@ from typing import Any
 import pytest
 from asyncua import Client, Node, ua
 from packages.arboleda_drivers.tests.real.opcua.test_opcua_node import PACKAGES
+from tests.contract.test_groot2 import children
+from tests.patience import PATIENCE_S
+from tests.shared import need_tool
 
 from arboleda.model.plant_model import OpcUaView
 from arboleda.oee.figures import Oee
 from arboleda.runtime.build import Options, build
 from arboleda.testing import shipped
 from arboleda_fleet.opcua_view.part import OpcUaViewOptions, OpcUaViewPart
-
-from ..patience import PATIENCE_S
-from ..shared import need_tool
-from .test_groot2 import children
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("asyncua")]
 

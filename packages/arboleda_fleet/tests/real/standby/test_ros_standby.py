@@ -18,13 +18,12 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
+from tests.patience import PATIENCE_S
+from tests.postgres import Server
 
 from arboleda.runtime.state import find_running
 from arboleda_fleet.postgres.memory import PostgresMemory
 from arboleda_kills.processes import paths
-
-from ..patience import PATIENCE_S
-from ..postgres import Server
 
 pytestmark = [pytest.mark.system, pytest.mark.usefixtures("quick_discovery")]
 NAME = "arboleda"

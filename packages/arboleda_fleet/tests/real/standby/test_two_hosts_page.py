@@ -8,12 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.chromium import leave
+from tests.patience import PATIENCE_MS
+from tests.system.two_hosts import Hosts
 
 from arboleda.runtime.state import find_running
-
-from ..chromium import leave
-from ..patience import PATIENCE_MS
-from .two_hosts import Hosts
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 
