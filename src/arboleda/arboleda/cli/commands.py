@@ -16,7 +16,7 @@ import typer
 
 from arboleda.host.packages import entry_points
 from arboleda.model.outside import quoted
-from arboleda.model.packages import BOARDS, CLASS, DRIVERS, FLEET, MISSING, PackageMissing
+from arboleda.model.packages import BOARDS, CLASS, DRIVERS, FLEET, MISSING, PROOFS, PackageMissing
 from arboleda.model.sentence import Phrase
 from arboleda.views.verb_words import ABOUT
 
@@ -30,9 +30,14 @@ LEFT_OUT = Phrase(
 OF_PACKAGES = {  # extras of `arboleda`, by command
     "conformance": BOARDS,
     "exercise": CLASS,
+    "fault": PROOFS,
     "firmware-config": BOARDS,
     "handover": FLEET,
     "oee": FLEET,
+    "prove": PROOFS,
+    "replay": PROOFS,
+    "report": PROOFS,
+    "simulate": PROOFS,
     "site": FLEET,
     "virtual": DRIVERS,
 }
@@ -65,11 +70,6 @@ OURS: Mapping[str, Command] = {
         "token",
         "Show the token of viewers, operators or assistants of a plant open to a network (`up --host`).",
     ),
-    "simulate": Command(
-        "simulate",
-        "Run whole plants under virtual time, with faults drawn from a seed, and judge every step.",
-    ),
-    "prove": Command("prove", "Try every single fault at every moment of every recipe, and judge each run."),
     "bench": Command(
         "bench", "Measure this machine: our figures beside the least that the same run can take."
     ),
@@ -104,16 +104,8 @@ OURS: Mapping[str, Command] = {
         "Make a small authority for a lab, and certificates for the plant on this machine and for "
         "each board.",
     ),
-    "fault": Command(
-        "fault",
-        "Have something go wrong with a virtual device: cut its link, reboot its board, lose its part.",
-    ),
     "backup": Command("backup", "Copy the plant's memory to a file, while the plant runs or not."),
     "restore": Command("backup", "Put a backup in the place of the plant's memory; the plant must not run."),
-    "replay": Command("replay", "Execute a record again, and compare every step with what it was."),
-    "report": Command(
-        "report", "Write why a task failed: one HTML file, without network, in English and Spanish."
-    ),
     "mcp": Command(
         "mcp", "Let an assistant (a language model) look at a plant, try its plant file, and propose changes."
     ),
