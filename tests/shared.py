@@ -316,7 +316,7 @@ def database(postgres: Server, monkeypatch: pytest.MonkeyPatch) -> str:
         warnings.warn(f"PostgreSQL had ended: {postgres.last_words()}", stacklevel=1)
         postgres.start()
     monkeypatch.setenv("PGPASSWORD", PASSWORD)
-    monkeypatch.setattr("arboleda.store.postgres.server.ANSWER_S", PATIENCE_S)
+    monkeypatch.setattr("arboleda_fleet.postgres.server.ANSWER_S", PATIENCE_S)
     return postgres.address
 
 

@@ -27,10 +27,10 @@ import psycopg
 
 from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.plant_file import loader
-from arboleda.store.postgres.history import PostgresHistory
-from arboleda.store.postgres.leadership import PostgresLeadership
 from arboleda.store.task_rows import TaskQuery
 from arboleda_bench.result import percentile
+from arboleda_fleet.postgres.history import PostgresHistory
+from arboleda_fleet.postgres.leadership import PostgresLeadership
 
 from .judge import Kill, judge
 from .people import Attendant, Customers, Said

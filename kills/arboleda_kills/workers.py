@@ -23,7 +23,7 @@ from pathlib import Path
 
 import psycopg
 
-from arboleda.store.postgres.seeds import SCHEMA, SeedRows
+from arboleda_fleet.postgres.seeds import SCHEMA, SeedRows
 
 from .processes import UP, paths
 

@@ -24,12 +24,13 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.sentence import OWN
-from arboleda.oee.rows import OeeQuery, figures
 from arboleda.store.plant_memory import PRUNED, PlantMemory
-from arboleda.store.postgres.history import PostgresHistory
-from arboleda.store.postgres.memory import PostgresMemory
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import History, TaskHistory, TaskQuery
+from arboleda_fleet.oee.api import OeeQuery
+from arboleda_fleet.oee.rows import figures
+from arboleda_fleet.postgres.history import PostgresHistory
+from arboleda_fleet.postgres.memory import PostgresMemory
 
 from ..unit.store.memory_samples import FOUND, ODD, ended, queued, tell_of_four
 

@@ -26,7 +26,7 @@ from arboleda_proofs.playback.report.page import Report, page
 from arboleda_proofs.playback.report.tries import ForkTrial
 from arboleda.recorder.cause import Cause
 from arboleda.recorder.incident import Incident
-from arboleda.runtime.standby.waiting_room import waiting_page
+from arboleda_fleet.standby.waiting_room import waiting_page
 from arboleda_proofs.testing.plants import shipped
 from arboleda.web.access import login
 

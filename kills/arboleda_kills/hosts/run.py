@@ -13,10 +13,10 @@ from typing import Any
 from arboleda.model.errors import ArboledaError
 from arboleda.plant_file import loader
 from arboleda.store.leadership import Leader
-from arboleda.store.postgres.history import PostgresHistory
-from arboleda.store.postgres.leadership import PostgresLeadership
-from arboleda.store.postgres.schema import schema_of
 from arboleda.store.task_rows import TaskQuery, TaskRow
+from arboleda_fleet.postgres.history import PostgresHistory
+from arboleda_fleet.postgres.leadership import PostgresLeadership
+from arboleda_fleet.postgres.schema import schema_of
 
 from ..database import DATABASE, USER
 from ..judge import Kill, Verdict, judge

@@ -142,7 +142,7 @@ def _app(link: Link, name: str) -> App:
         plant_file=plant_file,
     )
     if values.get("standby"):
-        from arboleda.runtime.standby.process import take_over  # it shows a page, which no other start needs
+        from arboleda.runtime.standing_by import take_over
 
         return take_over(model, parts, options, LOG.info, read)
     return build(model, parts, options)

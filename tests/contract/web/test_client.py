@@ -16,10 +16,10 @@ from arboleda.cli.client import PlantClient
 from arboleda.cli.remote_plant import RemotePlant
 from arboleda.client import NoAnswer
 from arboleda.model.messages import Verb
-from arboleda.runtime.standby.leader import LeaderInfo
-from arboleda.runtime.standby.waiting_room import WaitingRoom
+from arboleda.runtime.leader import LeaderInfo
 from arboleda.runtime.state import StateDir
 from arboleda.runtime.web_options import WebOptions
+from arboleda_fleet.standby.waiting_room import WaitingRoom
 
 from .conftest import Web
 

@@ -20,12 +20,13 @@ def test_the_overview_has_the_sentence_of_each_command(name: str) -> None:
     assert commands()[name].brief == said
 
 
+@pytest.mark.parametrize(("name", "package"), OF_PACKAGES.items())
 def test_a_command_of_a_package_that_is_not_installed_is_named_with_the_line_that_installs_it(
-    monkeypatch: pytest.MonkeyPatch,
+    name: str, package: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(command_table, "commands", lambda: command_table.OURS)
-    with pytest.raises(PackageMissing, match=r"conformance needs .* pip install 'arboleda\[boards\]'"):
-        LoadedCommands()["conformance"]
+    with pytest.raises(PackageMissing, match=rf"{name} needs .* pip install 'arboleda\[{package}\]'"):
+        LoadedCommands()[name]
 
 
 def test_every_package_that_is_missed_is_one_of_this_repository() -> None:

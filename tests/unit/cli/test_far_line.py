@@ -11,7 +11,7 @@ from arboleda.cli.line import Answer, FarLine
 from arboleda.cli.remote_plant import RemotePlant
 from arboleda.client.errors import NoAnswer
 from arboleda.model.errors import ArboledaError
-from arboleda.runtime.standby.leader import LeaderInfo
+from arboleda.runtime.leader import LeaderInfo
 
 URL = "http://10.0.0.7:8080"
 LED = LeaderInfo(plant="demo", host="host-a", process=1, url=URL, epoch=2)

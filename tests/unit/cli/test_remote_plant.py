@@ -26,13 +26,13 @@ from arboleda.cli.remote_plant import NoLeader, RemotePlant
 from arboleda.client import NoAnswer
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Verb
-from arboleda.runtime.standby.leader import LeaderInfo
-from arboleda.runtime.standby.waiting_room import WaitingRoom
+from arboleda.runtime.leader import LeaderInfo
 from arboleda.runtime.state import StateDir
 from arboleda.runtime.tokens import TOKENS as FILE
 from arboleda.runtime.web_options import WebOptions
 from arboleda.web import stream
 from arboleda.web.access.auth import Role
+from arboleda_fleet.standby.waiting_room import WaitingRoom
 
 HERE, LEADER, OTHER = 8080, 8081, 8082  # ports of a process here, of the leader, of another standby
 LED = LeaderInfo(

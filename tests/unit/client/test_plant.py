@@ -30,11 +30,11 @@ from arboleda.client import (
 from arboleda.client import Plant as Client
 from arboleda.model.errors import QueueFull, TextError
 from arboleda.model.messages import Outcome, Verb
-from arboleda.runtime.standby.leader import LeaderInfo
-from arboleda.runtime.standby.waiting_room import WaitingRoom
+from arboleda.runtime.leader import LeaderInfo
 from arboleda.runtime.web_options import WebOptions
 from arboleda.web.access.auth import Role
 from arboleda.web.desks.draft import DraftApi
+from arboleda_fleet.standby.waiting_room import WaitingRoom
 
 
 @pytest.fixture

@@ -34,7 +34,6 @@ TOLD_BY = (
     "wire",
     "runtime",
     "plant_file",
-    "site",
     "dashboard",
     "cli",
 )

@@ -182,7 +182,6 @@ def test_files_of_packages_lie_below_those_of_the_page() -> None:
 
 
 def test_without_packages_the_page_names_what_installs_them(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(added, "PAGE", {})
     monkeypatch.setattr(added, "registered", lambda *_: [])
     shown = html(loaded())
     gone = (

@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
+from tests.packages import leave_out
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, MqttVersion, PlantModel, Timing
@@ -149,6 +150,26 @@ def test_a_store_is_the_address_of_a_database_without_its_password() -> None:
     with pytest.raises(ConfigError, match="store: has a password in it; leave it to PGPASSWORD") as refused:
         parsed("postgresql://me:hidden@db.example/plants")
     assert "hidden" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("key", "what"),
+    [
+        ("store: postgresql://me@db.example/plants", "store: postgresql://"),
+        ("opcua_view: {port: 4840}", "opcua_view: opcua_view"),
+    ],
+)
+def test_a_key_whose_package_is_missing_is_named_with_the_line_that_installs_it(
+    key: str, what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    content = (EXAMPLES / "by_hand.yaml").read_bytes()
+    content = content.replace(b"\ncells:", f"\n{key}\ncells:".encode(), 1)
+    loader.parse("plant.yaml", content)
+    leave_out(monkeypatch, tmp_path, "arboleda_fleet")
+    with pytest.raises(
+        ConfigError, match=rf"{what} needs the package fleet, .* pip install 'arboleda\[fleet\]'"
+    ):
+        loader.parse("plant.yaml", content)
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import socket
 
 import pytest
 
-from arboleda.runtime.standby.leader import LeaderInfo, leader_row, of_standby
+from arboleda.runtime.leader import LeaderInfo, leader_row, of_standby
 from arboleda.runtime.web_options import WebOptions
 
 LED = LeaderInfo(plant="demo", host="host-a", process=7, url="http://10.0.0.5:8080", epoch=3)

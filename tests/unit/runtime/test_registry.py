@@ -9,13 +9,14 @@ from typing import Any
 
 import pytest
 from tests.added_package import COUNTER, install
+from tests.packages import PACKAGES, leave_out
 
 from arboleda.model.errors import StartError
 from arboleda.runtime import holdings, registry
 from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.part_list import PartList
 from arboleda.runtime.registry import Factory, Phase
-from arboleda.runtime.standby import factories as standby
+from arboleda_fleet import factories as standby
 from arboleda_proofs.testing import shipped
 
 Install = Callable[[str, str], None]
@@ -60,7 +61,7 @@ def test_a_part_of_a_package_is_offered_and_tells_people(tmp_path: Path, put: In
 
 def test_a_package_is_loaded_only_when_a_plant_is_put_together(tmp_path: Path, put: Install) -> None:
     put("acme", COUNTER)
-    assert "acme" in [each.name for each in registry.registered(registry.GROUP, {})]
+    assert "acme" in [each.name for each in registry.registered(registry.GROUP)]
     assert "acme" not in sys.modules
 
 
@@ -177,7 +178,7 @@ def test_a_shared_memory_is_refused_where_nothing_keeps_the_lead(
         return memory
 
     monkeypatch.setattr(holdings, "memory_of", leased)
-    monkeypatch.setattr(registry, "PARTS", {})
+    leave_out(monkeypatch, tmp_path / "nothing", "arboleda_fleet")
     with pytest.raises(StartError, match=r"needs the package fleet.*pip install 'arboleda\[fleet\]'"):
         built(tmp_path)
 
@@ -185,7 +186,7 @@ def test_a_shared_memory_is_refused_where_nothing_keeps_the_lead(
 def test_without_packages_a_plant_has_the_parts_of_the_runner(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(registry, "PARTS", {})
+    leave_out(monkeypatch, tmp_path / "nothing", *PACKAGES)
     app = built(tmp_path, {"broker", "devices", "bridge", "orchestrator", "web"})
     app.stop()
     runner = ["OwnBroker", "BridgePart", "DevicesPart", "Periodic", "Orchestrator", "WebPart"]

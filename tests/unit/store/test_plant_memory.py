@@ -22,10 +22,11 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.sentence import OWN
-from arboleda.oee.rows import OeeQuery, figures
 from arboleda.store.plant_memory import PRUNED
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery, answers_of, course_of
+from arboleda_fleet.oee.api import OeeQuery
+from arboleda_fleet.oee.rows import figures
 
 from .memory_samples import ACT, FOUND, LATCH, ODD, ended, queued, tell_of_four
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from tests.added_package import install
+from tests.packages import leave_out
 
 from arboleda.model.errors import StartError
 from arboleda.runtime import stores
@@ -62,8 +63,8 @@ def test_an_address_of_no_installed_scheme_is_refused_without_repeating_it(addre
 
 
 def test_a_scheme_whose_package_is_missing_is_named_with_the_line_that_installs_it(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(schemes, "STORES", {})
+    leave_out(monkeypatch, tmp_path, "arboleda_fleet")
     with pytest.raises(StartError, match=r"postgresql:// needs .*: type pip install 'arboleda\[fleet\]'\."):
         schemes.databases("postgresql://db.example/plants")

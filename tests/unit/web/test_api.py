@@ -17,9 +17,9 @@ from arboleda.core.leaving import STILL_WAITS, stop_left
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.messages import OperatorAnswer, Outcome, Verb
 from arboleda.model.sentence import Phrase
-from arboleda.oee.rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
 from arboleda.web.api import make_app, own_up
+from arboleda_fleet.oee.api import OeeQuery
 
 
 def test_the_view_is_the_plant(web):

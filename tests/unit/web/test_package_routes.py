@@ -11,13 +11,13 @@ import pytest
 from fastapi.routing import APIRoute
 from tests.added_package import install
 from tests.in_process import Caller
+from tests.packages import PACKAGES, leave_out
 from tests.web_plant import Plant
 
 from arboleda.host.packages import package_of, registered
 from arboleda.web import missing, routes
 from arboleda.web.api import make_app
 from arboleda.web.routes import routers
-from arboleda.web.shipped_routes import ROUTES
 
 CODE = '''
 from fastapi import APIRouter
@@ -80,10 +80,10 @@ def test_a_package_whose_routes_break_is_left_out_and_named(
 
 
 @pytest.fixture(scope="module")
-def bare() -> Caller:
+def bare(tmp_path_factory: pytest.TempPathFactory) -> Caller:
     """The routes of the runner alone."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(routes, "registered", lambda group, shipped: [])
+        leave_out(patch, tmp_path_factory.mktemp("nothing"), *PACKAGES)
         return Caller(make_app(Plant()))
 
 
@@ -117,13 +117,12 @@ def test_a_path_that_nobody_knows_is_no_missing_package(bare: Caller, web: Calle
 
 
 def test_every_path_of_a_package_is_known_as_its_own() -> None:
-    with pytest.MonkeyPatch.context() as patch:
-        points = registered(routes.GROUP, ROUTES)
-        for package, known in missing.PATHS.items():
-            mine = [each for each in points if package_of(each) == package]
-            patch.setattr(routes, "registered", lambda group, shipped, mine=mine: mine)
-            found = [path for each in routers(None)[len(routes.OWN) :] for path in paths(each)]
-            assert found and all(known.fullmatch(path) for path in found), found
+    brought: dict[str, list[str]] = {}
+    for point in registered(routes.GROUP):
+        brought.setdefault(package_of(point), []).extend(paths(point.load()(None)))
+    assert brought.keys() == missing.PATHS.keys()
+    for package, mine in brought.items():
+        assert mine and all(missing.PATHS[package].fullmatch(path) for path in mine), mine
 
 
 def test_no_path_of_the_runner_is_a_package_s(bare: Caller) -> None:

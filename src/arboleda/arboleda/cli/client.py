@@ -19,7 +19,7 @@ from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.verbs import Arguments
 from arboleda.runtime import endpoints
-from arboleda.runtime.standby.leader import of_standby
+from arboleda.runtime.leader import of_standby
 from arboleda.runtime.state import Running, find_running, running_plants
 
 from .language import say

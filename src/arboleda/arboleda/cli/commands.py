@@ -16,7 +16,7 @@ import typer
 
 from arboleda.host.packages import entry_points
 from arboleda.model.outside import quoted
-from arboleda.model.packages import BOARDS, CLASS, DRIVERS, MAKE, MISSING, PROOFS, PackageMissing
+from arboleda.model.packages import BOARDS, CLASS, DRIVERS, FLEET, MAKE, MISSING, PROOFS, PackageMissing
 from arboleda.model.sentence import Phrase
 from arboleda.views.verb_words import ABOUT
 
@@ -33,11 +33,14 @@ OF_PACKAGES = {  # extras of `arboleda`, by command
     "exercise": CLASS,
     "fault": PROOFS,
     "firmware-config": BOARDS,
+    "handover": FLEET,
     "mcp": MAKE,
+    "oee": FLEET,
     "prove": PROOFS,
     "replay": PROOFS,
     "report": PROOFS,
     "simulate": PROOFS,
+    "site": FLEET,
     "versions": MAKE,
     "virtual": DRIVERS,
 }
@@ -90,19 +93,10 @@ OURS: Mapping[str, Command] = {
     "tasks": Command(
         "tasks", "List tasks and their outcomes, also of earlier starts, whether the plant runs or not."
     ),
-    "oee": Command(
-        "oee", "OEE of the cells, availability x performance x quality, whether the plant runs or not."
-    ),
     "certs": Command(
         "certs",
         "Make a small authority for a lab, and certificates for the plant on this machine and for "
         "each board.",
-    ),
-    "handover": Command(
-        "handover", "Have the standby of a plant lead it: what is at work is held, and goes on there."
-    ),
-    "site": Command(
-        "site", "Show many plants on one page: how each stands, trouble first, tasks and OEE over all."
     ),
     "backup": Command("backup", "Copy the plant's memory to a file, while the plant runs or not."),
     "restore": Command("backup", "Put a backup in the place of the plant's memory; the plant must not run."),

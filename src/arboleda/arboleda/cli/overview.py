@@ -16,9 +16,7 @@ from .help_language import WrongUse, complain, first_sentence, speaking, transla
 from .language import help_words
 
 SECTIONS: Mapping[str, tuple[str, ...]] = {
-    "Run a plant": (
-        *("up", "run", "submit", "status", "tasks", "oee", "token", "service", "site", "handover", "mcp"),
-    ),
+    "Run a plant": (*("up", "run", "submit", "status", "tasks", "token", "service", "mcp"),),
     "Operate it": tuple(verb.value for verb in Verb),
     "Make it yours": (
         *(

@@ -12,7 +12,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.runtime import tokens
 from arboleda.runtime.endpoints import Place, with_tokens
-from arboleda.runtime.standby.leader import LeaderInfo, of_leader
+from arboleda.runtime.leader import LeaderInfo, of_leader
 from arboleda.runtime.stores import leadership_of
 from arboleda.web.access.auth import Role
 

@@ -321,7 +321,7 @@ def _run(
     )
     parts, console = set(PARTS) - left_out, Console(highlight=False)
     if standby:
-        from arboleda.runtime.standby.process import take_over  # what waits to lead, no other start needs
+        from arboleda.runtime.standing_by import take_over
 
         def again() -> tuple[PlantModel, Recording | None]:
             read = loader.load_recorded(options.plant_file)

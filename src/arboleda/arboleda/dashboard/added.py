@@ -19,7 +19,6 @@ from .faces import Face
 from .faces.moment import Moment
 from .page_api import Layout, PageApi
 from .page_part import GROUP, Act, OtherRecord, PagePart, Place, Section, Spot
-from .shipped_page import PAGE
 from .wording import Words
 
 LOG = logging.getLogger(__name__)
@@ -28,7 +27,7 @@ LeaveOut = Callable[[str, BaseException], None]  # told of a package that breaks
 
 def installed() -> set[str]:
     """The packages that add to the page."""
-    return {package_of(each) for each in registered(GROUP, PAGE)}
+    return {package_of(each) for each in registered(GROUP)}
 
 
 class LeftOut(Exception):
@@ -47,7 +46,7 @@ class AddedParts:
         self._tell = leave_out or _log
         self._parts: list[_Added] = []
         self._left_out: set[str] = set()
-        for point in registered(GROUP, PAGE):
+        for point in registered(GROUP):
             if package_of(point) in self._left_out:
                 continue
             try:

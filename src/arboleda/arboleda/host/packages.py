@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Mapping
 from functools import lru_cache
 from importlib import metadata
 from typing import Any
@@ -23,12 +22,9 @@ def entry_points(group: str) -> metadata.EntryPoints:
     return found
 
 
-def registered(group: str, shipped: Mapping[str, str]) -> list[metadata.EntryPoint]:
-    """Entry points of a group, by name: the `shipped` rows, whose packages are still folders of this one,
-    and the entry points of installed packages. Nothing of it is loaded."""
-    rows = [metadata.EntryPoint(name, value, group) for name, value in shipped.items()]
-    others = [each for each in entry_points(group) if each.name not in shipped]
-    return sorted((*rows, *others), key=lambda each: each.name)
+def registered(group: str) -> list[metadata.EntryPoint]:
+    """The entry points of a group, by name. Nothing of them is loaded."""
+    return sorted(entry_points(group), key=lambda each: each.name)
 
 
 def extra(name: str, package: str, what: str) -> Any:

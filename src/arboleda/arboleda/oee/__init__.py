@@ -1,1 +1,1 @@
-"""OEE of cells: its figures, and the rows of a plant's memory that they are made of."""
+"""OEE of a cell as a formula of its tasks and times."""

@@ -10,8 +10,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from arboleda.drivers.port import DriverSpec
+from arboleda.host.packages import entry_points, package_of
 from arboleda.model.assistants import Assistants
 from arboleda.model.errors import ConfigError
+from arboleda.model.packages import FLEET, MISSING
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import (
     Cell,
@@ -24,6 +26,7 @@ from arboleda.model.plant_model import (
 )
 from arboleda.model.recipe import Recipe
 from arboleda.model.recording import Limits, Recording
+from arboleda.model.sentence import OWN
 from arboleda.store.address import has_password
 from arboleda.store.schemes import objection
 
@@ -306,6 +309,8 @@ def _opcua_view(document: Document) -> OpcUaView | None:
     place = ("opcua_view",)
     if not document.has(place):
         return None
+    if FLEET not in {package_of(each) for each in entry_points("arboleda.parts")}:
+        document.problem(place, str(MISSING(what=OWN(text="opcua_view"), package=FLEET)))
     shape = document.read(OpcUaViewShape, place)
     return None if shape is None else OpcUaView(port=shape.port, isa95=tuple(shape.isa95))
 

@@ -14,7 +14,6 @@ from .holdings import Holdings
 from .links import Links
 from .options import Options
 from .parts.part import Crash, Part
-from .shipped_parts import PARTS
 
 GROUP = "arboleda.parts"
 
@@ -79,7 +78,7 @@ class Assembly(Offers):
 
 def packaged(leave_out: Callable[[str, BaseException], None]) -> Iterator[tuple[str, Factory]]:
     """The factories of packages, each with its package; one that cannot be loaded is left out."""
-    for point in registered(GROUP, PARTS):
+    for point in registered(GROUP):
         try:
             factories = tuple(point.load())
             if not all(isinstance(each, Factory) for each in factories):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
-from arboleda.host.packages import registered
+from arboleda.host.packages import entry_points
 from arboleda.model.errors import StartError
 from arboleda.model.outside import text_of_error
 from arboleda.model.packages import FLEET, MISSING
@@ -16,14 +16,10 @@ from arboleda.model.sentence import OWN
 
 from .leadership import Leaders, Leadership
 from .plant_memory import PlantMemory
+from .seeds import Seeds
 from .task_rows import History
 
 GROUP = "arboleda.stores"
-# rows of a package that is still a folder of this one; they become entry points of the package
-STORES = {
-    "postgres": "arboleda.runtime.standby.postgres:Postgres",
-    "postgresql": "arboleda.runtime.standby.postgres:Postgres",
-}
 PACKAGES = {"postgres": FLEET, "postgresql": FLEET}  # which one brings a scheme, where it is not installed
 NO_ADDRESS = "must be postgresql://USER@HOST:PORT/DATABASE"
 UNKNOWN = "nothing that is installed here keeps a memory at {scheme}://; there are {names}"
@@ -38,6 +34,7 @@ class Databases(Protocol):
     def history(self, address: str, plant: str) -> History: ...
     def leadership(self, address: str, plant: str) -> Leadership: ...
     def leaders(self, address: str) -> Leaders: ...
+    def seeds(self, address: str, campaign: str) -> Seeds: ...
 
 
 def objection(address: str) -> str:
@@ -46,7 +43,7 @@ def objection(address: str) -> str:
     scheme, sign, _ = address.partition("://")
     if not sign or not scheme.isalnum():
         return NO_ADDRESS
-    names = [each.name for each in registered(GROUP, STORES)]
+    names = sorted(each.name for each in entry_points(GROUP))
     if scheme in names:
         return ""
     if scheme in PACKAGES:
@@ -60,7 +57,7 @@ def databases(address: str) -> Databases:
     if wrong:
         raise StartError(f"The address of a store {wrong}." if wrong == NO_ADDRESS else f"{wrong}.")
     scheme = address.partition("://")[0]
-    point = next(each for each in registered(GROUP, STORES) if each.name == scheme)
+    point = next(each for each in entry_points(GROUP) if each.name == scheme)
     try:
         made: Any = point.load()()
     except StartError:

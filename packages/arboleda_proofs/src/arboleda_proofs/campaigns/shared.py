@@ -14,7 +14,8 @@ from rich.text import Text
 from arboleda import __version__
 from arboleda.model.counting import counted
 from arboleda.model.errors import ArboledaError, StartError
-from arboleda.store.postgres.seeds import SeedRow, SeedRows
+from arboleda.store.schemes import databases
+from arboleda.store.seeds import SeedRow
 from arboleda_proofs.simulator.levels import LEVELS
 
 from . import report
@@ -42,7 +43,7 @@ def work(request: Request, console: Console, store: str, file: Path | None) -> i
     if request.count is None:
         raise StartError("workers share a number of seeds: say how many with --seeds")
     began, mine, name = time.monotonic(), 0, campaign_of(request)
-    rows = SeedRows(store, name)
+    rows = databases(store).seeds(store, name)
     try:
         rows.lay_out(request.first, request.count)
         console.print(Text(f"campaign {name}: {counted(request.count, 'seed')}", style="dim"))

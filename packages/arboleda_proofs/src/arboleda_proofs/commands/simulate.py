@@ -12,7 +12,6 @@ from arboleda.cli.language import language, say
 from arboleda.cli.plant_options import IN_FOLDER, StoreAddress, plant_here
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_new, check_writable
-from arboleda.runtime.standby.postgres import refuse_without_library
 from arboleda_proofs.campaigns.defaults import CYCLES, LEVEL, SEED, SEEDS
 from arboleda_proofs.simulator.levels import CRASHES, LEVELS
 
@@ -202,7 +201,6 @@ def simulate(
     for note in request.notes:
         console.print(Text(note, style="dim"), soft_wrap=True)
     if worker:
-        refuse_without_library()
         from arboleda_proofs.campaigns.shared import work
 
         raise typer.Exit(work(request, console, store, json))

@@ -29,7 +29,7 @@ class Groot2Part(ViewerProcess):
     """Groot2Part: keeps the process; `saw` takes each snapshot, in the plant's thread."""
 
     def __init__(self, cells: Sequence[str], options: Groot2Options) -> None:
-        super().__init__("groot2", "shows trees to Groot2", "groot2_process")
+        super().__init__("groot2", "shows trees to Groot2", "arboleda.adapters.groot2_process")
         self._cells = cells
         self._options = options
         self._tasks: dict[str, str] = {}  # the one whose tree each cell showed last

@@ -22,7 +22,7 @@ Snapshot = Mapping[str, Any]
 class ViewerProcess(ABC):
     """Keeps the process; `saw` takes each snapshot, in the plant's thread.
 
-    `module` of `arboleda.adapters` has a `main`, which prints a line of JSON once it is ready, and ends when
+    `module` has a `main`, which prints a line of JSON once it is ready, and ends when
     its input does. `name` is that of the thread that writes to it, `task` says what it does.
     """
 
@@ -46,7 +46,7 @@ class ViewerProcess(ABC):
 
     def spawn(self, *given: object) -> subprocess.Popen[bytes]:
         """Start the process, with what its `main` is given."""
-        run = f"from arboleda.adapters import {self._module} as shown; shown.main(*given)"
+        run = f"import {self._module} as shown; shown.main(*given)"
         self._process = subprocess.Popen(
             [sys.executable, "-c", BEGIN + run, *map(json.dumps, [sys.path, *given])],
             stdin=subprocess.PIPE,

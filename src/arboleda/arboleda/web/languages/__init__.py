@@ -16,8 +16,6 @@ import yaml
 
 from arboleda.host.packages import registered
 
-from ..shipped_languages import LANGUAGES as SHIPPED
-
 if TYPE_CHECKING:
     from importlib.abc import Traversable  # where Python 3.10 has it, and 3.14 no more
 
@@ -48,7 +46,7 @@ def contents(language: str, part: str) -> dict[str, Any]:
 def _folders() -> Iterator[Traversable]:
     """The folders of languages: first this one, then those of other packages."""
     yield resources.files(__package__)
-    for each in registered(GROUP, SHIPPED):
+    for each in registered(GROUP):
         with suppress(ImportError):  # of a package that does not load nothing is said
             yield resources.files(each.module) / "languages"
 

@@ -16,7 +16,6 @@ from fastapi import APIRouter
 from arboleda.host.packages import package_of, registered
 
 from ..plant_api import PlantApi
-from ..shipped_routes import ROUTES
 
 LOG = logging.getLogger(__name__)
 GROUP = "arboleda.routes"
@@ -32,11 +31,11 @@ def routers(side: PlantApi, leave_out: LeaveOut | None = None) -> list[APIRouter
 
 def installed() -> set[str]:
     """The packages that bring routes."""
-    return {package_of(each) for each in registered(GROUP, ROUTES)}
+    return {package_of(each) for each in registered(GROUP)}
 
 
 def _packaged(side: PlantApi, leave_out: LeaveOut) -> Iterator[APIRouter]:
-    for point in registered(GROUP, ROUTES):
+    for point in registered(GROUP):
         try:
             router = point.load()(side)
             if not isinstance(router, APIRouter):

@@ -1,6 +1,6 @@
 """Store of a plant that two hosts reach: the row that names the leader, and what is kept behind it.
 
-The row behaves as the statements of `store/postgres` do on a server; `tests/contract/test_leader_row.py`
+The row behaves as the statements of `arboleda_fleet` do on a server; its `real/postgres/test_leader_row.py`
 compares the two.
 """
 

@@ -1,0 +1,1 @@
+"""The plant as a server of OPC UA, which others browse and nobody writes to."""

@@ -1,0 +1,14 @@
+"""What the figures of several cells add to the page of a plant."""
+
+from __future__ import annotations
+
+from arboleda.dashboard.asset_files import Assets
+from arboleda.dashboard.page_part import PagePart, Place, Section
+
+from . import oee
+
+PAGE = PagePart(
+    assets=Assets(package=__package__, script="oee.js", styles=("fleet",)),
+    sections=(Section(place=Place.TASKS, build=oee.build),),
+    serve=oee.serve,
+)
