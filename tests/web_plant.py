@@ -17,8 +17,8 @@ from arboleda.model.verbs import Arguments
 from arboleda.oee.figures import KeptFigures, Oee, Run, Work, oee
 from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.web.access.auth import Role
-from arboleda.web.desks.reports import ReportsApi
 from arboleda_fleet.oee.api import OeeApi, OeeQuery
+from arboleda_proofs.running.reports_api import ReportsApi
 from arboleda_proofs.testing import shipped
 
 QUEUED = {"id": "t-1", "text": "sis_a 0b 7", "cell": "sis_a", "state": "queued", "sentence": ""}

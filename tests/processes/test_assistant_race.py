@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.web.desks.draft import DraftRefused
+from arboleda_make.drafts.api import DraftRefused
 
 from ..scenario.assistant_site import REST, TREE, Site
 

@@ -14,7 +14,7 @@ import pytest
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
-from arboleda.web.desks.draft import DraftRefused
+from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.trying.workshop import ENDING, Workshop
 
 Processes: TypeAlias = "SimpleQueue[subprocess.Popen[bytes]]"

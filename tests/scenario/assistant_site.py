@@ -39,9 +39,9 @@ from arboleda.web.access.auth import Door, Role
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import names_for
 from arboleda.web.api import make_app
-from arboleda.web.desks.proposals import ProposalsApi
 from arboleda.web.plant_api import PlantApi, Snapshot
 from arboleda_make.drafts.plant_folder import PlantFolder
+from arboleda_make.proposals.api import ProposalsApi
 from arboleda_make.proposals.desk import ProposalDesk
 from arboleda_make.proposals.tasks import AssistantTasks
 from arboleda_make.versions.desk import VersionDesk

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from arboleda.model.messages import Verb
 from arboleda.web import limits
 from arboleda.web.access.auth import Role
-from arboleda.web.desks.draft import DraftRefused
 from arboleda_make.assistant.envelope import NOTE, answered
+from arboleda_make.drafts.api import DraftRefused
 
 from ..lengths import length, sample
 from .assistant_site import HOST, REST, TREE, Caller, Site, bearer

@@ -33,8 +33,8 @@ from arboleda.model.messages import Outcome, Verb
 from arboleda.runtime.leader import LeaderInfo
 from arboleda.runtime.web_options import WebOptions
 from arboleda.web.access.auth import Role
-from arboleda.web.desks.draft import DraftApi
 from arboleda_fleet.standby.waiting_room import WaitingRoom
+from arboleda_make.drafts.api import DraftApi
 
 
 @pytest.fixture

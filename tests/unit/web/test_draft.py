@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from arboleda.web.access.auth import Role
-from arboleda.web.desks.draft import DraftApi, DraftRefused
+from arboleda_make.drafts.api import DraftApi, DraftRefused
 
 VALUE = [1, {"b": None}]
 STATE = {"file": "plant.yaml", "editor": None, "changes": [], "waiting": [], "undo": 0, "redo": 0}

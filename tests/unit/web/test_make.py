@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from arboleda.web.access.auth import Role
-from arboleda.web.desks.draft import DraftRefused
-from arboleda.web.desks.make import MakeApi
+from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.editing.errors import EditError
+from arboleda_make.trying.api import MakeApi
 
 STATE = {"file": "plant.yaml", "editor": None, "changes": [], "waiting": [], "undo": 0, "redo": 0}
 STATE |= {"values": {}}

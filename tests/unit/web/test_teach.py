@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.web import limits
 from arboleda.web.access.auth import Role
-from arboleda.web.desks.teach import Along, Button, Target, TeachApi, TeachRefused
+from arboleda_make.teaching.api import Along, Button, Target, TeachApi, TeachRefused
 
 STATE = {"cell": "sis_a", "teaching": None, "refusal": None, "devices": [], "targets": [], "drafts": True}
 PRESSED = {"teaching": None, "robot": {"name": "ra1"}}

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from arboleda.web.access.auth import Role
-from arboleda.web.desks.draft import DraftRefused
-from arboleda.web.desks.versions import VersionsApi
+from arboleda_make.drafts.api import DraftRefused
+from arboleda_make.versions.api import VersionsApi
 
 LIST = {"at_work": {"number": None, "at": "2026"}, "versions": [], "cells": []}
 LIST |= {"restart": {"by": "", "can": True}}

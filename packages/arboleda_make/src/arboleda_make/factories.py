@@ -11,11 +11,11 @@ from arboleda.runtime.parts.orchestrator import Orchestrator
 from arboleda.runtime.parts.part import Part
 from arboleda.runtime.rate import at_rate
 from arboleda.runtime.registry import Assembly, Factory, Phase
-from arboleda.web.desks.draft import DraftApi
-from arboleda.web.desks.make import MakeApi
-from arboleda.web.desks.proposals import ProposalsApi
-from arboleda.web.desks.teach import TeachApi
-from arboleda.web.desks.versions import VersionsApi
+from arboleda_make.drafts.api import DraftApi
+from arboleda_make.proposals.api import ProposalsApi
+from arboleda_make.teaching.api import TeachApi
+from arboleda_make.trying.api import MakeApi
+from arboleda_make.versions.api import VersionsApi
 
 
 def desks(assembly: Assembly) -> Iterator[Part]:

@@ -21,7 +21,7 @@ from arboleda.plant_file.versions import Version, Versions, version_of
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.plant_file.yaml_marks import parse
 from arboleda.runtime import at_work
-from arboleda.web.desks.draft import DraftApi, DraftRefused, Place, State
+from arboleda_make.drafts.api import DraftApi, DraftRefused, Place, State
 from arboleda_make.drafts.draft import Draft, draft_of
 
 from .file import DraftFile

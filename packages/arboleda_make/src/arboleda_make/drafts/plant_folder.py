@@ -10,7 +10,7 @@ from arboleda.model.outside import quoted
 from arboleda.plant_file.draft_check import root_of
 from arboleda.plant_file.versions import Version, Versions, write_files
 from arboleda.plant_file.yaml_edit import EditRefused
-from arboleda.web.desks.draft import DraftRefused
+from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.drafts.draft import Draft, check_name
 
 OWN = "files"  # in the state directory

@@ -9,9 +9,9 @@ from fastapi.responses import JSONResponse
 from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.shell import language_of
 from arboleda.web.access.auth import require
-from arboleda.web.desks.make import MakeApi
 from arboleda.web.schema.bodies import FindingLines
 from arboleda.web.schema.queries import read_body
+from arboleda_make.trying.api import MakeApi
 
 PATH = "/findings.json"
 MAY = "reading what was found in a draft"

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from arboleda.dashboard.page_part import Spot
 from arboleda.dashboard.tags import tag, way
 from arboleda.dashboard.wording import Words
-from arboleda.web.desks.make import MakeApi
+from arboleda_make.trying.api import MakeApi
 
 PANELS = ("draft", "cells", "try", "prove", "device", "proposals")
 STEPS = ("undo", "redo", "check", "discard")

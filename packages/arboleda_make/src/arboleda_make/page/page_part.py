@@ -11,7 +11,7 @@ from arboleda.dashboard.asset_files import Assets
 from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.page_part import OtherRecord, PagePart, Place, Section
 from arboleda.dashboard.past.side import PastSide
-from arboleda.web.desks.make import MakeApi
+from arboleda_make.trying.api import MakeApi
 
 from . import findings_route, make_panel, proof, teach_panel, tree_editor, versions
 

@@ -9,7 +9,7 @@ from fastapi.responses import HTMLResponse, Response
 from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.sandbox import POLICY
 from arboleda.web.access.auth import require
-from arboleda.web.desks.make import MakeApi
+from arboleda_make.trying.api import MakeApi
 
 PATH = "/proof"
 MAY = "looking at what was proved of a draft"

@@ -11,7 +11,7 @@ from arboleda.dashboard.page_part import Spot
 from arboleda.dashboard.tags import link, live, tag, way
 from arboleda.dashboard.wording import Words
 from arboleda.views.view import standing
-from arboleda.web.desks.make import MakeApi
+from arboleda_make.trying.api import MakeApi
 
 STEPS = ("hold", "10", "1", "0.1")  # what a button of an axis does: on and on, or so many degrees or mm
 LONGEST_NAME = 40

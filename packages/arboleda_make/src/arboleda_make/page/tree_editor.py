@@ -5,7 +5,7 @@ from __future__ import annotations
 from arboleda.dashboard.page_part import Spot
 from arboleda.dashboard.tags import tag, way
 from arboleda.dashboard.wording import Words
-from arboleda.web.desks.make import MakeApi
+from arboleda_make.trying.api import MakeApi
 
 HOW = ("into", "before", "around", "instead")  # where a node of the palette goes
 ACTS = ("up", "down", "out", "in", "copy", "unwrap", "remove")

@@ -11,7 +11,7 @@ from arboleda.dashboard.page_part import Spot
 from arboleda.dashboard.shell import language_of
 from arboleda.dashboard.tags import tag
 from arboleda.dashboard.wording import words as words_of
-from arboleda.web.desks.versions import VersionsApi
+from arboleda_make.versions.api import VersionsApi
 
 from .version_rows import face
 

@@ -17,10 +17,10 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.versions import Version, version_of
 from arboleda.plant_file.yaml_edit import EditRefused
-from arboleda.web.desks.draft import DraftRefused, State
-from arboleda.web.desks.proposals import ProposalsApi
+from arboleda_make.drafts.api import DraftRefused, State
 from arboleda_make.drafts.draft import draft_of
 from arboleda_make.drafts.process import CheckProcess
+from arboleda_make.proposals.api import ProposalsApi
 from arboleda_make.proposals.proposal import Proposal, ProposedChanges, proposed, readable
 
 from ..drafts.plant_folder import PlantFolder

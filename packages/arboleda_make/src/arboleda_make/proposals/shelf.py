@@ -13,7 +13,7 @@ from typing import Any
 from arboleda.model.errors import ConfigError, StartError
 from arboleda.model.outside import quoted
 from arboleda.runtime.state import replace_file
-from arboleda.web.desks.draft import DraftRefused
+from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.proposals.proposal import Proposal, from_data
 
 FOLDER, ENDING, DECIDED = "proposals", ".json", ".decided.json"

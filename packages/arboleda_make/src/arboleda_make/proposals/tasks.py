@@ -16,8 +16,8 @@ from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.task import Order
 from arboleda.store.task_rows import ASSISTANT, TaskQuery, TaskRow
-from arboleda.web.desks.draft import DraftRefused, State
 from arboleda.web.plant_api import Found
+from arboleda_make.drafts.api import DraftRefused, State
 
 from .shelf import Decision, Shelf, Stage
 

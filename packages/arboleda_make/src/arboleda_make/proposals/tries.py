@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from arboleda.web.desks.draft import DraftRefused
+from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.proposals.proposal import Proposal
 
 from ..trying.errands import ErrandRun, Work

@@ -13,11 +13,11 @@ from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
 from arboleda.web.access.auth import require
-from arboleda.web.desks.draft import DraftApi, State
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import ResponseModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, described_body, read_body
+from arboleda_make.drafts.api import DraftApi, State
 
 MAY = "editing a draft"
 SHIPPED = "This plant has no file that could be changed; `arboleda new` writes one of your own."

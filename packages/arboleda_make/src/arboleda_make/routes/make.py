@@ -11,12 +11,12 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.exceptions import HTTPException
 
 from arboleda.web.access.auth import require
-from arboleda.web.desks.make import MakeApi
 from arboleda.web.languages import FIRST
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import ResponseModel
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import described, described_body, query_of, read_body
+from arboleda_make.trying.api import MakeApi
 
 from .draft import MAY, REFUSED, SHIPPED, DraftState, RecipeName, Step
 from .tree_answers import Drawn, EditForm, Nodes, TreeForm, operation_of

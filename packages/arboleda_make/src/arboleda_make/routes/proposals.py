@@ -12,11 +12,11 @@ from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
 from arboleda.web.access.auth import GIVE, PROPOSE, require
-from arboleda.web.desks.proposals import ProposalsApi
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import ResponseModel, Task
 from arboleda.web.schema.plain_json import PlainJson, explained
 from arboleda.web.schema.queries import described_body, read_body
+from arboleda_make.proposals.api import ProposalsApi
 
 from .draft import REFUSED, SHIPPED, AppliedDraft, Key
 from .make import RunState

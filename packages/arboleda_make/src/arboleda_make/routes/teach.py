@@ -12,11 +12,11 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from starlette.exceptions import HTTPException
 
 from arboleda.web.access.auth import require
-from arboleda.web.desks import teach
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import ResponseModel, Sentence, Teaching
 from arboleda.web.schema.plain_json import PlainJson, explained
 from arboleda.web.schema.queries import Answers, described_body, read_body
+from arboleda_make.teaching import api as teach
 
 MAY = "teaching"
 REFUSED: Answers = {

@@ -11,11 +11,11 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.exceptions import HTTPException
 
 from arboleda.web.access.auth import require
-from arboleda.web.desks.versions import VersionsApi
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import ResponseModel
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import described_body, read_body
+from arboleda_make.versions.api import VersionsApi
 
 from .draft import REFUSED, SHIPPED, AppliedDraft
 

@@ -17,8 +17,8 @@ from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.runtime import tool_path
 from arboleda.views import view
-from arboleda.web.desks.draft import DraftApi
-from arboleda.web.desks.teach import Along, Button, State, Target, TeachApi, TeachRefused
+from arboleda_make.drafts.api import DraftApi
+from arboleda_make.teaching.api import Along, Button, State, Target, TeachApi, TeachRefused
 
 from . import devices as taught_devices
 from . import targets as taught_targets

@@ -14,7 +14,7 @@ from arboleda.model.commands import Position
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.plant_model import Robot
 from arboleda.views import view
-from arboleda.web.desks.teach import Spot, TeachRefused
+from arboleda_make.teaching.api import Spot, TeachRefused
 
 Row = dict[str, Any]
 DIGITS = 3  # of a degree or a millimetre, finer than any motor step

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from arboleda.model.plant_model import Cell, Robot
-from arboleda.web.desks.teach import Spot, Target, TeachRefused
+from arboleda_make.teaching.api import Spot, Target, TeachRefused
 
 from . import devices as taught_devices
 

@@ -12,11 +12,11 @@ from arboleda.model.outside import plain
 from arboleda.model.plant_model import Robot
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.yaml_edit import EditRefused
-from arboleda.web.desks.draft import DraftRefused
-from arboleda.web.desks.make import MakeApi, Row
 from arboleda.web.languages import spoken, texts
+from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.drafts.draft import draft_of
 from arboleda_make.editing.operations import Operation
+from arboleda_make.trying.api import MakeApi, Row
 
 from ..drafts.desk import DraftDesk
 from ..drafts.plant_folder import NOT_OURS, PlantFolder

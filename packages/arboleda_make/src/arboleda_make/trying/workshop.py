@@ -14,7 +14,7 @@ from typing import Any
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.recipe_trial import PATH
-from arboleda.web.desks.draft import DraftRefused
+from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.editing.operations import Operation
 
 START = PATH + "from arboleda_make.trying import workshop_process; workshop_process.main()"

@@ -24,9 +24,9 @@ from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.versions import Version, Versions, version_of, whole
 from arboleda.runtime import at_work
 from arboleda.runtime.parts.orchestrator import Orchestrator, PutToWork
-from arboleda.web.desks.draft import DraftRefused, State
-from arboleda.web.desks.versions import VersionsApi
+from arboleda_make.drafts.api import DraftRefused, State
 from arboleda_make.proposals.proposal import Proposal
+from arboleda_make.versions.api import VersionsApi
 
 from ..drafts.plant_folder import PlantFolder
 

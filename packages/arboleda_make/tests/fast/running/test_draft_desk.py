@@ -14,7 +14,7 @@ from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.unstated import Unstated
 from arboleda.plant_file.versions import Version, Versions
 from arboleda.runtime import at_work
-from arboleda.web.desks.draft import DraftRefused
+from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.drafts.desk import DraftDesk
 from arboleda_make.drafts.plant_folder import PlantFolder
 

@@ -19,7 +19,7 @@ from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.versions import Versions
 from arboleda.runtime import at_work
 from arboleda.store.task_rows import ASSISTANT
-from arboleda.web.desks.draft import DraftRefused
+from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.drafts.plant_folder import PlantFolder
 from arboleda_make.proposals.desk import MOST_OPEN, ProposalDesk
 from arboleda_make.proposals.tasks import AssistantTasks

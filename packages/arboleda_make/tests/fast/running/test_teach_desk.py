@@ -20,10 +20,10 @@ from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.runtime import at_work, tool_path
-from arboleda.web.desks.draft import DraftRefused
-from arboleda.web.desks.teach import Along, Button, Target, TeachRefused
+from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.drafts.desk import DraftDesk
 from arboleda_make.drafts.plant_folder import PlantFolder
+from arboleda_make.teaching.api import Along, Button, Target, TeachRefused
 from arboleda_make.teaching.desk import TeachDesk
 from arboleda_proofs.testing import Rig
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.web.desks.draft import DraftRefused
+from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.drafts.plant_folder import PlantFolder
 from arboleda_make.versions.desk import VersionDesk
 

@@ -6,7 +6,7 @@ from arboleda.dashboard.faces import Face
 from arboleda.dashboard.faces.moment import Moment
 from arboleda.dashboard.page_part import Request, Spot
 from arboleda.dashboard.tags import live, tag
-from arboleda.web.desks.demonstration import DemonstrationApi
+from arboleda_proofs.running.demonstration_api import DemonstrationApi
 
 END = "end_demo"
 LINES = ("cells", "trouble", "more")

@@ -6,7 +6,7 @@ from fastapi.concurrency import run_in_threadpool
 
 from arboleda.dashboard.page_part import Request
 from arboleda.model.errors import ArboledaError
-from arboleda.web.desks.faults import FaultsApi
+from arboleda_proofs.running.faults_api import FaultsApi
 
 BEGIN, END = "fault", "end_fault"
 

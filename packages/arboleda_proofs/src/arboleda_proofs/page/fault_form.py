@@ -10,7 +10,7 @@ from arboleda.dashboard.page_part import Spot
 from arboleda.dashboard.tags import rows, tag
 from arboleda.dashboard.wording import Words
 from arboleda.model.sentence import Sentence
-from arboleda.web.desks.faults import FaultsApi
+from arboleda_proofs.running.faults_api import FaultsApi
 
 LASTING_S = (2, 5, 15, 60)
 

@@ -17,8 +17,8 @@ from arboleda.dashboard.wording import Words, words
 from arboleda.model.errors import ArboledaError
 from arboleda.model.packages import PROOFS
 from arboleda.web.access import login
-from arboleda.web.desks.reports import ReportsApi
 from arboleda.web.missing import missing
+from arboleda_proofs.running.reports_api import ReportsApi
 
 PATH = "/report"
 LOOK_S = 1

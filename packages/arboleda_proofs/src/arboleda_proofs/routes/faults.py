@@ -11,11 +11,11 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 
 from arboleda.web.access.auth import require
-from arboleda.web.desks.faults import FaultRefused, FaultsApi
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import ResponseModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, described_body, read_body
+from arboleda_proofs.running.faults_api import FaultRefused, FaultsApi
 
 MAY = "provoking a fault"
 NOT_HERE = "This process has no devices, so no faults can be provoked at them."

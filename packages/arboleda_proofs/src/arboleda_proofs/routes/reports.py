@@ -14,12 +14,12 @@ from starlette.exceptions import HTTPException
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.packages import PROOFS
-from arboleda.web.desks.reports import ReportsApi
 from arboleda.web.missing import missing
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import ResponseModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers
+from arboleda_proofs.running.reports_api import ReportsApi
 
 DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
 EARLIER = "The report was written by an earlier version; its page is at /report."

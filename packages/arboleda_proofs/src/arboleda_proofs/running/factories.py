@@ -11,9 +11,9 @@ from arboleda.runtime.parts.devices import DeviceBench, DevicesPart
 from arboleda.runtime.parts.orchestrator import Orchestrator
 from arboleda.runtime.parts.part import Part
 from arboleda.runtime.registry import Assembly, Factory, Phase
-from arboleda.web.desks.demonstration import DemonstrationApi
-from arboleda.web.desks.faults import FaultsApi
-from arboleda.web.desks.reports import ReportsApi
+from arboleda_proofs.running.demonstration_api import DemonstrationApi
+from arboleda_proofs.running.faults_api import FaultsApi
+from arboleda_proofs.running.reports_api import ReportsApi
 
 
 def reports(assembly: Assembly) -> Iterator[Part]:

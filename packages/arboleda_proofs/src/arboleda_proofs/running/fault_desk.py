@@ -14,7 +14,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Event, FaultByHand
 from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.model.sentence import Phrase, Sentence
-from arboleda.web.desks.faults import BegunFault, FaultOffer, FaultRefused, FaultsApi
+from arboleda_proofs.running.faults_api import BegunFault, FaultOffer, FaultRefused, FaultsApi
 from arboleda_proofs.simulator.fault_bench import (
     FaultBench,
     MishapBegins,

@@ -18,7 +18,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.outside import plain, quoted
 from arboleda.model.sentence import Phrase
-from arboleda.web.desks.reports import ReportsApi
+from arboleda_proofs.running.reports_api import ReportsApi
 
 LOG = logging.getLogger(__name__)
 FOLDER = "reports"

@@ -11,8 +11,8 @@ from arboleda.model.messages import FaultByHand, Journal
 from arboleda.sim.devices import Devices
 from arboleda.views.chronicle import Chronicle
 from arboleda.views.view import snapshot
-from arboleda.web.desks.faults import FaultRefused
 from arboleda_proofs.running.fault_desk import FaultDesk
+from arboleda_proofs.running.faults_api import FaultRefused
 from arboleda_proofs.simulator.fault_bench import FaultBench
 from arboleda_proofs.simulator.mishaps import MISHAPS
 from arboleda_proofs.testing import Rig, shipped

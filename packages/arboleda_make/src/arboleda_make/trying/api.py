@@ -5,10 +5,9 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
-if TYPE_CHECKING:
-    from arboleda_make.editing.operations import Operation
+from ..editing.operations import Operation
 
 Row = dict[str, Any]
 RUNS = ("try", "prove", "notice", "reach")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import Protocol
 
-from .draft import State
+from ..drafts.api import State
 
 
 class VersionsApi(Protocol):

@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
-from .draft import State
+from ..drafts.api import State
 
 
 class ProposalsApi(Protocol):
