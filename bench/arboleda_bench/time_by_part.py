@@ -15,6 +15,7 @@ PARTS = {  # what part of the house a file belongs to; the first that fits
     "/arboleda/model/": "plant",
     "/arboleda/dispatch/": "plant",
     "/arboleda/trees/": "plant",
+    "/arboleda/resume/": "plant",
     "/arboleda/core/": "plant",
     "/py_trees/": "plant",
     "/simulator/truth/": "truth",

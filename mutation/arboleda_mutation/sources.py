@@ -12,7 +12,7 @@ from . import trees
 from .mutant import Mutant
 
 PACKAGE = Path("src/arboleda/arboleda")
-ENGINE = ("model", "dispatch", "trees", "core")
+ENGINE = ("model", "dispatch", "trees", "resume", "core")
 MUTATED = (*ENGINE, "recipes", "views", "wire")
 
 

@@ -31,6 +31,7 @@ def third_party(path: Path) -> set[str]:
         ("model", {"py_trees"}),
         ("dispatch", set()),
         ("trees", {"py_trees"}),
+        ("resume", {"py_trees"}),
         ("core", {"py_trees"}),
         ("client", {"httpx", "pandas"}),
         ("dashboard", {"fastapi", "nicegui", "yaml"}),

@@ -17,7 +17,7 @@ from arboleda.model.plant_model import Cell, Robot
 from arboleda.plant_file.registry import COME_WITH_IT
 
 ROOT = Path(arboleda.__file__).parent
-ENGINE = ("model", "dispatch", "trees", "core")
+ENGINE = ("model", "dispatch", "trees", "resume", "core")
 ABOVE = ("cli", "playback", "site", "campaigns", "runtime", "plant_file", "web", "store")
 PACKAGES = (*ENGINE, *ABOVE, "wire", "views", "adapters", "sim", "simulator", "dashboard", "testing")
 NAMED_AS_ROLES = {

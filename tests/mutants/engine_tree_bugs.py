@@ -5,8 +5,8 @@ from __future__ import annotations
 from .engine_bug import bug
 
 LEAVES, STEPS, PLACES = "trees/leaves.py", "trees/steps.py", "trees/part_places.py"
-CELL_ZONES, CELL_DEVICES, WALK = "trees/cell_zones.py", "trees/cell_devices.py", "trees/walk_back.py"
-TRAIL, INTERLOCKS, ZONE_PLAN = "trees/trail.py", "trees/interlocks.py", "trees/zone_plan.py"
+CELL_ZONES, CELL_DEVICES, WALK = "trees/cell_zones.py", "trees/cell_devices.py", "resume/walk_back.py"
+TRAIL, INTERLOCKS, ZONE_PLAN = "resume/trail.py", "trees/interlocks.py", "trees/zone_plan.py"
 
 OF_LEAVES = (
     bug(
@@ -365,8 +365,8 @@ OF_WALK_BACK = (
     bug(
         WALK,
         "A boot meanwhile is not compared.",
-        "        if belief.boot_id != known.boot:\n            if self._displaced",
-        "        if False:\n            if self._displaced",
+        "        if belief.boot_id != known.boot:\n            return Trouble",
+        "        if False:\n            return Trouble",
     ),
     bug(
         WALK,
@@ -411,7 +411,7 @@ OF_WALK_BACK = (
         "            if known is None or known is Fate.DONE:\n                step.begin_anew()",
     ),
     bug(
-        TRAIL,
+        "trees/node_state.py",
         "It is not kept that a command is done.",
         '        "done": entry.state is State.DONE,\n',
         '        "done": False,\n',
@@ -429,19 +429,19 @@ OF_WALK_BACK = (
         "return 0 <= now.accepted - before.accepted <= most + 1\n",
     ),
     bug(
-        "trees/keeping.py",
+        "resume/keeping.py",
         "Which robots a task has used is not kept.",
         "            used=sorted(context.commands.used),\n",
         "            used=(),\n",
     ),
     bug(
-        "trees/keeping.py",
+        "resume/keeping.py",
         "A task is kept when it begins, and never again.",
         "        if state == self._kept_of:\n            return None\n",
         "        if self._kept_of and numbers == self._kept_of[-1]:\n            return None\n",
     ),
     bug(
-        "trees/keeping.py",
+        "resume/keeping.py",
         "A recipe that was changed goes on where it was.",
         "            return made == self._begun.made\n",
         "            return True\n",

@@ -24,6 +24,7 @@ TOLD_BY = (
     "model",
     "dispatch",
     "trees",
+    "resume",
     "core",
     "recipes",
     "drivers",

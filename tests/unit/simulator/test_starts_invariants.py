@@ -14,6 +14,7 @@ from arboleda.core.task_queue import TaskQueue
 from arboleda.model.messages import ENDED, KeptTask, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.task import Task
+from arboleda.resume.walk_back import WalkBack
 from arboleda.simulator import plant_process
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import KINDS, OF_CRASHES
@@ -23,7 +24,6 @@ from arboleda.simulator.judged import INVARIANTS, judged_by
 from arboleda.simulator.judged_world import BrokenInvariant
 from arboleda.simulator.run import Simulation
 from arboleda.testing import shipped
-from arboleda.trees.walk_back import WalkBack
 
 from ...lengths import length, sample
 from .test_general_invariants import load, shop

@@ -14,13 +14,13 @@ from arboleda.model.messages import Failure, Reason, RevisionName, TaskState, Ve
 from arboleda.model.plant_model import Cell, Timing
 from arboleda.model.recipe import Build
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.step_token import hash_of
 from arboleda.model.task import Task
+from arboleda.resume.keeping import Keeping
 from arboleda.trees import steps
 from arboleda.trees.context import Context
-from arboleda.trees.keeping import Keeping
 from arboleda.trees.leaves import title_of
 from arboleda.trees.part_places import trouble_in
-from arboleda.trees.step_token import hash_of
 from arboleda.trees.tree_run import TreeRun, path_of
 
 from .absence import Absence

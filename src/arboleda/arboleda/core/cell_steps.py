@@ -7,7 +7,7 @@ from collections.abc import Callable
 from arboleda.dispatch.ledger import State
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase
-from arboleda.trees.walk_back import NO_PART
+from arboleda.resume.walk_back import NO_PART
 
 from .cell import CellRun, NextVersion
 from .cell_states import Cause, CellState

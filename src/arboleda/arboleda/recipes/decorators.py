@@ -19,7 +19,7 @@ from arboleda.trees.cell_time import LEAST_S, CellTime
 from arboleda.trees.context import Context
 from arboleda.trees.failures import Failures
 from arboleda.trees.leaves import title_of, titled
-from arboleda.trees.trail import Keeps, failure_kept, read_failure
+from arboleda.trees.node_state import Keeps, failure_kept, read_failure
 
 RETRY = Phrase("step.retry", "retry {step}")
 REPEAT = Phrase("step.repeat", "repeat {step}")

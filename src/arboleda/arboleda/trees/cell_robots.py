@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 from arboleda.dispatch.belief import Belief, Moment
 from arboleda.dispatch.dispatcher import Dispatcher
@@ -13,7 +14,14 @@ from arboleda.model.plant_model import Cell, Evidence, Pose
 
 from .cell_devices import CellDevices
 from .cell_time import CellTime
-from .trail import Knowledge, Planned
+
+
+@dataclass(frozen=True, kw_only=True)
+class Planned:
+    """Places of the robots when the tree was made, by which its recipe may have planned."""
+
+    standing: Mapping[str, str]  # the zone-free poses of those with shared zones, by name
+    positions: Mapping[str, Position]
 
 
 class CellRobots:
@@ -126,16 +134,15 @@ class CellRobots:
         belief = self._dispatcher.beliefs[robot]
         return belief.robot.evidence is Evidence.IDS and (belief.robot.says_homed or belief.says_unhomed)
 
-    def known(self, names: Iterable[str]) -> dict[str, Knowledge]:
-        """The reports of commands, in the form in which they are kept: those of these robots, and of those of
-        the cell whose boards number their commands, and have been heard.
-        """
-        beliefs, unnamed = self._dispatcher.beliefs, self._dispatcher.unnamed
-        kept = set(names)
-        for robot in self._cell.reached:
-            if beliefs[robot.name].numbers_commands:
-                kept.add(robot.name)
-        return {name: Knowledge.of(beliefs[name], unnamed.of(name)) for name in sorted(kept)}
+    @property
+    def numbering(self) -> list[str]:
+        """The robots of the cell whose boards number their commands, and have been heard."""
+        beliefs = self._dispatcher.beliefs
+        return [robot.name for robot in self._cell.reached if beliefs[robot.name].numbers_commands]
+
+    def unnamed(self, robot: str) -> int:
+        """How many commands may have reached a robot that it has not told of."""
+        return self._dispatcher.unnamed.of(robot)
 
     def moments(self) -> dict[str, Moment]:
         """Now, as each robot of the cell tells the time, for `moving_since`."""

@@ -18,8 +18,8 @@ from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
 from .cell_time import LEAST_S, CellTime
 from .context import Context
 from .failures import Failures
+from .node_state import Keeps, command_kept
 from .parts import Parts
-from .trail import Keeps, command_kept
 
 CANCELLED = Phrase("command.cancelled", "cancelled while {doing}")
 AGAIN = Phrase("command.again", "{why}; try {number} of {most} follows")

@@ -19,7 +19,7 @@ from arboleda.model.sentence import Phrase, Sentence
 from . import steps
 from .context import Context
 from .leaves import Act, Leaf, title_of
-from .trail import Keeps
+from .node_state import Keeps
 from .tree_nodes import nodes_of
 
 BROKE_IN_TREE = Phrase("cell.broke_in_tree", "{cell}: {kind} in the tree: {error}")

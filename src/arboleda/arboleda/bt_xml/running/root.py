@@ -16,7 +16,7 @@ from arboleda.recipes.authoring import FINAL
 from arboleda.recipes.decorators import NO_RESCUE, with_second
 from arboleda.recipes.holding import Take, used
 from arboleda.trees.failures import Failures
-from arboleda.trees.trail import failure_kept, read_failure
+from arboleda.trees.node_state import failure_kept, read_failure
 
 from .controls import InSequence, TryCatch
 from .decorators import SubTree

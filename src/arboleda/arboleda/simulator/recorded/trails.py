@@ -9,9 +9,9 @@ from arboleda.dispatch.ledger import State
 from arboleda.model.messages import Fact, Remember
 from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import Sentence
+from arboleda.resume.trail import Trail
+from arboleda.resume.walk_back import MORE
 from arboleda.trees.leaves import Act
-from arboleda.trees.trail import Trail
-from arboleda.trees.walk_back import MORE
 
 from .cells import KnownCell
 from .commands import Commands

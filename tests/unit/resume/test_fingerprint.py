@@ -10,8 +10,9 @@ from typing import Any
 import pytest
 
 from arboleda.model.plant_model import Cell
+from arboleda.resume import fingerprint
 from arboleda.testing import shipped
-from arboleda.trees import fingerprint, steps
+from arboleda.trees import steps
 from arboleda.trees.leaves import Unless
 
 from ...cells import with_poses, with_robot
