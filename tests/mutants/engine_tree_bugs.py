@@ -99,8 +99,8 @@ OF_LEAVES = (
     bug(
         STEPS,
         "A recovery takes no zones.",
-        "    if space.zones:\n        needed = partial(context.zones.for_recovery, robot)\n",
-        "    if not space.zones:\n        needed = partial(context.zones.for_recovery, robot)\n",
+        "    if space.zones:\n        needed = partial(context.zones.needs.for_recovery, robot)\n",
+        "    if not space.zones:\n        needed = partial(context.zones.needs.for_recovery, robot)\n",
     ),
     bug(
         STEPS,
@@ -129,7 +129,7 @@ OF_LEAVES = (
     bug(
         STEPS,
         "The zones between two poses are left out.",
-        "return context.zones.between(robot, pose).union(*(leg.zones for leg in legs))",
+        "return context.zones.needs.between(robot, pose).union(*(leg.zones for leg in legs))",
         "return frozenset[str]().union(*(leg.zones for leg in legs))",
     ),
 )
@@ -266,13 +266,13 @@ OF_CELLS = (
     bug(
         INTERLOCKS,
         "A machine that is not heard is out of the way.",
-        "            if not belief.online\n            or not belief.is_sure\n",
-        "            if not belief.is_sure\n",
+        "            if not belief.online\n            or not belief.standing.is_sure\n",
+        "            if not belief.standing.is_sure\n",
     ),
     bug(
         INTERLOCKS,
         "What a machine has told before its stop counts.",
-        "            or not belief.is_sure\n",
+        "            or not belief.standing.is_sure\n",
         "",
     ),
     bug(
@@ -306,7 +306,7 @@ OF_CELLS = (
         "        if holder != name:\n            return None\n        held = NOT_HELD",
     ),
     bug(
-        CELL_DEVICES,
+        "trees/hand_over.py",
         "A shared device is given back at work.",
         "return online and not self._works(device) and device not in self._dispatcher.latches.stopped",
         "return online and device not in self._dispatcher.latches.stopped",

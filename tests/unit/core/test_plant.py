@@ -8,7 +8,6 @@ import pytest
 
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
-from arboleda.dispatch.belief import APART_S
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
@@ -28,7 +27,7 @@ from arboleda.model.messages import (
     TaskState,
     Verb,
 )
-from arboleda.model.plant_model import Evidence, Timing
+from arboleda.model.plant_model import APART_S, Evidence, Timing
 from arboleda.testing import shipped
 from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees import leaves

@@ -6,10 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.dispatch.belief import APART_S
 from arboleda.model.commands import StopMode
 from arboleda.model.messages import Report, Verb
-from arboleda.model.plant_model import Crossing, Evidence, PlantModel
+from arboleda.model.plant_model import APART_S, Crossing, Evidence, PlantModel
 from arboleda.simulator.invariants.grips import parts_conserved
 from arboleda.simulator.invariants.invariant import Look
 from arboleda.simulator.record import Record

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.dispatch.belief import Moment
 from arboleda.dispatch.booking import BROKEN_OFF
+from arboleda.dispatch.standing import Moment
 from arboleda.model.messages import Failure, Reason, RevisionName, TaskState, Verb
 from arboleda.model.plant_model import Cell, Timing
 from arboleda.model.recipe import Build

@@ -111,7 +111,7 @@ class Plant:
         if memory.get(Fact.QUARANTINE):
             for belief in dispatcher.beliefs.values():
                 if belief.robot.goes:  # what it tells may be older than its last move of an earlier start
-                    belief.doubt(until=now + SHORTEST_ABSENCE_S)
+                    belief.standing.doubt(until=now + SHORTEST_ABSENCE_S)
         self.zones = Zones((*model.zones, *model.shared), memory.get(Fact.QUARANTINE, {}))
         self.cells: dict[str, CellRun] = {}
         self.revisions = {cell.name: 0 for cell in model.cells}

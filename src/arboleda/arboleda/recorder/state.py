@@ -23,7 +23,7 @@ BELIEVED = (
     "q",
     "node",
     "reports",
-    "rate_hz",
+    "rate.hz",
     "piece",
     "homed",
     "effector",

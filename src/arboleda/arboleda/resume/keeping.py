@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 
 from py_trees.behaviour import Behaviour
 
@@ -159,7 +159,8 @@ class Keeping:
     def _trail(self, failure: Failure | None, *, cancels: bool, stranded: Sentence | None) -> Trail:
         context, recovers = self._context, self._run.recovering
         nodes = [] if recovers else self._run.nodes
-        names = context.commands.used.union(self._begun.planned.positions, context.robots.numbering)
+        told = context.commands.used.union(self._begun.planned.positions)
+        receiving = [] if recovers else context.robots.receiving(told)
         return Trail(
             begun=self._begun,
             statuses=trail.statuses(nodes),
@@ -168,7 +169,7 @@ class Keeping:
             back={robot: pose.name for robot, pose in context.parts.back.items()},
             origins=sorted(context.parts.origins),
             used=sorted(context.commands.used),
-            known={} if recovers else self._known(names),
+            known={each.robot.name: Knowledge.of(each, more) for each, more in receiving},
             grips={} if recovers else context.parts.grips,
             zones={name: sorted(context.zones.held_by(name)) for name in context.cell.interlocked},
             failure=(failure or context.failures.first) if recovers else None,
@@ -179,11 +180,6 @@ class Keeping:
             taken=dict(context.handling.taken),
             unchecked=context.handling.unchecked,
         )
-
-    def _known(self, names: Iterable[str]) -> dict[str, Knowledge]:
-        """The reports of commands, in the form in which they are kept."""
-        robots = self._context.robots
-        return {name: Knowledge.of(robots.belief(name), robots.unnamed(name)) for name in sorted(names)}
 
     def _grown(self, order: Order, planned: Planned, envelope: Sequence[str]) -> Behaviour:
         """The tree of an order; what it was made of is noted."""

@@ -127,7 +127,8 @@ class JudgedWorld:
             before, open_tasks = open_tasks, len(tasks.open)
             if open_tasks < before:
                 since = self.seconds
-            if open_tasks < before or (self.world.plant.zones.waiting and self.seconds < since + longest_s):
+            waits = bool(self.world.plant.zones.queue.waiting)
+            if open_tasks < before or (waits and self.seconds < since + longest_s):
                 end = self.seconds + REST_S
         self._raise(self._judges.at_the_end(self._look))
         self.world.advance(STAYS_S, until)

@@ -499,7 +499,7 @@ class Record:
 
     def _look_at_zones(self, plant: Plant) -> None:
         """Look at the zones, before the cells are taken over: each still has its previous state."""
-        requests = plant.zones.waiting
+        requests = plant.zones.queue.waiting
         if requests != self._requests:
             self._requests, robots = requests, dict(requests)
             users = [user for cell in self._cells for user in cell.zone_users.values()]

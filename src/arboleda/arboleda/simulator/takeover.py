@@ -109,7 +109,7 @@ def _is_astray(world: World, plant: Plant, name: str) -> bool:
     place = None if board is None else board.body.true_place
     if place is None or belief.position is None:
         return False
-    apart_s = plant.now - belief.position_at + APART_S
+    apart_s = plant.now - belief.standing.position_at + APART_S
     return not robot.motion.can_have_moved(belief.position, place, apart_s)
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from arboleda.dispatch.belief import Belief, Moment
+from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.standing import Moment
 from arboleda.model.commands import Position
 from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, MotionState
@@ -134,26 +135,27 @@ class CellRobots:
         belief = self._dispatcher.beliefs[robot]
         return belief.robot.evidence is Evidence.IDS and (belief.robot.says_homed or belief.says_unhomed)
 
-    @property
-    def numbering(self) -> list[str]:
-        """The robots of the cell whose boards number their commands, and have been heard."""
-        beliefs = self._dispatcher.beliefs
-        return [robot.name for robot in self._cell.reached if beliefs[robot.name].numbers_commands]
-
-    def unnamed(self, robot: str) -> int:
-        """How many commands may have reached a robot that it has not told of."""
-        return self._dispatcher.unnamed.of(robot)
+    def receiving(self, names: Iterable[str]) -> list[tuple[Belief, int]]:
+        """What is believed of these robots and of those of the cell whose boards number their commands, and
+        have been heard; each with how many commands may have reached it of which it has not told.
+        """
+        beliefs, unnamed = self._dispatcher.beliefs, self._dispatcher.unnamed
+        found = set(names)
+        for robot in self._cell.reached:
+            if beliefs[robot.name].numbers_commands:
+                found.add(robot.name)
+        return [(beliefs[name], unnamed.of(name)) for name in sorted(found)]
 
     def moments(self) -> dict[str, Moment]:
         """Now, as each robot of the cell tells the time, for `moving_since`."""
         beliefs, now = self._dispatcher.beliefs, self._time.plant_now
-        return {robot.name: beliefs[robot.name].moment(now) for robot in self._cell.robots}
+        return {robot.name: Moment(beliefs[robot.name].reports, now) for robot in self._cell.robots}
 
     def moving_since(self, moments: dict[str, Moment]) -> list[str]:
         """The online robots of the cell not seen still since then; who finishes its work may move."""
         ending = [name for name in moments if not self._dispatcher.ledger.finishes(name)]
         beliefs = {name: self._dispatcher.beliefs[name] for name in ending}
-        return [name for name, b in beliefs.items() if b.online and not b.still_since(moments[name])]
+        return [name for name, b in beliefs.items() if b.online and not b.standing.still_since(moments[name])]
 
     def reports_a_latch(self) -> bool:
         """True while an online robot of the cell still reports that it is stopped and latched."""

@@ -43,7 +43,7 @@ class RestingCells:
         for row, belief, last in known.robots:
             aged, heard_at, command = row.copy(), belief.heard_at, row["command"]
             aged["age_s"] = None if heard_at is None else now - heard_at
-            aged["telemetry_hz"] = belief.rate_hz if belief.online else None
+            aged["telemetry_hz"] = belief.rate.hz if belief.online else None
             if last is not None and command is not None:
                 aged["command"] = {**command, "age_s": now - last.sent_at}
             robots.append(aged)

@@ -24,6 +24,7 @@ from arboleda.model.verbs import Scope, refusable
 from arboleda.trees.tree_run import step_of
 
 from . import forms, geometry, tree_view, twin_view
+from .zone_rows import zone_rows
 
 Row = tuple[str, Verb, bool]
 
@@ -94,7 +95,7 @@ def in_parts(plant: Plant, part_of: PartOf = cell_part) -> Generator[None, None,
         "cells": cells,
         "robots": robots,
         "tasks": _tasks(plant, open_tasks),
-        "zones": plant.zones.snapshot(),
+        "zones": zone_rows(plant.zones),
         "acts": [_act(act) for act in plant.acts],
         "interference": [vars(each) for each in plant.dispatcher.interference.noticed],
         "faults": [vars(each) for each in plant.provoked.last],
@@ -411,10 +412,10 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
         "question": _question(plant.dispatcher.ledger.question(robot.name), now),
         "boot_id": belief.boot_id,
         "bridge_epoch": belief.epoch,
-        "still": belief.still,
+        "still": belief.standing.is_still,
         "holding": plant.dispatcher.effectors.grips.holding(robot.name) if robot.held_fact else None,
         "goal": twin_view.goal(last),
-        "telemetry_hz": belief.rate_hz if belief.online else None,
+        "telemetry_hz": belief.rate.hz if belief.online else None,
         "command": _command(last, now),
         "rejected": _rejected(plant.dispatcher.booking.rejected.get(robot.name)),
         "refused": _refused(plant, robot.name, OF_ROBOTS),

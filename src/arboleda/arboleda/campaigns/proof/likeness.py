@@ -18,8 +18,9 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.core.news import News
 from arboleda.core.plant import Plant
-from arboleda.dispatch.belief import Belief, Moment
+from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.ledger import Entry, Ledger
+from arboleda.dispatch.standing import Moment
 from arboleda.kinds.declared import DeviceKind
 from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.model.recipe import Recipe
@@ -55,7 +56,7 @@ LEFT_OUT: dict[type, frozenset[str]] = {
     Plant: frozenset({"revisions"}),  # numbers that say to a page that there is something new
     News: frozenset({"changes"}),
     Ledger: frozenset({"version"}),
-    Belief: frozenset({"rate_hz", "_counted"}),  # how often a board speaks, which is shown and no more
+    Belief: frozenset({"rate"}),  # how often a board speaks, which is shown and no more
     Entry: frozenset({"accepted_at", "observations"}),  # said by `_parts`, as far as it is asked for
     Freshness: frozenset({"_marks"}),  # said by `_parts`
     Board: frozenset({"refusals"}),  # for people

@@ -187,7 +187,7 @@ def _zone(look: Look, zone: str) -> Row:
     zones = look.world.plant.zones
     robot = zones.holder(zone)
     word = "free" if robot is None else "quarantined" if zones.is_quarantined(zone) else "held"
-    waiting = [name for name, wanted in zones.waiting if zone in wanted]
+    waiting = [name for name, wanted in zones.queue.waiting if zone in wanted]
     return {"zone": zone, "state": word, "robot": robot, "waiting": waiting}
 
 
