@@ -18,6 +18,7 @@ from arboleda.oee import figures as oee
 from arboleda.recipes.parameters import Slot
 from arboleda.trees import steps
 from arboleda.trees.cell_zones import CellZones
+from arboleda.trees.zone_needs import ZoneNeeds
 from arboleda.views import view
 from arboleda.wire import status
 from arboleda.wire.board import Board
@@ -102,7 +103,7 @@ PEOPLE = (
         "recovery_takes_its_zones",
         "A recovery from an unknown place is planned as from home.",
         edit(
-            CellZones.for_recovery,
+            ZoneNeeds.for_recovery,
             "self._dispatcher.whereabouts.place(space)",
             "self._robots.standing(robot)",
         ),
