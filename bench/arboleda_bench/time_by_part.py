@@ -17,6 +17,7 @@ PARTS = {  # what part of the house a file belongs to; the first that fits
     "/arboleda/trees/": "plant",
     "/arboleda/resume/": "plant",
     "/arboleda/core/": "plant",
+    "/arboleda/departures/": "plant",
     "/py_trees/": "plant",
     "/simulator/truth/": "truth",
     "/simulator/record": "record",

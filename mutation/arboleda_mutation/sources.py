@@ -13,7 +13,7 @@ from .mutant import Mutant
 
 PACKAGE = Path("src/arboleda/arboleda")
 ENGINE = ("model", "dispatch", "trees", "resume", "core")
-MUTATED = (*ENGINE, "recipes", "views", "wire")
+MUTATED = (*ENGINE, "departures", "recipes", "views", "wire")
 
 
 class Sources:

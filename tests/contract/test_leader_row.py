@@ -9,7 +9,7 @@ import psycopg
 import pytest
 from tests.postgres import Server
 
-from arboleda.core.leading import LEASE_S, WANTED_S
+from arboleda.departures.leading import LEASE_S, WANTED_S
 from arboleda.model.messages import Fact, Remember
 from arboleda.simulator.hosts.database import LeaderRow
 from arboleda.store.plant_memory import Superseded

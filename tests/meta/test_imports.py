@@ -33,6 +33,7 @@ def third_party(path: Path) -> set[str]:
         ("trees", {"py_trees"}),
         ("resume", {"py_trees"}),
         ("core", {"py_trees"}),
+        ("departures", set()),
         ("client", {"httpx", "pandas"}),
         ("dashboard", {"fastapi", "nicegui", "yaml"}),
         ("drawing", set()),

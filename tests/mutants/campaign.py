@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import cell_states
 from arboleda.dispatch import ledger
+from arboleda.model import cell_states
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.probes import Probes, Rows
 from arboleda.simulator.run import Simulation

@@ -5,7 +5,7 @@ from __future__ import annotations
 from .engine_bug import bug
 
 EVIDENCE, ZONES, BELIEF = "dispatch/evidence.py", "dispatch/zones.py", "dispatch/belief.py"
-STANDING = "dispatch/standing.py"
+STILLNESS = "dispatch/stillness.py"
 DISPATCHER, EFFECTORS, LEDGER = "dispatch/dispatcher.py", "dispatch/effectors.py", "dispatch/ledger.py"
 OBSTACLES, LATCHES, BOOKING = "dispatch/obstacles.py", "dispatch/latches.py", "dispatch/booking.py"
 LIMITS, WHEREABOUTS = "dispatch/time_limits.py", "dispatch/whereabouts.py"
@@ -124,8 +124,8 @@ OF_EVIDENCE = (
     bug(
         EVIDENCE,
         "A halt is confirmed by what was said before it.",
-        "if belief.standing.still_since(entry.cancelled_after) else None",
-        "if belief.standing.is_still else None",
+        "if belief.stillness.still_since(entry.cancelled_after) else None",
+        "if belief.stillness.is_still else None",
     ),
 )
 OF_ZONES = (
@@ -180,13 +180,13 @@ OF_ZONES = (
 )
 OF_BELIEF = (
     bug(
-        STANDING,
+        STILLNESS,
         "Two still codes before the moment count.",
         "if not self._says_still or self._state_no <= count:",
         "if not self._says_still:",
     ),
     bug(
-        STANDING,
+        STILLNESS,
         "A robot that moves slowly rests.",
         "moved = position != before or not self._rested_from",
         "moved = not self._rested_from",

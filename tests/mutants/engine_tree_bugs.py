@@ -6,7 +6,7 @@ from .engine_bug import bug
 
 LEAVES, STEPS, PLACES = "trees/leaves.py", "trees/steps.py", "trees/part_places.py"
 CELL_ZONES, CELL_DEVICES, WALK = "trees/cell_zones.py", "trees/cell_devices.py", "resume/walk_back.py"
-TRAIL, INTERLOCKS, ZONE_PLAN = "resume/trail.py", "trees/interlocks.py", "trees/zone_plan.py"
+TRAIL, INTERLOCKS, ZONE_PLAN = "resume/trail.py", "trees/interlocks.py", "model/zone_plan.py"
 
 OF_LEAVES = (
     bug(
@@ -266,13 +266,13 @@ OF_CELLS = (
     bug(
         INTERLOCKS,
         "A machine that is not heard is out of the way.",
-        "            if not belief.online\n            or not belief.standing.is_sure\n",
-        "            if not belief.standing.is_sure\n",
+        "            if not belief.online\n            or not belief.stillness.is_sure\n",
+        "            if not belief.stillness.is_sure\n",
     ),
     bug(
         INTERLOCKS,
         "What a machine has told before its stop counts.",
-        "            or not belief.standing.is_sure\n",
+        "            or not belief.stillness.is_sure\n",
         "",
     ),
     bug(

@@ -17,7 +17,6 @@ from arboleda.dispatch.latches import Latches
 from arboleda.oee import figures as oee
 from arboleda.recipes.parameters import Slot
 from arboleda.trees import steps
-from arboleda.trees.cell_zones import CellZones
 from arboleda.trees.zone_needs import ZoneNeeds
 from arboleda.views import view
 from arboleda.wire import status

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from arboleda.core.cell import CellRun
 from arboleda.core.intake import Intake
-from arboleda.core.leaving import leaves_unkept
 from arboleda.core.verbs.held_cells import _not_yet
+from arboleda.departures.leaving import leaves_unkept
 from arboleda.dispatch import evidence
 from arboleda.model.messages import Course
 from arboleda.resume.trail import Knowledge, put_back

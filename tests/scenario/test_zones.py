@@ -12,7 +12,7 @@ import pytest
 from py_trees.common import Status
 
 from arboleda.core import reasons
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Fact, Journal, Reason, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.plant_file.loader import load

@@ -22,7 +22,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from arboleda.adapters import clock
 from arboleda.campaigns.request import Request
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command
 from arboleda.model.messages import OperatorRequest, Report, TaskRequest, Verb

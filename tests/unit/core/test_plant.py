@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import (
     Fact,

@@ -26,6 +26,7 @@ TOLD_BY = (
     "trees",
     "resume",
     "core",
+    "departures",
     "recipes",
     "drivers",
     "views",

@@ -10,7 +10,7 @@ import pytest
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.evidence import QUIET_S, Before, judge, strayed
 from arboleda.dispatch.ledger import Entry, Feed
-from arboleda.dispatch.standing import Moment
+from arboleda.dispatch.stillness import Moment
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import MotionState, Reason, Report
@@ -223,11 +223,11 @@ def test_a_halt_is_not_proven_by_what_was_said_before_the_robot_heard_it() -> No
     moment = Moment(belief.reports, 1.0)
     judged.hear(1.01, HALFWAY, STOPPED)
     judged.hear(1.02, HALFWAY, STOPPED)
-    assert not belief.standing.still_since(moment)
+    assert not belief.stillness.still_since(moment)
     judged.hear(1.0 + APART_S, HALFWAY, STOPPED)
-    assert not belief.standing.still_since(moment)
+    assert not belief.stillness.still_since(moment)
     judged.hear(1.1 + APART_S, HALFWAY)
-    assert belief.standing.still_since(moment)
+    assert belief.stillness.still_since(moment)
 
 
 def test_a_halt_is_not_proven_by_nodes_that_may_be_from_before_the_robot_stopped() -> None:
@@ -238,11 +238,11 @@ def test_a_halt_is_not_proven_by_nodes_that_may_be_from_before_the_robot_stopped
     judged.stays(1.01, 1.5, 0, MOVING)
     judged.hear(1.5, state=STOPPED)
     judged.hear(1.507, 0)
-    assert not belief.standing.still_since(moment)
+    assert not belief.stillness.still_since(moment)
     judged.stays(1.6, 1.8, 3)
-    assert not belief.standing.still_since(moment)
+    assert not belief.stillness.still_since(moment)
     judged.stays(1.8, 2.0, 3)
-    assert belief.standing.still_since(moment)
+    assert belief.stillness.still_since(moment)
 
 
 @pytest.mark.parametrize(

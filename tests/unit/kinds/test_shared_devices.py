@@ -8,9 +8,9 @@ from itertools import pairwise
 
 import pytest
 
-from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Recipe

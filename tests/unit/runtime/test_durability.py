@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from arboleda.adapters import clock
-from arboleda.core.leaving import MOST_UNSYNCED_S
+from arboleda.departures.leaving import MOST_UNSYNCED_S
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime.parts.durability import Durability
 

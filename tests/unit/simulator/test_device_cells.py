@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core.advice import in_words
+from arboleda.model.advice import in_words
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.simulator.faults import KINDS, Fault

@@ -6,8 +6,8 @@ import pytest
 import yaml
 
 from arboleda.campaigns.random_plants import loaded
-from arboleda.core.cell_states import CellState
 from arboleda.core.task_queue import TaskQueue
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import TaskState, Verb
 from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
 from arboleda.viewers.packml import STATES, Counts, tags

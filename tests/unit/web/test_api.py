@@ -10,7 +10,7 @@ import pytest
 from fastapi import FastAPI
 from starlette.requests import Request
 
-from arboleda.core.leaving import STILL_WAITS, stop_left
+from arboleda.departures.leaving import STILL_WAITS, stop_left
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.messages import OperatorAnswer, Outcome, Verb
 from arboleda.model.sentence import Phrase

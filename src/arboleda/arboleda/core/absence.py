@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from arboleda.dispatch.ledger import State
-from arboleda.dispatch.standing import Moment
+from arboleda.dispatch.stillness import Moment
 from arboleda.model.commands import Motion
 from arboleda.model.messages import Failure, Reason
 from arboleda.trees.context import Context

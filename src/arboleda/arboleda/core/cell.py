@@ -9,7 +9,9 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.dispatch.booking import BROKEN_OFF
-from arboleda.dispatch.standing import Moment
+from arboleda.dispatch.stillness import Moment
+from arboleda.model.advice import Advice
+from arboleda.model.cell_states import TABLE, Cause, CellState, after
 from arboleda.model.messages import Failure, Reason, RevisionName, TaskState, Verb
 from arboleda.model.plant_model import Cell, Timing
 from arboleda.model.recipe import Build
@@ -24,8 +26,6 @@ from arboleda.trees.part_places import trouble_in
 from arboleda.trees.tree_run import TreeRun, path_of
 
 from .absence import Absence
-from .advice import Advice
-from .cell_states import TABLE, Cause, CellState, after
 from .manual_mode import ManualMode
 from .readiness import Readiness
 from .task_queue import TaskQueue

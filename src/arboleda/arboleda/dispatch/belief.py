@@ -14,7 +14,7 @@ from arboleda.model.plant_model import Evidence, Link, Robot
 from arboleda.model.sentence import OWN, Phrase, Sentence
 
 from .report_rate import RATE_S, ReportRate
-from .standing import Standing
+from .stillness import Stillness
 
 MERGED = ("epoch", "boot_id", "state", "q", "node", "homed", "effector", "piece", "receipt")
 _merged = attrgetter(*MERGED)
@@ -69,7 +69,7 @@ class Belief:
         self.reports = 0
         self.repeats = 0  # of them, since the last that said something else
         self.rate = ReportRate()
-        self.standing = Standing(robot, supervised=self.supervised)
+        self.stillness = Stillness(robot, supervised=self.supervised)
         self.piece_at = 0.0
         self.piece_since = 0.0
         self.displaced = False
@@ -109,7 +109,7 @@ class Belief:
 
     def hear_again(self, report: Report) -> bool:
         """Take over a report that only repeats what an online robot said last; False: it is to be merged."""
-        if not self.online or report.at < self.standing.position_at or report.words != self._last_words:
+        if not self.online or report.at < self.stillness.position_at or report.words != self._last_words:
             return False
         self.repeats += 1
         self._hear(report)
@@ -164,12 +164,12 @@ class Belief:
             self.number = report.number
         stands = self._comes_apart and report.state not in (None, MotionState.MOVING)
         if stands and (self.state is MotionState.MOVING or (self.heard_at is not None and not self.online)):
-            self.standing.come_to_a_stop(report.at)
+            self.stillness.come_to_a_stop(report.at)
         if report.state is not MotionState.NO_LINK:
             self.heard_at = report.at
             self.stale = False
             self.stale_at = report.at + self.stale_after_s if self.supervised else None
-        self.standing.hear(report, self.reports, self.position_in(report), self.position)
+        self.stillness.hear(report, self.reports, self.position_in(report), self.position)
         if report.piece is not None:
             self.piece_at = report.at
             self.piece_since = report.at if report.piece is not self.piece else self.piece_since

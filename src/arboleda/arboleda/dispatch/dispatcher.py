@@ -25,7 +25,7 @@ from .latches import Latches
 from .ledger import Entry, Feed, Ledger, State
 from .obstacles import Barrier, Make, Obstacles, unbarred
 from .outlet import Outlet
-from .standing import Moment
+from .stillness import Moment
 from .time_limits import TimeLimits
 from .underway import UnderWay, Unfinished, UnnamedCommands
 from .whereabouts import Whereabouts
@@ -180,9 +180,9 @@ class Dispatcher:
         belief = self.beliefs.get(report.robot)
         if belief is None or belief.drawn:
             return
-        was_sure = belief.standing.is_sure
+        was_sure = belief.stillness.is_sure
         if belief.hear_again(report):
-            if belief.standing.is_sure and not was_sure:  # only now `place` and interlocks go by it
+            if belief.stillness.is_sure and not was_sure:  # only now `place` and interlocks go by it
                 self.wake([report.robot])
             self._prove(belief, report, now)
             return
@@ -210,7 +210,7 @@ class Dispatcher:
         self._prove(belief, report, now, before)
         if latched and (new_link or (belief.online and not was_online)):  # it may have forgotten its stop
             self.outlet.stop(report.robot, StopMode.LATCH)
-        if belief.standing.is_sure and not was_sure:
+        if belief.stillness.is_sure and not was_sure:
             self.wake([report.robot])
         if _facts_shown(belief) != facts:
             self.ledger.version += 1

@@ -20,7 +20,7 @@ from py_trees.behaviour import Behaviour
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import FOR_PEOPLE
 from arboleda.model.sentence import Sentence
-from arboleda.trees.tree_nodes import nodes_of
+from arboleda.model.tree_nodes import nodes_of
 
 Seen = dict[int, tuple[int, object]]
 """What was met, by its identity: its number, and itself, so that nothing else gets that identity."""

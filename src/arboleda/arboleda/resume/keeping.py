@@ -10,11 +10,11 @@ from arboleda.model.commands import Process
 from arboleda.model.messages import Failure
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.task import Order
+from arboleda.model.tree_nodes import nodes_of
 from arboleda.trees.cell_robots import Planned
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Act, Await, Dwell
 from arboleda.trees.node_state import SWITCH
-from arboleda.trees.tree_nodes import nodes_of
 from arboleda.trees.tree_run import TreeRun
 
 from . import fingerprint, trail

@@ -6,7 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable
 
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders
 

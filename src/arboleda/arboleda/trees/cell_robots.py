@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.dispatch.standing import Moment
+from arboleda.dispatch.stillness import Moment
 from arboleda.model.commands import Position
 from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, MotionState
@@ -154,8 +154,8 @@ class CellRobots:
     def moving_since(self, moments: dict[str, Moment]) -> list[str]:
         """The online robots of the cell not seen still since then; who finishes its work may move."""
         ending = [name for name in moments if not self._dispatcher.ledger.finishes(name)]
-        beliefs = {name: self._dispatcher.beliefs[name] for name in ending}
-        return [name for name, b in beliefs.items() if b.online and not b.standing.still_since(moments[name])]
+        online = {name: belief for name in ending if (belief := self._dispatcher.beliefs[name]).online}
+        return [name for name, each in online.items() if not each.stillness.still_since(moments[name])]
 
     def reports_a_latch(self) -> bool:
         """True while an online robot of the cell still reports that it is stopped and latched."""

@@ -12,12 +12,13 @@ from functools import partial
 from py_trees import common, composites
 from py_trees.behaviour import Behaviour
 
+from arboleda.model import zone_plan
 from arboleda.model.commands import Command
 from arboleda.model.messages import Check, Failure, Reason, SystemStart
 from arboleda.model.plant_model import PieceCheck, Pose
 from arboleda.model.sentence import Phrase, Sentence
 
-from . import parts, zone_plan
+from . import parts
 from .context import Context
 from .leaves import (
     Act,

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from arboleda.dispatch.whereabouts import Whereabouts
+from arboleda.model import zone_plan
 from arboleda.model.commands import Command, Motion
 from arboleda.model.plant_model import Cell, Pose
 
-from . import zone_plan
 from .cell_robots import CellRobots
 from .parts import Parts
 

@@ -5,11 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.cell import CellRun
-from arboleda.core.cell_states import CellState
-from arboleda.core.plant import Plant
-from arboleda.dispatch.belief import Belief
-from arboleda.dispatch.ledger import Entry
+from arboleda.engine import Belief, CellRun, Entry, Plant
+from arboleda.model.cell_states import CellState
 
 from .view import CellPart, cell_part
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.dispatch.zones import Zones
+from arboleda.engine import Zones
 
 
 def zone_rows(zones: Zones) -> list[dict[str, Any]]:

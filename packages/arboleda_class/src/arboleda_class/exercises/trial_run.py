@@ -9,8 +9,7 @@ from dataclasses import dataclass, field
 from arboleda.campaigns import words
 from arboleda.campaigns.plants import ELSEWHERE
 from arboleda.campaigns.proof.stage import ASKED_AT_S, HEARD_S, STUCK, entry_name
-from arboleda.core.plant import Plant
-from arboleda.dispatch.ledger import Entry
+from arboleda.engine import Entry, Plant
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import ENDED, TaskChanged, TaskState
 from arboleda.model.plant_model import Link, PlantModel

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.outside import among, quoted
 from arboleda.model.plant_model import Cell, PlantModel
 

@@ -15,7 +15,7 @@ from arboleda.bt_xml.editing import desk
 from arboleda.bt_xml.editing.operations import Insert, NewNode, Operation, Wrap
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.recipe import TreeRecipe, tree_recipe
-from arboleda.core import text
+from arboleda.model import text
 from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import Value, shown
 from arboleda.model.plant_model import PlantModel

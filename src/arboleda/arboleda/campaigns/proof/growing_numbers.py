@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from arboleda.core.plant import SETTLES_IN
-from arboleda.dispatch.belief import Belief
-from arboleda.dispatch.standing import Standing
+from arboleda.engine import Belief
+from arboleda.engine.inspection import SETTLES_IN, Stillness
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.sim.freshness import Freshness
@@ -35,7 +34,7 @@ SORTS: dict[type, dict[str, tuple[str, bool]]] = {
         "facts_no": NOTED,
         "number": HEARD,
     },
-    Standing: {"_position_no": NOTED, "_state_no": NOTED, "_still_from": NOTED, "_rested_from": NOTED},
+    Stillness: {"_position_no": NOTED, "_state_no": NOTED, "_still_from": NOTED, "_rested_from": NOTED},
     Uplink: {"sent": TOLD},
     Freshness: {"_last_number": HEARD},
     BoardLink: {"number": HEARD},

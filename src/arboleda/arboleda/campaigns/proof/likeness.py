@@ -16,11 +16,8 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.core.news import News
-from arboleda.core.plant import Plant
-from arboleda.dispatch.belief import Belief
-from arboleda.dispatch.ledger import Entry, Ledger
-from arboleda.dispatch.standing import Moment
+from arboleda.engine import Belief, Entry, Plant
+from arboleda.engine.inspection import Ledger, Moment, News
 from arboleda.kinds.declared import DeviceKind
 from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.model.recipe import Recipe

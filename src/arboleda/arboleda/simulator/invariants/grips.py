@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core import text
+from arboleda.model import text
 from arboleda.model.messages import Check
 from arboleda.model.plant_model import Evidence
 from arboleda.sim.starts import supplies_of

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core.intake import HISTORY
-from arboleda.dispatch.ledger import Feed
+from arboleda.engine import HISTORY
+from arboleda.engine.inspection import Feed
 from arboleda.wire.labels import REMEMBERED
 
 from .invariant import Look, Trigger, invariant

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.core.text import parse
 from arboleda.model.errors import TextError
 from arboleda.model.plant_model import Link
 from arboleda.model.task import Order
+from arboleda.model.text import parse
 from arboleda.testing import shipped
 
 from ...cells import with_robot

@@ -1,4 +1,4 @@
-"""Standing of one robot: how surely it stands still, and how old what it tells of its place may be."""
+"""Stillness of one robot: how surely it stands still, and how old what it tells of its place may be."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Moment(NamedTuple):
     at: float
 
 
-class Standing:
+class Stillness:
     """What a robot's reports say of its standing still. Reports are told apart by their numbers, as two of
     them may come at one time.
 
