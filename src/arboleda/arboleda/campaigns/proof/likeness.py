@@ -26,7 +26,7 @@ from arboleda.sim.board import Board
 from arboleda.sim.freshness import Freshness
 from arboleda.simulator.network import Client, Line
 from arboleda.simulator.world import World
-from arboleda.wire.board import Board as BridgedBoard
+from arboleda.wire.board_reports import BoardReports
 from arboleda.wire.bridge import Bridge
 
 from .growing_numbers import REPORTS, TELEMETRY, GrowingNumber, Ranks, growing
@@ -58,7 +58,7 @@ LEFT_OUT: dict[type, frozenset[str]] = {
     Freshness: frozenset({"_marks"}),  # said by `_parts`
     Board: frozenset({"refusals"}),  # for people
     Bridge: frozenset({"_strays"}),  # what was refused, for people
-    BridgedBoard: frozenset({"counters"}),
+    BoardReports: frozenset({"counters"}),
     Behaviour: frozenset({"id"}),  # drawn anew for each tree
     Line: frozenset({"busy_until"}),  # said as how long that still is
     Client: frozenset({"queue"}),  # said by `_parts` while something is under way, which names its queue
