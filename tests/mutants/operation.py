@@ -103,7 +103,7 @@ PEOPLE = (
         "A recovery from an unknown place is planned as from home.",
         edit(
             ZoneNeeds.for_recovery,
-            "self._dispatcher.whereabouts.place(space)",
+            "self._whereabouts.place(space)",
             "self._robots.standing(robot)",
         ),
         seeds=SHARED,
