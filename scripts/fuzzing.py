@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from random import Random
 from typing import NoReturn
 
-from arboleda.simulator.chance import Dice
+from arboleda_proofs.simulator.chance import Dice
 
 BAD_INPUT = 2
 
