@@ -68,7 +68,7 @@ def test_it_is_never_without_a_landing_and_nobody_is_in_one_with_it(states: dict
 def test_it_waits_before_whoever_may_wait_for_what_it_leaves(states: dict[Key, bytes]) -> None:
     seen = 0
     for frozen in states.values():
-        waiting = [robot for robot, _ in pickle.loads(frozen).waiting]
+        waiting = [robot for robot, _ in pickle.loads(frozen).queue.waiting]
         seen += LIFT in waiting
         assert LIFT not in waiting[1:]
     assert seen

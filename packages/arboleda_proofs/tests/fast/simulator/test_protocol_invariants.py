@@ -700,7 +700,7 @@ def test_payload_size(bites):
 @pytest.mark.parametrize("q", [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)])
 def test_published_joints_are_reported(monkeypatch, bites, q):
     watch = Watch(slowed(shipped("sis_a"), 4))
-    monkeypatch.setattr(wire_board.Board, "_joints", lambda self, said: q if said.q else None)
+    monkeypatch.setattr(wire_board.Board, "_in_si", lambda self, angles: q)
     watch.task(wait_s=10)
     bites(watch)
 
