@@ -112,7 +112,15 @@ class Belief:
         if not self.online or report.at < self.stillness.position_at or report.words != self._last_words:
             return False
         self.repeats += 1
-        self._hear(report)
+        self.reports += 1
+        if report.number is not None:
+            self.number = report.number
+        self.heard_at = report.at
+        if self.supervised:
+            self.stale_at = report.at + self.stale_after_s
+        self.stillness.hear(report, self.reports, self.position_in(report), self.position)
+        if report.piece is not None:
+            self.piece_at = report.at
         if report.at - self.rate.since >= RATE_S:
             self.rate.count(report.at, self.reports, online=True)
         return True
