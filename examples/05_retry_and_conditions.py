@@ -10,8 +10,8 @@ from py_trees.common import Status
 from py_trees.composites import Sequence
 from py_trees.decorators import Decorator
 
+from arboleda.engine import RETRYABLE
 from arboleda.model.messages import Reason
-from arboleda.trees.leaves import RETRYABLE
 
 lesson = import_module("02_first_tree")
 

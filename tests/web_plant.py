@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.leaving import stop_left
-from arboleda.core.text import alternatives, spelled
+from arboleda.departures.leaving import stop_left
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.text import alternatives, spelled
 from arboleda.model.verbs import Arguments
 from arboleda.oee.figures import KeptFigures, Oee, Run, Work, oee
 from arboleda.store.task_rows import TaskQuery, TaskRow

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.dispatch.belief import APART_S
+from arboleda.model.plant_model import APART_S
 from arboleda.plant_file.loader import load
 
 from . import plants, steps

@@ -11,13 +11,12 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt8
 
-from arboleda.dispatch.belief import APART_S
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import MotionState, Report
-from arboleda.model.plant_model import Cell, PlantModel, Robot
+from arboleda.model.plant_model import APART_S, Cell, PlantModel, Robot
 from arboleda.wire.hop import PLAIN
 from arboleda_proofs.testing.storage_layout import StorageLayout
 from arboleda_ros import convert, qos

@@ -15,8 +15,6 @@ from functools import partial
 from random import Random
 from typing import Protocol
 
-from arboleda.core.advice import Hand
-from arboleda.core.plant import Plant
 from arboleda.drivers.supervisor import (
     Begin,
     CommandRequest,
@@ -26,6 +24,8 @@ from arboleda.drivers.supervisor import (
     SendResult,
     Supervisor,
 )
+from arboleda.engine import Plant
+from arboleda.model.advice import Hand
 from arboleda.model.commands import Command
 from arboleda.model.messages import (
     ENDED,

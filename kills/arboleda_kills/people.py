@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.advice import Hand
+from arboleda.model.advice import Hand
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import Cell
 

@@ -12,8 +12,8 @@ from . import trees
 from .mutant import Mutant
 
 PACKAGE = Path("src/arboleda/arboleda")
-ENGINE = ("model", "dispatch", "trees", "core")
-MUTATED = (*ENGINE, "recipes", "views", "wire")
+ENGINE = ("model", "dispatch", "trees", "resume", "core")
+MUTATED = (*ENGINE, "departures", "recipes", "views", "wire")
 
 
 class Sources:

@@ -14,8 +14,8 @@ from rich.console import Console
 
 import arboleda.core
 from arboleda.cli.screen import table
-from arboleda.core.cell_states import CellState
 from arboleda.dashboard.wording import LANGUAGES, SENTENCES, tree_of, words
+from arboleda.model.cell_states import CellState
 from arboleda.model.sentence import Phrase
 from arboleda.views import view
 from arboleda.web.schema.bodies import Cell

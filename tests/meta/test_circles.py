@@ -8,7 +8,7 @@ from graphlib import CycleError, TopologicalSorter
 import grimp
 import pytest
 
-ENGINE = ("model", "dispatch", "trees", "core", "kinds")
+ENGINE = ("model", "dispatch", "trees", "resume", "core", "kinds")
 
 
 @pytest.fixture(scope="module")

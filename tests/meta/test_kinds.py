@@ -19,7 +19,7 @@ from arboleda.plant_file.registry import COME_WITH_IT
 
 ROOT = Path(arboleda.__file__).parent
 ROOTS = (ROOT, PACKAGES["arboleda_proofs"], PACKAGES["arboleda_make"])
-ENGINE = ("model", "dispatch", "trees", "core")
+ENGINE = ("model", "dispatch", "trees", "resume", "core")
 ABOVE = (
     "cli",
     "playback",

@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.core import cell_states
 from arboleda.dispatch import ledger
-from arboleda.model import task
+from arboleda.model import cell_states, task
 
 from ..scripts import printed
 

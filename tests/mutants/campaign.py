@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import cell_states
 from arboleda.dispatch import ledger
+from arboleda.model import cell_states
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.probes import Probes, Rows
 from arboleda_proofs.simulator.run import Simulation

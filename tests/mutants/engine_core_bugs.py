@@ -98,7 +98,7 @@ CORE_BUGS = (
         "return self.hindrance is not None, self.seconds",
     ),
     bug(
-        "core/leading.py",
+        "departures/leading.py",
         "A leader is sure of itself for too long.",
         "self._until = sent_at + SURE_S",
         "self._until = sent_at + 1.2 * SURE_S",

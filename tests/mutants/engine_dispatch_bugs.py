@@ -5,6 +5,7 @@ from __future__ import annotations
 from .engine_bug import bug
 
 EVIDENCE, ZONES, BELIEF = "dispatch/evidence.py", "dispatch/zones.py", "dispatch/belief.py"
+STILLNESS = "dispatch/stillness.py"
 DISPATCHER, EFFECTORS, LEDGER = "dispatch/dispatcher.py", "dispatch/effectors.py", "dispatch/ledger.py"
 OBSTACLES, LATCHES, BOOKING = "dispatch/obstacles.py", "dispatch/latches.py", "dispatch/booking.py"
 LIMITS, WHEREABOUTS = "dispatch/time_limits.py", "dispatch/whereabouts.py"
@@ -123,8 +124,8 @@ OF_EVIDENCE = (
     bug(
         EVIDENCE,
         "A halt is confirmed by what was said before it.",
-        "if belief.still_since(entry.cancelled_after) else None",
-        "if belief.still else None",
+        "if belief.stillness.still_since(entry.cancelled_after) else None",
+        "if belief.stillness.is_still else None",
     ),
 )
 OF_ZONES = (
@@ -149,8 +150,8 @@ OF_ZONES = (
     bug(
         ZONES,
         "Who gives up waiting lets nobody else in.",
-        "        self._waiting.pop(robot, None)\n        return self._grant()",
-        "        self._waiting.pop(robot, None)\n        return ()",
+        "        self.queue.leave(robot)\n        return self._grant()",
+        "        self.queue.leave(robot)\n        return ()",
     ),
     bug(
         ZONES,
@@ -179,13 +180,13 @@ OF_ZONES = (
 )
 OF_BELIEF = (
     bug(
-        BELIEF,
+        STILLNESS,
         "Two still codes before the moment count.",
-        "if self.state not in STILL or self.state_no <= count:",
-        "if self.state not in STILL:",
+        "if not self._says_still or self._state_no <= count:",
+        "if not self._says_still:",
     ),
     bug(
-        BELIEF,
+        STILLNESS,
         "A robot that moves slowly rests.",
         "moved = position != before or not self._rested_from",
         "moved = not self._rested_from",
@@ -211,8 +212,8 @@ OF_BELIEF = (
     bug(
         BELIEF,
         "A query is sent to who is not heard.",
-        "return self._failure(trouble if lost else None, was=was)",
-        "return self._failure(None, was=was)",
+        "if trouble is None or trouble.reason is not Reason.LINK_LOST:",
+        "if True:",
     ),
     bug(
         BELIEF,

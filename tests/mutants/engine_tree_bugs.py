@@ -5,8 +5,8 @@ from __future__ import annotations
 from .engine_bug import bug
 
 LEAVES, STEPS, PLACES = "trees/leaves.py", "trees/steps.py", "trees/part_places.py"
-CELL_ZONES, CELL_DEVICES, WALK = "trees/cell_zones.py", "trees/cell_devices.py", "trees/walk_back.py"
-TRAIL, INTERLOCKS, ZONE_PLAN = "trees/trail.py", "trees/interlocks.py", "trees/zone_plan.py"
+CELL_ZONES, CELL_DEVICES, WALK = "trees/cell_zones.py", "trees/cell_devices.py", "resume/walk_back.py"
+TRAIL, INTERLOCKS, ZONE_PLAN = "resume/trail.py", "trees/interlocks.py", "model/zone_plan.py"
 
 OF_LEAVES = (
     bug(
@@ -99,8 +99,8 @@ OF_LEAVES = (
     bug(
         STEPS,
         "A recovery takes no zones.",
-        "    if space.zones:\n        needed = partial(context.zones.for_recovery, robot)\n",
-        "    if not space.zones:\n        needed = partial(context.zones.for_recovery, robot)\n",
+        "    if space.zones:\n        needed = partial(context.zones.needs.for_recovery, robot)\n",
+        "    if not space.zones:\n        needed = partial(context.zones.needs.for_recovery, robot)\n",
     ),
     bug(
         STEPS,
@@ -129,7 +129,7 @@ OF_LEAVES = (
     bug(
         STEPS,
         "The zones between two poses are left out.",
-        "return context.zones.between(robot, pose).union(*(leg.zones for leg in legs))",
+        "return context.zones.needs.between(robot, pose).union(*(leg.zones for leg in legs))",
         "return frozenset[str]().union(*(leg.zones for leg in legs))",
     ),
 )
@@ -266,13 +266,13 @@ OF_CELLS = (
     bug(
         INTERLOCKS,
         "A machine that is not heard is out of the way.",
-        "            if not belief.online\n            or not belief.is_sure\n",
-        "            if not belief.is_sure\n",
+        "            if not belief.online\n            or not belief.stillness.is_sure\n",
+        "            if not belief.stillness.is_sure\n",
     ),
     bug(
         INTERLOCKS,
         "What a machine has told before its stop counts.",
-        "            or not belief.is_sure\n",
+        "            or not belief.stillness.is_sure\n",
         "",
     ),
     bug(
@@ -306,7 +306,7 @@ OF_CELLS = (
         "        if holder != name:\n            return None\n        held = NOT_HELD",
     ),
     bug(
-        CELL_DEVICES,
+        "trees/hand_over.py",
         "A shared device is given back at work.",
         "return online and not self._works(device) and device not in self._dispatcher.latches.stopped",
         "return online and device not in self._dispatcher.latches.stopped",
@@ -365,8 +365,8 @@ OF_WALK_BACK = (
     bug(
         WALK,
         "A boot meanwhile is not compared.",
-        "        if belief.boot_id != known.boot:\n            return",
-        "        if False:\n            return",
+        "        if belief.boot_id != known.boot:\n            return Trouble",
+        "        if False:\n            return Trouble",
     ),
     bug(
         WALK,
@@ -411,7 +411,7 @@ OF_WALK_BACK = (
         "            if known is None or known is Fate.DONE:\n                step.begin_anew()",
     ),
     bug(
-        TRAIL,
+        "trees/node_state.py",
         "It is not kept that a command is done.",
         '        "done": entry.state is State.DONE,\n',
         '        "done": False,\n',
@@ -429,19 +429,19 @@ OF_WALK_BACK = (
         "return 0 <= now.accepted - before.accepted <= most + 1\n",
     ),
     bug(
-        "trees/keeping.py",
+        "resume/keeping.py",
         "Which robots a task has used is not kept.",
         "            used=sorted(context.commands.used),\n",
         "            used=(),\n",
     ),
     bug(
-        "trees/keeping.py",
+        "resume/keeping.py",
         "A task is kept when it begins, and never again.",
         "        if state == self._kept_of:\n            return None\n",
         "        if self._kept_of and numbers == self._kept_of[-1]:\n            return None\n",
     ),
     bug(
-        "trees/keeping.py",
+        "resume/keeping.py",
         "A recipe that was changed goes on where it was.",
         "            return made == self._begun.made\n",
         "            return True\n",

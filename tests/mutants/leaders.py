@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core.leading import Lease, may_leave
+from arboleda.departures.leading import Lease, may_leave
 from arboleda.sim.receipts import Receipts
 from arboleda_proofs.simulator.hosts.database import LeaderRow
 

@@ -17,7 +17,7 @@ from arboleda.dispatch.latches import Latches
 from arboleda.oee import figures as oee
 from arboleda.recipes.parameters import Slot
 from arboleda.trees import steps
-from arboleda.trees.cell_zones import CellZones
+from arboleda.trees.zone_needs import ZoneNeeds
 from arboleda.views import view
 from arboleda.wire import status
 from arboleda.wire.board import Board
@@ -102,8 +102,8 @@ PEOPLE = (
         "recovery_takes_its_zones",
         "A recovery from an unknown place is planned as from home.",
         edit(
-            CellZones.for_recovery,
-            "self._dispatcher.whereabouts.place(space)",
+            ZoneNeeds.for_recovery,
+            "self._whereabouts.place(space)",
             "self._robots.standing(robot)",
         ),
         seeds=SHARED,

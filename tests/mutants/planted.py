@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from arboleda.core.cell import CellRun
 from arboleda.core.intake import Intake
-from arboleda.core.leaving import leaves_unkept
 from arboleda.core.verbs.held_cells import _not_yet
+from arboleda.departures.leaving import leaves_unkept
 from arboleda.dispatch import evidence
 from arboleda.model.messages import Course
+from arboleda.resume.trail import Knowledge, put_back
+from arboleda.resume.walk_back import WalkBack, fate
+from arboleda.trees.node_state import command_kept
 from arboleda.trees.part_places import Places
-from arboleda.trees.trail import Knowledge, command_kept, put_back
 from arboleda.trees.tree_run import TreeRun
-from arboleda.trees.walk_back import WalkBack, fate
 from arboleda.views import view
 from arboleda.views.changes import changed
 from arboleda.views.chronicle import Chronicle

@@ -33,7 +33,7 @@ from .engine_bugs import ENGINE_BUGS
 
 ROOT = Path(__file__).parents[2]
 SEEDS = 25
-LAYERS = ("kinds", "dispatch", "recipes", "trees", "bt_xml", "core", "wire")
+LAYERS = ("kinds", "dispatch", "recipes", "trees", "resume", "departures", "model", "bt_xml", "core", "wire")
 LEAST_CPU_S = 30.0  # a seed takes less than a second
 Task = tuple[EngineBug, str]
 

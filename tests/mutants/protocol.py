@@ -115,6 +115,7 @@ WIRE = (
         "commands_say_what_was_heard",
         "A command names the first telemetry that the plant heard of its robot.",
         edit(Belief._hear, "if report.number is not None:", "if self.number is None:"),
+        edit(Belief.hear_again, "if report.number is not None:", "if self.number is None:"),
         weather="none",
     ),
     mutant(

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from arboleda.core.intake import Intake
-from arboleda.core.leaving import is_too_late, leaves_unkept
 from arboleda.core.task_desk import TaskDesk
 from arboleda.core.task_queue import TaskQueue
+from arboleda.departures.leaving import is_too_late, leaves_unkept
 from arboleda.model.task import Task
-from arboleda.trees.walk_back import WalkBack
+from arboleda.resume.walk_back import WalkBack
 
 from .mutant import edit, mutant
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import cell_states
-from arboleda.core.cell_states import Cause, CellState
 from arboleda.dispatch import ledger
 from arboleda.dispatch.ledger import Feed, State
+from arboleda.model import cell_states
+from arboleda.model.cell_states import Cause, CellState
 from arboleda.model.messages import Reason, Verb
 from arboleda.wire.payloads import REFUSALS
 from arboleda_proofs.simulator.faults import OF_DEVICES, OF_PLACES, ON_ONE_HOST

@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 SHOWN = """
-from arboleda.trees import fingerprint
+from arboleda.resume import fingerprint
 from arboleda_proofs.testing import shipped
 
 print(fingerprint.of_cell(shipped().cells[0], "storage", {}))

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import stop_lane
-from arboleda.core.leaving import StopLeft, Unkept
+from arboleda.departures import stop_lane
+from arboleda.departures.leaving import StopLeft, Unkept
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import (
     Fact,

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from arboleda.core import reasons
-from arboleda.core.cell_states import CellState
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Home
 from arboleda.model.messages import Absence, OperatorRequest, Reason, Verb
 from arboleda.model.plant_model import Evidence

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from arboleda.core import reasons
-from arboleda.core.advice import Advice, Hand, sentence
+from arboleda.model.advice import Advice, Hand, sentence
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import OperatorRequest, Reason, TaskState, Verb
 from arboleda.model.plant_model import Evidence

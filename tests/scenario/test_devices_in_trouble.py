@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import InternalError, TaskChanged, TaskState, Verb
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.sim.machine import MachineBody

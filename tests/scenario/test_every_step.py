@@ -9,7 +9,7 @@ from typing import Any, cast
 import pytest
 
 from arboleda.core import reasons
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence
 from arboleda.sim.arm import ArmBody

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.core.cell_states import CellState
 from arboleda.dispatch.ledger import State
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Home
 from arboleda.model.messages import Journal, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel, Retry

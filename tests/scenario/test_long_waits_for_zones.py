@@ -42,7 +42,7 @@ def test_a_task_that_waits_as_long_as_it_may_comes_to_its_end() -> None:
     watched.world.advance(5.0)
     watched.world.request_task("cell shuts #one")
     watched.world.advance(10.0)
-    assert watched.world.plant.zones.waiting, "the oven waits until the arm is out of its way"
+    assert watched.world.plant.zones.queue.waiting, "the oven waits until the arm is out of its way"
     watched.come_to_rest()
     assert watched.world.plant.intake.tasks["one"].state is TaskState.DONE
     assert 700.0 < watched.seconds < 800.0

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from arboleda.core import reasons
-from arboleda.core.cell_states import CellState
 from arboleda.kinds.arm import SetEffector
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Interference, Reason, Verb
 from arboleda.model.plant_model import Evidence
 from arboleda_proofs.testing import shipped

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from arboleda.core import reasons
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Fact, Journal, OperatorRequest, Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Link, PlantModel

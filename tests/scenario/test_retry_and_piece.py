@@ -7,8 +7,8 @@ from typing import Any, cast
 
 import pytest
 
-from arboleda.core.cell_states import CellState
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Retry
 from arboleda.sim.arm import ArmBody

@@ -10,9 +10,9 @@ import pytest
 from arboleda.bt_xml.parameters import LARGEST
 from arboleda.core import reasons
 from arboleda.core.plant import Plant
-from arboleda.core.text import parse
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.recipe import Limits
+from arboleda.model.text import parse
 from arboleda.plant_file.loader import load
 from arboleda.trees.leaves import title_of
 from arboleda.views import view

@@ -11,11 +11,11 @@ from typing import Any
 import pytest
 
 from arboleda.core import reasons
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Fact, Reason, Remember, Shutdown, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
-from arboleda.trees import fingerprint
+from arboleda.resume import fingerprint
 from arboleda.wire.payloads import EffectorGoal, encode
 from arboleda.wire.transport import Publication
 from arboleda_proofs.testing import Rig, Witness, faults, shipped

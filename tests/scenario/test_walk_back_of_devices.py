@@ -9,8 +9,8 @@ from shutil import copytree
 import pytest
 
 from arboleda.core import reasons
-from arboleda.core.advice import Hand
-from arboleda.core.cell_states import CellState
+from arboleda.model.advice import Hand
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Check, TaskState, Verb
 from arboleda.model.plant_model import PlantModel, Retry

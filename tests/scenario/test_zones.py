@@ -12,10 +12,11 @@ import pytest
 from py_trees.common import Status
 
 from arboleda.core import reasons
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Fact, Journal, Reason, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.plant_file.loader import load
+from arboleda.views.zone_rows import zone_rows
 from arboleda_proofs.testing import Rig, Witness, faults, slowed
 from arboleda_proofs.testing.following import advised, follow, works
 
@@ -67,7 +68,7 @@ def at_rest(rig: Rig) -> bool:
 
 
 def zone(rig: Rig, name: str) -> tuple[str, str | None]:
-    row = next(row for row in rig.plant.zones.snapshot() if row["zone"] == name)
+    row = next(row for row in zone_rows(rig.plant.zones) if row["zone"] == name)
     return row["state"], row["robot"]
 
 
@@ -107,7 +108,7 @@ def honest(witness: Witness) -> None:
 def test_three_arms_share_three_zones_and_all_their_tasks_are_done(zoned: Plants, evidence: Evidence) -> None:
     rig, witness = start(zoned(evidence))
     waits: set[str] = set()
-    rig.watchers.append(lambda: waits.update(robot for robot, _ in rig.plant.zones.waiting))
+    rig.watchers.append(lambda: waits.update(robot for robot, _ in rig.plant.zones.queue.waiting))
     texts = [f"{cell} {path} {k}" for k, path in ((4, "0B"), (7, "1C"), (5, "2A")) for cell in CELLS]
     for text in texts:
         rig.submit(text)
@@ -115,7 +116,7 @@ def test_three_arms_share_three_zones_and_all_their_tasks_are_done(zoned: Plants
     assert rig.wait(400.0, until=lambda: at_rest(rig))
     assert {change.state for change in rig.outcomes().values()} == {TaskState.DONE}
     assert waits, "they met"
-    assert all(row["state"] == "free" for row in rig.plant.zones.snapshot())
+    assert all(row["state"] == "free" for row in zone_rows(rig.plant.zones))
     assert not rig.disk.facts.get(Fact.QUARANTINE)
     honest(witness)
 
@@ -402,7 +403,7 @@ def test_stop_and_cancel_end_the_waiting_for_a_zone(zoned: Plants, evidence: Evi
     meet(rig)
     assert rig.operate(verb, "sis_b") is None
     rig.wait(1.0)
-    assert "ra2" not in dict(rig.plant.zones.waiting) or verb is Verb.CANCEL
+    assert "ra2" not in dict(rig.plant.zones.queue.waiting) or verb is Verb.CANCEL
     assert rig.wait(90.0, until=lambda: rig.plant.cells["sis_b"].task is None)
     assert list(rig.outcomes().values())[1].state is (
         TaskState.CANCELLED if verb is Verb.CANCEL else TaskState.FAILED
@@ -488,7 +489,7 @@ def test_whatever_happens_no_two_arms_meet_and_nothing_is_dropped(zoned: Plants,
     honest(witness)
     states = {name: (cell.state, reasons.of_hold(cell)) for name, cell in rig.plant.cells.items()}
     assert all(state is CellState.IDLE for state, _ in states.values()), states
-    assert all(row["state"] == "free" for row in rig.plant.zones.snapshot())
+    assert all(row["state"] == "free" for row in zone_rows(rig.plant.zones))
 
 
 def test_two_arms_that_wait_for_each_others_zones_to_be_homed_are_advised_out(zoned: Plants) -> None:

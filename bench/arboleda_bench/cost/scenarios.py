@@ -21,7 +21,7 @@ import httpx
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from arboleda.adapters import clock
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command
 from arboleda.model.messages import OperatorRequest, Report, TaskRequest, Verb

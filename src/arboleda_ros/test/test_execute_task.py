@@ -13,8 +13,8 @@ from rclpy.action import ActionClient
 from std_msgs.msg import String, UInt8
 from std_srvs.srv import Trigger
 
-from arboleda.core.text import parse
 from arboleda.model.errors import TextError
+from arboleda.model.text import parse
 from arboleda.plant_file.loader import load
 
 SUCCEEDED, CANCELED, ABORTED = (

@@ -12,7 +12,7 @@ import pytest
 from tests.patience import PATIENCE_S
 
 from arboleda.cli.client import PlantClient
-from arboleda.core.leaving import ends_motion
+from arboleda.departures.leaving import ends_motion
 from arboleda.model.messages import Verb
 from arboleda.runtime.build import App, Options, build
 from arboleda.store.sqlite import Store

@@ -6,7 +6,7 @@ import itertools
 
 import pytest
 
-from arboleda.core.cell_states import TABLE, Cause, CellState, after
+from arboleda.model.cell_states import TABLE, Cause, CellState, after
 from arboleda.model.errors import IllegalTransition
 
 OPERATORS = {Cause.HOLD, Cause.RESUME, Cause.RETRY, Cause.ABANDON, Cause.STOP, Cause.CLEAR, Cause.RESET}

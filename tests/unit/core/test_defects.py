@@ -12,7 +12,6 @@ from py_trees.composites import Sequence
 
 from arboleda.core import reasons
 from arboleda.core.cell import CellRun
-from arboleda.core.cell_states import CellState
 from arboleda.core.cell_steps import advance
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
@@ -20,6 +19,7 @@ from arboleda.dispatch import evidence
 from arboleda.dispatch.ledger import Feed, Ledger
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import (
     InternalError,

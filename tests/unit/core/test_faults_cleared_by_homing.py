@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Home
 from arboleda.model.messages import MotionState, Verb
 from arboleda.model.plant_model import DriverUse, Evidence, PlantModel, Robot

@@ -6,12 +6,11 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
-from arboleda.dispatch.belief import APART_S
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import (
     Fact,
@@ -28,7 +27,7 @@ from arboleda.model.messages import (
     TaskState,
     Verb,
 )
-from arboleda.model.plant_model import Evidence, Timing
+from arboleda.model.plant_model import APART_S, Evidence, Timing
 from arboleda.trees import leaves
 from arboleda.views import view
 from arboleda_proofs.testing import shipped

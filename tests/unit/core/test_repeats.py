@@ -107,6 +107,7 @@ class Desk:
         desk, ledger = self.dispatcher, self.dispatcher.ledger
         beliefs = [
             {**vars(belief), "robot": None, "_last_words": (), "repeats": 0}
+            | {"stillness": vars(belief.stillness) | {"_robot": None}, "rate": vars(belief.rate)}
             for belief in desk.beliefs.values()
         ]
         entries = [
@@ -138,7 +139,8 @@ def belief() -> Belief:
 
 def test_a_repeat_counts_as_heard(belief: Belief) -> None:
     assert belief.hear_again(Report(at=2.0, robot="ra1", state=MotionState.STOPPED, q=HERE))
-    assert (belief.heard_at, belief.position_at, belief.reports, belief.still) == (2.0, 2.0, 2, True)
+    assert (belief.heard_at, belief.stillness.position_at) == (2.0, 2.0)
+    assert (belief.reports, belief.stillness.is_still) == (2, True)
 
 
 @pytest.mark.parametrize("other", [{"q": THERE}, {"homed": True}, {"rejected": "7-1"}, {"at": 0.5}])

@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 from py_trees.behaviours import Success
 
-from arboleda.core.text import example, parse, spelled
 from arboleda.model.errors import TextError
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Parameter, Recipe
+from arboleda.model.text import example, parse, spelled
 from arboleda_proofs.testing import shipped
 
 

@@ -7,13 +7,13 @@ from typing import Any
 import pytest
 from tests.lengths import length
 
-from arboleda.core import text
-from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.dashboard.wording import LANGUAGES, REASONS, SENTENCES, flat, tree_of, words
 from arboleda.dispatch import belief, dispatcher, evidence, zones
 from arboleda.dispatch.ledger import State
 from arboleda.drivers.supervisor import FAILED, NOT_SENT
+from arboleda.model import text
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.sentence import OWN, Sentence
 from arboleda.plant_file.poses import HOME, STATION

@@ -7,13 +7,14 @@ from typing import Any
 
 import pytest
 
-from arboleda.dispatch.belief import APART_S, Belief
+from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.evidence import QUIET_S, Before, judge, strayed
 from arboleda.dispatch.ledger import Entry, Feed
+from arboleda.dispatch.stillness import Moment
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import MotionState, Reason, Report
-from arboleda.model.plant_model import Evidence
+from arboleda.model.plant_model import APART_S, Evidence
 from arboleda_proofs.testing import shipped
 from arboleda_proofs.testing.storage_layout import StorageLayout
 
@@ -219,29 +220,29 @@ def test_a_node_that_is_told_so_long_after_the_stop_is_where_a_robot_stands() ->
 def test_a_halt_is_not_proven_by_what_was_said_before_the_robot_heard_it() -> None:
     judged = move(GOAL)
     belief = judged.belief
-    moment = belief.moment(1.0)
+    moment = Moment(belief.reports, 1.0)
     judged.hear(1.01, HALFWAY, STOPPED)
     judged.hear(1.02, HALFWAY, STOPPED)
-    assert not belief.still_since(moment)
+    assert not belief.stillness.still_since(moment)
     judged.hear(1.0 + APART_S, HALFWAY, STOPPED)
-    assert not belief.still_since(moment)
+    assert not belief.stillness.still_since(moment)
     judged.hear(1.1 + APART_S, HALFWAY)
-    assert belief.still_since(moment)
+    assert belief.stillness.still_since(moment)
 
 
 def test_a_halt_is_not_proven_by_nodes_that_may_be_from_before_the_robot_stopped() -> None:
     """It is halted on an edge, at whose end it stops; on the way there it tells one node all the time."""
     judged = drive(0, 3)
     belief = judged.belief
-    moment = belief.moment(1.0)
+    moment = Moment(belief.reports, 1.0)
     judged.stays(1.01, 1.5, 0, MOVING)
     judged.hear(1.5, state=STOPPED)
     judged.hear(1.507, 0)
-    assert not belief.still_since(moment)
+    assert not belief.stillness.still_since(moment)
     judged.stays(1.6, 1.8, 3)
-    assert not belief.still_since(moment)
+    assert not belief.stillness.still_since(moment)
     judged.stays(1.8, 2.0, 3)
-    assert belief.still_since(moment)
+    assert belief.stillness.still_since(moment)
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ Key = tuple[object, ...]
 
 
 def read(zones: Zones) -> Key:
-    return tuple(zones.holder(name) for name in NAMES), zones.waiting
+    return tuple(zones.holder(name) for name in NAMES), zones.queue.waiting
 
 
 def arrive(zones: Zones, at: str) -> tuple[str, ...]:
@@ -68,7 +68,7 @@ def test_it_is_never_without_a_landing_and_nobody_is_in_one_with_it(states: dict
 def test_it_waits_before_whoever_may_wait_for_what_it_leaves(states: dict[Key, bytes]) -> None:
     seen = 0
     for frozen in states.values():
-        waiting = [robot for robot, _ in pickle.loads(frozen).waiting]
+        waiting = [robot for robot, _ in pickle.loads(frozen).queue.waiting]
         seen += LIFT in waiting
         assert LIFT not in waiting[1:]
     assert seen
@@ -84,5 +84,5 @@ def test_whoever_waits_is_served_once_the_others_leave_and_it_moves(states: dict
             goal = min(LANDINGS - zones.held_by(LIFT) or LANDINGS)
             zones.request(LIFT, frozenset({goal}), moves_over=True)
             arrive(zones, goal)
-        wishes = [wish for robot, wish in zones.waiting if robot != LIFT]
+        wishes = [wish for robot, wish in zones.queue.waiting if robot != LIFT]
         assert not wishes or wishes[0] >= LANDINGS  # both at once nobody gets while it is in one

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.dispatch.belief import RATE_S
 from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.report_rate import RATE_S
 from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import Evidence
 from arboleda_proofs.testing import shipped
@@ -25,7 +25,7 @@ class Arm:
             self.now += 0.1
             report = Report(at=self.now, robot="ra1", state=state, q=(0.0, 0.0, 0.0))
             self._dispatcher.report(report, self.now)
-        return self.belief.rate_hz
+        return self.belief.rate.hz
 
 
 @pytest.fixture(params=[Evidence.JOINTS, Evidence.STATE], ids=lambda evidence: evidence.value)

@@ -69,7 +69,7 @@ class Floor:
     @property
     def key(self) -> Key:
         holders = tuple(self.zones.holder(each) for each in (*ZONES, *DEVICES))
-        return tuple(self.at.values()), (holders, self.zones.waiting)
+        return tuple(self.at.values()), (holders, self.zones.queue.waiting)
 
 
 def states() -> Iterator[tuple[str, ...]]:

@@ -8,10 +8,9 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from arboleda.dispatch.belief import APART_S
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.messages import MotionState, Report
-from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.model.plant_model import APART_S, Evidence, PlantModel
 from arboleda.trees.interlocks import Interlocks
 
 from ..kinds.test_interlocks import with_mill

@@ -8,6 +8,7 @@ import pytest
 
 from arboleda.dispatch.zones import Zones
 from arboleda.model.errors import IllegalTransition
+from arboleda.views.zone_rows import zone_rows
 
 A, B, C = "ra1", "ra2", "ra3"
 
@@ -35,21 +36,21 @@ def quarantined() -> Zones:
 def test_all_zones_are_taken_at_once() -> None:
     plant = zones((A, "x y"))
     assert plant.held_by(A) == {"x", "y"}
-    assert (plant.holder("x"), plant.holder("z"), plant.waiting) == (A, None, ())
+    assert (plant.holder("x"), plant.holder("z"), plant.queue.waiting) == (A, None, ())
 
 
 def test_or_none_of_them() -> None:
     plant = zones((A, "x"))
     assert plant.request(B, wanted("x y")) is False
-    assert (plant.held_by(B), plant.waiting) == (frozenset(), ((B, wanted("x y")),))
+    assert (plant.held_by(B), plant.queue.waiting) == (frozenset(), ((B, wanted("x y")),))
 
 
 def test_asking_again_changes_nothing() -> None:
     plant = zones((A, "x y"), (B, "x"), (C, "x"))
-    before = plant.snapshot(), plant.waiting
+    before = zone_rows(plant), plant.queue.waiting
     assert [plant.request(A, wanted(names)) for names in ("x y", "y", "")] == [True, True, True]
     assert [plant.request(B, wanted("x")), plant.request(C, wanted("x"))] == [False, False]
-    assert (plant.snapshot(), plant.waiting) == before
+    assert (zone_rows(plant), plant.queue.waiting) == before
 
 
 def test_nobody_gets_past_an_earlier_one_who_wants_the_same_zone() -> None:
@@ -71,7 +72,7 @@ def test_one_release_may_serve_several_in_their_order() -> None:
 def test_who_withdraws_lets_the_next_one_pass() -> None:
     plant = zones((A, "x"), (B, "x y"), (C, "y"))
     assert plant.withdraw(B) == (C,)
-    assert (plant.waiting, plant.withdraw(B)) == ((), ())
+    assert (plant.queue.waiting, plant.withdraw(B)) == ((), ())
 
 
 def test_a_ring_of_wishes_is_served_one_by_one() -> None:
@@ -93,10 +94,10 @@ def test_an_impossible_request_is_refused_and_changes_nothing(
 ) -> None:
     make, robot, names, sentence = case
     plant = make()
-    before = plant.snapshot(), plant.waiting
+    before = zone_rows(plant), plant.queue.waiting
     with pytest.raises(IllegalTransition, match=sentence):
         plant.request(robot, wanted(names))
-    assert (plant.snapshot(), plant.waiting) == before
+    assert (zone_rows(plant), plant.queue.waiting) == before
 
 
 def test_quarantine_outlives_a_release() -> None:
@@ -137,7 +138,7 @@ def test_a_robot_inside_gets_nothing_back_that_another_one_has_now() -> None:
     plant = quarantined()
     plant.override("y")
     assert not plant.regain(A, wanted("x y"))
-    assert (plant.held_by(A), plant.held_by(C), plant.waiting) == ({"x"}, {"y"}, ((B, wanted("x")),))
+    assert (plant.held_by(A), plant.held_by(C), plant.queue.waiting) == ({"x"}, {"y"}, ((B, wanted("x")),))
     plant.release(C)
     assert plant.regain(A, wanted("x y")) and plant.held_by(A) == {"x", "y"}
 
@@ -176,7 +177,7 @@ def test_a_quarantine_survives_a_restart_of_the_plant() -> None:
 def test_a_screen_sees_plain_data() -> None:
     plant = quarantined()
     plant.override("y")
-    assert plant.snapshot() == [
+    assert zone_rows(plant) == [
         {"zone": "x", "state": "quarantined", "robot": A, "waiting": [B]},
         {"zone": "y", "state": "held", "robot": C, "waiting": []},
         {"zone": "z", "state": "free", "robot": None, "waiting": []},
@@ -185,4 +186,4 @@ def test_a_screen_sees_plain_data() -> None:
 
 def test_ahead_of_somebody_are_those_before_it_that_wait_for_one_of_the_same_zones() -> None:
     plant = zones(("ra4", "x y z"), (A, "x"), (B, "y"), (C, "y z"))
-    assert [plant.ahead_of(robot) for robot in (A, B, C)] == [(), (), (B,)]
+    assert [plant.queue.ahead_of(robot) for robot in (A, B, C)] == [(), (), (B,)]

@@ -75,7 +75,7 @@ def explored() -> Explored:
 
 def read(zones: Zones) -> State:
     occupied = frozenset((name, robot) for name in NAMES if (robot := zones.holder(name)))
-    return State(occupied, frozenset(filter(zones.is_quarantined, NAMES)), zones.waiting)
+    return State(occupied, frozenset(filter(zones.is_quarantined, NAMES)), zones.queue.waiting)
 
 
 def act(zones: Zones, verb: str, arguments: tuple[Any, ...]) -> tuple[str, ...] | None:

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 from arboleda.core import reasons
-from arboleda.core.advice import Hand, sentence
-from arboleda.core.cell_states import CellState
 from arboleda.kinds.declared import Device, DeviceKind
+from arboleda.model.advice import Hand, sentence
+from arboleda.model.cell_states import CellState
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Journal, Outcome, Reason, Verb
 from arboleda.model.plant_model import Evidence, PlantModel

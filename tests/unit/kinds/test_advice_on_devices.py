@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from arboleda.core import reasons
-from arboleda.core.advice import sentence
+from arboleda.model.advice import sentence
 from arboleda.model.messages import TaskState, Verb
 
 from .lab import Bench, model

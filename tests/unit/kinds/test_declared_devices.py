@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from arboleda.core import reasons
-from arboleda.core.cell_states import CellState
 from arboleda.dispatch.ledger import State
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, UseError
+from arboleda.model.cell_states import CellState
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Link, PlantModel

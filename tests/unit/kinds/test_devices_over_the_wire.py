@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.cell_states import CellState
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType, MotionCall
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.facts import Value
 from arboleda.model.messages import Heartbeat, MotionState, Reason, Report, TaskState, Verb

@@ -19,7 +19,6 @@ import arboleda.drivers
 import arboleda.kinds
 import arboleda.recipes
 from arboleda.cli.main import cli
-from arboleda.core.text import parse
 from arboleda.geometry import bodies, kinematics
 from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.declared import Device, MotionCall, VerbCall
@@ -29,6 +28,7 @@ from arboleda.model.commands import Command, Position, Question
 from arboleda.model.facts import Value
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import Link, PlantModel, Workspace
+from arboleda.model.text import parse
 from arboleda.plant_file import loader
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.sim.arm import ArmBody

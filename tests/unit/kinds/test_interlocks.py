@@ -297,7 +297,7 @@ def test_a_machine_in_the_way_of_one_zone_moves_over_into_another_one_once_nobod
     assert here.plant.zones.holder("feed") == "gate"
     assert here.plant.zones.holder("vise") is None
     here.submit("tending slide")
-    assert here.wait(10.0, lambda: "gate" in dict(here.plant.zones.waiting))
+    assert here.wait(10.0, lambda: "gate" in dict(here.plant.zones.queue.waiting))
     assert here.plant.zones.holder("vise") == "left"
     assert here.outcome().state.value == "done"
     assert here.machines["gate"].facts["at"] == "left"
@@ -320,9 +320,9 @@ def test_a_cell_at_rest_does_not_withdraw_what_a_machine_asked_for_that_another_
     here.machines["gate"].facts["at"] = "right"
     here.wait(1.0)
     here.submit("tending slide")
-    assert here.wait(10.0, lambda: "gate" in dict(here.plant.zones.waiting))
+    assert here.wait(10.0, lambda: "gate" in dict(here.plant.zones.queue.waiting))
     here.wait(0.5)
-    assert "gate" in dict(here.plant.zones.waiting)
+    assert "gate" in dict(here.plant.zones.queue.waiting)
     assert here.outcome().state.value == "done"
     assert here.machines["gate"].facts["at"] == "left"
 
@@ -336,7 +336,7 @@ def test_a_machine_that_is_heard_again_keeps_its_zone_without_quarantine() -> No
     here.wait(3.0)
     assert here.plant.zones.is_quarantined("vise")
     assert not context.zones.take("gate", frozenset({"feed"}))  # nobody knows where it is
-    assert here.plant.zones.waiting == ()
+    assert here.plant.zones.queue.waiting == ()
     here.power_on("gate")
     here.wait(3.0)
     assert here.plant.zones.holder("vise") == "gate"

@@ -9,8 +9,8 @@ import pytest
 from rich.console import Console
 
 from arboleda.cli import screen
-from arboleda.core.advice import in_words
 from arboleda.dispatch.belief import Belief
+from arboleda.model.advice import in_words
 from arboleda.model.commands import FRESH_S
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Reason, TaskState

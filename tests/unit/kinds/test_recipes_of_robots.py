@@ -11,7 +11,6 @@ import pytest
 from py_trees.behaviours import Success
 from py_trees.common import Status
 
-from arboleda.core.text import parse
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command
@@ -19,6 +18,7 @@ from arboleda.model.errors import TextError
 from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.plant_model import PlantModel, Retry, Robot
 from arboleda.model.recipe import Recipe
+from arboleda.model.text import parse
 from arboleda.recipes import Choice, Kit, Number, RecipeError, Target, parallel, recipe, work
 from arboleda.recipes.decorators import Inverted
 

@@ -8,16 +8,16 @@ from itertools import pairwise
 
 import pytest
 
-from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.model.sentence import NOTHING
 from arboleda.recipes import Choice, Kit, parallel, recipe, work
 from arboleda.recipes.errors import RecipeError
-from arboleda.trees.cell_devices import CellDevices
+from arboleda.trees.hand_over import HandOver
 from arboleda.trees.tree_run import step_of
 from arboleda_proofs.testing.following import advised, follow, works
 
@@ -152,7 +152,7 @@ def test_a_cell_that_waits_names_who_got_its_device_meanwhile() -> None:
 def test_a_cell_that_cannot_ask_yet_for_a_device_that_no_cell_holds_says_why(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(CellDevices, "is_as_left", lambda self, device: False)
+    monkeypatch.setattr(HandOver, "is_as_left", lambda self, device: False)
     here = Bench(plant())
     here.submit("above ride")
     here.wait(1.0)

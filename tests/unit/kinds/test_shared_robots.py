@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.kinds.declared import Device
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.plant_model import Cell, Interlock, PlantModel, Pose, Workspace
 from arboleda.model.recipe import Recipe

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import pytest
 
 from arboleda.core import reasons
-from arboleda.core.advice import sentence
 from arboleda.core.plant import Plant
+from arboleda.model.advice import sentence
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Verb
 from arboleda.recipes import Kit, recipe, work

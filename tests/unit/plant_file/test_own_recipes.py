@@ -9,9 +9,9 @@ import pytest
 from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
-from arboleda.core.text import parse
 from arboleda.model.errors import ConfigError, TextError
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.text import parse
 from arboleda.plant_file import loader, recipe_trial
 from arboleda.plant_file.python_uses import Spot
 

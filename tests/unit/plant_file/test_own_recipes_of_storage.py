@@ -9,10 +9,10 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from arboleda.core.text import parse
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.text import parse
 from arboleda.plant_file import loader
 from arboleda.sim.arm import ArmBody
 from arboleda.views import forms

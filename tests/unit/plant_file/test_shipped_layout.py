@@ -10,13 +10,13 @@ from itertools import combinations, permutations, product
 import pytest
 from tests.lengths import sample
 
-from arboleda.core import text
 from arboleda.geometry import bodies, kinematics
 from arboleda.geometry.kinematics import deck
 from arboleda.geometry.part_size import PART_HEIGHT_M, PART_RADIUS_M
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.joints import Joint
 from arboleda.kinds.mobile import Mobile
+from arboleda.model import text
 from arboleda.model.plant_model import Cell, Pose
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda_proofs.testing import shipped

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.text import parse
 from arboleda.model.errors import TextError
+from arboleda.model.text import parse
 from arboleda_proofs.testing import shipped
 from arboleda_ros.typed.fields import compose
 

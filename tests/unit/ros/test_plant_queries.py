@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("rclpy", reason="rclpy is not installed")
 
-from arboleda.core.leaving import STILL_WAITS, stop_left
+from arboleda.departures.leaving import STILL_WAITS, stop_left
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, Outcome, Verb
 from arboleda_ros import plant_queries
 from arboleda_ros.plant_queries import Asker, Question

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 import pytest
 
-from arboleda.core.leaving import ends_motion
+from arboleda.departures.leaving import ends_motion
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskChanged
 from arboleda.runtime.parts import orchestrator

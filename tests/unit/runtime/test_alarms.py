@@ -11,9 +11,9 @@ import pytest
 
 from arboleda.adapters.mqtt_broker.limits import PACKET_BYTES
 from arboleda.adapters.webhook import TOKEN, URL
-from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.kinds.person import person
+from arboleda.model.cell_states import CellState
 from arboleda.model.errors import StartError
 from arboleda.model.messages import Reason, Shutdown, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence

@@ -6,7 +6,7 @@ import pytest
 from tests.patience import SOON_S
 
 from arboleda.adapters import clock
-from arboleda.core.leaving import MOST_UNSYNCED_S
+from arboleda.departures.leaving import MOST_UNSYNCED_S
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime.parts.durability import Durability
 

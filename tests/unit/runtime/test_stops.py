@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.leaving import StopLeft
 from arboleda.core.plant import Plant
+from arboleda.departures.leaving import StopLeft
 from arboleda.kinds.arm import SetEffector
 from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.messages import (

@@ -13,7 +13,7 @@ from tests.guarded_plant import PRESENT, Web
 from tests.in_process import Caller
 from tests.web_plant import LATE, OFFER, OFFERS, QUEUED, TASK, VIEW, Plant
 
-from arboleda.core.leaving import STILL_WAITS, stop_left
+from arboleda.departures.leaving import STILL_WAITS, stop_left
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.messages import OperatorAnswer, Outcome, Verb
 from arboleda.model.sentence import Phrase

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from arboleda.trees.fingerprint import FOR_PEOPLE
+from arboleda.model.recipe import FOR_PEOPLE
 
 MOST_LINES = 10  # of warnings of one kind that are named
 MOST = 200  # mistakes that are shown; a file with more is no file of trees

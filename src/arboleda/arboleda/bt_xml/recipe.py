@@ -8,14 +8,13 @@ from functools import partial
 
 from py_trees.behaviour import Behaviour
 
+from arboleda.engine import Context, steps
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Recipe
 from arboleda.model.task import Order
 from arboleda.recipes.holding import held
 from arboleda.recipes.nodes import WrittenNode
-from arboleda.trees import steps
-from arboleda.trees.context import Context
 
 from . import choices, ends, leaves, parameters, runnable, target_groups
 from .findings import Findings, Place

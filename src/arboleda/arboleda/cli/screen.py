@@ -18,7 +18,7 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import MotionState, TaskChanged, TaskState
 from arboleda.model.outside import plain

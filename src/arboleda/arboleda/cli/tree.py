@@ -9,8 +9,8 @@ from typing import Annotated, Any
 import typer
 
 from arboleda.bt_xml import rows as tree_rows
-from arboleda.core import text
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
+from arboleda.model import text
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.sentence import Phrase

@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.text import Text
 
 from arboleda.adapters.broker_login import login
-from arboleda.core import text
+from arboleda.model import text
 from arboleda.model.errors import ConfigError, StartError, TextError
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.model.recording import Recording

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.dispatch.belief import Moment
 from arboleda.dispatch.ledger import State
+from arboleda.dispatch.stillness import Moment
 from arboleda.model.commands import Motion
 from arboleda.model.messages import Failure, Reason
 from arboleda.trees.context import Context

@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from arboleda.dispatch.obstacles import MAY_LET_GO
+from arboleda.model.advice import Advice, Hand
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import OperatorRequest, Reason, Verb
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.trees import part_places
 
 from . import reasons
-from .advice import Advice, Hand
 from .cell import CellRun
-from .cell_states import CellState
 
 WILL_BE_HOMED = Phrase("cell.will_be_homed", "{arm} will have been homed")
 IN_THE_WAY = Phrase("advice.in_the_way", "{device} does not say {facts}")

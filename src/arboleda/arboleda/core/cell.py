@@ -8,24 +8,24 @@ from dataclasses import dataclass
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.dispatch.belief import Moment
 from arboleda.dispatch.booking import BROKEN_OFF
+from arboleda.dispatch.stillness import Moment
+from arboleda.model.advice import Advice
+from arboleda.model.cell_states import TABLE, Cause, CellState, after
 from arboleda.model.messages import Failure, Reason, RevisionName, TaskState, Verb
 from arboleda.model.plant_model import Cell, Timing
 from arboleda.model.recipe import Build
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.step_token import hash_of
 from arboleda.model.task import Task
+from arboleda.resume.keeping import Keeping
 from arboleda.trees import steps
 from arboleda.trees.context import Context
-from arboleda.trees.keeping import Keeping
 from arboleda.trees.leaves import title_of
 from arboleda.trees.part_places import trouble_in
-from arboleda.trees.step_token import hash_of
 from arboleda.trees.tree_run import TreeRun, path_of
 
 from .absence import Absence
-from .advice import Advice
-from .cell_states import TABLE, Cause, CellState, after
 from .manual_mode import ManualMode
 from .readiness import Readiness
 from .task_queue import TaskQueue

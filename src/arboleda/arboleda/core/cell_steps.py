@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from arboleda.dispatch.ledger import State
+from arboleda.model.cell_states import Cause, CellState
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase
-from arboleda.trees.walk_back import NO_PART
+from arboleda.resume.walk_back import NO_PART
 
 from .cell import CellRun, NextVersion
-from .cell_states import Cause, CellState
 from .earlier_start import judged
 
 STOP_UNCONFIRMED = Phrase("cell.stop_unconfirmed", "{robots} did not confirm the stop")

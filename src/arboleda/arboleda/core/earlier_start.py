@@ -6,13 +6,13 @@ from __future__ import annotations
 
 from arboleda.dispatch.fact_memory import FactMemory
 from arboleda.dispatch.latches import Latches
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Fact
 from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.model.step_token import hash_of
 from arboleda.model.task import Task
-from arboleda.trees.step_token import hash_of
 
 from .cell import CellRun
-from .cell_states import CellState
 
 
 def walk_back(run: CellRun, task: Task, kept: str) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from arboleda.dispatch.fact_memory import Memory
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, KeptTask, Remember, TaskState
-from arboleda.trees.trail import Trail
+from arboleda.resume.trail import Trail
 
 from .cell import CellRun
 

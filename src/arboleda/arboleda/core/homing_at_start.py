@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from arboleda.dispatch.belief import Belief
+from arboleda.model.cell_states import CellState
 from arboleda.model.plant_model import PlantModel
 
-from .cell_states import CellState
 from .operator import Operator
 
 

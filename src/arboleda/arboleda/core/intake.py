@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from arboleda.model import text
 from arboleda.model.errors import QueueFull, TextError
 from arboleda.model.messages import Failure, KeptTask, Reason, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.task import Order, Task
-
-from . import text
 
 ENDING = Phrase("task.plant_ending", "the plant is ending; no new task is taken")
 ID_TAKEN = Phrase("task.id_taken", "#{id} is already the id of '{text}'; use another id")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase
-from arboleda.trees.walk_back import NO_PART
+from arboleda.resume.walk_back import NO_PART
 
 from .cell import CellRun
 

@@ -8,15 +8,15 @@ from arboleda.dispatch.booking import was_broken_off
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.dispatch.zones import Zones
+from arboleda.model.advice import DO
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Journal, OperatorRequest, Outcome, Verb
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.verbs import Arguments, as_text, lasting
 
 from .acts import ENDED, Acts, OperatorAct, outcome_of
-from .advice import DO
 from .cell import CellRun
-from .cell_states import CellState
 from .intake import Intake
 from .verbs.answering import Answering
 from .verbs.cancelling import Cancelling

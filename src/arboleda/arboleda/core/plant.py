@@ -13,6 +13,8 @@ from py_trees.behaviour import Behaviour
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.fact_memory import Memory
 from arboleda.dispatch.zones import Zones
+from arboleda.model.advice import Advice
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command
 from arboleda.model.messages import (
     Absence,
@@ -50,11 +52,9 @@ from arboleda.trees.context import Context
 
 from . import envelope
 from .acts import OperatorAct
-from .advice import Advice
 from .advisor import Advisor
 from .cell import CellRun
 from .cell_guard import CellGuard
-from .cell_states import CellState
 from .choosing import Prospect
 from .earlier_start import end_teaching, look_back, stop_of
 from .homing_at_start import HomingAtStart
@@ -111,7 +111,7 @@ class Plant:
         if memory.get(Fact.QUARANTINE):
             for belief in dispatcher.beliefs.values():
                 if belief.robot.goes:  # what it tells may be older than its last move of an earlier start
-                    belief.doubt(until=now + SHORTEST_ABSENCE_S)
+                    belief.stillness.doubt(until=now + SHORTEST_ABSENCE_S)
         self.zones = Zones((*model.zones, *model.shared), memory.get(Fact.QUARANTINE, {}))
         self.cells: dict[str, CellRun] = {}
         self.revisions = {cell.name: 0 for cell in model.cells}

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from arboleda.model import advice
+from arboleda.model.cell_states import CellState
 from arboleda.model.sentence import BOTH, NOTHING, Phrase, Sentence
 from arboleda.trees.tree_run import step_of
 
-from . import advice
 from .cell import STOPPED, CellRun
-from .cell_states import CellState
 
 ENDING = Phrase("plant.ending", "the plant is ending")
 RESTARTS = Phrase(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.model.cell_states import CellState
 from arboleda.model.errors import QueueFull, TextError
 from arboleda.model.messages import (
     Fact,
@@ -22,7 +23,6 @@ from arboleda.model.task import Order, Task
 
 from . import reasons
 from .cell import CellRun
-from .cell_states import CellState
 from .choosing import PastTimes, Prospect, best, prospect
 from .earlier_start import walk_back
 from .intake import CUT_OFF, OTHER_VERSION, Intake

@@ -7,10 +7,10 @@ from itertools import filterfalse
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.zones import Zones
+from arboleda.model.cell_states import CellState
 
 from .cell import CellRun
 from .cell_guard import CellGuard
-from .cell_states import CellState
 
 
 class ZoneWatch:

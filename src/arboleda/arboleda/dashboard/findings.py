@@ -15,7 +15,8 @@ from arboleda.web.languages.templates import FEW, Template, Templates
 from .wording import REASONS as DRIVERS
 from .wording import SENTENCES, words
 
-GIVING = ("bt_xml", "core", "dispatch", "model", "recipes", "trees", "wire")  # whose phrases are reasons
+# Rooms whose phrases are reasons.
+GIVING = ("bt_xml", "core", "departures", "dispatch", "model", "recipes", "resume", "trees", "wire")
 REASONS = frozenset(
     {
         "advice",

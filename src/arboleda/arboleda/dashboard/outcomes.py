@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.core.advice import BY_HAND
+from arboleda.model.advice import BY_HAND
 from arboleda.model.messages import OperatorAnswer, Outcome, Verb
 from arboleda.model.sentence import Sentence
 from arboleda.model.verbs import Arguments, as_text, lasting

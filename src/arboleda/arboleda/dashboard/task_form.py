@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from arboleda.core.text import BETWEEN_CELLS as BETWEEN
+from arboleda.model.text import BETWEEN_CELLS as BETWEEN
 
 from .page_api import Layout
 from .tags import act_button, tag

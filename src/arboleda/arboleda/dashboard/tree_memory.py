@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from arboleda.drawing.layout import parent
+from arboleda.engine import RECOVERY
 from arboleda.model.sentence import Sentence
-from arboleda.trees.steps import RECOVERY
 
 IDLE, RUNNING, SUCCESS, FAILURE, HALTED = "idle", "running", "success", "failure", "halted"
 SEEN = {"RUNNING": RUNNING, "SUCCESS": SUCCESS, "FAILURE": FAILURE}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from functools import cache
 from operator import attrgetter, methodcaller
@@ -14,9 +13,9 @@ from arboleda.model.messages import BUILT_IN, Failure, MotionState, Reason, Rece
 from arboleda.model.plant_model import Evidence, Link, Robot
 from arboleda.model.sentence import OWN, Phrase, Sentence
 
-STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})
-APART_S = 0.2  # two telemetry periods: by how much a state and a position of one instant may come apart
-RATE_S = 2.0  # the telemetry rate is counted over at least this long
+from .report_rate import RATE_S, ReportRate
+from .stillness import Stillness
+
 MERGED = ("epoch", "boot_id", "state", "q", "node", "homed", "effector", "piece", "receipt")
 _merged = attrgetter(*MERGED)
 
@@ -37,19 +36,11 @@ def _fact_under(name: str | None) -> Callable[[Report | Belief], Value | None]:
     return attrgetter(name) if name in BUILT_IN else methodcaller("fact", name)
 
 
-class Moment(NamedTuple):
-    """A time as a robot's reports tell it: how many there were, and s of the plant's clock."""
-
-    reports: int
-    at: float
-
-
 class Belief:
     """The last word of a robot on everything it reports; None means it never said.
 
     `supervised`: whether silence means anything; a robot at `state` speaks only when it moves.
     `stale_at`: when silence will have lasted too long; None where that cannot happen (again).
-    `is_sure`: its place is no older than its last stop; of what goes nowhere, its facts.
     `barred`: a command was refused because of a stop which it does not tell: it has none, or did not hear it.
     """
 
@@ -61,8 +52,7 @@ class Belief:
         self.position_in = _position_under(robot.position_key)  # of a report, or of this
         self.held_in = _fact_under(robot.held_fact)  # likewise: whether it holds something
         self.drawn = robot.link is Link.NONE
-        self._goes = robot.goes
-        tells = self._goes or robot.fact_names
+        tells = robot.goes or robot.fact_names
         self._comes_apart = bool(tells) and robot.evidence is Evidence.JOINTS  # from its state
         self.heard_at: float | None = None
         self.stale = False
@@ -76,24 +66,14 @@ class Belief:
         self.q: tuple[float, ...] | None = None
         self.node: int | None = None
         self.position: Position | None = None
-        self.position_at = 0.0
-        self.position_no = 0
-        self._told_at = 0.0  # its place; of what goes nowhere, its facts
-        self._sure_from = -math.inf
-        self.is_sure = True
-        self.state_no = 0
-        self.state_at = 0.0
         self.reports = 0
         self.repeats = 0  # of them, since the last that said something else
-        self.rate_hz: float | None = None
-        self._counted = (0.0, 0)  # when the rate was counted last, and the number of reports then
+        self.rate = ReportRate()
+        self.stillness = Stillness(robot, supervised=self.supervised)
         self.piece_at = 0.0
         self.piece_since = 0.0
         self.displaced = False
         self.barred = False
-        self._still_from = 0  # of two still codes in a row the first, by number
-        self._rested_from = 0  # of two equal positions in a row the first, by number and by time
-        self._rested_at = 0.0
         self.homed: bool | None = None
         self.effector: bool | None = None
         self.held_boot: int | None = None  # the boot in which it said whether it holds something
@@ -129,12 +109,20 @@ class Belief:
 
     def hear_again(self, report: Report) -> bool:
         """Take over a report that only repeats what an online robot said last; False: it is to be merged."""
-        if not self.online or report.at < self.position_at or report.words != self._last_words:
+        if not self.online or report.at < self.stillness.position_at or report.words != self._last_words:
             return False
         self.repeats += 1
-        self._hear(report)
-        if report.at - self._counted[0] >= RATE_S:
-            self._count_rate(report.at)
+        self.reports += 1
+        if report.number is not None:
+            self.number = report.number
+        self.heard_at = report.at
+        if self.supervised:
+            self.stale_at = report.at + self.stale_after_s
+        self.stillness.hear(report, self.reports, self.position_in(report), self.position)
+        if report.piece is not None:
+            self.piece_at = report.at
+        if report.at - self.rate.since >= RATE_S:
+            self.rate.count(report.at, self.reports, online=True)
         return True
 
     def merge(self, report: Report) -> None:
@@ -158,20 +146,13 @@ class Belief:
         if report.epoch is not None:
             self.plant = report.plant  # a bridge that restarted has to hear the plant anew
         self._last_words, self.lost = report.words, report.lost
-        self._count_rate(report.at)
+        self.rate.count(report.at, self.reports, online=self.online)
         self.online = self._is_online()
 
     def _merge_facts(self, facts: Facts) -> None:
         if any(self.facts.get(name) != value for name, value in facts):
             self.facts.update(facts)
             self.facts_no = self.reports
-
-    def _count_rate(self, at: float) -> None:
-        since, reports = self._counted
-        if self.reports == 1 or not self.online:
-            self.rate_hz, self._counted = None, (at, self.reports)
-        elif at - since >= RATE_S:
-            self.rate_hz, self._counted = (self.reports - reports) / (at - since), (at, self.reports)
 
     def fall_silent(self) -> None:
         """Silence has lasted too long."""
@@ -191,79 +172,20 @@ class Belief:
             self.number = report.number
         stands = self._comes_apart and report.state not in (None, MotionState.MOVING)
         if stands and (self.state is MotionState.MOVING or (self.heard_at is not None and not self.online)):
-            self._sure_from = report.at + APART_S
+            self.stillness.come_to_a_stop(report.at)
         if report.state is not MotionState.NO_LINK:
             self.heard_at = report.at
             self.stale = False
             self.stale_at = report.at + self.stale_after_s if self.supervised else None
-        if report.state is not None:
-            still = report.state in STILL and self.state in STILL
-            self._still_from = self.state_no if still else 0
-            self.state_no, self.state_at = self.reports, report.at
-        position, before = self.position_in(report), self.position
-        if position is not None:
-            moved = position != before or not self._rested_from
-            self._rested_from = self.reports if moved else self.position_no
-            self._rested_at = report.at if moved else self.position_at
-            self.position_no = self.reports
-        if report.q is not None or report.node is not None:
-            self.position_at = report.at
-        if position is not None or (report.facts and not self._goes):
-            self._told_at = report.at
-        self.is_sure = self._told_at >= self._sure_from
+        self.stillness.hear(report, self.reports, self.position_in(report), self.position)
         if report.piece is not None:
             self.piece_at = report.at
             self.piece_since = report.at if report.piece is not self.piece else self.piece_since
 
     @property
-    def still(self) -> bool:
-        """True where its last two reports agree that it stands still."""
-        return self.still_since(Moment(0, -math.inf))
-
-    @property
     def moves(self) -> bool:
         """True while nothing but its moving keeps it from a command."""
         return self.trouble is MOVING
-
-    def moment(self, now: float) -> Moment:
-        """Now, for `still_since`."""
-        return Moment(self.reports, now)
-
-    def rested_since(self, at: float) -> bool:
-        """True where it reported the same position at least twice from `at` on, and no other one since."""
-        return self._rested_from < self.position_no and self._rested_at >= at
-
-    def still_since(self, moment: Moment) -> bool:
-        """True where it surely stands still: a still code and, where it reports its position, the same one in
-        two reports, all of them after that moment. What has no position says so twice; what has no work to do
-        stands still.
-
-        At `joints` a report may be older than the other one that came before it; so old ones do not count,
-        and no positions that may be older than the stop: on an edge a robot tells one node all the time.
-        """
-        count, at = moment
-        if not self.robot.works:
-            return True
-        if self.state not in STILL or self.state_no <= count:
-            return False
-        if self.robot.evidence is Evidence.JOINTS and self.state_at < at + APART_S:
-            return False
-        if not self.supervised:
-            return True
-        if self.robot.position_key is None:
-            return count < self._still_from
-        rested = count < self._rested_from < self.position_no
-        if self.robot.evidence is Evidence.IDS:
-            return rested
-        return rested and self.rested_since(max(at + APART_S, self._sure_from))
-
-    def doubt(self, until: float) -> None:
-        """Take what it tells of its place before that time for older than its last move."""
-        self._sure_from, self.is_sure = until, False
-
-    def be_sure(self) -> None:
-        """Take what it has told for no older than its last stop: it has proven a command."""
-        self._sure_from, self.is_sure = -math.inf, True
 
     @property
     def answered(self) -> bool:
@@ -297,30 +219,22 @@ class Belief:
 
     def obstacle(self, *, was: bool) -> Failure | None:
         """The reason why this robot takes no command, if there is one; `was`: in words that stay true."""
-        return self._failure(self.trouble, was=was)
+        trouble = self.trouble
+        return None if trouble is None else trouble.failure(self.robot.name, was=was)
 
     def unreachable(self, *, was: bool = False) -> Failure | None:
         """The reason why the robot cannot even be asked something, be it stopped or not homed."""
         trouble = self.trouble
-        lost = trouble is not None and trouble.reason is Reason.LINK_LOST
-        return self._failure(trouble if lost else None, was=was)
-
-    def stopped(self, *, was: bool = False) -> Failure | None:
-        """The obstacle to every command of a robot that an operator of this plant stopped."""
-        return self._failure(STOPPED, was=was)
+        if trouble is None or trouble.reason is not Reason.LINK_LOST:
+            return None
+        return trouble.failure(self.robot.name, was=was)
 
     def obstacle_besides_stop(self, *, was: bool = False) -> Failure | None:
         """The same for what a stop does not forbid; being stopped hides that a robot is not homed."""
         trouble = self.trouble
         if trouble is STOPPED:
             trouble = UNHOMED if self.unhomed else None
-        return self._failure(trouble, was=was)
-
-    def _failure(self, trouble: Trouble | None, *, was: bool) -> Failure | None:
-        if trouble is None:
-            return None
-        sentence = trouble.was if was else trouble.phrase
-        return Failure(reason=trouble.reason, sentence=sentence(robot=self.robot.name, **trouble.more))
+        return None if trouble is None else trouble.failure(self.robot.name, was=was)
 
     def _unanswered(self) -> Trouble:
         """The reason why its bridge takes no command: it has not heard this plant, or obeys a later one."""
@@ -372,6 +286,11 @@ class Trouble(NamedTuple):
     phrase: Phrase
     was: Phrase
     more: Mapping[str, int | Sentence] = {}
+
+    def failure(self, robot: str, *, was: bool) -> Failure:
+        """It as a failure of a command; `was`: in words that stay true."""
+        sentence = self.was if was else self.phrase
+        return Failure(reason=self.reason, sentence=sentence(robot=robot, **self.more))
 
 
 FENCED = Trouble(

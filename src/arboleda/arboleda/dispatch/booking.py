@@ -129,8 +129,8 @@ class Booking:
         if command.robot in self._unfinished.by_device:
             self._unfinished.done(command)
         belief = self._beliefs[command.robot]
-        if not belief.is_sure and isinstance(command, Work):
-            belief.be_sure()
+        if not belief.stillness.is_sure and isinstance(command, Work):
+            belief.stillness.be_sure()
         if isinstance(command, Switch) and command.grips is not None:
             self._effectors.set(command.robot, Grip.ON if command.grips else Grip.OFF)
         elif isinstance(command, Motion) and command.way:

@@ -25,6 +25,7 @@ from .latches import Latches
 from .ledger import Entry, Feed, Ledger, State
 from .obstacles import Barrier, Make, Obstacles, unbarred
 from .outlet import Outlet
+from .stillness import Moment
 from .time_limits import TimeLimits
 from .underway import UnderWay, Unfinished, UnnamedCommands
 from .whereabouts import Whereabouts
@@ -146,7 +147,7 @@ class Dispatcher:
             self.ledger.feed(entry.command.id, Feed.HALTED, now)
             return
         entry.settles_at = None if entry.halts else entry.settles_at
-        entry.cancelled_after = self.beliefs[entry.command.robot].moment(now)
+        entry.cancelled_after = Moment(self.beliefs[entry.command.robot].reports, now)
         entry.deadline = now + self.limits.timings[entry.cell].stop_timeout_s
         self.ledger.plan(entry)
         if entry.halts and entry.command.robot not in self.latches.stopped:
@@ -179,9 +180,9 @@ class Dispatcher:
         belief = self.beliefs.get(report.robot)
         if belief is None or belief.drawn:
             return
-        was_sure = belief.is_sure
+        was_sure = belief.stillness.is_sure
         if belief.hear_again(report):
-            if belief.is_sure and not was_sure:  # only now `place` and interlocks go by it
+            if belief.stillness.is_sure and not was_sure:  # only now `place` and interlocks go by it
                 self.wake([report.robot])
             self._prove(belief, report, now)
             return
@@ -209,7 +210,7 @@ class Dispatcher:
         self._prove(belief, report, now, before)
         if latched and (new_link or (belief.online and not was_online)):  # it may have forgotten its stop
             self.outlet.stop(report.robot, StopMode.LATCH)
-        if belief.is_sure and not was_sure:
+        if belief.stillness.is_sure and not was_sure:
             self.wake([report.robot])
         if _facts_shown(belief) != facts:
             self.ledger.version += 1

@@ -13,10 +13,10 @@ from typing import NamedTuple
 from arboleda.model.commands import Command, Home, Motion, Position, Process, Query, Switch
 from arboleda.model.facts import Facts, Value, shown
 from arboleda.model.messages import Failure, MotionState, Reason, Report
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.model.plant_model import APART_S, Evidence, Robot
 from arboleda.model.sentence import Phrase, Sentence
 
-from .belief import APART_S, Belief
+from .belief import Belief
 from .ledger import Entry, Feed, State
 
 REFUSALS: dict[str, Reason] = {
@@ -85,7 +85,7 @@ class Before(NamedTuple):
 
     @classmethod
     def of(cls, belief: Belief) -> Before:
-        return cls(belief.epoch, belief.boot_id, belief.position, belief.position_at, belief.online)
+        return cls(belief.epoch, belief.boot_id, belief.position, belief.stillness.position_at, belief.online)
 
 
 def judge(entry: Entry, before: Before | None, belief: Belief, report: Report) -> Verdict | None:
@@ -259,7 +259,7 @@ def _device(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
 def _stopping(entry: Entry, belief: Belief) -> Verdict | None:
     if entry.cancelled_at is None or not entry.halts:
         return None
-    return Verdict(feed=Feed.HALTED) if belief.still_since(entry.cancelled_after) else None
+    return Verdict(feed=Feed.HALTED) if belief.stillness.still_since(entry.cancelled_after) else None
 
 
 def _progress(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
@@ -316,7 +316,7 @@ def _stays_on_goal(entry: Entry, belief: Belief, at: float, *, since: float) -> 
         return at >= since + QUIET_S
     if observed.stopped_since is None:
         return False
-    return len(entry.way) <= 1 or belief.position_at >= observed.stopped_since + APART_S
+    return len(entry.way) <= 1 or belief.stillness.position_at >= observed.stopped_since + APART_S
 
 
 def _stays_short(entry: Entry, belief: Belief, at: float) -> bool:
@@ -327,7 +327,7 @@ def _stays_short(entry: Entry, belief: Belief, at: float) -> bool:
         return True
     if belief.position == entry.origin:
         return False  # who never left may have said only the end of an earlier move
-    return belief.rested_since(observed.stopped_since + APART_S)
+    return belief.stillness.rested_since(observed.stopped_since + APART_S)
 
 
 def _process_by_facts(entry: Entry, belief: Belief, report: Report) -> Verdict | None:

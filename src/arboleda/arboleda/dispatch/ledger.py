@@ -14,7 +14,7 @@ from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, Receipt
 from arboleda.model.sentence import Sentence
 
-from .belief import Moment
+from .stillness import Moment
 
 
 class State(str, Enum):

@@ -10,7 +10,7 @@ from arboleda.model.messages import Failure, Reason
 from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import Phrase
 
-from .belief import Belief
+from .belief import STOPPED, Belief
 from .effectors import Effectors
 from .latches import Latches
 from .ledger import Entry, Ledger, State
@@ -58,7 +58,7 @@ class Obstacles:
     def of(self, robot: str, *, was: bool = False) -> Failure | None:
         """The reason why a robot takes no command now."""
         if robot in self._latches.stopped:
-            return self._beliefs[robot].stopped(was=was)
+            return STOPPED.failure(robot, was=was)
         return self._beliefs[robot].obstacle(was=was)
 
     def objection(self, make: Make, *, barrier: Barrier = unbarred) -> Failure | None:

@@ -45,7 +45,7 @@ class Whereabouts:
         if not belief.online or belief.unhomed or restless:
             return None
         here = belief.position if belief.supervised else self.reached.get(robot.name)
-        if here is None or (belief.supervised and not belief.is_sure):
+        if here is None or (belief.supervised and not belief.stillness.is_sure):
             return None
         return next((pose for spot, pose in workspace.free_spots if robot.motion.stands_at(here, spot)), None)
 

@@ -6,11 +6,12 @@ A device that cells share is one of them, held by the cell whose task uses it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 from arboleda.model.errors import IllegalTransition
 from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase
+
+from .zone_queue import ZoneQueue
 
 STILL_IN = Phrase(
     "zone.still_in",
@@ -37,20 +38,16 @@ class Zones:
 
     A robot takes all the zones of a way at once, from outside, so nobody who holds a zone waits for another
     one and there is no deadlock. A quarantined zone may still have its silent robot in it.
+    `names` is in the order of the plant file.
     """
 
     def __init__(self, names: Iterable[str], quarantined: Mapping[str, str] | None = None) -> None:
         """`quarantined`: zone -> robot, kept from an earlier start; what is not in `names` is left out."""
-        self._names = tuple(names)
-        self._holders = {zone: robot for zone, robot in (quarantined or {}).items() if zone in self._names}
+        self.names = tuple(names)
+        self._holders = {zone: robot for zone, robot in (quarantined or {}).items() if zone in self.names}
         self._quarantined = set(self._holders)
         self._robbed = set(self._holders.values())  # robots inside that may have had more than they hold
-        self._waiting: dict[str, frozenset[str]] = {}  # in the order of asking
-
-    @property
-    def waiting(self) -> tuple[tuple[str, frozenset[str]], ...]:
-        """Each waiting robot with all it asked for, the first one first."""
-        return tuple(self._waiting.items())
+        self.queue = ZoneQueue()
 
     def holder(self, zone: str) -> str | None:
         """The robot that is, or in quarantine may be, in the zone."""
@@ -80,29 +77,13 @@ class Zones:
         """Robots inside that may lack what an override took; each may look whether it can `regain` that."""
         return set(self._robbed)
 
-    def ahead_of(self, robot: str) -> tuple[str, ...]:
-        """The robots that wait before a waiting one for one of its zones, the first one first."""
-        names, zones = list(self._waiting), self._waiting[robot]
-        return tuple(name for name in names[: names.index(robot)] if zones & self._waiting[name])
-
     def awaited(self, robot: str, zones: Iterable[str]) -> dict[str, str]:
         """Those of the zones that somebody else holds, in order of their names, each with its holder."""
         holders = [(zone, self._holders.get(zone)) for zone in sorted(zones)]
         return {zone: other for zone, other in holders if other is not None and other != robot}
 
-    def asked_before(self, robot: str) -> tuple[str, str] | None:
-        """A zone that a waiting robot asked for, and the first of those that asked for it before."""
-        asked = self._waiting.get(robot, frozenset())
-        for other in self.ahead_of(robot) if asked else ():
-            return min(asked & self._waiting[other]), other
-        return None
-
     def is_quarantined(self, zone: str) -> bool:
         return zone in self._quarantined
-
-    def snapshot(self) -> list[dict[str, Any]]:
-        """Plain data for screens, in the order of the plant file."""
-        return [self._row(zone) for zone in self._names]
 
     def request(self, robot: str, zones: frozenset[str], *, moves_over: bool = False) -> bool:
         """Ask for all of `zones`: True where it holds them now, else it waits; asking again changes nothing.
@@ -120,11 +101,11 @@ class Zones:
             return True
         if held and not moves_over:
             raise IllegalTransition(NO_MORE(robot=robot, held=_named(held), asked=_named(zones)))
-        if self._waiting.setdefault(robot, zones) != zones:
-            waits = _named(self._waiting[robot])
-            raise IllegalTransition(WAITS(robot=robot, waits=waits, asked=_named(zones)))
+        if (asked := self.queue.asked_by(robot)) not in (None, zones):
+            raise IllegalTransition(WAITS(robot=robot, waits=_named(asked or zones), asked=_named(zones)))
+        self.queue.join(robot, zones)
         if held:
-            self._waiting = {robot: zones, **self._waiting}
+            self.queue.go_first(robot)
         return robot in self._grant()
 
     def claim(self, robot: str, zones: frozenset[str]) -> None:
@@ -137,8 +118,8 @@ class Zones:
                 raise IllegalTransition(TAKEN(zone=zone, holder=self.holder(zone) or "", robot=robot))
         self._holders.update(dict.fromkeys(zones, robot))
         self._robbed.discard(robot)
-        if self._waiting.get(robot, zones) <= self.held_by(robot):
-            self._waiting.pop(robot, None)
+        if (self.queue.asked_by(robot) or zones) <= self.held_by(robot):
+            self.queue.leave(robot)
 
     def regain(self, robot: str, zones: frozenset[str]) -> bool:
         """True where a robot inside has all it needs to get out, `zones` at the most; it never waits.
@@ -151,7 +132,7 @@ class Zones:
 
     def withdraw(self, robot: str) -> tuple[str, ...]:
         """It gives up waiting; the robots that get their zones by this, the first one first."""
-        self._waiting.pop(robot, None)
+        self.queue.leave(robot)
         return self._grant()
 
     def release(self, robot: str) -> tuple[str, ...]:
@@ -210,25 +191,18 @@ class Zones:
         """Serve the waiting in order; nobody gets past an earlier one that wants one of the same zones."""
         granted = []
         taken = set(self._holders)
-        for robot, zones in self.waiting:
+        for robot, zones in self.queue.waiting:
             if (zones - self.held_by(robot)).isdisjoint(taken):
-                del self._waiting[robot]
+                self.queue.leave(robot)
                 self._holders.update(dict.fromkeys(zones, robot))
                 granted.append(robot)
             taken |= zones
         return tuple(granted)
 
     def _require_known(self, zone: str) -> None:
-        if zone not in self._names:
-            known = self._names or NONE()
+        if zone not in self.names:
+            known = self.names or NONE()
             raise IllegalTransition(NO_ZONE(zone=plain(zone, 40), known=known))
-
-    def _row(self, zone: str) -> dict[str, Any]:
-        state = (
-            "free" if zone not in self._holders else "quarantined" if self.is_quarantined(zone) else "held"
-        )
-        waiting = [robot for robot, zones in self.waiting if zone in zones]
-        return {"zone": zone, "state": state, "robot": self.holder(zone), "waiting": waiting}
 
 
 def _named(zones: frozenset[str]) -> tuple[str, ...]:

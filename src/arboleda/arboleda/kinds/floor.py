@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from arboleda.trees.fingerprint import FOR_PEOPLE
+from arboleda.model.recipe import FOR_PEOPLE
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -208,7 +208,7 @@ class Fact(str, Enum):
     DISPLACED = "displaced"  # robot that cannot say so -> "true" while its position means nothing
     BOOT = "boot"  # such a robot -> the boot in which it was heard last
     MANUAL = "manual"  # cell -> who teaches it, until its end has been told
-    STEP = "step"  # running task -> where its tree stands, as `trees/trail.py` writes it
+    STEP = "step"  # running task -> where its tree stands, as `resume/trail.py` writes it
 
 
 @dataclass(frozen=True, kw_only=True)

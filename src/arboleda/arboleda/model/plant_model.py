@@ -26,6 +26,10 @@ PieceCheck = bool | Literal["auto"]
 """A look at the piece sensor around grips; auto: where the robot's board reports what that sees."""
 
 
+APART_S = 0.2
+"""Two telemetry periods: by how much a state and a position of one instant may come apart."""
+
+
 class Evidence(str, Enum):
     """Evidence that a robot can give of its motion."""
 
@@ -537,18 +541,6 @@ class Cell:
             if recipe.name == name:
                 return recipe
         raise ArboledaError(f"{name} is not a recipe of {self.name}")
-
-    def start_of(self, robot: str) -> Position | None:
-        """The position of a virtual robot at first; None for one that has no place."""
-        space = self.reach.get(robot)
-        return space.home.q if space else None
-
-    def supplies(self, robot: str) -> tuple[Pose, ...]:
-        """The poses at which parts lie ready for a virtual robot."""
-        space = self.reach.get(robot)
-        if space is None or not space.supplies:
-            return space.poses if space else ()
-        return tuple(space.by_name[name] for name in space.supplies)
 
     def back(self, robot: str, positions: Positions) -> Pose | None:
         """The pose to which a recovery brings a part whose origin nobody knows; None: the robot keeps it."""

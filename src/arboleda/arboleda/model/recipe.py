@@ -17,6 +17,8 @@ Build = Callable[[Order, Any], Behaviour]
 """Makes the tree of an order in the `Context` of its cell, which stands two rooms above this one."""
 Builders = Mapping[str, Build]
 """By the name of the recipe that they make the tree of."""
+FOR_PEOPLE = "for_people"
+"""Key in the metadata of a field that says where something was read, such as a path."""
 Cell = Any
 """The `Cell` of `plant_model`: a cell has recipes, so that its module imports this one."""
 

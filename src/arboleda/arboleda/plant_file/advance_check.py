@@ -13,14 +13,13 @@ from arboleda.bt_xml.running.decorators import Loop, TimedDecorator
 from arboleda.bt_xml.running.memory import Scope
 from arboleda.bt_xml.running.node import Result
 from arboleda.bt_xml.running.scripts import ScriptError
-from arboleda.core.plant import Plant
+from arboleda.engine import Context, Plant
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.model.task import Order
 from arboleda.recipes.authoring import WrittenRecipe
 from arboleda.recipes.decorators import Again, AtMost
-from arboleda.trees.context import Context
 
 from .foresight import OVER, Foresight, Scene
 from .node_rules import RULES as NODE_RULES

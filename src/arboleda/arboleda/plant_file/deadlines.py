@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from arboleda.dispatch.belief import APART_S
-from arboleda.dispatch.evidence import QUIET_S
-from arboleda.model.plant_model import Cell, Evidence, Robot, Timing
+from arboleda.engine import QUIET_S
+from arboleda.model.plant_model import APART_S, Cell, Evidence, Robot, Timing
 
 from .document import Document, Place
 

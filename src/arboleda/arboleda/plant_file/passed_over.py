@@ -16,12 +16,10 @@ from arboleda.bt_xml.running.leaves import ConstantLeaf
 from arboleda.bt_xml.running.memory import Scope
 from arboleda.bt_xml.running.node import FAILURE, Node
 from arboleda.bt_xml.running.scripts import ScriptError
-from arboleda.core.plant import Plant
+from arboleda.engine import Act, Context, Plant
 from arboleda.model.commands import Command, Query, Switch, Work
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.recipes.handles import FactCheck, FactWait
-from arboleda.trees.context import Context
-from arboleda.trees.leaves import Act
 
 from .recipe_check import orders
 from .walkthrough import in_order

@@ -6,10 +6,9 @@ import re
 from collections.abc import Iterable
 from itertools import pairwise
 
-from arboleda.dispatch.belief import APART_S
 from arboleda.kinds.floor import Placement
 from arboleda.kinds.mobile import Grid, Mobile
-from arboleda.model.plant_model import Evidence, Path
+from arboleda.model.plant_model import APART_S, Evidence, Path
 
 from .document import Document, Place, choice
 from .shapes import MAPPING, NODES

@@ -14,17 +14,15 @@ from arboleda.bt_xml.findings import Place as XmlPlace
 from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.bt_xml.running.errors import NoDeviceError, TreeMistakes
 from arboleda.bt_xml.running.node import Node
-from arboleda.core.plant import Plant
+from arboleda.engine import Act, Context, Plant
 from arboleda.model.commands import Work
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Parameter, Recipe, spelling
 from arboleda.model.task import Order
+from arboleda.model.tree_nodes import nodes_of
 from arboleda.recipes.errors import RoleError
-from arboleda.trees.context import Context
-from arboleda.trees.leaves import Act
-from arboleda.trees.tree_nodes import nodes_of
 from arboleda.views import tree_view
 
 from .document import Document, Place, choice, closest, nearest, shown

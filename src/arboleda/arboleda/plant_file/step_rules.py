@@ -12,13 +12,12 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import ParallelPolicy
 from py_trees.decorators import Decorator
 
+from arboleda.engine import HOME_AGAIN, Act, Approach, Leaf, Require, Unless, title_of
 from arboleda.model.facts import Value
 from arboleda.recipes.authoring import FAIL, IS, NO_OTHER
 from arboleda.recipes.decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
 from arboleda.recipes.handles import FactCheck, FactWait
 from arboleda.recipes.place_questions import PlaceQuestion
-from arboleda.trees.leaves import Act, Approach, Leaf, Require, Unless, title_of
-from arboleda.trees.steps import HOME_AGAIN
 
 from .foresight import AT, OVER, Key, Scene, common
 from .parallel_scenes import Branches

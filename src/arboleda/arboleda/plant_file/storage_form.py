@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
+from arboleda.model import zone_plan
 from arboleda.model.plant_model import STATIONS, Cell, Handover, Pose, Retry, Robot, Workspace
 from arboleda.model.plant_model import Path as Route
 from arboleda.model.recipe import Recipe
@@ -24,7 +25,6 @@ from arboleda.recipes.storage import (
     palletizing,
     storage,
 )
-from arboleda.trees import zone_plan
 
 from . import rack
 from .document import Document, Place

@@ -13,13 +13,12 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 
 from arboleda.bt_xml.recipe import TreeRecipe
-from arboleda.core.plant import Plant
+from arboleda.engine import Act, Plant
 from arboleda.kinds.declared import DeviceVerb, Effect
 from arboleda.model.commands import Motion, Switch
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.recipes.authoring import WrittenRecipe
-from arboleda.trees.leaves import Act
 
 from .document import Place, dotted
 from .recipe_check import orders

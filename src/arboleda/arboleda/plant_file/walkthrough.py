@@ -10,9 +10,9 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 
 from arboleda.bt_xml.running.node import Node
+from arboleda.engine import Act
 from arboleda.model.by_class import nearest
 from arboleda.recipes.place_questions import PlaceQuestion
-from arboleda.trees.leaves import Act
 
 from .foresight import Foresight, Key, Scene, common
 from .scene_variables import key_of

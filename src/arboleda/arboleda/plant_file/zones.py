@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from arboleda.kinds.declared import UseError
+from arboleda.model import zone_plan
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Cell, Crossing, Interlock, Pose, Robot, Workspace
-from arboleda.trees import zone_plan
 
 from .document import Document, Place, choice, nearest, shown
 from .pose_confusion import alike_crossings, confusions

@@ -19,17 +19,14 @@ from typing import Any
 
 from py_trees import common, composites
 
+from arboleda.engine import Context, Dwell, Require, Unless, steps, titled
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.outside import among, quoted
 from arboleda.model.plant_model import Cell, Robot
-from arboleda.model.recipe import Recipe
+from arboleda.model.recipe import FOR_PEOPLE, Recipe
 from arboleda.model.sentence import Phrase, Sentence, as_sentence
 from arboleda.model.task import Order
-from arboleda.trees import steps
-from arboleda.trees.context import Context
-from arboleda.trees.fingerprint import FOR_PEOPLE
-from arboleda.trees.leaves import Dwell, Require, Unless, titled
 
 from .decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
 from .errors import Offers, RecipeError, RoleError

@@ -13,13 +13,19 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.decorators import Decorator
 
+from arboleda.engine import (
+    LEAST_S,
+    CellTime,
+    Context,
+    Failures,
+    Keeps,
+    failure_kept,
+    read_failure,
+    title_of,
+    titled,
+)
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase, Sentence
-from arboleda.trees.cell_time import LEAST_S, CellTime
-from arboleda.trees.context import Context
-from arboleda.trees.failures import Failures
-from arboleda.trees.leaves import title_of, titled
-from arboleda.trees.trail import Keeps, failure_kept, read_failure
 
 RETRY = Phrase("step.retry", "retry {step}")
 REPEAT = Phrase("step.repeat", "repeat {step}")

@@ -11,8 +11,10 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from arboleda.engine import Act, Await, Context, Leaf, Require, paths, steps, titled
 from arboleda.kinds.declared import Device, QueryCall, UseError
 from arboleda.kinds.person import PATIENCE_S, Person
+from arboleda.model import zone_plan
 from arboleda.model.by_class import nearest
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Failure, Reason, TaskAnswer
@@ -20,9 +22,6 @@ from arboleda.model.outside import among, quoted
 from arboleda.model.plant_model import PieceCheck, Pose, Robot
 from arboleda.model.recipe import spelling
 from arboleda.model.sentence import Phrase, Sentence
-from arboleda.trees import paths, steps, zone_plan
-from arboleda.trees.context import Context
-from arboleda.trees.leaves import Act, Await, Leaf, Require, titled
 
 from .errors import Offers, RecipeError
 from .sharing import check_holds_none

@@ -11,10 +11,8 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.decorators import Decorator
 
+from arboleda.engine import Context, TakeDevices, TakeZones, steps
 from arboleda.model.sentence import Phrase
-from arboleda.trees import steps
-from arboleda.trees.context import Context
-from arboleda.trees.leaves import TakeDevices, TakeZones
 
 from .decorators import Again, Forgiven, Inverted
 from .errors import RecipeError

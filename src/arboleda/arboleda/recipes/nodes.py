@@ -22,11 +22,11 @@ from dataclasses import dataclass, field
 from inspect import Parameter as Declared
 from typing import Any
 
+from arboleda.engine import Context
 from arboleda.model.facts import Value
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Limits
-from arboleda.trees.context import Context
 
 from .authoring import Kit, Making, check_choices, notes_of
 from .errors import RecipeError

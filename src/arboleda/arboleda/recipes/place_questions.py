@@ -7,11 +7,10 @@ from typing import Any
 
 from py_trees.common import Status
 
+from arboleda.engine import Await, Context
 from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase, Sentence
-from arboleda.trees.context import Context
-from arboleda.trees.leaves import Await
 
 from .errors import Offers
 from .handles import Question, Step

@@ -6,10 +6,8 @@ from collections.abc import Sequence
 
 from py_trees.behaviour import Behaviour
 
+from arboleda.engine import Context, TakeDevices, steps
 from arboleda.model.sentence import Phrase
-from arboleda.trees import steps
-from arboleda.trees.context import Context
-from arboleda.trees.leaves import TakeDevices
 
 from .errors import RecipeError
 from .holding import used

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from arboleda.core.advice import DO
-from arboleda.core.verbs.scopes import PLANT
+from arboleda.engine import PLANT
+from arboleda.model.advice import DO
 from arboleda.model.messages import Reason, Verb
 from arboleda.model.sentence import Phrase, Sentence, Value
 

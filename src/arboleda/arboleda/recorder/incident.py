@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from operator import attrgetter
 from typing import Any
 
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.commands import Command, Stop, Switch
 from arboleda.model.messages import (
     Event,

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.revision import Versions
 

@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recording import Limits

@@ -5,11 +5,7 @@ from __future__ import annotations
 from operator import attrgetter
 from typing import Any
 
-from arboleda.core.cell import CellRun
-from arboleda.core.plant import Plant
-from arboleda.core.teaching import Teaching
-from arboleda.dispatch.belief import Belief
-from arboleda.dispatch.ledger import Entry
+from arboleda.engine import Belief, CellRun, Entry, Plant, Teaching
 
 # Times that follow from when a report came are left out: they say nothing new, and are hard to compress.
 BELIEVED = (
@@ -23,7 +19,7 @@ BELIEVED = (
     "q",
     "node",
     "reports",
-    "rate_hz",
+    "rate.hz",
     "piece",
     "homed",
     "effector",

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from arboleda import __version__
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.messages import Event
 from arboleda.model.plant_files import NO_FILES, PlantFiles
 from arboleda.model.plant_model import PlantModel

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.adapters import descriptors
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import TaskChanged
 from arboleda.model.plant_model import PlantModel

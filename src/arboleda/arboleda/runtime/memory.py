@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.core.envelope import unsettled
-from arboleda.core.intake import HISTORY
-from arboleda.dispatch.effectors import EMPTIED
-from arboleda.dispatch.latches import CLEARED, LATCHED
-from arboleda.dispatch.whereabouts import DISPLACED
+from arboleda.engine import CLEARED, DISPLACED, EMPTIED, HISTORY, LATCHED, unsettled
 from arboleda.model.errors import StartError
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Failure, KeptTask, Reason, TaskState

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from arboleda.core.operator import ACTS_TOLD
+from arboleda.engine import ACTS_TOLD
 from arboleda.model.sentence import OWN, Sentence, from_data, retold
 from arboleda.store.plant_memory import JournalEntry, PlantMemory
 

@@ -21,6 +21,7 @@ from .board import Board
 from .body import Body
 from .machine import MachineBody
 from .mobile import MobileBody
+from .starts import start_of, supplies_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,17 +152,17 @@ def _body(model: PlantModel, robot: Robot) -> Body:
 
 
 def _arm(arm: Arm, cell: Cell) -> Body:
-    start, pickups = cell.start_of(arm.name), [pose.joints for pose in cell.supplies(arm.name)]
+    start, pickups = start_of(cell, arm.name), [pose.joints for pose in supplies_of(cell, arm.name)]
     return ArmBody(arm, start=start if isinstance(start, tuple) else arm.reference, pickups=pickups)
 
 
 def _jointed(robot: Jointed, cell: Cell) -> Body:
-    start = cell.start_of(robot.name)
+    start = start_of(cell, robot.name)
     return AxesBody(robot, start=start if isinstance(start, tuple) else robot.reference, pickups=())
 
 
 def _mobile(mobile: Mobile, cell: Cell) -> Body:
-    start = cell.start_of(mobile.name)
+    start = start_of(cell, mobile.name)
     return MobileBody(mobile, start_node=start if isinstance(start, int) else 0)
 
 

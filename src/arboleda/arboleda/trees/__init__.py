@@ -1,1 +1,1 @@
-"""Behavior trees: leaves, what recipes are made of, and what is kept of a tree that runs; pure."""
+"""Behavior trees: leaves, what recipes are made of, and how a tree runs; pure."""

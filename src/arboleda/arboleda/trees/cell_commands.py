@@ -10,11 +10,11 @@ from arboleda.dispatch.obstacles import Barrier, Make
 from arboleda.model.commands import Command, Query
 from arboleda.model.messages import Failure
 from arboleda.model.sentence import Sentence
+from arboleda.model.step_token import ATTEMPTS, MOST_STEPS
 
 from .cell_devices import CellDevices
 from .cell_time import CellTime
 from .cell_zones import CellZones
-from .step_token import ATTEMPTS, MOST_STEPS
 
 
 class CellCommands:

@@ -11,6 +11,8 @@ from arboleda.model.messages import Fact, Failure, Reason
 from arboleda.model.plant_model import Cell
 from arboleda.model.sentence import Phrase
 
+from .hand_over import HandOver
+
 NOT_HELD = Phrase("device.not_held", "{cell} does not hold {device}, which cells share; nothing was sent")
 OF_OTHER = Phrase("device.of_other", "{cell} does not hold {device}, which {holder} holds; nothing was sent")
 NOT_RESET = Phrase(
@@ -22,6 +24,7 @@ class CellDevices:
     """Shared devices of one cell; a cell holds one from the first step that commands it to the last."""
 
     def __init__(self, cell: Cell, dispatcher: Dispatcher, zones: Zones) -> None:
+        self.hand_over = HandOver(cell, dispatcher, zones)
         self._cell = cell
         self._dispatcher = dispatcher
         self._zones = zones
@@ -29,6 +32,7 @@ class CellDevices:
     def revise(self, cell: Cell) -> None:
         """Go by another version of the cell from now on."""
         self._cell = cell
+        self.hand_over.revise(cell)
 
     def has(self, robot: str) -> bool:
         """True for a device that is the cell's now: its own, or a shared one that it holds."""
@@ -72,7 +76,7 @@ class CellDevices:
             return True
         if held and not self.leave(held):
             return False
-        if not all(self._zones.holder(device) or self.is_as_left(device) for device in devices):
+        if not all(self._zones.holder(device) or self.hand_over.is_as_left(device) for device in devices):
             return False
         if not self._zones.request(name, devices):
             return False
@@ -100,7 +104,7 @@ class CellDevices:
         name = self._cell.name
         granted = self._zones.withdraw(name)
         held = self._zones.held_by(name) & devices
-        quiet = frozenset(filter(self._may_change_hands, held))
+        quiet = frozenset(filter(self.hand_over.may_change_hands, held))
         if quiet:
             granted += self._zones.give_back(quiet)
             self._dispatcher.memory.vacate(quiet)
@@ -122,17 +126,7 @@ class CellDevices:
 
     def asked_before(self) -> tuple[str, str] | None:
         """A device that the cell waits for, and the first of the cells that asked for it before."""
-        return self._zones.asked_before(self._cell.name)
-
-    def unused(self, devices: Iterable[str]) -> list[str]:
-        """Those of the devices that no cell holds and that do nothing, in order of their names."""
-        free = [each for each in sorted(devices) if self._zones.holder(each) is None]
-        return [each for each in free if not self._works(each)]
-
-    def may_hold(self, device: str) -> bool:
-        """True for a device in which a part may be."""
-        effectors, robot = self._dispatcher.effectors, self._dispatcher.model.robots[device]
-        return robot.held_fact is not None and effectors.grips.holding(device)
+        return self._zones.queue.asked_before(self._cell.name)
 
     def is_stopped(self, device: str) -> bool:
         """True while a stop is not over: it is not cleared, or a cell of the device is not reset."""
@@ -157,37 +151,10 @@ class CellDevices:
         sentence = held(cell=name, device=device)
         return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
 
-    def is_as_left(self, device: str) -> bool:
-        """True for a shared device as cells leave it to each other: it holds no part, and is at home.
-
-        That it says so proves nothing while it may still take one, on a command that is over for the plant.
-        """
-        may_grip = self._dispatcher.unfinished.may_grip(device)
-        return not may_grip and not self.may_hold(device) and self.is_home(device)
-
-    def is_home(self, device: str) -> bool:
-        """True for a shared robot that is seen at its home, outside all zones, and for what goes nowhere."""
-        space = self._cell.reach.get(device)
-        if space is None:
-            return True
-        place = self._dispatcher.whereabouts.place(space)
-        return place is not None and place.q == space.home.q and not self._zones.held_by(device)
-
     def part_left_in(self, devices: Iterable[str]) -> str | None:
         """The first of the shared devices that the cell holds, and in which a part may be."""
-        return next((each for each in sorted(devices) if self.holds(each) and self.may_hold(each)), None)
+        held = filter(self.holds, sorted(devices))
+        return next(filter(self.hand_over.may_hold, held), None)
 
     def _is_first_of(self, robot: str) -> bool:
         return self._dispatcher.model.cell_of[robot].name == self._cell.name
-
-    def _may_change_hands(self, device: str) -> bool:
-        together = self._cell.together({device})
-        return all(self._does_nothing(each) and self.is_as_left(each) for each in together)
-
-    def _does_nothing(self, device: str) -> bool:
-        online = self._dispatcher.beliefs[device].online
-        return online and not self._works(device) and device not in self._dispatcher.latches.stopped
-
-    def _works(self, device: str) -> bool:
-        moves = self._dispatcher.beliefs[device].moves
-        return moves or bool(self._dispatcher.ledger.of_robot(device))

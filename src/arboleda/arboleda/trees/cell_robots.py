@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
-from arboleda.dispatch.belief import Belief, Moment
+from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.stillness import Moment
 from arboleda.model.commands import Position
 from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, MotionState
@@ -13,7 +15,14 @@ from arboleda.model.plant_model import Cell, Evidence, Pose
 
 from .cell_devices import CellDevices
 from .cell_time import CellTime
-from .trail import Knowledge, Planned
+
+
+@dataclass(frozen=True, kw_only=True)
+class Planned:
+    """Places of the robots when the tree was made, by which its recipe may have planned."""
+
+    standing: Mapping[str, str]  # the zone-free poses of those with shared zones, by name
+    positions: Mapping[str, Position]
 
 
 class CellRobots:
@@ -126,27 +135,27 @@ class CellRobots:
         belief = self._dispatcher.beliefs[robot]
         return belief.robot.evidence is Evidence.IDS and (belief.robot.says_homed or belief.says_unhomed)
 
-    def known(self, names: Iterable[str]) -> dict[str, Knowledge]:
-        """The reports of commands, in the form in which they are kept: those of these robots, and of those of
-        the cell whose boards number their commands, and have been heard.
+    def receiving(self, names: Iterable[str]) -> list[tuple[Belief, int]]:
+        """What is believed of these robots and of those of the cell whose boards number their commands, and
+        have been heard; each with how many commands may have reached it of which it has not told.
         """
         beliefs, unnamed = self._dispatcher.beliefs, self._dispatcher.unnamed
-        kept = set(names)
+        found = set(names)
         for robot in self._cell.reached:
             if beliefs[robot.name].numbers_commands:
-                kept.add(robot.name)
-        return {name: Knowledge.of(beliefs[name], unnamed.of(name)) for name in sorted(kept)}
+                found.add(robot.name)
+        return [(beliefs[name], unnamed.of(name)) for name in sorted(found)]
 
     def moments(self) -> dict[str, Moment]:
         """Now, as each robot of the cell tells the time, for `moving_since`."""
         beliefs, now = self._dispatcher.beliefs, self._time.plant_now
-        return {robot.name: beliefs[robot.name].moment(now) for robot in self._cell.robots}
+        return {robot.name: Moment(beliefs[robot.name].reports, now) for robot in self._cell.robots}
 
     def moving_since(self, moments: dict[str, Moment]) -> list[str]:
         """The online robots of the cell not seen still since then; who finishes its work may move."""
         ending = [name for name in moments if not self._dispatcher.ledger.finishes(name)]
-        beliefs = {name: self._dispatcher.beliefs[name] for name in ending}
-        return [name for name, b in beliefs.items() if b.online and not b.still_since(moments[name])]
+        online = {name: belief for name in ending if (belief := self._dispatcher.beliefs[name]).online}
+        return [name for name, each in online.items() if not each.stillness.still_since(moments[name])]
 
     def reports_a_latch(self) -> bool:
         """True while an online robot of the cell still reports that it is stopped and latched."""

@@ -7,16 +7,16 @@ from itertools import filterfalse
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.zones import Zones
-from arboleda.model.commands import Command, Motion
+from arboleda.model.commands import Command
 from arboleda.model.messages import Failure, Reason
-from arboleda.model.plant_model import Cell, Pose
+from arboleda.model.plant_model import Cell
 from arboleda.model.sentence import Phrase
 
-from . import zone_plan
 from .cell_devices import CellDevices
 from .cell_robots import CellRobots
 from .interlocks import Interlocks
 from .parts import Parts
+from .zone_needs import ZoneNeeds
 
 NOT_HELD = Phrase(
     "zone.not_held", "{robot} does not hold zone {zones}, into which this leads; nothing was sent"
@@ -51,6 +51,7 @@ class CellZones:
         at_work: Callable[[str], bool],
     ) -> None:
         self.interlocks = Interlocks(cell, dispatcher)
+        self.needs = ZoneNeeds(cell, dispatcher.whereabouts, robots, parts)
         self._cell = cell
         self._dispatcher = dispatcher
         self._zones = zones
@@ -63,6 +64,7 @@ class CellZones:
     def revise(self, cell: Cell) -> None:
         """Go by another version of the cell from now on."""
         self._cell = cell
+        self.needs.revise(cell)
 
     def held_by(self, robot: str) -> frozenset[str]:
         """The zones that a robot, or a machine, holds."""
@@ -131,7 +133,7 @@ class CellZones:
 
     def objection(self, command: Command) -> Failure | None:
         """Objection to a command, whatever the tree says: it leads into a zone that is not held."""
-        needed = self._needed(command)
+        needed = self.needs.of(command)
         missing = needed - self._zones.held_by(command.robot)
         if not missing:
             if needed and command.robot in self._cell.interlocked:  # it may be over before it is looked at
@@ -140,25 +142,13 @@ class CellZones:
         sentence = NOT_HELD(robot=command.robot, zones=tuple(sorted(missing)))
         return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
 
-    def between(self, robot: str, *goals: Pose) -> frozenset[str]:
-        """The zones that a robot comes by to each of these poses from where it is, which may be no pose."""
-        space, here = self._cell.reach[robot], self._robots.position(robot)
-        return frozenset[str]().union(*(zone_plan.passed(space, here, goal.q) for goal in goals))
-
-    def for_recovery(self, robot: str) -> frozenset[str]:
-        """The zones that a recovery needs on its way, from where the robot stands now."""
-        space = self._cell.workspaces[robot]
-        place, back = self._dispatcher.whereabouts.place(space), self._parts.way_back(robot)
-        between = self.between(robot, *((back,) if back else ()), space.home)
-        return zone_plan.recovery_zones(space, place, back) | between
-
     def astray(self) -> tuple[str, Failure] | None:
         """A robot that shares zones and is not seen outside them, so that no way of it may begin; and why.
 
         A shared robot that no other cell holds has to be at home, whether it shares zones or not.
         """
         for robot in self._cell.shared_movers:
-            if not (self._devices.is_lent(robot) or self._devices.is_home(robot)):
+            if not (self._devices.is_lent(robot) or self._devices.hand_over.is_home(robot)):
                 homed = self._dispatcher.beliefs[robot].robot.says_homed
                 astray = ASTRAY_SHARED if homed else ASTRAY_SHARED_BY_HAND
                 return robot, Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=astray(arm=robot))
@@ -179,7 +169,7 @@ class CellZones:
 
     def asked_before(self, robot: str) -> tuple[str, str] | None:
         """A zone that a waiting robot asked for, and the first of those that asked for it before."""
-        return self._zones.asked_before(robot)
+        return self._zones.queue.asked_before(robot)
 
     def kept_by_machine(self, robot: str, zones: Iterable[str]) -> tuple[str, tuple[str, ...]] | None:
         """A machine at rest that keeps one of these zones, and the facts that it would have to report."""
@@ -194,7 +184,7 @@ class CellZones:
         awaited: dict[str, str] = {}
         for robot in filter(self._devices.has, self._cell.zone_users):
             if not self._zones.held_by(robot) or robot in self._zones.robbed:
-                awaited |= self.awaited(robot, self.for_recovery(robot))
+                awaited |= self.awaited(robot, self.needs.for_recovery(robot))
         return awaited
 
     def will_come_free(self, robot: str) -> bool:
@@ -202,7 +192,7 @@ class CellZones:
 
         A holder that waits itself, for another arm of its cell, may wait for this one.
         """
-        requests = dict(self._zones.waiting)
+        requests = dict(self._zones.queue.waiting)
         zones = requests.get(robot)
         if zones is None or any(self._zones.is_quarantined(zone) for zone in zones):
             return False
@@ -210,7 +200,7 @@ class CellZones:
         cells_of = self._dispatcher.model.cells_of
         cells = [cell for holder in holders for cell in cells_of.get(holder, ())]
         waits = any(user in requests for cell in cells for user in (cell.name, *cell.zone_users))
-        return not waits and all(map(self._at_work, (*holders, *self._zones.ahead_of(robot))))
+        return not waits and all(map(self._at_work, (*holders, *self._zones.queue.ahead_of(robot))))
 
     def is_quarantined(self, zone: str) -> bool:
         """True while a silent robot may be in a zone."""
@@ -238,18 +228,6 @@ class CellZones:
         self.interlocks.reserved = {}
         for machine in filterfalse(self._devices.is_lent, self._cell.interlocked):
             self.leave(machine)
-
-    def _needed(self, command: Command) -> frozenset[str]:
-        """The zones that its robot has to hold for a command."""
-        space = self._cell.workspaces.get(command.robot)
-        if space is not None and isinstance(command, Motion) and command.way:
-            if not space.zones:
-                return space.zones
-            return zone_plan.entered(space, self._dispatcher.whereabouts.place(space), command.way)
-        if not self._cell.interlocks:
-            return frozenset()
-        locks = self._cell.interlocks_of(command.robot)
-        return frozenset(each.zone for each in locks if each.is_ended_by(command))
 
     def _left(self, robot: str, held: frozenset[str]) -> frozenset[str]:
         """Those of the zones that a robot, or a machine, is seen outside of."""

@@ -22,7 +22,6 @@ from .needs import CellNeeds
 from .part_places import Places
 from .parts import Parts
 from .piece_sensors import PieceSensors
-from .trail import Trail
 
 MOST_ANSWERS = 100  # that are kept of a task
 
@@ -74,16 +73,6 @@ class Context:
         self.parts.begin()
         self.failures.clear()
         self.time.forget_wakes()
-
-    def take_over(self, trail: Trail) -> None:
-        """Go back to where the task of an earlier start stands; its time stands still until `time.go_on`."""
-        self.start_afresh()
-        self.time.pause()
-        self.commands.used = set(trail.used)
-        self.handling.begin(trail.taken, trail.unchecked)
-        self.answers[:] = trail.answers
-        self.zones.interlocks.reserved = trail.zones
-        self.parts.take_over(trail)
 
     def settle(self) -> None:
         """Believe the devices again about all that was under way when an earlier start ended."""

@@ -33,7 +33,7 @@ class Interlocks:
             each.zone
             for each in self._cell.interlocks_of(device)
             if not belief.online
-            or not belief.is_sure
+            or not belief.stillness.is_sure
             or (belief.state is MotionState.MOVING and not self._is_at_its_work(device))
             or any(belief.fact(name) != value for name, value in each.free_while)
             or any(map(each.is_ended_by, may_come))

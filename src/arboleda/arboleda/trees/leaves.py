@@ -18,8 +18,8 @@ from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
 from .cell_time import LEAST_S, CellTime
 from .context import Context
 from .failures import Failures
+from .node_state import Keeps, command_kept
 from .parts import Parts
-from .trail import Keeps, command_kept
 
 CANCELLED = Phrase("command.cancelled", "cancelled while {doing}")
 AGAIN = Phrase("command.again", "{why}; try {number} of {most} follows")
@@ -595,8 +595,8 @@ class TakeDevices(Take):
 
     def _objection(self) -> Failure | None:
         """The reason why waiting for a device that no cell holds is in vain."""
-        for device in self.shared.unused(self.devices):
-            if self.shared.may_hold(device):
+        for device in self.shared.hand_over.unused(self.devices):
+            if self.shared.hand_over.may_hold(device):
                 sentence = PART_IN_FREE(cell=self.cell, device=device)
                 return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
             obstacle = self.robots.obstacle(device)
@@ -619,10 +619,11 @@ class TakeDevices(Take):
 
     def _not_as_left(self) -> Sentence:
         """The cause of its waiting for a device that no cell holds, and that it cannot ask for yet."""
-        device = next((each for each in sorted(self.devices) if not self.shared.is_as_left(each)), None)
+        hand_over = self.shared.hand_over
+        device = next((each for each in sorted(self.devices) if not hand_over.is_as_left(each)), None)
         if device is None:
             return NOTHING
-        return (NOT_EMPTY if self.shared.is_home(device) else NOT_AT_HOME)(device=device)
+        return (NOT_EMPTY if hand_over.is_home(device) else NOT_AT_HOME)(device=device)
 
     def _taken(self) -> bool:
         return self.shared.take(self.devices)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.facts import Value
@@ -14,7 +14,6 @@ from arboleda.model.sentence import Phrase, Sentence
 from .cell_devices import CellDevices
 from .cell_robots import CellRobots
 from .piece_sensors import PieceSensors
-from .trail import Trail
 
 LOST = Phrase("part.lost", "{arm}: the part was lost on the way")
 
@@ -62,12 +61,12 @@ class Parts:
         """Go on as a recovery, which delivers nothing."""
         self.carrier, self.delivers = None, False
 
-    def take_over(self, trail: Trail) -> None:
-        """Take the books of a task of an earlier start."""
-        self.carrier, self.origins = trail.carrier, set(trail.origins)
+    def take_over(self, *, carrier: str | None, origins: Iterable[str], back: Mapping[str, str]) -> None:
+        """Take the books of a task of an earlier start; `back` has the names of poses."""
+        self.carrier, self.origins = carrier, set(origins)
         reach = self._cell.reach
         poses = {robot: {pose.name: pose for pose in space.poses} for robot, space in reach.items()}
-        named = {robot: poses.get(robot, {}).get(name) for robot, name in trail.back.items()}
+        named = {robot: poses.get(robot, {}).get(name) for robot, name in back.items()}
         self.back = {robot: pose for robot, pose in named.items() if pose is not None}
 
     def forget_origins(self) -> None:

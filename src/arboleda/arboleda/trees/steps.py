@@ -12,12 +12,13 @@ from functools import partial
 from py_trees import common, composites
 from py_trees.behaviour import Behaviour
 
+from arboleda.model import zone_plan
 from arboleda.model.commands import Command
 from arboleda.model.messages import Check, Failure, Reason, SystemStart
 from arboleda.model.plant_model import PieceCheck, Pose
 from arboleda.model.sentence import Phrase, Sentence
 
-from . import parts, zone_plan
+from . import parts
 from .context import Context
 from .leaves import (
     Act,
@@ -194,7 +195,7 @@ def visit_from_anywhere(
     def needed() -> frozenset[str]:
         way = (context.robots.standing(robot), pose, *((space.home,) if pose.zones else ()))
         legs = zone_plan.plan(space, way, context.parts.way_back(robot))
-        return context.zones.between(robot, pose).union(*(leg.zones for leg in legs))
+        return context.zones.needs.between(robot, pose).union(*(leg.zones for leg in legs))
 
     out = [_move(context, robot, space.home)] if pose.zones else []
     leave = LeaveZones(LEAVE_ZONES(), context, robot)
@@ -233,7 +234,7 @@ def leave_devices(context: Context, devices: frozenset[str]) -> list[Behaviour]:
         return Failure(reason=Reason.PRECONDITION, sentence=PART_LEFT(device=device))
 
     def home(robot: str) -> Behaviour:
-        there = Unless(AT_HOME(), lambda: not access.holds(robot) or access.is_home(robot))
+        there = Unless(AT_HOME(), lambda: not access.holds(robot) or access.hand_over.is_home(robot))
         way = visit_from_anywhere(context, robot, context.cell.reach[robot].home, [])
         return selector(HOME_AGAIN(arm=robot), there, sequence(GO_HOME(), *way))
 
@@ -290,7 +291,7 @@ def _way_home(context: Context, robot: str, *, notes_origins: bool) -> list[Beha
     space = context.cell.workspaces[robot]
     steps = [*_opened(context, robot), *_rise(context, robot)]
     if space.zones:
-        needed = partial(context.zones.for_recovery, robot)
+        needed = partial(context.zones.needs.for_recovery, robot)
         steps.append(TakeZones(TAKE_ZONES(), context, robot, needed, recovers=True))
     if space.hand.held_fact is not None:
         steps += _part_back(context, robot, notes_origins=notes_origins)

@@ -15,12 +15,12 @@ from arboleda.dispatch.ledger import State
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Course, Failure, InternalError, Reason
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.tree_nodes import nodes_of
 
 from . import steps
 from .context import Context
 from .leaves import Act, Leaf, title_of
-from .trail import Keeps
-from .tree_nodes import nodes_of
+from .node_state import Keeps
 
 BROKE_IN_TREE = Phrase("cell.broke_in_tree", "{cell}: {kind} in the tree: {error}")
 IN_RECOVERY = Phrase("step.in_recovery", "recovery: {step}")

@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from functools import reduce
 from typing import Any
 
-from arboleda.core import reasons
-from arboleda.core.advice import in_words
-from arboleda.core.cell import CellRun
-from arboleda.core.cell_states import CellState
-from arboleda.core.plant import AWAY, Plant
+from arboleda.engine import AWAY, CellRun, Plant, reasons
+from arboleda.model.advice import in_words
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Question
 from arboleda.model.messages import TaskChanged
 from arboleda.model.outside import plain

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Container, Iterable, Iterator
 from typing import Any
 
-from arboleda.core.reasons import BY_OPERATOR
+from arboleda.engine import BY_OPERATOR
 from arboleda.model.messages import Outcome
 from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.model.facts import shown
 from arboleda.model.sentence import Sentence
 from arboleda.wire.status import ERROR, OK, STALE, WARN

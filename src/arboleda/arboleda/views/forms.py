@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.core.text import example
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Parameter, Recipe
 from arboleda.model.sentence import OWN
+from arboleda.model.text import example
 
 Row = dict[str, Any]
 

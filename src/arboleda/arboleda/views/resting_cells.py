@@ -5,11 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.cell import CellRun
-from arboleda.core.cell_states import CellState
-from arboleda.core.plant import Plant
-from arboleda.dispatch.belief import Belief
-from arboleda.dispatch.ledger import Entry
+from arboleda.engine import Belief, CellRun, Entry, Plant
+from arboleda.model.cell_states import CellState
 
 from .view import CellPart, cell_part
 
@@ -43,7 +40,7 @@ class RestingCells:
         for row, belief, last in known.robots:
             aged, heard_at, command = row.copy(), belief.heard_at, row["command"]
             aged["age_s"] = None if heard_at is None else now - heard_at
-            aged["telemetry_hz"] = belief.rate_hz if belief.online else None
+            aged["telemetry_hz"] = belief.rate.hz if belief.online else None
             if last is not None and command is not None:
                 aged["command"] = {**command, "age_s": now - last.sent_at}
             robots.append(aged)

@@ -9,8 +9,9 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.model.commands import Command
-from arboleda.trees.leaves import (
+from arboleda.engine import (
+    MAIN,
+    PHASES,
     Act,
     Announce,
     Await,
@@ -20,9 +21,10 @@ from arboleda.trees.leaves import (
     TakeDevices,
     TakeZones,
     Unless,
+    is_frame,
     title_of,
 )
-from arboleda.trees.steps import MAIN, PHASES, is_frame
+from arboleda.model.commands import Command
 
 Times = tuple["float | None", "float | None"]  # s since it began, s left until it is given up
 UNKNOWN: Times = (None, None)

@@ -7,15 +7,13 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.core.cell import CellRun
-from arboleda.core.plant import Plant
-from arboleda.dispatch.belief import Belief
-from arboleda.dispatch.ledger import OPEN, Entry, State
+from arboleda.engine import OPEN, Act, Belief, CellRun, Entry, Plant, State
 from arboleda.model.commands import Motion, Position, Switch
 from arboleda.model.grips import Grip
 from arboleda.model.plant_model import Cell
-from arboleda.trees.leaves import Act
-from arboleda.trees.tree_nodes import nodes_of
+from arboleda.model.tree_nodes import nodes_of
+
+from .zone_rows import zone_rows
 
 Row = dict[str, Any]
 UNDER_WAY = frozenset({State.SENT, State.RUNNING})
@@ -40,7 +38,7 @@ def in_parts(plant: Plant) -> Generator[None, None, Row]:
     for name, cell in plant.cells.items():
         parts[name], books[name] = part(cell), at_places(cell)
         yield
-    return {"robots": robots, "parts": parts, "books": books, "zones": plant.zones.snapshot()}
+    return {"robots": robots, "parts": parts, "books": books, "zones": zone_rows(plant.zones)}
 
 
 def goal(entry: Entry | None) -> Row | None:
@@ -119,7 +117,7 @@ def _robot(plant: Plant, belief: Belief) -> Row:
         "name": name,
         "q": belief.q,
         "node": belief.node,
-        "position_at": belief.position_at if belief.position is not None else None,
+        "position_at": belief.stillness.position_at if belief.position is not None else None,
         "heard_at": belief.heard_at,
         "online": belief.online,
         "homed": not belief.unhomed,
@@ -133,7 +131,7 @@ def _robot(plant: Plant, belief: Belief) -> Row:
 def _positioned(plant: Plant, belief: Belief) -> bool:
     """True if a robot that need not report its position has done so lately."""
     known = belief.position is not None
-    return known and plant.now - belief.position_at <= plant.model.timing.stale_after_s
+    return known and plant.now - belief.stillness.position_at <= plant.model.timing.stale_after_s
 
 
 def _reached(plant: Plant, belief: Belief, last: Entry | None) -> Row | None:

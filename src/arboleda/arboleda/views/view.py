@@ -6,14 +6,9 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
-from arboleda.core import reasons
-from arboleda.core.acts import OperatorAct
-from arboleda.core.advice import BY_HAND, Advice, Hand, in_words, sentence
-from arboleda.core.cell import CellRun
-from arboleda.core.cell_states import CellState
-from arboleda.core.plant import Plant
-from arboleda.dispatch.belief import Belief
-from arboleda.dispatch.ledger import Entry
+from arboleda.engine import Belief, CellRun, Entry, OperatorAct, Plant, reasons, step_of
+from arboleda.model.advice import BY_HAND, Advice, Hand, in_words, sentence
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Question
 from arboleda.model.facts import Value
 from arboleda.model.messages import Check, OperatorRequest, TaskChanged, Verb
@@ -21,9 +16,9 @@ from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.model.sentence import BOTH, Sentence
 from arboleda.model.task import Task
 from arboleda.model.verbs import Scope, refusable
-from arboleda.trees.tree_run import step_of
 
 from . import forms, geometry, tree_view, twin_view
+from .zone_rows import zone_rows
 
 Row = tuple[str, Verb, bool]
 
@@ -94,7 +89,7 @@ def in_parts(plant: Plant, part_of: PartOf = cell_part) -> Generator[None, None,
         "cells": cells,
         "robots": robots,
         "tasks": _tasks(plant, open_tasks),
-        "zones": plant.zones.snapshot(),
+        "zones": zone_rows(plant.zones),
         "acts": [_act(act) for act in plant.acts],
         "interference": [vars(each) for each in plant.dispatcher.interference.noticed],
         "faults": [vars(each) for each in plant.provoked.last],
@@ -411,10 +406,10 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
         "question": _question(plant.dispatcher.ledger.question(robot.name), now),
         "boot_id": belief.boot_id,
         "bridge_epoch": belief.epoch,
-        "still": belief.still,
+        "still": belief.stillness.is_still,
         "holding": plant.dispatcher.effectors.grips.holding(robot.name) if robot.held_fact else None,
         "goal": twin_view.goal(last),
-        "telemetry_hz": belief.rate_hz if belief.online else None,
+        "telemetry_hz": belief.rate.hz if belief.online else None,
         "command": _command(last, now),
         "rejected": _rejected(plant.dispatcher.booking.rejected.get(robot.name)),
         "refused": _refused(plant, robot.name, OF_ROBOTS),

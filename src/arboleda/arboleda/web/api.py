@@ -23,7 +23,7 @@ from starlette.types import Receive, Scope, Send
 
 from arboleda import __version__
 from arboleda.client.protocol import COMMAND_LINE
-from arboleda.core.leaving import Unkept
+from arboleda.departures.leaving import Unkept
 from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, Refused, TextError
 from arboleda.model.messages import Outcome, Verb
 from arboleda.model.outside import plain, quoted

@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from typing import Any, Protocol, TypeVar
 
-from arboleda.core.plant import Plant
-from arboleda.core.text import spelled
+from arboleda.engine import Plant
 from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.text import spelled
 from arboleda.model.verbs import Arguments
 from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.views import forms, view

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from arboleda.model.commands import Command, Stop, StopMode, Work, needs_clear
 from arboleda.model.errors import PayloadError
-from arboleda.model.facts import Facts
-from arboleda.model.messages import MotionState, Receipt, Report, Tokens
+from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import Evidence, Robot
-from arboleda.model.sentence import NOTHING, Phrase, Sentence
+from arboleda.model.sentence import Phrase, Sentence
 
 from . import rejections
+from .board_reports import BoardReports
 from .copies import Copies
-from .forms import form_of
+from .forms import Form, form_of
 from .hop import is_stop, shown
 from .labels import Labels
 from .link import BoardLink, LinkUpdate
@@ -38,24 +37,6 @@ DENIED = Phrase(
 AGAIN_S = 0.1  # in a burst of others' commands, no report between two of the board's own
 
 
-@dataclass(frozen=True, kw_only=True)
-class Counters:
-    """Counts of messages not used: refused whole, or overtaken; `last` has the last refusal's sentence."""
-
-    refused: int = 0
-    old: int = 0
-    last: Sentence = NOTHING
-
-
-@dataclass(frozen=True, kw_only=True)
-class ForeignCommandCount:
-    """Count of commands from others while a plant commands, refused and obeyed; `last` is a sentence."""
-
-    refused: int = 0
-    obeyed: int = 0
-    last: Sentence = NOTHING
-
-
 class Board:
     """State machine of one board: commands in, reports out; a command needs a link, and no latch against
     it."""
@@ -67,10 +48,8 @@ class Board:
         self.link = BoardLink(stale_after_s if supervised else None)
         self.rivals = Rivals(has_lease=has_lease)
         self.copies = Copies()
-        self.counters = Counters()
-        self._foreign = ForeignCommandCount()
+        self.reports = BoardReports(robot, self.labels, self.link)
         self._foreign_reported_at = 0.0
-        self._plant: int | None = None
         self._last: Report | None = None
         self._words: Words | None = None  # of the last telemetry, until a command changes what it means
         self._form = form_of(robot)
@@ -92,10 +71,7 @@ class Board:
         """Lose the link, and all open work; nothing is sent again."""
         self._motion = None
         self.rivals.lose()
-        return [self.no_link(at)] if self.link.lose() else []
-
-    def no_link(self, at: float) -> Report:
-        return self._report(at, state=MotionState.NO_LINK)
+        return [self.reports.no_link(at)] if self.link.lose() else []
 
     def command(self, at: float, command: Command, sender: str = "") -> list[Message]:
         """Send a command, or report the word that refuses it; a repeated id is ignored."""
@@ -124,7 +100,7 @@ class Board:
         if why is None or why == known:
             return []
         sentence = rejections.passed_over(self.robot, command, why)
-        self._count(sentence)
+        self.reports.count(sentence)
         name, topic = self.robot.name, shown(command)
         return [
             Rejection(at=at, robot=name, command=topic, id=command.id, reason="limite", sentence=sentence)
@@ -132,26 +108,21 @@ class Board:
 
     def refuse(self, at: float, command: Command, word: str, sender: str = "") -> list[Message]:
         """Refuse a command with a word, and report it."""
-        rejection = self._rejection(at, command, word, sender, by_board=False)
-        self._count(rejection.sentence)
+        rejection = self.reports.rejection(at, command, word, sender, by_board=False)
+        self.reports.count(rejection.sentence)
         self.labels.refuse(command.id, word)
         self._words = None
-        return [rejection, self._word(at)] if command.id else [rejection]
+        return [rejection, self.reports.word(at)] if command.id else [rejection]
 
     def report_foreign(self, at: float, sentence: Sentence, *, refused: bool) -> list[Message]:
         """Report a command of somebody else to the plant that commands the robot."""
-        self._count_foreign(sentence, refused=refused)
+        self._words = None
+        self.reports.count_foreign(sentence, refused=refused)
         reports = [] if refused else [ForeignCommand(at=at, robot=self.robot.name, sentence=sentence)]
         if at < self._foreign_reported_at + AGAIN_S:
             return [*reports]
         self._foreign_reported_at = at
-        return [*reports, self._word(at)]
-
-    def _count_foreign(self, sentence: Sentence, *, refused: bool) -> None:
-        known, self._words = self._foreign, None
-        self._foreign = ForeignCommandCount(
-            refused=known.refused + refused, obeyed=known.obeyed + (not refused), last=sentence
-        )
+        return [*reports, self.reports.word(at)]
 
     def halt(self, at: float) -> list[Message]:
         """End the open motion, unless it is ending already."""
@@ -162,9 +133,9 @@ class Board:
     def hear_plant(self, at: float, epoch: int) -> list[Message]:
         """Take a heartbeat of the plant: answer rivals, and give a new plant the board's last report."""
         answer = self._answer_rivals(at)
-        if epoch == self._plant:
+        if epoch == self.reports.plant:
             return answer
-        self._plant = epoch
+        self.reports.plant = epoch
         self._last = self._last.again(at, plant=epoch) if self._last else None
         return [*answer, self._last] if self._last and self.link.up else answer
 
@@ -193,9 +164,9 @@ class Board:
             return [again]
         try:
             message = decode(channel, delivery.payload, axes=self._form.axes)
-            self._check(message, delivery)
+            _check(message, delivery, self._form)
         except PayloadError as error:
-            self._count(UNREADABLE(topic=delivery.topic, why=error.sentence))
+            self.reports.count(UNREADABLE(topic=delivery.topic, why=error.sentence))
             return []
         if isinstance(message, Presence):
             return self._presence(delivery.at, message.online)
@@ -230,16 +201,6 @@ class Board:
         self._words, self._last = words, last.again(delivery.at, **news)
         return self._last
 
-    def _check(self, message: Payload, delivery: Delivery) -> None:
-        if not isinstance(message, (Presence, Telemetry)):
-            raise PayloadError("a command is not for the bridge")
-        if delivery.retain and isinstance(message, Telemetry):
-            raise PayloadError("telemetry is retained: nobody knows how old it is")
-        if isinstance(message, Telemetry) and message.node is not None and message.node >= self._form.nodes:
-            raise PayloadError(f"nodo is {message.node}; allowed: 0 to {self._form.nodes - 1}")
-        if isinstance(message, Telemetry) and message.facts is not None:
-            self._form.facts_in(message.facts)
-
     def _presence(self, at: float, online: bool) -> list[Message]:
         self.link.presence(at, online)
         if not online:
@@ -250,21 +211,22 @@ class Board:
         at = delivery.at
         update = self.link.hear(at, message)
         if update is LinkUpdate.OLD:
-            self.counters = replace(self.counters, old=self.counters.old + 1)
+            self.reports.count_old()
         if update in (LinkUpdate.ABSENT, LinkUpdate.DENIED):
-            self._count(ABSENT())
+            self.reports.count(ABSENT())
         if update is LinkUpdate.DENIED:
-            return [self._report(at, state=MotionState.NO_LINK, lost=DENIED())]
+            return [self.reports.no_link(at, lost=DENIED())]
         if update in (LinkUpdate.LATE, LinkUpdate.ABSENT, LinkUpdate.OLD):
             return []
         if update is LinkUpdate.REBOOT:
             self.labels.reboot()
             self._motion = None
-        q, facts, ended = self._joints(message), self._form.facts_in(message.facts), self.labels.hear(message)
+        q = None if message.q is None else self._in_si(message.q)
+        facts, ended = self._form.facts_in(message.facts), self.labels.hear(message)
         if self._motion and self._motion.ended(at, message, q, ended, facts):
             self._motion = None
-        out = [*self._objections(at), *self._earlier_failures(at)]
-        self._last = self._telemetry_report(at, message, q, facts)
+        out = [*self._objections(at), *self.reports.earlier_failures(at)]
+        self._last = self.reports.of_telemetry(at, message, q, facts)
         self._words = Words.of(delivery.payload, message)
         return [*out, self._last, *([] if update is LinkUpdate.NEWS else self._stop_again(at))]
 
@@ -273,43 +235,15 @@ class Board:
         out: list[Message] = []
         if self.labels.objection is not None:
             issued, word = self.labels.objection
-            rejection = self._rejection(at, issued.command, word, issued.sender, by_board=True)
+            rejection = self.reports.rejection(at, issued.command, word, issued.sender, by_board=True)
             out.append(rejection)
             if not issued.command.id:  # the plant counts those of its own
-                self._count(rejection.sentence)
-        if (sentence := self._of_rivals(at)) is not None:
-            self._count_foreign(sentence, refused=False)
+                self.reports.count(rejection.sentence)
+        if (sentence := _of_rivals(self.rivals.hear(at, self.labels), self.robot, self.labels)) is not None:
+            self._words = None
+            self.reports.count_foreign(sentence, refused=False)
             out.append(ForeignCommand(at=at, robot=self.robot.name, sentence=sentence))
         return out
-
-    def _of_rivals(self, at: float) -> Sentence | None:
-        news = self.rivals.hear(at, self.labels)
-        if news is News.TAKEN and self.labels.foreign is not None:
-            return rejections.taken(self.robot, *self.labels.foreign)
-        if news is None or self.labels.beaten_by is None:
-            return None
-        return rejections.beaten(self.robot, self.labels.beaten_by, yielded=news is News.YIELDED)
-
-    def _earlier_failures(self, at: float) -> list[Message]:
-        """A report of each newly abandoned command but the last, which is part of the usual report."""
-        return [
-            replace(self._word(at), failed=command_id, failure=word)
-            for command_id, word in self.labels.failed_before
-        ]
-
-    def _rejection(self, at: float, command: Command, word: str, sender: str, *, by_board: bool) -> Rejection:
-        return Rejection(
-            at=at,
-            robot=self.robot.name,
-            command=shown(command),
-            id=command.id,
-            reason=word,
-            sentence=rejections.refused(self.robot, command, word, sender, by_board=by_board),
-        )
-
-    def _word(self, at: float) -> Report:
-        """A report on commands only."""
-        return self._report(at, state=None if self.link.up else MotionState.NO_LINK)
 
     def _refusal(self, command: Command) -> str | None:
         if not self.link.up:
@@ -351,77 +285,33 @@ class Board:
             return []
         return self._send(at, Stop(id="", robot=self.robot.name, mode=StopMode.LATCH))
 
-    def _joints(self, message: Telemetry) -> tuple[float, ...] | None:
-        return None if message.q is None else self._in_si(message.q)
-
     def _in_si(self, angles: tuple[float, ...]) -> tuple[float, ...]:
         rows = zip(self._axes, angles, strict=True)
         return tuple([from_wire(joint, value) for joint, value in rows])
 
-    def _telemetry_report(
-        self, at: float, message: Telemetry, q: tuple[float, ...] | None, facts: Facts | None
-    ) -> Report:
-        answered, answer = self.labels.answered or (None, None)
-        failed, failure = self.labels.failed or (None, None)
-        return self._report(
-            at,
-            state=message.state,
-            accepted=self.labels.accepted,
-            done=self.labels.done,
-            q=q,
-            node=message.node,
-            homed=message.homed,
-            effector=message.effector,
-            piece=message.piece,
-            facts=facts,
-            answered=answered,
-            answer=answer,
-            failed=failed,
-            failure=failure,
-            receipt=_receipt(message),
-            tokens=_tokens(message),
-            number=message.seq,
-        )
-
-    def _report(self, at: float, **fields: object) -> Report:
-        rejected, word = self.labels.rejected or (None, None)
-        foreign = self._foreign
-        return Report(
-            at=at,
-            robot=self.robot.name,
-            epoch=self.labels.start,
-            plant=self._plant,
-            boot_id=self._boot_id,
-            rejected=rejected,
-            refusal=word,
-            foreign_refused=foreign.refused or None,
-            foreign_obeyed=foreign.obeyed or None,
-            foreign=foreign.last or None,
-            **fields,  # type: ignore[arg-type]
-        )
-
-    @property
-    def _boot_id(self) -> int | None:
-        counted = self.robot.evidence is Evidence.JOINTS
-        return self.link.returns if counted else self.link.boot_id
-
     def _publication(self, channel: Channel, payload: Payload, qos: int = 1) -> Publication:
         return Publication(topic=topic(self.robot.mqtt, channel), payload=encode(payload), qos=qos)
 
-    def _count(self, sentence: Sentence) -> None:
-        self.counters = replace(self.counters, refused=self.counters.refused + 1, last=sentence)
+
+def _check(message: Payload, delivery: Delivery, form: Form) -> None:
+    """Raise PayloadError for a message that breaks the contract."""
+    if not isinstance(message, (Presence, Telemetry)):
+        raise PayloadError("a command is not for the bridge")
+    if delivery.retain and isinstance(message, Telemetry):
+        raise PayloadError("telemetry is retained: nobody knows how old it is")
+    if isinstance(message, Telemetry) and message.node is not None and message.node >= form.nodes:
+        raise PayloadError(f"nodo is {message.node}; allowed: 0 to {form.nodes - 1}")
+    if isinstance(message, Telemetry) and message.facts is not None:
+        form.facts_in(message.facts)
 
 
-def _receipt(message: Telemetry) -> Receipt | None:
-    if message.ack_epoch is None or message.ack is None:
+def _of_rivals(news: News | None, robot: Robot, labels: Labels) -> Sentence | None:
+    """What others have newly done to a robot."""
+    if news is News.TAKEN and labels.foreign is not None:
+        return rejections.taken(robot, *labels.foreign)
+    if news is None or labels.beaten_by is None:
         return None
-    return Receipt(message.ack_epoch, message.ack, message.done)
-
-
-def _tokens(message: Telemetry) -> Tokens | None:
-    if message.ack_token is None and message.done_token is None:
-        return None
-    return Tokens(message.ack_token, message.done_token)
+    return rejections.beaten(robot, labels.beaten_by, yielded=news is News.YIELDED)
 
 
 @lru_cache(maxsize=256)

@@ -19,7 +19,8 @@ from arboleda.model.plant_model import ForeignCommands, Link, PlantModel
 from arboleda.model.sentence import as_sentence
 
 from . import epochs, rejections, topics
-from .board import Board, Counters, Message
+from .board import Board, Message
+from .board_reports import Counters
 from .copies import COPY_S
 from .hop import FromPlant, is_stop, loses_its_id, without_id
 from .rejections import FOREIGN, Rejection
@@ -103,7 +104,7 @@ class Bridge:
     @property
     def counters(self) -> dict[str, Counters]:
         """The counts of refused and dropped messages by robot; "" has topics that belong to no robot."""
-        return {"": self._strays, **{name: board.counters for name, board in self._boards.items()}}
+        return {"": self._strays, **{name: board.reports.counters for name, board in self._boards.items()}}
 
     @property
     def next_deadline(self) -> float | None:
@@ -129,7 +130,7 @@ class Bridge:
         if self._started_at == math.inf:
             return []
         self._started_at = math.inf
-        return [board.no_link(now) for board in self._boards.values()]
+        return [board.reports.no_link(now) for board in self._boards.values()]
 
     def _take(self, event: FromPlant | Connection | Leaving) -> list[Message]:
         if isinstance(event, Connection):
@@ -225,7 +226,7 @@ class Bridge:
         assert not isinstance(event.message, Heartbeat)
         if unsure.refused:
             out = board.refuse(event.at, event.message, FOREIGN, event.sender)
-            return [*out, *board.report_foreign(event.at, board.counters.last, refused=True)]
+            return [*out, *board.report_foreign(event.at, board.reports.counters.last, refused=True)]
         sentence = rejections.obeyed(board.robot, event.message, event.sender)
         return board.report_foreign(event.at, sentence, refused=False)
 

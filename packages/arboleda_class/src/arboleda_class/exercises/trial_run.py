@@ -6,8 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from arboleda.core.plant import Plant
-from arboleda.dispatch.ledger import Entry
+from arboleda.engine import Entry, Plant
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import ENDED, TaskChanged, TaskState
 from arboleda.model.plant_model import Link, PlantModel

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from arboleda.core.plant import Plant
 from arboleda.dashboard.wording import words
+from arboleda.engine import Plant
 from arboleda.views import view
 from arboleda.views.chronicle import Chronicle
 from arboleda.views.resting_cells import RestingCells

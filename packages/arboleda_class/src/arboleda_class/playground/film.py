@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
-from arboleda.core.plant import Plant
 from arboleda.dashboard.page_state import PageState
+from arboleda.engine import Plant
 from arboleda.model.plant_model import PlantModel
 from arboleda.views import twin_view, view
 from arboleda_proofs.simulator.world import START_S

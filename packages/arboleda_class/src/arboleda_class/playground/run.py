@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from arboleda.core.advice import Hand
 from arboleda.dashboard.page_state import PageState
+from arboleda.model.advice import Hand
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.views import twin_view, view

@@ -6,13 +6,13 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from arboleda.core.advice import Hand
 from arboleda.dashboard import outcomes
 from arboleda.dashboard.faces import Face
 from arboleda.dashboard.outcomes import Said
 from arboleda.dashboard.twin.twin import Twin
 from arboleda.dashboard.wording import words
 from arboleda.geometry.bodies import Body
+from arboleda.model.advice import Hand
 from arboleda.model.messages import OperatorAnswer, Outcome, TaskChanged, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.views import view

@@ -7,8 +7,8 @@ import time
 from collections.abc import Callable
 from functools import partial
 
-from arboleda.core.cell_states import CellState
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
+from arboleda.model.cell_states import CellState
 from arboleda.model.errors import ArboledaError
 from arboleda.oee.figures import SEEN_S
 from arboleda.store.plant_memory import PlantMemory

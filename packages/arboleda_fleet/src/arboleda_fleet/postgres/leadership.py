@@ -7,7 +7,7 @@ import socket
 from typing import Any
 
 from arboleda.adapters import clock
-from arboleda.core.leading import LEASE_S, Silence
+from arboleda.departures.leading import LEASE_S, Silence
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
 from arboleda.store.leadership import Leader, Leadership

@@ -13,7 +13,7 @@ from typing import Any, NoReturn, TypeVar
 import psycopg
 
 from arboleda.adapters import clock
-from arboleda.core.leading import AGAIN_S, LEASE_S, RENEW_S, WANTED_S, Lease, Silence
+from arboleda.departures.leading import AGAIN_S, LEASE_S, RENEW_S, WANTED_S, Lease, Silence
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
 from arboleda.store.plant_memory import OtherLeader, PlantMemory, Standby, Statement, Superseded

@@ -8,11 +8,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from urllib.parse import urlencode
 
-from arboleda.core.choosing import Prospect, best
-from arboleda.core.text import BETWEEN_CELLS
+from arboleda.engine import Prospect, best
 from arboleda.model.errors import ArboledaError
 from arboleda.model.sentence import OWN, Phrase, Sentence
 from arboleda.model.task import Order
+from arboleda.model.text import BETWEEN_CELLS
 
 from .reach import NO_PLANT, PlantRefusal, PlantSilent, Reach
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 
 from arboleda.adapters import clock
-from arboleda.core.leading import all_stand, at_work
+from arboleda.departures.leading import all_stand, at_work
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Verb
 from arboleda.runtime.parts.orchestrator import Orchestrator

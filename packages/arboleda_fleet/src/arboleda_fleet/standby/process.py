@@ -11,7 +11,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from arboleda.core.leading import LOOK_S
+from arboleda.departures.leading import LOOK_S
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.plant_model import PlantModel
 from arboleda.runtime.build import App, Options, build

@@ -11,7 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskChanged, TaskState, Verb
 from arboleda.oee.figures import SEEN_S, Oee

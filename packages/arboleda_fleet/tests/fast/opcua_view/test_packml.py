@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.views import view
 from arboleda_fleet.opcua_view.packml import STATES, Counts, tags
 from arboleda_proofs.testing import shipped

@@ -10,7 +10,7 @@ import pytest
 from tests.lengths import length
 from tests.postgres import Server
 
-from arboleda.core.leading import LEASE_S, WANTED_S
+from arboleda.departures.leading import LEASE_S, WANTED_S
 from arboleda.model.messages import Fact, Remember
 from arboleda.store.plant_memory import Superseded
 from arboleda_fleet.postgres.leader_row import END_LEASE, LAST_SEEN

@@ -14,7 +14,7 @@ import pytest
 from tests.patience import PATIENCE_S
 from tests.postgres import DATABASE, PASSWORD, USER, Server
 
-from arboleda.core.leading import LEASE_S, RENEW_S
+from arboleda.departures.leading import LEASE_S, RENEW_S
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import Fact, Journal, Remember, TaskChanged, TaskState, Verb
 from arboleda.model.sentence import OWN
@@ -105,7 +105,7 @@ def test_a_leader_that_was_away_finds_out_that_it_is_none_any_more(
 def test_a_plant_has_one_leader_and_no_other_writes(
     database: str, plant: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("arboleda.core.leading.LEASE_S", PATIENCE_S)
+    monkeypatch.setattr("arboleda.departures.leading.LEASE_S", PATIENCE_S)
     with leading(database, plant) as first, PostgresMemory(database, plant) as second:
         renewing, ended = _renewing(first)
         try:

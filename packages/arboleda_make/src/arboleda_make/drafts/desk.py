@@ -10,30 +10,26 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, Protocol
 
-from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.errors import StartError
 from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.changes import changes
-from arboleda.plant_file.draft_check import CheckResult, root_of
+from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.versions import Version, Versions, version_of
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.plant_file.yaml_marks import parse
-from arboleda.runtime import at_work
 from arboleda_make.drafts.api import DraftApi, DraftRefused, Place, State
-from arboleda_make.drafts.draft import Draft, draft_of
+from arboleda_make.drafts.draft import Draft
 
-from .file import DraftFile
+from .open_draft import OpenDraft
 from .plant_folder import NOT_OURS, PlantFolder
 
 LOG = logging.getLogger("arboleda.operators")
-UNKNOWN = "this plant does not keep what it was started with (record: off), so there is nothing to draft from"
 NOBODY = "nobody edits this draft; begin to edit it first"
 OTHER = "{name} edits this draft since {since}; take it over to edit it"
-MOVED = "{files}: changed by hand since this draft was begun; discard the draft, or bring the file back"
 KNOWN = "{file} is there already; choose another name"
-NOTHING = "the draft changes nothing"
 NO_PLANT = "no plant runs in this process that could take it"
 NO_TREES = "{file} is no file of trees of this plant"
 OURS = "these files are your own already, and can be changed"
@@ -73,14 +69,12 @@ class DraftDesk(DraftApi):
         writing: threading.Lock | None = None,
     ) -> None:
         self._folder = folder
-        self._state = state
-        self._file = DraftFile(state)
         self._process = process
         self._work_by = work_by
         self._writing = writing or threading.Lock()
         self._turns = threading.Lock()
         self._editor: Editor | None = None
-        self._draft: Draft | None = None
+        self._open = OpenDraft(folder, state)
 
     def start(self) -> None:
         """Nothing: a draft is opened when somebody looks at it."""
@@ -95,7 +89,7 @@ class DraftDesk(DraftApi):
 
     def take(self, editor: str, name: str) -> State:
         with self._turns:
-            self._opened()
+            self._open.read()
             before, self._editor = self._editor, Editor(id=editor, name=name, since=_now())
             if before is not None and before.id != editor:
                 LOG.info("the draft is taken over by %s from %s", plain(name), plain(before.name))
@@ -127,12 +121,12 @@ class DraftDesk(DraftApi):
     def discard(self, editor: str) -> State:
         with self._turns:
             self._must_edit(editor)
-            self._close()
+            self._open.close()
             return self._shown()
 
     def check(self) -> State:
         with self._turns:
-            draft = self._opened()
+            draft = self._open.read()
         found = self._process.check(draft.files, self._folder.ours)
         offers = [each.plain for each in found.unstated]
         answer = {"problems": found.problems, "warnings": found.warnings, "offers": offers}
@@ -154,7 +148,7 @@ class DraftDesk(DraftApi):
 
     def trees(self, file: str) -> State:
         with self._turns:
-            contents = self._opened().files.contents
+            contents = self._open.read().files.contents
         if file not in contents or not file.endswith(ENDING):
             raise DraftRefused(NO_TREES.format(file=quoted(file)))
         return {"file": file, "text": contents[file].decode("utf-8", "replace")}
@@ -180,7 +174,7 @@ class DraftDesk(DraftApi):
     def files(self) -> tuple[PlantFiles, PlantFiles]:
         """The files that the draft began with, and those of the draft."""
         with self._turns:
-            draft = self._opened()
+            draft = self._open.read()
         return draft.base, draft.files
 
     def remove_trees(self, editor: str, file: str) -> State:
@@ -191,27 +185,27 @@ class DraftDesk(DraftApi):
             self._must_edit(editor, owns=False)
             if self._folder.is_ours:
                 raise DraftRefused(OURS)
-            file = self._folder.own(self._started())
+            file = self._folder.own(self._open.started)
             LOG.info("the plant's files are copied to %s", plain(str(file.parent)))
-            self._close()
+            self._open.close()
             return self._shown()
 
     def _checked_and_kept(self, editor: str, note: str) -> tuple[CheckResult, Version | None]:
         """The verdict on the draft, and the version that it is now; None where there are problems."""
         with self._turns:
             self._must_edit(editor)
-            draft = self._opened()
-            self._must_fit(draft)
+            draft = self._open.read()
+            self._open.must_fit(draft)
         found = self._process.check(draft.files, self._folder.ours)
         if found.problems:
             return found, None
         with self._turns, self._writing:
             self._must_edit(editor)
-            if self._draft is not draft:
+            if not self._open.is_still(draft):
                 raise DraftRefused(MEANWHILE)
-            self._must_fit(draft)
+            self._open.must_fit(draft)
             version = self._kept(draft, found.read, note)
-            self._close()
+            self._open.close()
         LOG.info("version %d of the plant is kept, by %s", version.number, plain(version.by))
         return found, version
 
@@ -219,11 +213,10 @@ class DraftDesk(DraftApi):
         with self._turns:
             self._must_edit(editor)
             try:
-                draft = step(self._opened())
+                draft = step(self._open.read())
             except EditRefused as error:
                 raise DraftRefused(error.sentence) from error
-            self._file.write(draft)
-            self._draft = draft
+            self._open.write(draft)
             return self._shown()
 
     def _must_edit(self, editor: str, *, owns: bool = True) -> None:
@@ -234,18 +227,10 @@ class DraftDesk(DraftApi):
         if owns and not self._folder.is_ours:
             raise DraftRefused(NOT_OURS)
 
-    def _must_fit(self, draft: Draft) -> None:
-        """Raise DraftRefused where there is nothing to keep, or what somebody else wrote would be lost."""
-        if not draft.changes:
-            raise DraftRefused(NOTHING)
-        now = self._on_disk().contents
-        if moved := [name for name, each in draft.base.contents.items() if now.get(name) != each]:
-            raise DraftRefused(MOVED.format(files=", ".join(moved)))
-
     def _kept(self, draft: Draft, read: PlantFiles | None, note: str) -> Version:
         """The version that the files are now; before it, if none has that, what was at work."""
         by = self._editor.name if self._editor else ""
-        kept, started = Versions(self._folder.ours), self._started()
+        kept, started = Versions(self._folder.ours), self._open.started
         if kept.last() is None:
             kept.keep(replace(started, note="as the plant was started"))
         fresh = version_of(read or draft.files, at=_now(), by=by, note=note)
@@ -260,7 +245,7 @@ class DraftDesk(DraftApi):
         return version
 
     def _shown(self) -> State:
-        draft, editor = self._opened(), self._editor
+        draft, editor = self._open.read(), self._editor
         root, _ = parse(draft.files.contents[draft.files.plant])
         contents = draft.files.contents
         return {
@@ -268,65 +253,15 @@ class DraftDesk(DraftApi):
             "digest": _digest(draft),
             "editor": None if editor is None else {"name": editor.name, "since": editor.since},
             "changes": [each.words for each in draft.changes],
-            "waiting": [each.words for each in changes(self._started().files, self._on_disk())],
+            "waiting": [each.words for each in changes(self._open.started.files, self._open.on_disk)],
             "undo": len(draft.past),
             "redo": len(draft.future),
             "values": root.value,
             "trees": sorted(name for name in contents if name.endswith(ENDING)),
             "restart": needing_restart(draft.changes),
             "is_ours": self._folder.is_ours,
-            "set_aside": list(self._file.lost),
+            "set_aside": self._open.set_aside,
         }
-
-    def _opened(self) -> Draft:
-        """The draft that there is, in this process or from an earlier start; else a new one of the files, as
-        they are now: what changes nothing is begun anew once they were changed elsewhere."""
-        if self._draft is None:
-            self._draft = self._saved() or draft_of(self._on_disk())
-        if self._draft.files == self._draft.base and self._draft.base != (now := self._on_disk()):
-            self._close()
-            self._draft = draft_of(now)
-        return self._draft
-
-    def _close(self) -> None:
-        self._file.remove()
-        self._draft = None
-
-    def _saved(self) -> Draft | None:
-        """The draft of an earlier start; None where the plant's files have become all that it was to change:
-        that start ended before it could forget the draft."""
-        saved = self._file.read()
-        if saved is not None and _is_in(saved, self._on_disk()):
-            self._file.remove()
-            return None
-        return saved
-
-    def _started(self) -> Version:
-        found = at_work.known(self._state)
-        if found is None:
-            raise DraftRefused(UNKNOWN)
-        return found
-
-    def _on_disk(self) -> PlantFiles:
-        """Plant file and trees as they are now."""
-        files, plant_file = self._started().files, self._folder.file
-        if plant_file is None:
-            return files
-        root = root_of(files, plant_file)
-        try:
-            contents = {
-                name: (plant_file if name == files.plant else root / name).read_bytes()
-                for name in files.contents
-            }
-        except OSError as error:
-            raise ArboledaError(f"{error.filename} cannot be read: {error.strerror}") from error
-        return replace(files, contents=contents)
-
-
-def _is_in(draft: Draft, files: PlantFiles) -> bool:
-    """True where each file that a draft knows is as the draft has it; one that it removes is gone."""
-    names = {*draft.base.contents, *draft.files.contents}
-    return all(files.contents.get(name) == draft.files.contents.get(name) for name in names)
 
 
 def _digest(draft: Draft) -> str:

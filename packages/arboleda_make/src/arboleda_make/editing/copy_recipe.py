@@ -19,6 +19,7 @@ from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.forest import Forest
 from arboleda.bt_xml.recipe import tree_recipe
 from arboleda.bt_xml.writing import Tag
+from arboleda.engine import Context
 from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import Value, shown
 from arboleda.model.outside import quoted
@@ -27,7 +28,6 @@ from arboleda.model.recipe import Limits, Parameter
 from arboleda.recipes.authoring import WrittenRecipe
 from arboleda.recipes.handles import Chain, Step, usable
 from arboleda.recipes.place_questions import PlaceQuestion
-from arboleda.trees.context import Context
 
 from . import carry
 from .drawing_kit import MOST_WAYS, DrawingKit, DrawnStep, refusal

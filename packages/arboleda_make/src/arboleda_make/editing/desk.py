@@ -7,7 +7,7 @@ from typing import Any
 
 from arboleda.bt_xml import leaves
 from arboleda.bt_xml.recipe import TreeRecipe, own_nodes
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.outside import among, quoted
 from arboleda.model.plant_model import Cell, PlantModel
 

@@ -9,7 +9,7 @@ from concurrent.futures import TimeoutError as NoAnswerYet
 from datetime import datetime
 from typing import Any, Protocol
 
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.assistants import Assistants
 from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain, quoted

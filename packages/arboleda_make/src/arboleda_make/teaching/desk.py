@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
 from arboleda.adapters import clock
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.geometry import bodies
 from arboleda.geometry.bodies import Body
 from arboleda.model.errors import ArboledaError

@@ -6,8 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from arboleda.core.cell import CellRun
-from arboleda.core.plant import Plant
+from arboleda.engine import CellRun, Plant
 from arboleda.kinds.declared import Device, DeviceVerb, FactType
 from arboleda.model.by_class import nearest
 from arboleda.model.commands import Position

@@ -9,10 +9,10 @@ from typing import Any
 
 from arboleda.bt_xml import export
 from arboleda.bt_xml.recipe import TreeRecipe
-from arboleda.core import text
-from arboleda.core.plant import Plant
 from arboleda.dashboard.findings import findings
 from arboleda.drivers.port import DriverSpec
+from arboleda.engine import Plant
+from arboleda.model import text
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.outside import quoted
 from arboleda.model.plant_files import PlantFiles

@@ -10,8 +10,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-from arboleda.core.cell import CellRun
-from arboleda.core.plant import Plant
+from arboleda.engine import CellRun, Plant
 from arboleda.model.errors import ArboledaError, ConfigError, StartError
 from arboleda.model.messages import RevisionAnswer, RevisionName
 from arboleda.model.outside import plain

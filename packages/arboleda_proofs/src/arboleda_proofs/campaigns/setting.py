@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.plant import Plant as CorePlant
+from arboleda.engine import Plant as CorePlant
 from arboleda.model.plant_model import PlantModel
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.faults import Fault

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass, field, replace
 
-from arboleda.core.envelope import unsettled
-from arboleda.core.intake import HISTORY
-from arboleda.core.leaving import MOST_UNSYNCED_S, SYNCED_WITHIN_S
+from arboleda.departures.leaving import MOST_UNSYNCED_S, SYNCED_WITHIN_S
+from arboleda.engine import HISTORY, unsettled
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import (
     ENDED,

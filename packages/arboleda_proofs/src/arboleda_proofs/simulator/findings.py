@@ -9,13 +9,13 @@ from enum import Enum
 from arboleda.bt_xml.running.leaves import FAILS
 from arboleda.bt_xml.running.root import FAILED as TREE_FAILED
 from arboleda.bt_xml.running.root import FAILED_AT as TREE_FAILED_AT
-from arboleda.dispatch.ledger import Entry, State
+from arboleda.engine import Entry, State
+from arboleda.engine.inspection import EMPTY, trouble_in
 from arboleda.model.messages import Reason, TaskChanged, TaskState
 from arboleda.model.sentence import Sentence
 from arboleda.recipes.authoring import FAIL
 from arboleda.recipes.decorators import RESCUE_FAILED
 from arboleda.recipes.place_questions import NO_PART_YET, NO_ROOM_YET
-from arboleda.trees.part_places import EMPTY, trouble_in
 
 from .record import Record
 from .truth.refused_commands import RefusedCommands

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from arboleda.core.advice import Advice, Hand
+from arboleda.model.advice import Advice, Hand
 from arboleda.model.messages import Verb
 
 from .manual_work import ManualWork

@@ -6,7 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable
 
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders
 
@@ -127,7 +127,8 @@ class JudgedWorld:
             before, open_tasks = open_tasks, len(tasks.open)
             if open_tasks < before:
                 since = self.seconds
-            if open_tasks < before or (self.world.plant.zones.waiting and self.seconds < since + longest_s):
+            waits = bool(self.world.plant.zones.queue.waiting)
+            if open_tasks < before or (waits and self.seconds < since + longest_s):
                 end = self.seconds + REST_S
         self._raise(self._judges.at_the_end(self._look))
         self.world.advance(STAYS_S, until)

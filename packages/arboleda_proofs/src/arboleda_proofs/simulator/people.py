@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import count
 
-from arboleda.core import text as task_text
-from arboleda.core.advice import Advice, Hand
+from arboleda.model import text as task_text
+from arboleda.model.advice import Advice, Hand
 from arboleda.model.commands import Question
 from arboleda.model.errors import TextError
 from arboleda.model.facts import Value

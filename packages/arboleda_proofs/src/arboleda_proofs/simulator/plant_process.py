@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Any
 
-from arboleda.core.leaving import SENT_TOO_LATE, is_too_late, late_departure, leaves_unkept
-from arboleda.core.plant import Plant
+from arboleda.departures.leaving import SENT_TOO_LATE, is_too_late, late_departure, leaves_unkept
+from arboleda.engine import Plant
 from arboleda.model.commands import Command
 from arboleda.model.messages import (
     CellRevised,

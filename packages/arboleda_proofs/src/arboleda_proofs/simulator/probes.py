@@ -10,11 +10,10 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from arboleda.engine import Act, steps
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import Heartbeat, OperatorAnswer, Report, TaskChanged, TaskState, Verb
 from arboleda.sim.board import SILENCE_US, Board
-from arboleda.trees import steps
-from arboleda.trees.leaves import Act
 
 from .world import BRIDGE, World
 

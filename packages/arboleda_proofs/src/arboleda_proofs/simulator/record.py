@@ -8,11 +8,10 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from typing import Any
 
-from arboleda.core.cell_states import CellState
-from arboleda.core.plant import Plant
-from arboleda.dispatch.ledger import Entry, State
+from arboleda.engine import Act, Entry, Plant, State
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.by_class import nearest
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command, Home, Stop, StopMode, Work
 from arboleda.model.messages import (
     CellRevised,
@@ -28,7 +27,6 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import Link, Timing
-from arboleda.trees.leaves import Act
 
 from .recorded.acts import Acts
 from .recorded.boards import Boards, KnownBoard
@@ -499,7 +497,7 @@ class Record:
 
     def _look_at_zones(self, plant: Plant) -> None:
         """Look at the zones, before the cells are taken over: each still has its previous state."""
-        requests = plant.zones.waiting
+        requests = plant.zones.queue.waiting
         if requests != self._requests:
             self._requests, robots = requests, dict(requests)
             users = [user for cell in self._cells for user in cell.zone_users.values()]

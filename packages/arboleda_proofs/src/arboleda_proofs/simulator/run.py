@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from arboleda.core import text as task_text
+from arboleda.model import text as task_text
 from arboleda.model.errors import TextError
 from arboleda.model.messages import ENDED, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import PlantModel

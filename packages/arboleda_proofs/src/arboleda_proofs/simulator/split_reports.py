@@ -13,11 +13,10 @@ from dataclasses import replace
 from functools import partial
 from typing import cast
 
-from arboleda.dispatch.belief import APART_S
 from arboleda.kinds.declared import Device, Effect
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.messages import Report
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.model.plant_model import APART_S, Evidence, Robot
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 

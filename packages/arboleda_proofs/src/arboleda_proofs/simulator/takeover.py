@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from arboleda.core.plant import HEARTBEAT_S, Plant
-from arboleda.dispatch.belief import Belief
-from arboleda.dispatch.ledger import Entry, State
+from arboleda.engine import Belief, Entry, Plant, State
+from arboleda.engine.inspection import HEARTBEAT_S
 from arboleda.model.commands import Command, Position, Stop, StopMode
 from arboleda.model.messages import Heartbeat, MotionState, Report
 from arboleda.model.plant_model import PlantModel, Robot
@@ -109,7 +108,7 @@ def _is_astray(world: World, plant: Plant, name: str) -> bool:
     place = None if board is None else board.body.true_place
     if place is None or belief.position is None:
         return False
-    apart_s = plant.now - belief.position_at + APART_S
+    apart_s = plant.now - belief.stillness.position_at + APART_S
     return not robot.motion.can_have_moved(belief.position, place, apart_s)
 
 

@@ -11,7 +11,7 @@ from itertools import count
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.messages import Event, Heartbeat, OperatorRequest, Report, TaskRequest, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders

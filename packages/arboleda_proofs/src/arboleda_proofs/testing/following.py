@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from arboleda.core import reasons
-from arboleda.core.advice import Advice, Hand, in_words
-from arboleda.core.cell_states import CellState
+from arboleda.engine import reasons
+from arboleda.model.advice import Advice, Hand, in_words
+from arboleda.model.cell_states import CellState
 from arboleda_proofs.simulator.hands import do
 
 from .rig import Rig

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core import text
+from arboleda.model import text
 from arboleda.model.task import Order
 from arboleda.wire.transport import Publication
 from arboleda_proofs.simulator.truth.arm import ArmTruth

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 import pytest
 
 from arboleda.core import advisor
-from arboleda.core.cell_states import CellState
 from arboleda.core.operator import Operator
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda_proofs.simulator.invariants.advice import ADVICE, ENOUGH, no_advice_where_all_is_well
 from arboleda_proofs.simulator.invariants.invariant import Judges, Look

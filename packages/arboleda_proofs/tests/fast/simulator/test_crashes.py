@@ -10,7 +10,7 @@ from itertools import product
 import pytest
 from tests.lengths import length, sample
 
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Fact, Heartbeat, TaskChanged, TaskState, Verb
 from arboleda.plant_file.loader import load

@@ -6,7 +6,7 @@ from tests.unit.kinds.lab import bake
 from tests.unit.kinds.lab import model as bench
 from tests.unit.kinds.tending import plant
 
-from arboleda.core.advice import in_words
+from arboleda.model.advice import in_words
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda_proofs.simulator.faults import KINDS, Fault

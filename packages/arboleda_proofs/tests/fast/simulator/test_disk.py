@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.core.intake import HISTORY
-from arboleda.core.leaving import SYNCED_WITHIN_S
+from arboleda.departures.leaving import SYNCED_WITHIN_S
 from arboleda.model.messages import Fact, Reason, Remember, TaskChanged, TaskState
 from arboleda.model.sentence import OWN
 from arboleda.runtime.memory import kept_tasks, remembered

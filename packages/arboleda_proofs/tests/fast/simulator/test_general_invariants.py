@@ -12,7 +12,6 @@ from tests.unit.kinds.tending import IDS, plant
 from tests.unit.kinds.test_shared_devices import LAMP
 from tests.unit.kinds.test_shared_devices import plant as sharing
 
-from arboleda.core.cell_states import Cause, CellState
 from arboleda.core.cell_steps import WAITS
 from arboleda.core.plant import Plant
 from arboleda.dispatch import evidence
@@ -24,6 +23,7 @@ from arboleda.dispatch.obstacles import Obstacles
 from arboleda.dispatch.outlet import Outlet
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, VerbCall, WorkCall
 from arboleda.kinds.person import person
+from arboleda.model.cell_states import Cause, CellState
 from arboleda.model.commands import OnStop, Process, Query, StopMode
 from arboleda.model.messages import Failure, MotionState, Reason, Report, Verb
 from arboleda.model.plant_model import Cell, Evidence, Interlock, Need, Place, PlantModel

@@ -17,7 +17,6 @@ from arboleda.bt_xml import reading
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.recipe import tree_recipe
 from arboleda.core import cell, people, plant, task_desk, zone_watch
-from arboleda.core.cell_states import CellState
 from arboleda.core.task_queue import TaskQueue
 from arboleda.core.verbs import cancelling
 from arboleda.dispatch import belief, evidence, latches, ledger, obstacles, outlet, time_limits
@@ -25,6 +24,7 @@ from arboleda.dispatch.ledger import TABLE, Feed, State
 from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Fact, Heartbeat, TaskState, Verb
 from arboleda.model.plant_model import Evidence, ForeignCommands, PlantModel, Retry
@@ -577,7 +577,7 @@ def test_no_internal_failure(bites):
 
 def test_sentences_are_for_people(monkeypatch, bites):
     wrong = Phrase("text.form", "KeyError('storage')")
-    monkeypatch.setattr("arboleda.core.text._form", lambda plant: wrong())
+    monkeypatch.setattr("arboleda.model.text._form", lambda plant: wrong())
     watch = Watch()
     watch.task("")
     bites(watch)
@@ -700,7 +700,7 @@ def test_payload_size(bites):
 @pytest.mark.parametrize("q", [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)])
 def test_published_joints_are_reported(monkeypatch, bites, q):
     watch = Watch(slowed(shipped("sis_a"), 4))
-    monkeypatch.setattr(wire_board.Board, "_joints", lambda self, said: q if said.q else None)
+    monkeypatch.setattr(wire_board.Board, "_in_si", lambda self, angles: q)
     watch.task(wait_s=10)
     bites(watch)
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.cell_states import CellState
 from arboleda.dispatch.ledger import State
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import MotionState, Report, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence

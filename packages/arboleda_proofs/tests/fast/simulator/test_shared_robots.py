@@ -9,7 +9,7 @@ from tests.unit.kinds.test_shared_robots import plant
 
 from arboleda.model.messages import TaskState, Verb
 from arboleda.plant_file.loader import load
-from arboleda.trees.cell_devices import CellDevices
+from arboleda.trees.hand_over import HandOver
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.judged import INVARIANTS
 from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
@@ -31,13 +31,13 @@ def test_it_holds() -> None:
 
 
 def test_it_bites_where_the_robot_is_left_anywhere(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(CellDevices, "is_home", lambda self, device: True)
+    monkeypatch.setattr(HandOver, "is_home", lambda self, device: True)
     with pytest.raises(BrokenInvariant, match=f"{RULE}.*robot is given back, and stands at"):
         two_tasks()
 
 
 def test_it_bites_where_the_tool_is_left_with_a_part(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(CellDevices, "may_hold", lambda self, device: False)
+    monkeypatch.setattr(HandOver, "may_hold", lambda self, device: False)
     with pytest.raises(BrokenInvariant, match=f"{RULE}.*jaw is given back, and holds a part"):
         two_tasks("left keep")
 

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 
 import pytest
 
-from arboleda.core import leading
-from arboleda.core.leading import LEASE_S, LOOK_S, Standing
+from arboleda.departures import leading
+from arboleda.departures.leading import LEASE_S, LOOK_S, Standing
 from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState, Verb
 from arboleda.wire.payloads import StopGoal
 from arboleda_proofs.simulator.checks import BadFaults

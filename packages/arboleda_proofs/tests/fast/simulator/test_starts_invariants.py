@@ -15,7 +15,7 @@ from arboleda.core.task_queue import TaskQueue
 from arboleda.model.messages import ENDED, KeptTask, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.task import Task
-from arboleda.trees.walk_back import WalkBack
+from arboleda.resume.walk_back import WalkBack
 from arboleda_proofs.simulator import plant_process
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.faults import KINDS, OF_CRASHES

@@ -7,10 +7,9 @@ from dataclasses import replace
 import pytest
 from tests.cells import with_poses, with_robot
 
-from arboleda.dispatch.belief import APART_S
 from arboleda.model.commands import StopMode
 from arboleda.model.messages import Report, Verb
-from arboleda.model.plant_model import Crossing, Evidence, PlantModel
+from arboleda.model.plant_model import APART_S, Crossing, Evidence, PlantModel
 from arboleda.wire.payloads import HomeGoal, JointsGoal, StopGoal, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication

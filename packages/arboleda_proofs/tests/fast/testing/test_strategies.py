@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hypothesis import given
 
-from arboleda.core.text import parse
+from arboleda.model.text import parse
 from arboleda_proofs.simulator.faults import KINDS, Fault
 from arboleda_proofs.testing import shipped
 from arboleda_proofs.testing.strategies import faults, tasks

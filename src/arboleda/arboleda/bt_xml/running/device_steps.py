@@ -10,14 +10,13 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.bt_xml import values
 from arboleda.bt_xml.nodes import Port
+from arboleda.engine import Act, Await, Failures, Require
 from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Failure
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase
 from arboleda.recipes.handles import Ask, FactCheck, FactWait, Question
-from arboleda.trees.failures import Failures
-from arboleda.trees.leaves import Act, Await, Require
 
 from . import memory
 from .memory import Scope

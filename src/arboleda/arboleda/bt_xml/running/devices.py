@@ -11,6 +11,7 @@ from typing import Any
 from arboleda.bt_xml import forest, leaves, values
 from arboleda.bt_xml.nodes import Kind, PortDirection
 from arboleda.bt_xml.values import Variable
+from arboleda.engine import Act, Context, Require, framed, titled
 from arboleda.kinds.declared import Device
 from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, Reason
@@ -20,9 +21,6 @@ from arboleda.model.sentence import Phrase
 from arboleda.recipes.errors import RecipeError
 from arboleda.recipes.handles import Handle, PersonHandle, RobotHandle, Step, handle, question_of
 from arboleda.recipes.nodes import WrittenNode
-from arboleda.trees.context import Context
-from arboleda.trees.leaves import Act, Require, titled
-from arboleda.trees.steps import framed
 
 from . import place_steps
 from .device_steps import DeviceStep, FactStep, Order, QuestionStep, can_be_renewed, example_of, value_of

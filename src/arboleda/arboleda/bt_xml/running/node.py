@@ -14,7 +14,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.bt_xml.findings import Place
-from arboleda.trees.trail import Keeps
+from arboleda.engine import Keeps
 
 from .memory import Scope
 from .scripts import Script

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from arboleda.engine import Failures
 from arboleda.model.messages import Failure
 from arboleda.recipes.nodes import WrittenNode
-from arboleda.trees.failures import Failures
 
 from .device_steps import Order, as_variable
 from .leaves import Leaf

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from arboleda.bt_xml import leaves
+from arboleda.engine import Context, Places, Require
 from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase
 from arboleda.recipes.handles import Step
 from arboleda.recipes.place_questions import HAS_PART, HAS_ROOM, PlaceHandle
-from arboleda.trees.context import Context
-from arboleda.trees.leaves import Require
-from arboleda.trees.part_places import Places
 
 NO_PART = Phrase("xml.no_part", "no part is at {place}")
 NO_ROOM = Phrase("xml.no_room", "{place} has no room for another part")

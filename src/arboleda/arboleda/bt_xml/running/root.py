@@ -10,13 +10,12 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from arboleda.engine import Failures, failure_kept, read_failure
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase
 from arboleda.recipes.authoring import FINAL
 from arboleda.recipes.decorators import NO_RESCUE, with_second
 from arboleda.recipes.holding import Take, used
-from arboleda.trees.failures import Failures
-from arboleda.trees.trail import failure_kept, read_failure
 
 from .controls import InSequence, TryCatch
 from .decorators import SubTree

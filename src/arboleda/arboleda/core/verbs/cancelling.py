@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
+from arboleda.model.cell_states import Cause, CellState
 from arboleda.model.messages import Failure, OperatorRequest, Reason, TaskState
 from arboleda.model.sentence import Phrase, Sentence
 
 from ..cell import CellRun
-from ..cell_states import Cause, CellState
 from ..intake import Intake
 from .cell_by_cell import CellByCell, Doing, in_states
 from .scopes import Scopes, VerbRefusal

@@ -6,13 +6,13 @@ from collections.abc import Callable
 from functools import partial, reduce
 
 from arboleda.dispatch.ledger import Entry
+from arboleda.model.advice import OR
+from arboleda.model.cell_states import CellState
 from arboleda.model.errors import IllegalTransition
 from arboleda.model.messages import OperatorRequest
 from arboleda.model.sentence import Phrase, Sentence
 
-from ..advice import OR
 from ..cell import CellRun
-from ..cell_states import CellState
 from .scopes import VerbRefusal
 
 OTHER_STATE = Phrase("refusal.other_state", "{cell} is {state}; this needs a cell that is {allowed}")

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from functools import reduce
 
+from arboleda.model.advice import AND, DO
+from arboleda.model.cell_states import Cause, CellState
 from arboleda.model.messages import Failure, Reason, Verb
 from arboleda.model.sentence import Phrase, Sentence
 
 from .. import reasons
-from ..advice import AND, DO
 from ..cell import CellRun
-from ..cell_states import Cause, CellState
 from .cell_by_cell import in_states
 
 NOT_AT_WORK = Phrase("refusal.not_at_work", "{cell} is {state}; only a cell at work can be held")

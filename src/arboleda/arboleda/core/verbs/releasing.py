@@ -7,13 +7,13 @@ from functools import partial
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.zones import Zones
+from arboleda.model.advice import sentence
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import OperatorRequest
 from arboleda.model.sentence import Phrase, Sentence
 
 from .. import losses
-from ..advice import sentence
 from ..cell import CellRun
-from ..cell_states import CellState
 from ..readiness import STILL_DOING
 from .cell_by_cell import CellByCell, Doing
 from .homing import WITH_OTHER

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.zones import NONE, Zones
+from arboleda.model.cell_states import CellState
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, Verb
 from arboleda.model.outside import quoted
@@ -12,7 +13,6 @@ from arboleda.model.sentence import Phrase, Value
 from arboleda.model.verbs import Scope
 
 from ..cell import CellRun
-from ..cell_states import CellState
 from ..intake import Intake
 
 PLANT = Phrase("scope.plant", "plant")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.model.cell_states import Cause, CellState
 from arboleda.model.sentence import Phrase, Sentence
 
 from ..cell import CellRun
-from ..cell_states import Cause, CellState
 
 STAYS_STOPPED = Phrase(
     "refusal.stays_stopped", "{device} stays stopped while {cells} is; clear {cells} first"
@@ -45,7 +45,8 @@ class Stops:
         finishes = self._dispatcher.ledger.finishes
         mine = [each.name for each in cell.cell.robots if each.name in robots and not finishes(each.name)]
         beliefs = [self._dispatcher.beliefs[name] for name in mine]
-        moving = tuple(belief.robot.name for belief in beliefs if belief.online and not belief.still)
+        online = [belief for belief in beliefs if belief.online]
+        moving = tuple(belief.robot.name for belief in online if not belief.stillness.is_still)
         return NOT_STILL(robots=moving) if moving else None
 
     def clear(self, cell: CellRun, robots: frozenset[str]) -> None:

@@ -13,7 +13,7 @@ from uuid import uuid4
 
 from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.adapters.webhook import NotDelivered, Webhook
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.views import alarms

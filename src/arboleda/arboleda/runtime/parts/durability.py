@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from arboleda.adapters import clock
-from arboleda.core.leaving import MOST_UNSYNCED_S, SYNCED_WITHIN_S
+from arboleda.departures.leaving import MOST_UNSYNCED_S, SYNCED_WITHIN_S
 from arboleda.store.plant_memory import PlantMemory
 
 

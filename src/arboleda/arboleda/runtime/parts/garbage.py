@@ -6,7 +6,7 @@ import gc
 import math
 
 from arboleda.adapters import clock
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 
 MOST_YOUNG = 10_000  # objects at which Python collects by itself, as where the plant's thread hangs
 SHARE = 0.01  # of the time for collections of everything, at most: one of a large plant takes 0.1 s

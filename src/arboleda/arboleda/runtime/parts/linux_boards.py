@@ -14,6 +14,7 @@ from arboleda.kinds.arm import Arm
 from arboleda.model.errors import StartError
 from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_model import Evidence, Link, PlantModel
+from arboleda.sim.starts import supplies_of
 from arboleda.wire.units import to_wire
 
 from .broker_survey import BrokerSurvey
@@ -100,7 +101,7 @@ class LinuxBoards:
         yield from ("--robot", robot.mqtt, "--broker", str(self._broker.address), "--until-eof")
         yield from ("--level", robot.evidence.value)
         yield f"--at={_pose(robot, home.joints)}"
-        for place in dict.fromkeys(pose.joints for pose in cell.supplies(robot.name)):
+        for place in dict.fromkeys(pose.joints for pose in supplies_of(cell, robot.name)):
             yield f"--place={_pose(robot, place)}"
         if robot.assume_homed:
             yield "--assume-homed"

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.errors import QueueFull
 from arboleda.model.messages import Event, OperatorAnswer, TaskChanged, Verb
 from arboleda.model.plant_model import PlantModel

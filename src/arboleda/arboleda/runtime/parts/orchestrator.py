@@ -12,9 +12,8 @@ from typing import Any, NamedTuple, Protocol
 from uuid import uuid4
 
 from arboleda.adapters import clock
-from arboleda.core import reasons
-from arboleda.core.leading import Standing, may_leave
-from arboleda.core.leaving import (
+from arboleda.departures.leading import Standing, may_leave
+from arboleda.departures.leaving import (
     SENT_TOO_LATE,
     StopLeft,
     Unkept,
@@ -26,8 +25,7 @@ from arboleda.core.leaving import (
     leaves_unkept,
     stop_left,
 )
-from arboleda.core.plant import Plant
-from arboleda.dispatch.fact_memory import Memory
+from arboleda.engine import Memory, Plant, reasons
 from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import (

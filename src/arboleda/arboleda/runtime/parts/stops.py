@@ -9,8 +9,8 @@ from typing import Any, NamedTuple, TypeGuard
 from uuid import uuid4
 
 from arboleda.adapters import clock
-from arboleda.core.leaving import OVERTAKEN, Unkept, ends_motion
-from arboleda.core.stop_lane import Blocked, Closed, Departed, Happened, Opened, Overrun, StopLane
+from arboleda.departures.leaving import OVERTAKEN, Unkept, ends_motion
+from arboleda.departures.stop_lane import Blocked, Closed, Departed, Happened, Opened, Overrun, StopLane
 from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Notice, OperatorAnswer, OperatorRequest

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import fields
 from operator import attrgetter
 
-from arboleda.core.cell_states import CellState
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import Evidence
 

@@ -6,10 +6,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, create_model, model_validator
 
-from arboleda.core.cell_states import CellState
-from arboleda.core.text import BETWEEN_CELLS
+from arboleda.model.cell_states import CellState
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Outcome, Verb
+from arboleda.model.text import BETWEEN_CELLS
 from arboleda.model.verbs import Arguments
 from arboleda.store.task_rows import TaskQuery
 from arboleda.views.verb_words import ABOUT

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from arboleda.core import text
+from arboleda.model import text
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.plant_file.urdf import robot_urdf

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Hashable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
-from arboleda.dispatch.ledger import Entry
+from arboleda.engine import Entry
 from arboleda.kinds.declared import QueryCall
 from arboleda.model.commands import Command, Question
 from arboleda.model.facts import Value

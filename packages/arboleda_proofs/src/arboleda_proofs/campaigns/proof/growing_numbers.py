@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from arboleda.core.plant import SETTLES_IN
-from arboleda.dispatch.belief import Belief
+from arboleda.engine import Belief
+from arboleda.engine.inspection import SETTLES_IN, Stillness
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.sim.freshness import Freshness
@@ -31,13 +31,10 @@ TOLD, HEARD = (TELEMETRY, True), (TELEMETRY, False)
 SORTS: dict[type, dict[str, tuple[str, bool]]] = {
     Belief: {
         "reports": COUNTED,
-        "position_no": NOTED,
-        "state_no": NOTED,
         "facts_no": NOTED,
-        "_still_from": NOTED,
-        "_rested_from": NOTED,
         "number": HEARD,
     },
+    Stillness: {"_position_no": NOTED, "_state_no": NOTED, "_still_from": NOTED, "_rested_from": NOTED},
     Uplink: {"sent": TOLD},
     Freshness: {"_last_number": HEARD},
     BoardLink: {"number": HEARD},

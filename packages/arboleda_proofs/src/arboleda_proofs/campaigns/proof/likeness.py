@@ -16,17 +16,15 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.core.news import News
-from arboleda.core.plant import Plant
-from arboleda.dispatch.belief import Belief, Moment
-from arboleda.dispatch.ledger import Entry, Ledger
+from arboleda.engine import Belief, Entry, Plant
+from arboleda.engine.inspection import Ledger, Moment, News
 from arboleda.kinds.declared import DeviceKind
 from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.model.recipe import Recipe
 from arboleda.model.sentence import Phrase
 from arboleda.sim.board import Board
 from arboleda.sim.freshness import Freshness
-from arboleda.wire.board import Board as BridgedBoard
+from arboleda.wire.board_reports import BoardReports
 from arboleda.wire.bridge import Bridge
 from arboleda_proofs.simulator.network import Client, Line
 from arboleda_proofs.simulator.world import World
@@ -55,12 +53,12 @@ LEFT_OUT: dict[type, frozenset[str]] = {
     Plant: frozenset({"revisions"}),  # numbers that say to a page that there is something new
     News: frozenset({"changes"}),
     Ledger: frozenset({"version"}),
-    Belief: frozenset({"rate_hz", "_counted"}),  # how often a board speaks, which is shown and no more
+    Belief: frozenset({"rate"}),  # how often a board speaks, which is shown and no more
     Entry: frozenset({"accepted_at", "observations"}),  # said by `_parts`, as far as it is asked for
     Freshness: frozenset({"_marks"}),  # said by `_parts`
     Board: frozenset({"refusals"}),  # for people
     Bridge: frozenset({"_strays"}),  # what was refused, for people
-    BridgedBoard: frozenset({"counters"}),
+    BoardReports: frozenset({"counters"}),
     Behaviour: frozenset({"id"}),  # drawn anew for each tree
     Line: frozenset({"busy_until"}),  # said as how long that still is
     Client: frozenset({"queue"}),  # said by `_parts` while something is under way, which names its queue

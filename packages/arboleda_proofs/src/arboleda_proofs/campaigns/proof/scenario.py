@@ -7,16 +7,14 @@ from dataclasses import dataclass, replace
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.core.plant import Plant
+from arboleda.engine import Act, Context, Leaf, Plant
 from arboleda.model.commands import Motion
 from arboleda.model.facts import Value, shown
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.model.task import Order
+from arboleda.model.tree_nodes import nodes_of
 from arboleda.plant_file.recipe_check import orders
-from arboleda.trees.context import Context
-from arboleda.trees.leaves import Act, Leaf
-from arboleda.trees.tree_nodes import nodes_of
 
 MOST_CLASSES = 32  # of one recipe
 

@@ -7,10 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from hashlib import blake2b
 
-from arboleda.core.cell import CellRun
-from arboleda.core.cell_states import CellState
-from arboleda.core.plant import Plant
-from arboleda.dispatch.ledger import Entry
+from arboleda.engine import CellRun, Entry, Plant
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.model.task import Order

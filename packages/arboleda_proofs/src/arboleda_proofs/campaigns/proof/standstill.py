@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from arboleda.core.cell import CellRun
+from arboleda.engine import CellRun
 from arboleda.model.messages import Heartbeat
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 

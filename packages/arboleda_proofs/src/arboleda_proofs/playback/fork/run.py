@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
-from arboleda.core.cell_states import CellState
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
+from arboleda.model.cell_states import CellState
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Event
 from arboleda.model.plant_model import Evidence, Link, PlantModel

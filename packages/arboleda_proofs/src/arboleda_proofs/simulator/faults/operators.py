@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from arboleda.core.intake import HISTORY
+from arboleda.engine import HISTORY
 from arboleda.model.facts import shown
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import Cell, PlantModel

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from arboleda.core.teaching import Teaching
+from arboleda.engine import Teaching
 from arboleda.model.commands import Position
 from arboleda.model.messages import Jog, Verb
 from arboleda.model.plant_model import PlantModel, Robot

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from arboleda.core.plant import Plant
+from arboleda.engine import Plant
 from arboleda.model.messages import Event
 from arboleda.wire.bridge import Bridge
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from arboleda.core.leading import LEASE_S, WANTED_S
+from arboleda.departures.leading import LEASE_S, WANTED_S
 from arboleda.model.messages import Notice
 
 from ..disk import Disk, DiskFull

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from arboleda.core.leading import Standing, may_leave
-from arboleda.core.leaving import is_too_late
+from arboleda.departures.leading import Standing, may_leave
+from arboleda.departures.leaving import is_too_late
 from arboleda.model.commands import Command
 from arboleda.model.messages import Heartbeat, Report, Shutdown
 from arboleda.wire.hop import FromPlant

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core.leading import LOOK_S, RENEW_S, Standing, all_stand, at_work, may_leave
+from arboleda.departures.leading import LOOK_S, RENEW_S, Standing, all_stand, at_work, may_leave
 from arboleda.model.commands import Command
 from arboleda.model.messages import Heartbeat, OperatorRequest, Verb
 

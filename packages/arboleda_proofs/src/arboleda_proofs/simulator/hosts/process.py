@@ -6,7 +6,7 @@ from collections import Counter
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from arboleda.core.leading import Lease, Silence, Standing
+from arboleda.departures.leading import Lease, Silence, Standing
 
 if TYPE_CHECKING:
     from .database import LeaderRow

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.core import reasons
-from arboleda.core.advice import in_words
+from arboleda.engine import reasons
+from arboleda.model.advice import in_words
 
 from .invariant import Look, Trigger, invariant
 

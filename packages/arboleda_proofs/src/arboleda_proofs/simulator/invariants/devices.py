@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.dispatch.ledger import State
+from arboleda.engine import State
 from arboleda.model.commands import Command, Home, Motion, Query, Question, Stop, StopMode
 from arboleda.model.messages import Fact, MotionState, OperatorRequest, Reason, Remember, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Robot

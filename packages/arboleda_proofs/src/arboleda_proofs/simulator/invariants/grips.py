@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core import text
+from arboleda.model import text
 from arboleda.model.messages import Check
 from arboleda.model.plant_model import Evidence
+from arboleda.sim.starts import supplies_of
 
 from ..truth.arm import ArmTruth
 from ..truth.grips import Effector, Switching
@@ -133,7 +134,7 @@ def _is_excused(look: Look, switching: Switching) -> bool:
 
 def _lies_ready(arm: ArmTruth) -> bool:
     """True where a part lay where an arm stands, or stood before it moved on in this step."""
-    names = {pose.name for pose in arm.cell.supplies(arm.robot.name)}
+    names = {pose.name for pose in supplies_of(arm.cell, arm.robot.name)}
     return not names.isdisjoint(arm.stood | arm.reaches)
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core import reasons
-from arboleda.core.cell_states import CellState
+from arboleda.engine import reasons
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Fact, MotionState
 from arboleda.model.plant_model import Evidence, Link, Pose, Workspace
 from arboleda.sim.board import Board
@@ -143,7 +143,7 @@ def _stands_at(look: Look, space: Workspace, poses: list[Pose]) -> bool:
     if robot.evidence is Evidence.IDS and robot.has_stop and known.unnamed is not None:
         return False
     # the plant's evidence judges if what it told of its place may be older than its last stop
-    if not look.world.plant.dispatcher.beliefs[robot.name].is_sure:
+    if not look.world.plant.dispatcher.beliefs[robot.name].stillness.is_sure:
         return False
     points = [point for pose in poses for point in (pose.q, pose.above) if point is not None]
     here = known.node if known.q is None else known.q
@@ -182,7 +182,7 @@ def at_rest_at_end(look: Look) -> Iterable[str]:
     for zone in look.world.model.zones:
         if (robot := zones.holder(zone)) is not None and not _is_in_the_way(look, robot, zone):
             yield f"{robot} holds {zone}{', quarantined' if zones.is_quarantined(zone) else ''}"
-    for robot, _ in zones.waiting:
+    for robot, _ in zones.queue.waiting:
         yield f"{robot} waits for zones"
     yield from _restless(look)
 

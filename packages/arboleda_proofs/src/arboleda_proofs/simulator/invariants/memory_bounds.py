@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core.intake import HISTORY
-from arboleda.dispatch.ledger import Feed
+from arboleda.engine import HISTORY
+from arboleda.engine.inspection import Feed
 from arboleda.wire.labels import REMEMBERED
 
 from .invariant import Look, Trigger, invariant
@@ -47,7 +47,7 @@ def _plant(look: Look) -> Iterator[Row]:
     yield "tasks", len(plant.intake.tasks), HISTORY + waiting
     cells = look.world.model.cells
     users = sum(len(cell.zone_users) + len(cell.interlocked) + bool(cell.shared) for cell in cells)
-    yield "waiting for zones", len(plant.zones.waiting), users
+    yield "waiting for zones", len(plant.zones.queue.waiting), users
     for name, cell in plant.cells.items():
         yield f"queue of {name}", len(cell.queue), cell.cell.queue_limit
         yield f"wakes of {name}", len(cell.context.time.wakes), WAKES

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from arboleda.core import text
+from arboleda.model import text
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Fact
 from arboleda.model.plant_model import Cell

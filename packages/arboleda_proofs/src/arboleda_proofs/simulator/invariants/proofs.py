@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core.leaving import WORTH_TELLING_S
-from arboleda.dispatch.ledger import State
+from arboleda.departures.leaving import WORTH_TELLING_S
+from arboleda.engine import State
 from arboleda.model.commands import Query, Switch
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import Evidence

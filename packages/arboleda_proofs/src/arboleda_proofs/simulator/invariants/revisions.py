@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.core import text
-from arboleda.core.cell_states import CellState
+from arboleda.model import text
+from arboleda.model.cell_states import CellState
 from arboleda.model.errors import TextError
 from arboleda.model.messages import CellRevised, RevisionAnswer, TaskChanged, TaskState
 from arboleda.model.plant_model import PlantModel

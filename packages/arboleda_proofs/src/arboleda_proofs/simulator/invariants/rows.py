@@ -9,19 +9,29 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.core.advice import Advice, sentence
-from arboleda.core.reasons import HELD, HELD_STRANDED
-from arboleda.dispatch.belief import FAULTY, FENCED, MOVING, OFFLINE, STOPPED, UNANSWERED, UNHEARD, UNHOMED
-from arboleda.dispatch.ledger import OPEN, State
+from arboleda.engine import OPEN, State
+from arboleda.engine.inspection import (
+    FAULTY,
+    FENCED,
+    HELD,
+    HELD_STRANDED,
+    IN_RECOVERY,
+    MOVING,
+    OFFLINE,
+    STOPPED,
+    UNANSWERED,
+    UNHEARD,
+    UNHOMED,
+)
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.advice import Advice, sentence
 from arboleda.model.commands import Position
 from arboleda.model.messages import ENDED, MotionState, Reason, TaskChanged
 from arboleda.model.plant_model import Cell, Robot
 from arboleda.model.recipe import Recipe
 from arboleda.model.sentence import Phrase, Sentence
-from arboleda.trees.tree_nodes import nodes_of
-from arboleda.trees.tree_run import IN_RECOVERY
+from arboleda.model.tree_nodes import nodes_of
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand

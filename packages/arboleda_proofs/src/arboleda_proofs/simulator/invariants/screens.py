@@ -10,17 +10,17 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.core.cell_states import CellState
-from arboleda.dispatch.ledger import OPEN, State
+from arboleda.engine import OPEN, State
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.model.cell_states import CellState
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import OperatorRequest
 from arboleda.model.plant_model import Evidence, Robot
 from arboleda.model.sentence import OWN
+from arboleda.model.tree_nodes import nodes_of
 from arboleda.model.verbs import Scope, refusable
-from arboleda.trees.tree_nodes import nodes_of
 from arboleda.views import diagnostics, geometry, twin_view, view
 from arboleda.wire import status
 
@@ -187,7 +187,7 @@ def _zone(look: Look, zone: str) -> Row:
     zones = look.world.plant.zones
     robot = zones.holder(zone)
     word = "free" if robot is None else "quarantined" if zones.is_quarantined(zone) else "held"
-    waiting = [name for name, wanted in zones.waiting if zone in wanted]
+    waiting = [name for name, wanted in zones.queue.waiting if zone in wanted]
     return {"zone": zone, "state": word, "robot": robot, "waiting": waiting}
 
 

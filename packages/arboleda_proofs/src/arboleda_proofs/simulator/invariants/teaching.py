@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from arboleda.core.teaching import HOLD_S
+from arboleda.engine.inspection import HOLD_S
 from arboleda.kinds.joints import Jointed
 from arboleda.kinds.joints.motion import STRIDE_S
 from arboleda.model.by_class import nearest

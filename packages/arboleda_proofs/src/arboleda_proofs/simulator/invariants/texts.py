@@ -6,11 +6,11 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from arboleda.core.text import FORM, UNKNOWN_BUT_NEAR
 from arboleda.model.messages import TaskChanged, TaskRequest, TaskState
 from arboleda.model.plant_model import Cell, Link, PlantModel
 from arboleda.model.recipe import Parameter, Recipe
 from arboleda.model.sentence import Value
+from arboleda.model.text import FORM, UNKNOWN_BUT_NEAR
 
 from ..task_words import task_words
 from .invariant import Look, Trigger, invariant

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
-from arboleda.core.cell_states import CellState
-from arboleda.dispatch.ledger import OPEN, State
+from arboleda.engine import OPEN, State
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command, Home, Stop, StopMode, Switch
 from arboleda.model.common_places import with_common_places
 from arboleda.model.messages import Fact, Journal, OperatorAnswer, OperatorRequest, Outcome, TaskState, Verb

@@ -7,14 +7,12 @@ from itertools import dropwhile
 
 from py_trees.common import Status
 
-from arboleda.core.cell import CellRun
-from arboleda.core.cell_states import CellState
-from arboleda.dispatch.ledger import State
+from arboleda.engine import CellRun, State, TakeDevices, TakeZones
 from arboleda.kinds.joints import MoveJoints
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Position
 from arboleda.model.plant_model import Cell, Evidence, Pose, Workspace
 from arboleda.model.sentence import Sentence
-from arboleda.trees.leaves import TakeDevices, TakeZones
 
 from ..recorded.commands import SentCommand
 from ..recorded.zone_users import ZoneUser

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.task import Task
 from arboleda.model.verbs import as_text

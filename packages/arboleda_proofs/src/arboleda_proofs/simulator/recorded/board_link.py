@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from arboleda.dispatch.belief import Belief
+from arboleda.engine import Belief
 from arboleda.model.plant_model import Evidence, Robot
 
 

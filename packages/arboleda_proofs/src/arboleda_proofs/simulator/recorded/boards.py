@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from arboleda.dispatch.belief import Belief
+from arboleda.engine import Belief
 from arboleda.kinds.joints import Joint
 from arboleda.model.plant_model import Robot
 from arboleda.sim.board import Board

@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from arboleda.dispatch.belief import Belief
+from arboleda.engine import Belief
 from arboleda.model.commands import Command
 from arboleda.model.messages import Heartbeat, Report
 from arboleda.model.plant_model import Link, PlantModel

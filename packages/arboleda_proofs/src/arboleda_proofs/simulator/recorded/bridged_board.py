@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 
-from arboleda.dispatch.belief import Belief
+from arboleda.engine import Belief
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Evidence, Robot

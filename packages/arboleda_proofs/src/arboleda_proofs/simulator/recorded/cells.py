@@ -9,9 +9,8 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.core.cell import CellRun
+from arboleda.engine import Act, CellRun
 from arboleda.model.plant_model import Cell, Timing
-from arboleda.trees.leaves import Act
 
 from .starts import turn_of
 from .zone_users import PAUSED, ZoneUser, running

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from statistics import median
 
-from arboleda.core import text
-from arboleda.core.cell import CellRun
-from arboleda.core.cell_states import CellState
-from arboleda.core.choosing import LAST, UNKNOWN_S
+from arboleda.engine import CellRun
+from arboleda.engine.inspection import LAST, UNKNOWN_S
+from arboleda.model import text
+from arboleda.model.cell_states import CellState
 from arboleda.model.errors import TextError
 from arboleda.model.messages import Course, Fact, TaskRequest, TaskState
 from arboleda.model.task import Order, Task

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections import deque
 
-from arboleda.dispatch.ledger import OPEN, Entry, Ledger, State
+from arboleda.engine import OPEN, Entry, State
+from arboleda.engine.inspection import Ledger
 from arboleda.kinds.declared import WorkCall
 from arboleda.model.commands import Command, Motion, OnStop, Stop, StopMode, Switch, Work
 from arboleda.model.messages import Heartbeat, MotionState, Report, Verb

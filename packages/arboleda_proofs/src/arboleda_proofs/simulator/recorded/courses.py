@@ -9,10 +9,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.core.plant import Plant
+from arboleda.engine import RECOVERY, Act, Await, Dwell, Plant
 from arboleda.model.messages import Course
-from arboleda.trees.leaves import Act, Await, Dwell
-from arboleda.trees.steps import RECOVERY
 
 from .starts import turns_of
 

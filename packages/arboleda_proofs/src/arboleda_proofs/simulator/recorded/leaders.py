@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from arboleda.core.leading import Standing
+from arboleda.departures.leading import Standing
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import ENDED, Heartbeat, TaskChanged, TaskState
 from arboleda.wire.payloads import Goal

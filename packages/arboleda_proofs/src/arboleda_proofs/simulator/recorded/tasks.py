@@ -6,7 +6,7 @@ from collections import OrderedDict
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from arboleda.core.intake import HISTORY
+from arboleda.engine import HISTORY
 from arboleda.model.messages import KeptTask, TaskChanged, TaskState
 from arboleda.model.sentence import NOTHING
 from arboleda.model.task import UNCHECKED

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.oee.figures import Downtime, Run
 
 from .cells import KnownCell

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from arboleda.core.cell_states import CellState
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import OperatorRequest, TaskState
 from arboleda.model.sentence import Sentence
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.core.cell import CellRun
-from arboleda.core.cell_states import CellState
+from arboleda.engine import CellRun, TakeZones
+from arboleda.model.cell_states import CellState
 from arboleda.model.plant_model import Workspace
-from arboleda.trees.leaves import TakeZones
 
 from .commands import SentCommand
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.dispatch.belief import APART_S
-from arboleda.dispatch.ledger import Entry, State
+from arboleda.engine import Entry, State
 from arboleda.model.commands import Command
+from arboleda.model.plant_model import APART_S
 
 from ..world import BRIDGE, World
 

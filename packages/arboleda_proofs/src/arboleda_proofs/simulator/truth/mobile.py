@@ -7,6 +7,7 @@ from arboleda.model.commands import Position
 from arboleda.model.plant_model import Cell
 from arboleda.sim.board import Board
 from arboleda.sim.mobile import MobileBody
+from arboleda.sim.starts import start_of
 from arboleda.wire.payloads import PathGoal
 
 from ..network import Client
@@ -31,7 +32,7 @@ class MobileTruth(RobotTruth):
         space = cell.workspaces.get(robot.name)
         self._poses = space.poses if space else ()
         self.here, self.zones = self._located()
-        self._reference = cell.start_of(robot.name) or 0  # where homing ends
+        self._reference = start_of(cell, robot.name) or 0  # where homing ends
 
     @property
     def strayed(self) -> bool:

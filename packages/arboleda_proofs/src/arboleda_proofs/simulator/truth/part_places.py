@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from arboleda.core import text
-from arboleda.dispatch.ledger import Entry
+from arboleda.engine import Entry
+from arboleda.engine.inspection import EMPTY, trouble_in
+from arboleda.model import text
 from arboleda.model.commands import Position
 from arboleda.model.common_places import with_common_places
 from arboleda.model.grips import Grip
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Cell, Evidence, Place, Robot, Workspace
 from arboleda.model.recipe import Recipe
-from arboleda.trees.part_places import EMPTY, trouble_in
 
 from ..recorded.scopes import Scopes
 from ..world import World

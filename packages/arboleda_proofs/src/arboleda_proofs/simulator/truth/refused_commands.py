@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core.plant import Plant
-from arboleda.dispatch.ledger import Entry
+from arboleda.engine import Entry, Plant
 
 
 class RefusedCommands:

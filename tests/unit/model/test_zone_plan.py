@@ -11,8 +11,8 @@ from tests.cells import with_poses
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Crossing, Pose, Workspace
+from arboleda.model.zone_plan import Leg, entered, passed, plan, recovery_zones
 from arboleda.plant_file.storage_form import plan_problems
-from arboleda.trees.zone_plan import Leg, entered, passed, plan, recovery_zones
 from arboleda_proofs.testing import shipped
 from arboleda_proofs.testing.storage_layout import StorageLayout
 

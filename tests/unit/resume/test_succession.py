@@ -12,9 +12,9 @@ from py_trees.common import ParallelPolicy
 from py_trees.composites import Parallel, Selector, Sequence
 from py_trees.decorators import Inverter
 
+from arboleda.model.step_token import StepToken, hash_of
+from arboleda.resume.succession import steps_between
 from arboleda.trees.leaves import Act, Carry, Dwell, Note, TakeZones
-from arboleda.trees.step_token import StepToken, hash_of
-from arboleda.trees.succession import steps_between
 
 CONTEXT: Any = SimpleNamespace(
     time=None, failures=None, zones=None, cell=SimpleNamespace(zone_wait_s=1.0), timing=None

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.leaving import STILL_WAITS, StopLeft, Unkept, departure, done_at_once
 from arboleda.core.plant import Plant
-from arboleda.core.stop_lane import (
+from arboleda.departures.leaving import STILL_WAITS, StopLeft, Unkept, departure, done_at_once
+from arboleda.departures.stop_lane import (
     KEPT_S,
     Blocked,
     Closed,

@@ -8,10 +8,10 @@ import math
 from collections.abc import Iterable, Mapping
 from enum import Enum
 
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command
 from arboleda.model.messages import Notice
 
-from .cell_states import CellState
 from .leaving import leaves_unkept
 
 LEASE_S = 2.5  # by the clock of who waits: who did not say for so long that he leads may be superseded

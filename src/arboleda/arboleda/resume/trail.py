@@ -15,37 +15,15 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.dispatch.belief import Belief
-from arboleda.dispatch.ledger import Entry, State
-from arboleda.model.by_class import nearest
-from arboleda.model.commands import Command, Motion, Position, Query, Switch, Work
-from arboleda.model.messages import Check, Failure, Reason, Receipt, TaskAnswer
+from arboleda.model.commands import Position
+from arboleda.model.messages import Check, Failure, Receipt, TaskAnswer
 from arboleda.model.sentence import Sentence, retold
+from arboleda.trees.cell_robots import Planned
+from arboleda.trees.node_state import Keeps, failure_kept, read_failure
 
 VERSION = 3
 STATUSES = {status.value[0]: status for status in Status}
-MOTION, PROCESS, SWITCH, QUERY, OTHER = "motion", "process", "switch", "query", "other"
-EFFECTS = {Motion: MOTION, Work: PROCESS, Switch: SWITCH, Query: QUERY, Command: OTHER}
 REMEMBERS = composites.Sequence | composites.Selector | composites.Parallel
-
-
-class Keeps:
-    """A node of ours: what is kept of it for the next start, and how it goes on then.
-
-    `ends_unkept`: nothing but its status is kept of it unless it is RUNNING.
-    """
-
-    ends_unkept = False
-    status: Status
-
-    def kept(self) -> Mapping[str, Any] | None:
-        """The state that has to be kept of it beside its status."""
-        return None
-
-    def restore(self, state: Mapping[str, Any]) -> None:
-        """Take over what was kept."""
-
-    def begin_anew(self) -> None:
-        """Begin once more: times count from now."""
 
 
 class Knowledge(NamedTuple):
@@ -74,14 +52,6 @@ class Knowledge(NamedTuple):
             return 0 <= now.accepted - before.accepted <= most
         # it counted from 1; a later bridge had commands of a later start, whose steps a power cut has undone
         return now.epoch == self.bridge and now.accepted <= most
-
-
-@dataclass(frozen=True, kw_only=True)
-class Planned:
-    """Places of the robots when the tree was made, by which its recipe may have planned."""
-
-    standing: Mapping[str, str]  # the zone-free poses of those with shared zones, by name
-    positions: Mapping[str, Position]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -204,33 +174,6 @@ def put_back(nodes: Sequence[Behaviour], trail: Trail) -> list[Keeps]:
         elif not isinstance(node, Keeps):
             raise ValueError(f"nobody knows how a step of the kind {type(node).__name__} goes on")
     return [node for node in under_way if isinstance(node, Keeps)]
-
-
-def command_kept(entry: Entry | None) -> dict[str, Any] | None:
-    """The record of the last command of a step; None where none may have left."""
-    if entry is None or not entry.left:
-        return None
-    command = entry.command
-    return {
-        "robot": command.robot,
-        "effect": nearest(EFFECTS, type(command)),
-        "goal": entry.way[-1] if entry.way else None,
-        "sets": entry.sets,
-        "grips": command.grips if isinstance(command, Switch) else None,
-        "before": entry.before,
-        "number": entry.number,
-        "done": entry.state is State.DONE,
-    }
-
-
-def failure_kept(failure: Failure) -> Any:
-    """A failure as it is kept."""
-    return [failure.reason.value, str(failure.sentence), failure.sentence.data()]
-
-
-def read_failure(reason: str, english: str, data: Any) -> Failure:
-    """A failure as it was kept."""
-    return Failure(reason=Reason(reason), sentence=retold(english, data))
 
 
 def _plain(value: Failure | Sentence | TaskAnswer) -> Any:

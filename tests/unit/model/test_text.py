@@ -7,10 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.cells import with_robot
 
-from arboleda.core.text import parse
 from arboleda.model.errors import TextError
 from arboleda.model.plant_model import Link
 from arboleda.model.task import Order
+from arboleda.model.text import parse
 from arboleda_proofs.testing import shipped
 
 SHIPPED = shipped()

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.cell_states import CellState
-from arboleda.core.leading import (
+from arboleda.departures.leading import (
     LEASE_S,
     SURE_S,
     Lease,
@@ -15,6 +14,7 @@ from arboleda.core.leading import (
     at_work,
     may_leave,
 )
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Home, Stop, StopMode
 from arboleda.model.messages import Heartbeat
 

@@ -10,13 +10,15 @@ from arboleda.model.commands import Process
 from arboleda.model.messages import Failure
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.task import Order
+from arboleda.model.tree_nodes import nodes_of
+from arboleda.trees.cell_robots import Planned
+from arboleda.trees.context import Context
+from arboleda.trees.leaves import Act, Await, Dwell
+from arboleda.trees.node_state import SWITCH
+from arboleda.trees.tree_run import TreeRun
 
 from . import fingerprint, trail
-from .context import Context
-from .leaves import Act, Await, Dwell
-from .trail import Begun, Planned, Trail
-from .tree_nodes import nodes_of
-from .tree_run import TreeRun
+from .trail import Begun, Knowledge, Trail
 from .walk_back import Finding, WalkBack
 
 CHANGED = Phrase("walk.changed", "its recipe or the plant file has changed since it began")
@@ -75,7 +77,7 @@ class Keeping:
             return UNREADABLE()
         found = self.walk.trail
         if found.recovers:
-            self._context.take_over(found)
+            self._take_over(found)
             return WAS_RECOVERING()
         try:
             self._context.robots.as_planned = found.begun.planned
@@ -86,17 +88,28 @@ class Keeping:
             begun = None
         finally:
             self._context.robots.as_planned = None
-        self._context.take_over(found)
+        self._take_over(found)
         if begun is None:
             return CHANGED()
         self._run.grow(tree)
         for step in begun:
             if isinstance(step, Await | Dwell):
                 step.begin_anew()
-            if isinstance(step, Act) and step.last is not None and step.last["effect"] == trail.SWITCH:
+            if isinstance(step, Act) and step.last is not None and step.last["effect"] == SWITCH:
                 self._context.parts.leave_unsettled(step.last["robot"], sets=dict(step.last["sets"]))
         self.walk = WalkBack(found, begun, self._run.nodes)
         return found.stranded
+
+    def _take_over(self, found: Trail) -> None:
+        """Go back to where the task of an earlier start stands; its time stands still until `time.go_on`."""
+        context = self._context
+        context.start_afresh()
+        context.time.pause()
+        context.commands.used = set(found.used)
+        context.handling.begin(found.taken, found.unchecked)
+        context.answers[:] = found.answers
+        context.zones.interlocks.reserved = found.zones
+        context.parts.take_over(carrier=found.carrier, origins=found.origins, back=found.back)
 
     def judge(self) -> Finding:
         """Judge by the devices' reports the steps at which an earlier start ended."""
@@ -146,7 +159,8 @@ class Keeping:
     def _trail(self, failure: Failure | None, *, cancels: bool, stranded: Sentence | None) -> Trail:
         context, recovers = self._context, self._run.recovering
         nodes = [] if recovers else self._run.nodes
-        names = context.commands.used.union(self._begun.planned.positions)
+        told = context.commands.used.union(self._begun.planned.positions)
+        receiving = [] if recovers else context.robots.receiving(told)
         return Trail(
             begun=self._begun,
             statuses=trail.statuses(nodes),
@@ -155,7 +169,7 @@ class Keeping:
             back={robot: pose.name for robot, pose in context.parts.back.items()},
             origins=sorted(context.parts.origins),
             used=sorted(context.commands.used),
-            known={} if recovers else context.robots.known(names),
+            known={each.robot.name: Knowledge.of(each, more) for each, more in receiving},
             grips={} if recovers else context.parts.grips,
             zones={name: sorted(context.zones.held_by(name)) for name in context.cell.interlocked},
             failure=(failure or context.failures.first) if recovers else None,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from arboleda.model.messages import Receipt
-from arboleda.trees.trail import Knowledge
+from arboleda.resume.trail import Knowledge
 
 BRIDGE, LATER = 1001, 1004
 

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from arboleda.model.messages import Fact
-from arboleda.trees.trail import Trail
+from arboleda.resume.trail import Trail
 from arboleda_proofs.testing import Rig, shipped
 
 

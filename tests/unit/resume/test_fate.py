@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.messages import MotionState, Receipt, Report
-from arboleda.trees.walk_back import Fate, fate
+from arboleda.resume.walk_back import Fate, fate
 from arboleda_proofs.testing import shipped
 
 BRIDGE = 1001

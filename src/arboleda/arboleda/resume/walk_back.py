@@ -21,12 +21,13 @@ from arboleda.dispatch.ledger import Entry
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Failure, Reason, Receipt
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.step_token import ATTEMPTS, StepToken
+from arboleda.trees.context import Context
+from arboleda.trees.leaves import Act, Leaf, Note
+from arboleda.trees.node_state import MOTION, OTHER, QUERY, SWITCH, Keeps, command_kept
 
-from .context import Context
-from .leaves import Act, Leaf, Note
-from .step_token import ATTEMPTS, StepToken
 from .succession import PASSED, steps_between
-from .trail import MOTION, OTHER, QUERY, SWITCH, Keeps, Trail, command_kept
+from .trail import Trail
 
 STILL_MOVING = Phrase("walk.still_moving", "{robot} is still moving")
 NOT_SAID = Phrase("walk.not_said", "{robot} has not said yet what became of its last command")

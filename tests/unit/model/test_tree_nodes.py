@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 from py_trees.composites import Selector, Sequence
 
-from arboleda.trees.tree_nodes import nodes_of
+from arboleda.model.tree_nodes import nodes_of
 from arboleda_proofs.testing import Rig, shipped
 
 

@@ -18,9 +18,9 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 
 from arboleda.model.plant_model import Cell
+from arboleda.model.recipe import FOR_PEOPLE
 from arboleda.model.sentence import Sentence
-
-from .tree_nodes import nodes_of
+from arboleda.model.tree_nodes import nodes_of
 
 Seen = dict[int, tuple[int, object]]
 """What was met, by its identity: its number, and itself, so that nothing else gets that identity."""
@@ -64,7 +64,6 @@ OF_NODES = frozenset(
         "done",
     ]
 )
-FOR_PEOPLE = "for_people"  # in the metadata of a field that says where something was read, such as a path
 NO_MATTER = frozenset({"recipes", "queue_limit", "goes_on", "goes_on_after_absence", "teach"})  # of a cell
 
 

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from dataclasses import fields
 from typing import NamedTuple
 
+from arboleda.engine import Plant
 from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.messages import Heartbeat, LateDeparture, Notice, OperatorAnswer, OperatorRequest, Outcome
 from arboleda.model.sentence import Phrase, Sentence
-
-from .plant import Plant
 
 SENT_TOO_LATE = Phrase("command.too_late", "the plant was away for {seconds:.1f} s before it could send this")
 OVERTAKEN = Phrase("command.overtaken", "a stop of {robot} left before this could be sent")

@@ -11,13 +11,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from arboleda.dispatch.outlet import UNSENT
+from arboleda.engine import UNSENT, scope_of, scopes
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import OperatorAnswer, OperatorRequest
 from arboleda.model.plant_model import PlantModel
 
 from .leaving import STILL_WAITS, Unkept, done_unkept, stop_left
-from .verbs.scopes import scope_of, scopes
 
 KEPT_S = 0.8  # within it a stop is kept, or whoever asked hears that it is not; a service of ROS 2 waits 1 s
 

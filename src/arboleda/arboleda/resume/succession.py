@@ -5,7 +5,7 @@ from __future__ import annotations
 from py_trees.behaviour import Behaviour
 from py_trees.composites import Selector, Sequence
 
-from .leaves import Announce, Carry, Dwell, Leaf, Note, Piece
+from arboleda.trees.leaves import Announce, Carry, Dwell, Leaf, Note, Piece
 
 PASSED = (Announce, Carry, Dwell, Note, Piece)
 """Leaves that command nothing and take nothing: what comes after them proves that they have ended well."""

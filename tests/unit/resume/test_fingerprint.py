@@ -11,7 +11,8 @@ import pytest
 from tests.cells import with_poses, with_robot
 
 from arboleda.model.plant_model import Cell
-from arboleda.trees import fingerprint, steps
+from arboleda.resume import fingerprint
+from arboleda.trees import steps
 from arboleda.trees.leaves import Unless
 from arboleda_proofs.testing import shipped
 

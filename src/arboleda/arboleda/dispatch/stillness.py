@@ -1,0 +1,105 @@
+"""Stillness of one robot: how surely it stands still, and how old what it tells of its place may be."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from arboleda.model.commands import Position
+from arboleda.model.messages import MotionState, Report
+from arboleda.model.plant_model import APART_S, Evidence, Robot
+
+STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})
+
+
+class Moment(NamedTuple):
+    """A time as a robot's reports tell it: how many there were, and s of the plant's clock."""
+
+    reports: int
+    at: float
+
+
+class Stillness:
+    """What a robot's reports say of its standing still. Reports are told apart by their numbers, as two of
+    them may come at one time.
+
+    `is_sure`: its place is no older than its last stop; of what goes nowhere, its facts.
+    """
+
+    def __init__(self, robot: Robot, *, supervised: bool) -> None:
+        self.is_sure = True
+        self.position_at = 0.0
+        self._robot = robot
+        self._supervised = supervised
+        self._position_no = 0
+        self._told_at = 0.0  # its place; of what goes nowhere, its facts
+        self._sure_from = -math.inf
+        self._says_still = False  # its last state
+        self._state_no = 0
+        self._state_at = 0.0
+        self._still_from = 0  # of two still codes in a row the first, by number
+        self._rested_from = 0  # of two equal positions in a row the first, by number and by time
+        self._rested_at = 0.0
+
+    def hear(self, report: Report, number: int, position: Position | None, before: Position | None) -> None:
+        """Take over a report: its number, the position that it tells, and the one that was told before."""
+        if report.state is not None:
+            still = report.state in STILL
+            self._still_from = self._state_no if still and self._says_still else 0
+            self._says_still = still
+            self._state_no, self._state_at = number, report.at
+        if position is not None:
+            moved = position != before or not self._rested_from
+            self._rested_from = number if moved else self._position_no
+            self._rested_at = report.at if moved else self.position_at
+            self._position_no = number
+        if report.q is not None or report.node is not None:
+            self.position_at = report.at
+        if position is not None or (report.facts and not self._robot.goes):
+            self._told_at = report.at
+        self.is_sure = self._told_at >= self._sure_from
+
+    @property
+    def is_still(self) -> bool:
+        """True where its last two reports agree that it stands still."""
+        return self.still_since(Moment(0, -math.inf))
+
+    def rested_since(self, at: float) -> bool:
+        """True where it reported the same position at least twice from `at` on, and no other one since."""
+        return self._rested_from < self._position_no and self._rested_at >= at
+
+    def still_since(self, moment: Moment) -> bool:
+        """True where it surely stands still: a still code and, where it reports its position, the same one in
+        two reports, all of them after that moment. What has no position says so twice; what has no work to do
+        stands still.
+
+        At `joints` a report may be older than the other one that came before it; so old ones do not count,
+        and no positions that may be older than the stop: on an edge a robot tells one node all the time.
+        """
+        count, at = moment
+        if not self._robot.works:
+            return True
+        if not self._says_still or self._state_no <= count:
+            return False
+        if self._robot.evidence is Evidence.JOINTS and self._state_at < at + APART_S:
+            return False
+        if not self._supervised:
+            return True
+        if self._robot.position_key is None:
+            return count < self._still_from
+        rested = count < self._rested_from < self._position_no
+        if self._robot.evidence is Evidence.IDS:
+            return rested
+        return rested and self.rested_since(max(at + APART_S, self._sure_from))
+
+    def come_to_a_stop(self, at: float) -> None:
+        """Note that it may have stopped just now: what it tells of its place comes a little later."""
+        self._sure_from = at + APART_S
+
+    def doubt(self, until: float) -> None:
+        """Take what it tells of its place before that time for older than its last move."""
+        self._sure_from, self.is_sure = until, False
+
+    def be_sure(self) -> None:
+        """Take what it has told for no older than its last stop: it has proven a command."""
+        self._sure_from, self.is_sure = -math.inf, True

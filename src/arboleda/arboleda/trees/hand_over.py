@@ -1,0 +1,61 @@
+"""Hand-over of shared devices: whether one does nothing, holds nothing and stands where cells leave it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.zones import Zones
+from arboleda.model.plant_model import Cell
+
+
+class HandOver:
+    """State of the devices that one cell shares, as far as cells have to leave it to each other."""
+
+    def __init__(self, cell: Cell, dispatcher: Dispatcher, zones: Zones) -> None:
+        self._cell = cell
+        self._dispatcher = dispatcher
+        self._zones = zones
+
+    def revise(self, cell: Cell) -> None:
+        """Go by another version of the cell from now on."""
+        self._cell = cell
+
+    def unused(self, devices: Iterable[str]) -> list[str]:
+        """Those of the devices that no cell holds and that do nothing, in order of their names."""
+        free = [each for each in sorted(devices) if self._zones.holder(each) is None]
+        return [each for each in free if not self._works(each)]
+
+    def may_hold(self, device: str) -> bool:
+        """True for a device in which a part may be."""
+        effectors, robot = self._dispatcher.effectors, self._dispatcher.model.robots[device]
+        return robot.held_fact is not None and effectors.grips.holding(device)
+
+    def is_as_left(self, device: str) -> bool:
+        """True for a shared device as cells leave it to each other: it holds no part, and is at home.
+
+        That it says so proves nothing while it may still take one, on a command that is over for the plant.
+        """
+        may_grip = self._dispatcher.unfinished.may_grip(device)
+        return not may_grip and not self.may_hold(device) and self.is_home(device)
+
+    def is_home(self, device: str) -> bool:
+        """True for a shared robot that is seen at its home, outside all zones, and for what goes nowhere."""
+        space = self._cell.reach.get(device)
+        if space is None:
+            return True
+        place = self._dispatcher.whereabouts.place(space)
+        return place is not None and place.q == space.home.q and not self._zones.held_by(device)
+
+    def may_change_hands(self, device: str) -> bool:
+        """True for a shared device that is heard, does nothing and is as left, with all that goes with it."""
+        together = self._cell.together({device})
+        return all(self._does_nothing(each) and self.is_as_left(each) for each in together)
+
+    def _does_nothing(self, device: str) -> bool:
+        online = self._dispatcher.beliefs[device].online
+        return online and not self._works(device) and device not in self._dispatcher.latches.stopped
+
+    def _works(self, device: str) -> bool:
+        moves = self._dispatcher.beliefs[device].moves
+        return moves or bool(self._dispatcher.ledger.of_robot(device))

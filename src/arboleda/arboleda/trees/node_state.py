@@ -1,0 +1,64 @@
+"""State of a tree's nodes that is kept for the next start: of our nodes, their last commands, failures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from py_trees.common import Status
+
+from arboleda.dispatch.ledger import Entry, State
+from arboleda.model.by_class import nearest
+from arboleda.model.commands import Command, Motion, Query, Switch, Work
+from arboleda.model.messages import Failure, Reason
+from arboleda.model.sentence import retold
+
+MOTION, PROCESS, SWITCH, QUERY, OTHER = "motion", "process", "switch", "query", "other"
+EFFECTS = {Motion: MOTION, Work: PROCESS, Switch: SWITCH, Query: QUERY, Command: OTHER}
+
+
+class Keeps:
+    """A node of ours: what is kept of it for the next start, and how it goes on then.
+
+    `ends_unkept`: nothing but its status is kept of it unless it is RUNNING.
+    """
+
+    ends_unkept = False
+    status: Status
+
+    def kept(self) -> Mapping[str, Any] | None:
+        """The state that has to be kept of it beside its status."""
+        return None
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what was kept."""
+
+    def begin_anew(self) -> None:
+        """Begin once more: times count from now."""
+
+
+def command_kept(entry: Entry | None) -> dict[str, Any] | None:
+    """The record of the last command of a step; None where none may have left."""
+    if entry is None or not entry.left:
+        return None
+    command = entry.command
+    return {
+        "robot": command.robot,
+        "effect": nearest(EFFECTS, type(command)),
+        "goal": entry.way[-1] if entry.way else None,
+        "sets": entry.sets,
+        "grips": command.grips if isinstance(command, Switch) else None,
+        "before": entry.before,
+        "number": entry.number,
+        "done": entry.state is State.DONE,
+    }
+
+
+def failure_kept(failure: Failure) -> Any:
+    """A failure as it is kept."""
+    return [failure.reason.value, str(failure.sentence), failure.sentence.data()]
+
+
+def read_failure(reason: str, english: str, data: Any) -> Failure:
+    """A failure as it was kept."""
+    return Failure(reason=Reason(reason), sentence=retold(english, data))
