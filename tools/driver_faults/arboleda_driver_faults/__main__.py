@@ -16,6 +16,8 @@ from functools import partial
 from pathlib import Path
 
 from arboleda.plant_file.loader import load
+from frame.telling import counts
+from frame.words import words
 
 from .dobot import DobotRig
 from .gcode import GantryRig, MarlinRig, MoonrakerRig
@@ -55,12 +57,8 @@ RIGS: dict[str, tuple[Path | None, Callable[..., Rig]]] = {
 
 
 def main() -> int:
-    driver, *numbers = sys.argv[1:] or [""]
-    if driver not in RIGS:
-        print(f"usage: tools/driver-faults {' | '.join(RIGS)} [SEEDS] [FIRST]")
-        return 2
-    seeds, first = (int(value) for value in (*numbers, *("200", "0")[len(numbers) :]))
-    plant, rig = RIGS[driver]
+    usage = f"usage: tools/driver-faults {' | '.join(RIGS)} [SEEDS] [FIRST]"
+    (plant, rig), seeds, first = words(usage, RIGS.__getitem__, 200, 0)
     model, began = load(plant), time.perf_counter()
     ends, faults, wrong = Counter[str](), Counter[str](), 0
     for seed in range(first, first + seeds):
@@ -70,8 +68,8 @@ def main() -> int:
         for breach in result.breaches:
             wrong += 1
             print(f"seed {seed} ({', '.join(each.name for each in result.faults)}): {breach}")
-    print(f"faults: {', '.join(f'{name} {count}' for name, count in sorted(faults.items()))}")
-    print(f"tasks: {', '.join(f'{name} {count}' for name, count in ends.most_common())}")
+    print(f"faults: {counts(dict(sorted(faults.items())))}")
+    print(f"tasks: {counts(dict(ends.most_common()))}")
     print(f"{seeds} seeds in {time.perf_counter() - began:.0f} s: {wrong} wrong")
     return 1 if wrong else 0
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from arboleda.kinds.joints import MoveJoints
-from arboleda.model.commands import Command
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
 from arboleda_drivers.dobot.virtual.faults import FAULTS
@@ -59,10 +57,10 @@ class DobotRig(StorageRig):
     def __init__(self, shipped: PlantModel) -> None:
         super().__init__(shipped, FAULTS)
         self._dobot = VirtualDobot(self.faults, enabled=True, frame_s=FRAME_S)
-        self._driver: MoveCounter | None = None
+        self._driver: Loopback | None = None
 
     def join(self, hear: Hear, now: float) -> Loopback:
-        self._driver = MoveCounter(self.layout.arm, self._dobot, hear, now)
+        self._driver = Loopback(self.layout.arm, self._dobot, hear, now)
         return self._driver
 
     @property
@@ -79,13 +77,3 @@ class DobotRig(StorageRig):
         assert self._driver is not None
         for line in ("ClearError()", "PowerOn()", "EnableRobot()"):
             self._driver.tell(line)
-
-
-class MoveCounter(Loopback):
-    """Driver's machine that counts the moves given to it."""
-
-    given = 0
-
-    def ask(self, command: Command) -> str | None:
-        self.given += isinstance(command, MoveJoints)
-        return super().ask(command)

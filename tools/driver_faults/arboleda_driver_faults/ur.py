@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.kinds.joints import MoveJoints
-from arboleda.model.commands import Command
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
 from arboleda_drivers.ur.settings import Settings
@@ -70,10 +68,10 @@ class UrRig(StorageRig):
     def __init__(self, shipped: PlantModel) -> None:
         super().__init__(shipped, FAULTS)
         self._ur = VirtualUr(self.faults, running=True, period_s=PERIOD_S)
-        self._driver: MoveCounter | None = None
+        self._driver: Loopback | None = None
 
     def join(self, hear: Hear, now: float) -> Loopback:
-        self._driver = MoveCounter(self.layout.arm, self._ur, hear, now)
+        self._driver = Loopback(self.layout.arm, self._ur, hear, now)
         return self._driver
 
     @property
@@ -91,13 +89,3 @@ class UrRig(StorageRig):
         assert self._driver is not None
         for line in ("stop", "unlock protective stop", "brake release"):
             self._driver.tell(line)
-
-
-class MoveCounter(Loopback):
-    """Driver's machine that counts the moves given to it."""
-
-    given = 0
-
-    def ask(self, command: Command) -> str | None:
-        self.given += isinstance(command, MoveJoints)
-        return super().ask(command)

@@ -10,28 +10,27 @@ before anybody let it, or where the plant ended by itself.
 
 from __future__ import annotations
 
-import argparse
 import json
 import shutil
 import sys
 import tempfile
-import time
+from argparse import Namespace
 from pathlib import Path
+
+from frame.telling import stopwatch
 
 from . import report
 from .campaign import Campaign
+from .summary import options_of
 
 
 def main(arguments: list[str] | None = None) -> int:
     options = _options(arguments)
-    began = time.monotonic()
-
-    def say(line: str) -> None:
-        print(f"{time.monotonic() - began:7.1f} s  {line}", flush=True)
-
     folder = options.keep or Path(tempfile.mkdtemp(prefix="arboleda-kills-"))
     folder.mkdir(parents=True, exist_ok=True)
-    outcome = Campaign(folder, kills=options.kills, seed=options.seed, rate=options.rate, say=say).run()
+    outcome = Campaign(
+        folder, kills=options.kills, seed=options.seed, rate=options.rate, say=stopwatch()
+    ).run()
     print("\n".join(report.lines(outcome)))
     if options.json is not None:
         options.json.write_text(json.dumps({"seed": options.seed} | report.as_json(outcome), indent=1))
@@ -42,13 +41,8 @@ def main(arguments: list[str] | None = None) -> int:
     return 0 if outcome.ok else 1
 
 
-def _options(arguments: list[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="make kills", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--kills", type=int, default=1000, help="how many [1000]")
-    parser.add_argument("--seed", type=int, default=1, help="draws instants and tasks [1]")
-    parser.add_argument("--rate", type=float, default=8.0, help="how many times as fast the robots are [8]")
+def _options(arguments: list[str] | None) -> Namespace:
+    parser = options_of(__doc__, "kills", "kills", seed="draws instants and tasks")
     parser.add_argument("--json", type=Path, help="write what came of it there")
     parser.add_argument(
         "--keep",

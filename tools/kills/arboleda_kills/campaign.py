@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import random
 import time
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import httpx
 
@@ -17,13 +16,12 @@ from arboleda.runtime.state import STORE
 from arboleda.store.task_rows import TaskHistory, TaskQuery, TaskRow
 
 from .judge import Kill, Verdict, judge
-from .people import Attendant, Customers
+from .people import ROUND_S, People
 from .processes import PATIENCE_S, Boards, Ended, Plant
+from .summary import keep_deeds, states
 
-ROUND_S = 0.05  # between two looks of the people
 AT_START = 0.1  # of the kills: while the plant starts
 LATEST_S = 3.0  # of the others: so long after a task is at work
-QUIET_S = 60.0  # without an end of any task, nobody here knows what else to do
 
 
 @dataclass(kw_only=True)
@@ -57,14 +55,12 @@ class Campaign:
     def __init__(
         self, folder: Path, *, kills: int, seed: int, rate: float, say: Callable[[str], None]
     ) -> None:
-        self._state, self._log = folder / "state", folder / "plant.log"
-        self._deeds = folder / "deeds.jsonl"
+        self._folder, self._state, self._log = folder, folder / "state", folder / "plant.log"
         self._wanted, self._say = kills, say
         self._dice = random.Random(seed)
         self._boards = Boards(rate, folder / "boards.log")
         cells = [cell for cell in loader.load(None).cells if cell.handover]
-        self._customers = Customers(cells, self._dice, f"s{seed}")
-        self._attendant = Attendant(self._boards)
+        self._people = People(self._boards, cells, self._dice, f"s{seed}")
         self._outcome = Outcome()
 
     def run(self) -> Outcome:
@@ -97,9 +93,9 @@ class Campaign:
                 plant.check()
             else:
                 self._until_ready(plant)
-                self._until(plant, lambda snapshot: any(cell["task"] for cell in snapshot["cells"]))
+                self._people.until(plant, lambda snapshot: any(cell["task"] for cell in snapshot["cells"]))
                 end = time.time() + share * LATEST_S
-                self._until(plant, lambda _: time.time() >= end - ROUND_S)
+                self._people.until(plant, lambda _: time.time() >= end - ROUND_S)
                 _sleep_until(end)
                 plant.check()
         finally:
@@ -118,11 +114,11 @@ class Campaign:
 
     def _last_round(self) -> Kill:
         """Start once more and let all that is open end."""
-        self._customers.bring = False
+        self._people.customers.bring = False
         plant = self._start()
         try:
             self._until_ready(plant)
-            self._until(plant, lambda _: not self._customers.waiting)
+            self._people.until(plant, lambda _: not self._people.customers.waiting)
             if status := plant.interrupt():
                 self._outcome.trouble.append(f"the plant ended on Ctrl-C with status {status}")
         finally:
@@ -138,27 +134,9 @@ class Campaign:
         if not plant.await_api(time.time() + PATIENCE_S):
             raise TimeoutError(f"the plant did not answer within {PATIENCE_S:g} s")
         self._outcome.api_s.append(time.time() - plant.started_at)
-        self._customers.come_back(plant)
-        self._until(plant, lambda snapshot: all(robot["online"] for robot in snapshot["robots"]))
+        self._people.customers.come_back(plant)
+        self._people.until(plant, lambda snapshot: all(robot["online"] for robot in snapshot["robots"]))
         self._outcome.boards_s.append(time.time() - plant.started_at)
-
-    def _until(self, plant: Plant, over: Callable[[dict[str, Any]], bool]) -> None:
-        """Let the people do their part until it is over; TimeoutError where nothing happens any more."""
-        seen = (-1, 0)
-        patience = time.time() + QUIET_S
-        while True:
-            plant.check()
-            _, snapshot = plant.ask("GET", "/api/plant")
-            if over(snapshot):
-                return
-            self._customers.look(plant, snapshot)
-            self._attendant.look(plant, snapshot)
-            now = (len(self._customers.ends), len(self._attendant.acts))
-            if now != seen:
-                seen, patience = now, time.time() + QUIET_S
-            if time.time() > patience:
-                raise TimeoutError(f"nothing happened for {QUIET_S:g} s: {_standing(snapshot)}")
-            time.sleep(ROUND_S)
 
     def _rows(self, *, is_open: bool | None = None) -> list[TaskRow]:
         history = TaskHistory(self._state / STORE)
@@ -168,40 +146,24 @@ class Campaign:
             history.close()
 
     def _judge(self, last: Kill) -> None:
-        outcome, customers, said = self._outcome, self._customers, self._attendant.acts
-        self._deeds.write_text("".join(f"{json.dumps(deed.data())}\n" for deed in self._boards.deeds))
+        outcome, customers, attendant = self._outcome, self._people.customers, self._people.attendant
+        keep_deeds(self._folder, self._boards.deeds)
         rows = self._rows()
         outcome.verdict = judge(
             rows,
             self._boards.deeds,
             outcome.kills,
-            said,
+            attendant.acts,
             accepted=customers.accepted,
             ends=customers.ends,
             last=last,
         )
         outcome.verdict.lost += customers.contradictions
         outcome.accepted = len(customers.accepted)
-        outcome.tasks = _counted(
-            row.state if row.reason is None else f"{row.state} ({row.reason})" for row in rows
-        )
-        outcome.verbs = _counted(each.verb for each in said)
-        outcome.refused = self._attendant.refused
-        outcome.trouble += [f"nobody here can {each}" for each in sorted(self._attendant.stuck)]
-
-
-def _counted(words: Any) -> dict[str, int]:
-    found: dict[str, int] = {}
-    for word in words:
-        found[word] = found.get(word, 0) + 1
-    return dict(sorted(found.items()))
-
-
-def _standing(snapshot: dict[str, Any]) -> str:
-    return "; ".join(
-        f"{cell['name']} is {cell['state']}, advised is {[each['said'] for each in cell['advice']]}"
-        for cell in snapshot["cells"]
-    )
+        outcome.tasks = states(rows)
+        outcome.verbs = dict(sorted(Counter(each.verb for each in attendant.acts).items()))
+        outcome.refused = attendant.refused
+        outcome.trouble += [f"nobody here can {each}" for each in sorted(attendant.stuck)]
 
 
 def _sleep_until(at: float) -> None:

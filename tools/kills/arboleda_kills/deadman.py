@@ -6,7 +6,6 @@ this process, which sees when it truly stands. A round holds a button, and then 
 
 from __future__ import annotations
 
-import argparse
 import math
 import socket
 import sys
@@ -25,6 +24,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.runtime.loop import Loop
 from arboleda.sim.devices import Devices
+from frame.words import parser
 
 from .board_clients import BoardClients, forget_unsent
 from .processes import PATIENCE_S, Plant
@@ -246,9 +246,9 @@ def share(values: Sequence[float], part: float) -> float:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(description="How long a robot moves on whose teacher is lost.")
-    parser.add_argument("--rounds", type=int, default=30, help="of each loss")
-    rounds = parser.parse_args(arguments).rounds
+    options = parser(__doc__)
+    options.add_argument("--rounds", type=int, default=30, help="of each loss")
+    rounds = options.parse_args(arguments).rounds
     with tempfile.TemporaryDirectory() as folder:
         found = Bench(Path(folder), lambda line: print(line, file=sys.stderr, flush=True)).run(rounds)
     for loss, values in found.items():

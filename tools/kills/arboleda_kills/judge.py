@@ -46,8 +46,14 @@ class Verdict:
     after: dict[str, int] = field(default_factory=dict)
 
     @property
+    def wrong(self) -> dict[str, list[str]]:
+        """The sentences, by what they are about."""
+        kinds = {"lost": self.lost, "doubled": self.doubled, "dropped": self.dropped}
+        return {**kinds, "moved by itself": self.moved}
+
+    @property
     def ok(self) -> bool:
-        return not (self.lost or self.doubled or self.dropped or self.moved)
+        return not any(self.wrong.values())
 
 
 WENT_ON, HELD, FAILED, AGAIN = "went on", "held", "failed", "killed again"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +14,8 @@ from arboleda.model.plant_model import Cell
 
 from .processes import Boards, Plant
 
+ROUND_S = 0.05  # between two looks
+QUIET_S = 60.0  # without an end of any task, nobody here knows what else to do
 WAITING = 2  # tasks of each cell that have not ended
 AGAIN = 3  # ended tasks that are asked for once more after each start
 OVER = frozenset({"done", "failed", "cancelled"})
@@ -142,3 +144,42 @@ class Attendant:
         )
         if status >= 400:
             self.refused.append(f"{verb} {scope}: {answer['sentence']}")
+
+
+class People:
+    """Customers and attendant of a plant."""
+
+    def __init__(self, boards: Boards, cells: Sequence[Cell], dice: random.Random, name: str) -> None:
+        self.customers = Customers(cells, dice, name)
+        self.attendant = Attendant(boards)
+
+    @property
+    def news(self) -> tuple[int, int]:
+        """Another one as soon as a task has ended or a verb was said."""
+        return len(self.customers.ends), len(self.attendant.acts)
+
+    def look(self, plant: Plant, snapshot: dict[str, Any]) -> None:
+        self.customers.look(plant, snapshot)
+        self.attendant.look(plant, snapshot)
+
+    def until(self, plant: Plant, over: Callable[[dict[str, Any]], Any]) -> None:
+        """Do their part until it is over; TimeoutError where nothing happens any more."""
+        seen, patience = (-1, 0), time.time() + QUIET_S
+        while True:
+            plant.check()
+            _, snapshot = plant.ask("GET", "/api/plant")
+            if over(snapshot):
+                return
+            self.look(plant, snapshot)
+            if self.news != seen:
+                seen, patience = self.news, time.time() + QUIET_S
+            if time.time() > patience:
+                raise TimeoutError(f"nothing happened for {QUIET_S:g} s: {_standing(snapshot)}")
+            time.sleep(ROUND_S)
+
+
+def _standing(snapshot: dict[str, Any]) -> str:
+    return "; ".join(
+        f"{cell['name']} is {cell['state']}, advised is {[each['said'] for each in cell['advice']]}"
+        for cell in snapshot["cells"]
+    )

@@ -58,7 +58,7 @@ class Plant:
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            env={**os.environ, "PYTHONUNBUFFERED": "1", "COLUMNS": "200", "PYTHONPATH": paths()},
+            env={**environment(), "PYTHONUNBUFFERED": "1", "COLUMNS": "200"},
             start_new_session=True,
         )
         self._reader = threading.Thread(target=self._read, daemon=True)
@@ -133,23 +133,51 @@ class Plant:
         return lines[-1] if lines else "it said nothing"
 
 
-class Boards:
-    """The process of `boards.py`; `deeds` grows while it runs. `before`: what its command begins with."""
+class Teller:
+    """A module of ours as a process that says JSON, a line each, which `hear` takes, until `end`.
 
-    def __init__(self, rate: float, log: Path, before: Sequence[str] = ()) -> None:
-        self.deeds: list[Deed] = []
+    `before`: what its command begins with.
+    """
+
+    def __init__(
+        self, module: str, words: Sequence[str], log: Path, hear: Callable[[Any], None], before: Sequence[str]
+    ) -> None:
+        self._hear = hear
         with log.open("wb") as errors:
             self._child = subprocess.Popen(
-                [*before, sys.executable, "-m", "arboleda_kills.boards", str(rate)],
+                [*before, sys.executable, "-m", module, *words],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=errors,
                 text=True,
-                env={**os.environ, "PYTHONPATH": paths()},
+                env=environment(),
                 start_new_session=True,
             )
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
+
+    def end(self) -> None:
+        """Close its input and wait for its end."""
+        assert self._child.stdin is not None
+        self._child.stdin.close()
+        self._child.wait(PATIENCE_S)
+        self._reader.join(PATIENCE_S)
+
+    def _read(self) -> None:
+        assert self._child.stdout is not None
+        for line in self._child.stdout:
+            self._hear(json.loads(line))
+
+
+class Boards(Teller):
+    """The process of `boards.py`; `deeds` grows while it runs."""
+
+    def __init__(self, rate: float, log: Path, before: Sequence[str] = ()) -> None:
+        self.deeds: list[Deed] = []
+        super().__init__("arboleda_kills.boards", [str(rate)], log, self._did, before)
+
+    def _did(self, said: dict[str, Any]) -> None:
+        self.deeds.append(Deed.of(said))
 
     def broker(self, host: str, port: int) -> None:
         """Tell them where the plant's broker is."""
@@ -167,17 +195,10 @@ class Boards:
         self._child.stdin.write(json.dumps(line) + "\n")
         self._child.stdin.flush()
 
-    def end(self) -> None:
-        """Close their input and wait for their end."""
-        assert self._child.stdin is not None
-        self._child.stdin.close()
-        self._child.wait(PATIENCE_S)
-        self._reader.join(PATIENCE_S)
 
-    def _read(self) -> None:
-        assert self._child.stdout is not None
-        for line in self._child.stdout:
-            self.deeds.append(Deed.of(json.loads(line)))
+def environment() -> dict[str, str]:
+    """That of this process, for one that finds the same packages."""
+    return {**os.environ, "PYTHONPATH": paths()}
 
 
 def paths() -> str:

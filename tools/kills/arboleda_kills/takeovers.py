@@ -10,15 +10,11 @@ anybody let it, or where a leader that was thawed did not step down.
 
 from __future__ import annotations
 
-import argparse
-import json
-import os
 import random
 import subprocess
 import sys
 import tempfile
 import time
-from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -30,13 +26,15 @@ from arboleda.plant_file import loader
 from arboleda.store.postgres.history import PostgresHistory
 from arboleda.store.postgres.leadership import PostgresLeadership
 from arboleda.store.task_rows import TaskQuery
-from arboleda_bench.result import percentile
+from frame.telling import counts, told
+from frame.words import parser
 
 from .judge import Kill, judge
-from .people import Attendant, Customers, Said
-from .processes import PATIENCE_S, UP, Boards, Plant, paths
+from .people import People, Said
+from .processes import PATIENCE_S, UP, Boards, Plant, environment
+from .summary import keep_wrong, spread, states
 
-NAME, RATE, LATEST_S, LOOK_S, QUIET_S = "arboleda", 8.0, 3.0, 0.02, 60.0
+NAME, RATE, LATEST_S, LOOK_S = "arboleda", 8.0, 3.0, 0.02
 WAYS = KILL, FREEZE, HANDOVER = "killed", "frozen", "handed-over"
 
 
@@ -51,8 +49,7 @@ class Takeovers:
         self.boards = Boards(RATE, folder / "boards.log")
         self.boards.broker("127.0.0.1", port)
         cells = [cell for cell in loader.load(None).cells if cell.handover]
-        self.customers = Customers(cells, self._dice, f"s{seed}-{int(time.time())}")
-        self.attendant = Attendant(self.boards)
+        self.people = People(self.boards, cells, self._dice, f"s{seed}-{int(time.time())}")
         self._others = PostgresLeadership(store, NAME)
         self._cells = [cell.name for cell in cells]
         self._starts = 0
@@ -80,7 +77,7 @@ class Takeovers:
             if asked.returncode:
                 self.trouble.append(f"handover: {said.strip()}")
             free_at = led_at - float(said.rpartition("for ")[2].split()[0])
-            self.attendant.acts += [
+            self.people.attendant.acts += [
                 Said(at=led_at, cell=cell, verb="resume", scope=cell, drops=False) for cell in self._cells
             ]
         self.seconds[how].append(led_at - free_at)
@@ -93,8 +90,8 @@ class Takeovers:
 
     def finish(self) -> None:
         """Let all that is open end."""
-        self.customers.bring = False
-        self._until(lambda _: not self.customers.waiting)
+        self.people.customers.bring = False
+        self._until(lambda _: not self.people.customers.waiting)
 
     def close(self) -> None:
         self.leader.kill()
@@ -118,7 +115,7 @@ class Takeovers:
             old.freeze(on=True)
         else:
             command = [sys.executable, "-c", UP, "handover", "--store", self._store]
-            return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=_environment())
+            return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment())
         return None
 
     def _see_off(self, old: Plant, how: str) -> None:
@@ -146,42 +143,22 @@ class Takeovers:
         patience = time.time() + PATIENCE_S
         while time.time() < patience:
             if plant.await_api(patience) and "cells" in plant.ask("GET", "/api/plant")[1]:
-                self.customers.come_back(plant)
+                self.people.customers.come_back(plant)
                 return time.time()
             time.sleep(LOOK_S)
         raise TimeoutError(f"the plant did not answer within {PATIENCE_S:g} s")
 
     def _until(self, over: Callable[[dict[str, Any]], Any]) -> None:
-        seen, patience = (-1, 0), time.time() + QUIET_S
-        while True:
-            self.leader.check()
-            _, snapshot = self.leader.ask("GET", "/api/plant")
-            if over(snapshot):
-                return
-            self.customers.look(self.leader, snapshot)
-            self.attendant.look(self.leader, snapshot)
-            now = (len(self.customers.ends), len(self.attendant.acts))
-            if now != seen:
-                seen, patience = now, time.time() + QUIET_S
-            if time.time() > patience:
-                raise TimeoutError(f"nothing happened for {QUIET_S:g} s")
-            time.sleep(0.05)
-
-
-def _environment() -> dict[str, str]:
-    return {**os.environ, "PYTHONPATH": paths()}
+        self.people.until(self.leader, over)
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--store", required=True, help="a database; the plant 'arboleda' in it is made anew")
-    parser.add_argument("--times", type=int, default=30)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--ways", nargs="*", choices=WAYS, help="of a change; all of them without")
-    parser.add_argument("--port", type=int, default=18_830, help="of the broker")
-    wanted = parser.parse_args()
+    options = parser(__doc__, seed="draws instants, ways and tasks")
+    options.add_argument("--store", required=True, help="a database; the plant 'arboleda' in it is made anew")
+    options.add_argument("--times", type=int, default=30)
+    options.add_argument("--ways", nargs="*", choices=WAYS, help="of a change; all of them without")
+    options.add_argument("--port", type=int, default=18_830, help="of the broker")
+    wanted = options.parse_args()
     with psycopg.connect(wanted.store, autocommit=True) as db:
         db.execute(f"DROP SCHEMA IF EXISTS plant_{NAME} CASCADE")
     folder = Path(tempfile.mkdtemp(prefix="arboleda-takeovers-"))
@@ -205,33 +182,19 @@ def _report(run: Takeovers, store: str, folder: Path) -> int:
     history = PostgresHistory(store, NAME)
     rows = history.select(TaskQuery(limit=None))
     history.close()
-    customers = run.customers
-    told, deeds, said = customers.ends, run.boards.deeds, run.attendant.acts
-    accepted = customers.accepted
-    verdict = judge(rows, deeds, run.kills, said, accepted=accepted, ends=told, last=run.last)
+    customers, deeds, acts = run.people.customers, run.boards.deeds, run.people.attendant.acts
+    accepted, ends = customers.accepted, customers.ends
+    verdict = judge(rows, deeds, run.kills, acts, accepted=accepted, ends=ends, last=run.last)
     verdict.lost += customers.contradictions
     for how, times in run.seconds.items():
         if times:
-            print(
-                f"{how}: {len(times)}, p50 {percentile(times, 50):.2f} s, p99 {percentile(times, 99):.2f} s"
-            )
-    states = Counter(row.state if row.reason is None else f"{row.state} ({row.reason})" for row in rows)
-    print(f"{len(customers.accepted)} tasks accepted: {dict(states)}")
-    counted = {
-        "lost": verdict.lost,
-        "doubled": verdict.doubled,
-        "dropped": verdict.dropped,
-        "moved by itself": verdict.moved,
-        "trouble": run.trouble,
-    }
-    for name, sentences in counted.items():
-        print(f"{name}: {len(sentences)}")
-        print("".join(f"  {each}\n" for each in sentences[:20]), end="")
-    if any(counted.values()):
-        (folder / "deeds.jsonl").write_text("".join(f"{json.dumps(deed.data())}\n" for deed in deeds))
-        (folder / "changes.txt").write_text("".join(f"{each}\n" for each in (*run.kills, run.last, *said)))
-        print(f"logs, deeds and changes are in {folder}")
-    return int(any(counted.values()))
+            print(f"{how}: {len(times)}, {spread(times)}")
+    print(f"{len(accepted)} tasks accepted: {counts(states(rows))}")
+    wrong = {**verdict.wrong, "trouble": run.trouble}
+    print("\n".join(told(wrong)))
+    if any(wrong.values()):
+        keep_wrong(folder, deeds, (*run.kills, run.last, *acts))
+    return int(any(wrong.values()))
 
 
 if __name__ == "__main__":

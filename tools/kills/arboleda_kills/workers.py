@@ -9,9 +9,7 @@ where that is not so. Seeds of earlier campaigns in that database are deleted.
 
 from __future__ import annotations
 
-import argparse
 import json
-import os
 import random
 import signal
 import subprocess
@@ -24,8 +22,10 @@ from pathlib import Path
 import psycopg
 
 from arboleda.store.postgres.seeds import SCHEMA, SeedRows
+from frame.telling import told
+from frame.words import parser
 
-from .processes import UP, paths
+from .processes import UP, environment
 
 HERE = Path(__file__).parent
 SHORT = HERE / "short_seeds.yaml"
@@ -135,21 +135,15 @@ def simulate(options: list[str]) -> list[str]:
     return [sys.executable, "-c", UP, "simulate", *options]
 
 
-def environment() -> dict[str, str]:
-    return {**os.environ, "PYTHONPATH": paths()}
-
-
 def main() -> int:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--store", required=True, help="a database; its campaigns are deleted")
-    parser.add_argument("--first", type=int, default=1, help="the first seed")
-    parser.add_argument("--seeds", type=int, default=300)
-    parser.add_argument("--workers", type=int, default=3)
-    parser.add_argument("--every", type=float, default=5.0, help="s between two kills, in the mean")
-    parser.add_argument("--jobs", type=int, default=1, help="processes of the run alone")
-    wanted = parser.parse_args()
+    options_of = parser(__doc__)
+    options_of.add_argument("--store", required=True, help="a database; its campaigns are deleted")
+    options_of.add_argument("--first", type=int, default=1, help="the first seed")
+    options_of.add_argument("--seeds", type=int, default=300)
+    options_of.add_argument("--workers", type=int, default=3)
+    options_of.add_argument("--every", type=float, default=5.0, help="s between two kills, in the mean")
+    options_of.add_argument("--jobs", type=int, default=1, help="processes of the run alone")
+    wanted = options_of.parse_args()
     count = ["--seed", str(wanted.first), "--seeds", str(wanted.seeds)]
     options = ["--plant", str(PLANT), "--faults", str(SHORT), *count]
     with tempfile.TemporaryDirectory(prefix="arboleda-workers-") as name:
@@ -162,9 +156,8 @@ def main() -> int:
         )
         expected = alone(options, wanted.jobs, folder)
     found = differences(shared, expected)
-    print("".join(f"{each}\n" for each in found[:20]), end="")
-    different = len(set(expected.values()))
-    print(f"{len(expected):,} seeds alone, {different:,} different digests; {len(found)} differences")
+    print(f"{len(expected):,} seeds alone, {len(set(expected.values())):,} different digests")
+    print("\n".join(told({"differences": found})))
     return int(bool(found))
 
 

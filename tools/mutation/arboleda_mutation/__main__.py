@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import sys
-import time
+from argparse import Namespace
 from pathlib import Path
 
 from rich.console import Console
+
+from frame.telling import stopwatch
+from frame.words import BAD_INPUT, parser
 
 from . import argued, by_tests, report
 from .judging import JUDGES, SIMULATOR, TESTS, Judging, Order
@@ -18,7 +20,7 @@ from .report import Row
 from .sources import Sources
 
 ROOT = Path(__file__).parents[3]
-SURVIVED, BAD_INPUT, INTERRUPTED = 1, 2, 130  # exit statuses
+SURVIVED, INTERRUPTED = 1, 130  # exit statuses
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -50,15 +52,12 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _judge(judging: Judging, order: Order, console: Console) -> bool:
     """Whether it came to its end; Ctrl-C ends it with what was judged so far."""
-    began, killed, done = time.monotonic(), 0, 0
+    say = stopwatch()
     try:
-        for verdict in judging.run(order, console.print):
-            done, killed = done + 1, killed + verdict.killed
+        for number, verdict in enumerate(judging.run(order, console.print), start=1):
             word = "killed  " if verdict.killed else "survived"
-            line = (
-                f"{time.monotonic() - began:6.0f} s {done:4} {word} {verdict.judge:9} {verdict.cpu_s:6.1f} s"
-            )
-            console.print(f"{line}  {verdict.key}  {verdict.by}", markup=False, soft_wrap=True)
+            line = f"{number:4} {word} {verdict.judge:9} {verdict.cpu_s:6.1f} s"
+            say(f"{line}  {verdict.key}  {verdict.by}")
     except KeyboardInterrupt:
         console.print("interrupted; what was judged is kept, the same command goes on")
         return False
@@ -73,23 +72,22 @@ def _row(judging: Judging, mutant: Mutant, order: Order, reasons: dict[str, str]
     return Row(mutant=mutant, tests=tests, simulator=simulator, reason=reasons.get(mutant.key))
 
 
-def _options(arguments: list[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="make mutants", description=__doc__)
-    parser.add_argument("--sample", type=int, default=400, help="how many mutants are drawn")
-    parser.add_argument("--seed", type=int, default=1, help="which ones")
-    parser.add_argument("--seeds", type=int, default=100, help="how many seeds the simulator gets for each")
-    parser.add_argument(
+def _options(arguments: list[str] | None) -> Namespace:
+    options = parser(__doc__, prog="make mutants", seed="draws which ones")
+    options.add_argument("--sample", type=int, default=400, help="how many mutants are drawn")
+    options.add_argument("--seeds", type=int, default=100, help="how many seeds the simulator gets for each")
+    options.add_argument(
         "--jobs", type=int, default=os.cpu_count() or 1, help="how many processes judge at the same time"
     )
-    parser.add_argument("--judge", choices=JUDGES, help="have only this judge look")
-    parser.add_argument("--tests", nargs="+", default=by_tests.TESTS, help="folders of the tests that judge")
-    parser.add_argument(
+    options.add_argument("--judge", choices=JUDGES, help="have only this judge look")
+    options.add_argument("--tests", nargs="+", default=by_tests.TESTS, help="folders of the tests that judge")
+    options.add_argument(
         "--at-least", type=float, default=100.0, help="per cent killed or argued, else status 1"
     )
-    parser.add_argument("--only", default="", help="only mutants whose key has this in it")
-    parser.add_argument("--json", type=Path, help="a file that gets everything")
-    parser.add_argument("--state", type=Path, default=ROOT / ".mutation", help="where verdicts are kept")
-    return parser.parse_args(arguments)
+    options.add_argument("--only", default="", help="only mutants whose key has this in it")
+    options.add_argument("--json", type=Path, help="a file that gets everything")
+    options.add_argument("--state", type=Path, default=ROOT / ".mutation", help="where verdicts are kept")
+    return options.parse_args(arguments)
 
 
 if __name__ == "__main__":

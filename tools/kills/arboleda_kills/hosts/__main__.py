@@ -14,21 +14,20 @@ postgresql, mosquitto and gcc.
 
 from __future__ import annotations
 
-import argparse
 import json
 import random
 import shutil
 import sys
 import tempfile
-import time
-from collections import Counter
+from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
 
 from arboleda.runtime.waiting import interruptible
-from arboleda_bench.result import percentile
+from frame.telling import counts, stopwatch, told
 
 from ..database import NoServer, programs
+from ..summary import keep_wrong, options_of, spread, states
 from .clocks import NoCompiler
 from .faults import CLOCKS, FAULTS
 from .namespaces import NoNamespaces
@@ -41,16 +40,11 @@ def main() -> int:
     wanted = _options()
     folder = Path(tempfile.mkdtemp(prefix="arboleda-hosts-"))
     folder.chmod(0o755)  # the broker gives up its rights
-    began = time.monotonic()
-
-    def say(line: str) -> None:
-        print(f"{time.monotonic() - began:7.1f} s  {line}", flush=True)
-
     with interruptible():
-        return _tried(wanted, folder, say)
+        return _tried(wanted, folder, stopwatch())
 
 
-def _tried(wanted: argparse.Namespace, folder: Path, say: Callable[[str], None]) -> int:
+def _tried(wanted: Namespace, folder: Path, say: Callable[[str], None]) -> int:
     try:
         programs()
         if shutil.which("mosquitto") is None:
@@ -84,44 +78,25 @@ def _tried(wanted: argparse.Namespace, folder: Path, say: Callable[[str], None])
 def _report(run: Run, folder: Path) -> int:
     verdict, beside, rows = run.verdict()
     for name, times in sorted(run.seconds.items()):
-        print(f"{name}: {len(times)}, p50 {percentile(times, 50):.2f} s, p99 {percentile(times, 99):.2f} s")
-    print(f"faults: {dict(sorted(run.counts.items()))}")
-    states = Counter(row.state if row.reason is None else f"{row.state} ({row.reason})" for row in rows)
-    print(f"{len(rows)} tasks accepted: {dict(states)}")
+        print(f"{name}: {len(times)}, {spread(times)}")
+    print(f"faults: {counts(dict(sorted(run.counts.items())))}")
+    print(f"{len(rows)} tasks accepted: {counts(states(rows))}")
     visitors, ways = run.visitors, run.ways
     print(f"of them sent from another host: {dict(visitors.sent)}; followed: {dict(ways.followed)}")
     for (way, words), count in sorted((visitors.refused + ways.looked).items()):
         print(f"refused or broken off {count} times {way}: {words[:300]}")
     for words, count in sorted(run.ends.items()):
         print(f"ended {count} times after {words}")
-    counted = {
-        "lost": verdict.lost,
-        "doubled": verdict.doubled,
-        "dropped": verdict.dropped,
-        "moved by itself": verdict.moved,
-        "two leaders": beside,
-        "trouble": run.trouble,
-    }
-    for name, sentences in counted.items():
-        print(f"{name}: {len(sentences)}")
-        print("".join(f"  {each}\n" for each in sentences[:20]), end="")
-    if any(counted.values()):
-        deeds = [deed.data() for deed in run.cast.boards.deeds]
-        (folder / "deeds.jsonl").write_text("".join(f"{json.dumps(deed)}\n" for deed in deeds))
+    wrong = {**verdict.wrong, "two leaders": beside, "trouble": run.trouble}
+    print("\n".join(told(wrong)))
+    if any(wrong.values()):
         (folder / "seen.jsonl").write_text("".join(f"{json.dumps(row)}\n" for row in run.cast.watch.executed))
-        changes = (*run.kills, *run.attendant.acts)
-        (folder / "changes.txt").write_text("".join(f"{each}\n" for each in changes))
-        print(f"logs, deeds and changes are in {folder}")
-    return int(any(counted.values()))
+        keep_wrong(folder, run.cast.boards.deeds, (*run.kills, *run.attendant.acts))
+    return int(any(wrong.values()))
 
 
-def _options() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="make hosts", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--faults", type=int, default=1000, help="how many [1000]")
-    parser.add_argument("--seed", type=int, default=1, help="draws faults, instants and tasks [1]")
-    parser.add_argument("--rate", type=float, default=8.0, help="how many times as fast the robots are [8]")
+def _options() -> Namespace:
+    parser = options_of(__doc__, "hosts", "faults", seed="draws faults, instants and tasks")
     names = [fault.name for fault in FAULTS]
     parser.add_argument(
         "--only", nargs="*", choices=names, metavar="FAULT", help="; ".join(names).replace("%", "%%")

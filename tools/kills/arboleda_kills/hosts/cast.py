@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import signal
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -21,7 +19,7 @@ from arboleda.runtime.state import find_running
 from arboleda.web.access.auth import Role
 
 from ..database import DATABASE, PASSWORD, USER, Server
-from ..processes import PATIENCE_S, Boards, Plant, paths
+from ..processes import PATIENCE_S, Boards, Plant, Teller, environment
 from .network import Network
 
 LEFT, RIGHT, DATA, BROKER, BRIDGE, FLOOR = "left", "right", "data", "broker", "bridge", "floor"
@@ -65,34 +63,15 @@ class HostPlant(Plant):
         return self._child.poll() is None
 
 
-class Watch:
+class Watch(Teller):
     """The process of `watch.py`; `executed` grows while it runs: time, robot, id."""
 
     def __init__(self, before: Sequence[str], robots: Sequence[str], log: Path) -> None:
         self.executed: list[tuple[float, str, str]] = []
-        with log.open("ab") as errors:
-            self._child = subprocess.Popen(
-                [*before, sys.executable, "-m", "arboleda_kills.hosts.watch", *robots],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=errors,
-                text=True,
-                env={**os.environ, "PYTHONPATH": paths()},
-            )
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
+        super().__init__("arboleda_kills.hosts.watch", robots, log, self._saw, before)
 
-    def end(self) -> None:
-        assert self._child.stdin is not None
-        self._child.stdin.close()
-        self._child.wait(PATIENCE_S)
-        self._reader.join(PATIENCE_S)
-
-    def _read(self) -> None:
-        assert self._child.stdout is not None
-        for line in self._child.stdout:
-            said = json.loads(line)
-            self.executed.append((said["at"], said["robot"], said["id"]))
+    def _saw(self, said: dict[str, Any]) -> None:
+        self.executed.append((said["at"], said["robot"], said["id"]))
 
 
 class Cast:
@@ -173,7 +152,7 @@ class Cast:
                 [*self._network.on(host), *command],
                 stdout=log,
                 stderr=log,
-                env={**os.environ, "PYTHONPATH": paths()},
+                env=environment(),
             )
 
 

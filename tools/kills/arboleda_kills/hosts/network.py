@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 
-from ..processes import PATIENCE_S, paths
+from ..processes import PATIENCE_S, environment
 from . import namespaces
 from .cable import DEVICE
 from .clocks import Clocks
@@ -74,7 +74,7 @@ class Network:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
-            env={**os.environ, "PYTHONPATH": paths()},
+            env=environment(),
         )
         assert cable.stdout is not None
         if not cable.stdout.readline():

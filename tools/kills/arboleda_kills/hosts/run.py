@@ -20,7 +20,7 @@ from arboleda.store.task_rows import TaskQuery, TaskRow
 
 from ..database import DATABASE, USER
 from ..judge import Kill, Verdict, judge
-from ..people import OVER, Attendant, Customers, Said
+from ..people import OVER, People, Said
 from .books import keep_books, truly
 from .cast import DATA, DATABASE_PORT, HOSTS, LEFT, RIGHT, UNHEARD, Cast, HostPlant
 from .faults import Fault, Scene
@@ -52,8 +52,8 @@ class Run:
         self.network = Network(HOSTS, folder)
         self.cast = Cast(self.network, folder, rate, list(model.robots))
         self._others = PostgresLeadership(STORE, NAME)
-        self.customers = Customers(cells, self._dice, f"s{seed}")
-        self.attendant = Attendant(self.cast.boards)
+        self._people = People(self.cast.boards, cells, self._dice, f"s{seed}")
+        self.customers, self.attendant = self._people.customers, self._people.attendant
         self.seconds: dict[str, list[float]] = {}
         self.counts: Counter[str] = Counter()
         self.ends: Counter[str] = Counter()
@@ -239,9 +239,8 @@ class Run:
                 if snapshot is not None:
                     if over(snapshot):
                         return
-                    self.customers.look(self._plant, snapshot)
-                    self.attendant.look(self._plant, snapshot)
-            now = (len(self.customers.ends), len(self.attendant.acts), self._epoch)
+                    self._people.look(self._plant, snapshot)
+            now = (*self._people.news, self._epoch)
             if now != self._last_news:
                 self._last_news, self._patience = now, time.time() + QUIET_S
             if time.time() > self._patience:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import sys
@@ -13,7 +12,7 @@ from dataclasses import dataclass
 import httpx
 
 from ..people import ACCEPTED, OVER
-from ..processes import UP, paths
+from ..processes import UP, environment
 from .cast import BROKER, UNHEARD, Cast, HostPlant
 from .network import Network
 
@@ -65,7 +64,7 @@ class Ways:
             capture_output=True,
             text=True,
             timeout=PATIENCE_S,
-            env={**os.environ, "PYTHONPATH": paths(), "COLUMNS": "400"},
+            env={**environment(), "COLUMNS": "400"},
         )
         self.followed.update(FOLLOWED.findall(done.stderr))
         if "Traceback" in done.stderr:

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
+import socket
+import struct
 import sys
+import threading
 import time
 from collections import Counter
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from random import Random
 from typing import NoReturn
 
+from arboleda.model.messages import Report
 from arboleda.simulator.chance import Dice
 
-BAD_INPUT = 2
+from .words import words
 
 
 def fuzz(run: Callable[[int, int], Counter[str]], usage: str | None, runs: int = 100_000) -> NoReturn:
     """Run it as often as is asked for, and say what came of it; `usage` answers any other words."""
-    words = sys.argv[1:]
-    if len(words) > 2 or not all(word.isdigit() for word in words):
-        print(usage, file=sys.stderr)
-        sys.exit(BAD_INPUT)
-    runs, seed = (*map(int, words), *(runs, 1)[len(words) :])
+    runs, seed = words(usage, runs, 1)
     began = time.perf_counter()
     for what, count in sorted(run(runs, seed).items()):
         print(f"{count:8} {what}")
@@ -80,6 +81,47 @@ def spoilt(dice: Dice, frame: bytes) -> bytes:
         else:
             changed[at] ^= 1 << dice.below(8)
     return bytes(changed)
+
+
+class Liar:
+    """Server that answers each request with what is `right`, spoilt; `sent` is what it answered last."""
+
+    def __init__(
+        self,
+        dice: Dice,
+        right: Callable[[bytes], bytes],
+        greet: Callable[[socket.socket], None] = lambda _: None,
+    ) -> None:
+        self._dice, self._right, self._greet = dice, right, greet
+        self._server = socket.create_server(("127.0.0.1", 0))
+        self.port: int = self._server.getsockname()[1]
+        self.request = self.sent = b""
+        self._thread = threading.Thread(target=self._serve, daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        with suppress(OSError):
+            self._server.shutdown(socket.SHUT_RDWR)
+        self._server.close()
+        self._thread.join()
+
+    def _serve(self) -> None:
+        with suppress(OSError):
+            while True:
+                client, _ = self._server.accept()
+                with client, suppress(OSError, struct.error):
+                    self._greet(client)
+                    while request := client.recv(512):
+                        self.request = request
+                        self.sent = spoilt(self._dice, self._right(request))
+                        client.sendall(self.sent)
+                        if self.sent != self._right(request):
+                            break  # nothing more will come: who waits for the rest need not wait long
+
+
+def picture(report: Report | None, said: Sequence[str]) -> tuple[object, ...]:
+    """What a report says under these names."""
+    return tuple(getattr(report, name) for name in said)
 
 
 def fail(seed: int, number: int, error: Exception) -> NoReturn:
