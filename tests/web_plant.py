@@ -17,10 +17,10 @@ from arboleda.model.verbs import Arguments
 from arboleda.oee.figures import KeptFigures, Oee, Run, Work, oee
 from arboleda.oee.rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery, TaskRow
-from arboleda.testing import shipped
 from arboleda.web.access.auth import Role
 from arboleda.web.desks.oee import OeeApi
 from arboleda.web.desks.reports import ReportsApi
+from arboleda_proofs.testing import shipped
 
 QUEUED = {"id": "t-1", "text": "sis_a 0b 7", "cell": "sis_a", "state": "queued", "sentence": ""}
 PROMISE = {"hindrance": None, "full": False}

@@ -15,7 +15,6 @@ setup(
             "examples/*/*/*.py",
             "examples/*/*/*.urdf",
             "plants/*.yaml",
-            "playback/report/*.html",
             "py.typed",
             "starter/*",
             "web/languages/*/*.yaml",
@@ -29,6 +28,5 @@ setup(
     extras_require={"test": ["pytest"]},
     entry_points={
         "console_scripts": ["arboleda = arboleda.cli.entry:main"],
-        "pytest11": ["arboleda = arboleda.testing.plugin"],
     },
 )

@@ -16,13 +16,13 @@ from arboleda.model.sentence import OWN, Sentence
 from arboleda.oee.figures import KeptFigures, Oee, oee
 from arboleda.oee.rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery, TaskRow
-from arboleda.testing import Rig, shipped
 from arboleda.views import view
 from arboleda.web.access.auth import Door
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import names_for
 from arboleda.web.desks.oee import OeeApi
 from arboleda.web.server import Server
+from arboleda_proofs.testing import Rig, shipped
 
 EVIL = sys.argv[1]
 SAID = {

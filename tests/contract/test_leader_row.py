@@ -11,11 +11,11 @@ from tests.postgres import Server
 
 from arboleda.core.leading import LEASE_S, WANTED_S
 from arboleda.model.messages import Fact, Remember
-from arboleda.simulator.hosts.database import LeaderRow
 from arboleda.store.plant_memory import Superseded
 from arboleda.store.postgres.leader_row import END_LEASE, LAST_SEEN
 from arboleda.store.postgres.leadership import PostgresLeadership
 from arboleda.store.postgres.memory import LEAD, PostgresMemory
+from arboleda_proofs.simulator.hosts.database import LeaderRow
 
 from ..lengths import length
 

@@ -23,7 +23,7 @@ from arboleda.model.plant_model import OpcUaView
 from arboleda.oee.figures import Oee
 from arboleda.runtime.build import Options, build
 from arboleda.runtime.parts.opcua_view import OpcUaViewOptions, OpcUaViewPart
-from arboleda.testing import shipped
+from arboleda_proofs.testing import shipped
 
 from ..patience import PATIENCE_S
 from ..shared import need_tool

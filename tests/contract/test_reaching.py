@@ -11,9 +11,9 @@ from typing import Any
 from packages.arboleda_drivers.tests.real.contract.press import Order, plant
 from packages.arboleda_drivers.tests.real.modbus.bench import DRIVER, ModbusWire
 
-from arboleda.campaigns.draft import reaching
 from arboleda.drivers import lost
 from arboleda.model.plant_model import DriverUse, Robot
+from arboleda_proofs.campaigns.draft import reaching
 
 SECONDS = 20.0  # nothing waits for them but what fails
 AT_ONCE = 0.2

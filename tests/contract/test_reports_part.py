@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.messages import TaskChanged, TaskState
-from arboleda.runtime.parts import reports
-from arboleda.runtime.parts.reports import MOST_KEPT, MOST_WAITING, NoReport, ReportsPart
+from arboleda_proofs.running import reports_part as reports
+from arboleda_proofs.running.reports_part import MOST_KEPT, MOST_WAITING, NoReport, ReportsPart
 
 from ..patience import PATIENCE_S
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.simulator.faults import KINDS
+from arboleda_proofs.simulator.faults import KINDS
 
 from ..scripts import load
 

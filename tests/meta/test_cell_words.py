@@ -17,9 +17,9 @@ from arboleda.cli.screen import table
 from arboleda.core.cell_states import CellState
 from arboleda.dashboard.wording import LANGUAGES, SENTENCES, tree_of, words
 from arboleda.model.sentence import Phrase
-from arboleda.testing import Rig, shipped
 from arboleda.views import view
 from arboleda.web.schema.bodies import Cell
+from arboleda_proofs.testing import Rig, shipped
 
 ROOT = Path(__file__).parents[2]
 STANDINGS = ("blocked", "paused")

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.simulator.plants.devices import DrawnDevices
+from arboleda_proofs.simulator.plants.devices import DrawnDevices
 
 from ..scripts import load
 

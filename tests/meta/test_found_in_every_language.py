@@ -13,9 +13,9 @@ import pytest
 from tests.packages import PACKAGES
 
 from arboleda.dashboard.findings import findings
-from arboleda.simulator.faults import KINDS
 from arboleda.web.languages import FIRST, LANGUAGES, contents
 from arboleda_boards.conformance.judge import CHECKS, DEVICE_CHECKS
+from arboleda_proofs.simulator.faults import KINDS
 
 PACKAGE = Path(__file__).parents[2] / "src/arboleda/arboleda"
 WORDS = PACKAGE / "web/languages"

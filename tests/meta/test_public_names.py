@@ -20,7 +20,7 @@ MODULES = [
         "arboleda.recipes",
         "arboleda.kinds",
         "arboleda.drivers",
-        "arboleda.testing",
+        "arboleda_proofs.testing",
     )
     if find_spec(name) and hasattr(importlib.import_module(name), "__all__")
 ]

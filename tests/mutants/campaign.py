@@ -10,9 +10,9 @@ import pytest
 
 from arboleda.core import cell_states
 from arboleda.dispatch import ledger
-from arboleda.simulator.climate import Climate
-from arboleda.simulator.probes import Probes, Rows
-from arboleda.simulator.run import Simulation
+from arboleda_proofs.simulator.climate import Climate
+from arboleda_proofs.simulator.probes import Probes, Rows
+from arboleda_proofs.simulator.run import Simulation
 
 from .search import plants
 

@@ -12,12 +12,12 @@ from arboleda.core.verbs.cancelling import Cancelling, _cancel
 from arboleda.core.verbs.held_cells import resume
 from arboleda.dispatch import evidence
 from arboleda.dispatch.latches import Latches
-from arboleda.simulator.run import NO_EXCEPTION
 from arboleda.trees import paths, steps
 from arboleda.trees.cell_time import CellTime
 from arboleda.trees.leaves import Dwell, TakeZones
 from arboleda.trees.tree_run import TreeRun
 from arboleda.wire import strict
+from arboleda_proofs.simulator.run import NO_EXCEPTION
 
 from .mutant import SHARED, edit, mutant
 

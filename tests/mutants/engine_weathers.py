@@ -14,11 +14,11 @@ from functools import cache
 from importlib.resources import as_file, files
 from pathlib import Path
 
-from arboleda.campaigns import random_plants
-from arboleda.campaigns.plants import Plant
-from arboleda.campaigns.setting import Setting
 from arboleda.plant_file import loader
-from arboleda.simulator.plants.devices import Form
+from arboleda_proofs.campaigns import random_plants
+from arboleda_proofs.campaigns.plants import Plant
+from arboleda_proofs.campaigns.setting import Setting
+from arboleda_proofs.simulator.plants.devices import Form
 
 from .themes import plants_of
 

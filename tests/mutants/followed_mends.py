@@ -20,16 +20,16 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import process_time
 
-from arboleda.campaigns.mending.answer import check_answer, run_answer
-from arboleda.campaigns.mending.mend import Mend, edited
-from arboleda.campaigns.mending.search import texts_of
-from arboleda.campaigns.plants import Plant
-from arboleda.campaigns.proof.calm import calm_runs
-from arboleda.campaigns.proof.end_state import EndState
-from arboleda.campaigns.proof.scenario import scenarios
-from arboleda.campaigns.workers import collect_rarely
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader, plant_check
+from arboleda.plant_file.mend import Mend, edited
+from arboleda_proofs.campaigns.mending.answer import check_answer, run_answer
+from arboleda_proofs.campaigns.mending.search import texts_of
+from arboleda_proofs.campaigns.plants import Plant
+from arboleda_proofs.campaigns.proof.calm import calm_runs
+from arboleda_proofs.campaigns.proof.end_state import EndState
+from arboleda_proofs.campaigns.proof.scenario import scenarios
+from arboleda_proofs.campaigns.workers import collect_rarely
 
 from .planted_proof import written
 from .proof_bug import PLANT, ProofBug

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from arboleda.core.leading import Lease, may_leave
 from arboleda.sim.receipts import Receipts
-from arboleda.simulator.hosts.database import LeaderRow
+from arboleda_proofs.simulator.hosts.database import LeaderRow
 
 from .mutant import edit, mutant
 

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from arboleda.model.plant_model import PlantModel
-from arboleda.simulator.climate import Climate
+from arboleda_proofs.simulator.climate import Climate
 
 ALL, SHIPPED, SHARED = (
     range(1, 201),

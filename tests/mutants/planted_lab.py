@@ -14,8 +14,8 @@ from tempfile import TemporaryDirectory
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader, plant_check
-from arboleda.simulator.climate import Climate
-from arboleda.simulator.run import Result, Simulation
+from arboleda_proofs.simulator.climate import Climate
+from arboleda_proofs.simulator.run import Result, Simulation
 
 from .lab_bug import PLANT, RECIPES, LabBug
 from .lab_bugs import LAB_BUGS

@@ -16,14 +16,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import process_time
 
-from arboleda.campaigns.plants import Plant
-from arboleda.campaigns.proof.calm import Calm, calm_runs
-from arboleda.campaigns.proof.outcome import Outcome
-from arboleda.campaigns.proof.proof import Proof
-from arboleda.campaigns.proof.scenario import scenarios
-from arboleda.campaigns.workers import collect_rarely
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader, plant_check
+from arboleda_proofs.campaigns.plants import Plant
+from arboleda_proofs.campaigns.proof.calm import Calm, calm_runs
+from arboleda_proofs.campaigns.proof.outcome import Outcome
+from arboleda_proofs.campaigns.proof.proof import Proof
+from arboleda_proofs.campaigns.proof.scenario import scenarios
+from arboleda_proofs.campaigns.workers import collect_rarely
 
 from .proof_bug import PLANTS, ProofBug
 from .proof_bugs import PROOF_BUGS

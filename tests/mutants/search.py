@@ -10,11 +10,11 @@ import pytest
 
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
-from arboleda.simulator import judged_world
-from arboleda.simulator.invariants import Invariant
-from arboleda.simulator.invariants.hosts import HOSTS
-from arboleda.simulator.judged import INVARIANTS
-from arboleda.simulator.run import Simulation
+from arboleda_proofs.simulator import judged_world
+from arboleda_proofs.simulator.invariants import Invariant
+from arboleda_proofs.simulator.invariants.hosts import HOSTS
+from arboleda_proofs.simulator.judged import INVARIANTS
+from arboleda_proofs.simulator.run import Simulation
 
 from .mutant import Mutant
 

@@ -8,15 +8,15 @@ import pytest
 import yaml
 
 from arboleda.bt_xml.running.decorators import Loop
-from arboleda.campaigns.random_plants import loaded
 from arboleda.kinds.declared import FactType
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Limits
 from arboleda.recipes.decorators import Again, Times
-from arboleda.simulator.climate import Climate
-from arboleda.simulator.invariants import Invariant
-from arboleda.simulator.judged import INVARIANTS
-from arboleda.simulator.run import Simulation
+from arboleda_proofs.campaigns.random_plants import loaded
+from arboleda_proofs.simulator.climate import Climate
+from arboleda_proofs.simulator.invariants import Invariant
+from arboleda_proofs.simulator.judged import INVARIANTS
+from arboleda_proofs.simulator.run import Simulation
 
 from .mutant import Edit, edit
 

@@ -12,8 +12,8 @@ from arboleda.core.cell_states import Cause, CellState
 from arboleda.dispatch import ledger
 from arboleda.dispatch.ledger import Feed, State
 from arboleda.model.messages import Reason, Verb
-from arboleda.simulator.faults import OF_DEVICES, OF_PLACES, ON_ONE_HOST
 from arboleda.wire.payloads import REFUSALS
+from arboleda_proofs.simulator.faults import OF_DEVICES, OF_PLACES, ON_ONE_HOST
 
 from . import campaign
 

@@ -6,10 +6,10 @@ from collections import Counter
 
 import pytest
 
-from arboleda.simulator.invariants.devices import DEVICES
-from arboleda.simulator.invariants.kinds import KINDS
-from arboleda.simulator.invariants.part_places import PLACES
-from arboleda.simulator.run import NO_EXCEPTION
+from arboleda_proofs.simulator.invariants.devices import DEVICES
+from arboleda_proofs.simulator.invariants.kinds import KINDS
+from arboleda_proofs.simulator.invariants.part_places import PLACES
+from arboleda_proofs.simulator.run import NO_EXCEPTION
 
 from .mutant import Mutant
 from .mutants import MUTANTS

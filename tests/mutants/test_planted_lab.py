@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from arboleda.plant_file.loader import load
-from arboleda.simulator.climate import Climate
-from arboleda.simulator.invariants.zones import one_robot_per_zone
-from arboleda.simulator.run import Simulation
+from arboleda_proofs.simulator.climate import Climate
+from arboleda_proofs.simulator.invariants.zones import one_robot_per_zone
+from arboleda_proofs.simulator.run import Simulation
 
 from ..lengths import length, sample
 from .lab_bug import LabBug

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.campaigns.proof.calm import calm_run
-from arboleda.campaigns.proof.scenario import scenarios
 from arboleda.plant_file import loader
+from arboleda_proofs.campaigns.proof.calm import calm_run
+from arboleda_proofs.campaigns.proof.scenario import scenarios
 
 from ..lengths import length
 from .planted_proof import MOST, sighted, written

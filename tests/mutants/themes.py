@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import count
 
-from arboleda.campaigns import random_plants
-from arboleda.campaigns.plants import Plant
-from arboleda.simulator.plants import devices
-from arboleda.simulator.plants.devices import DrawnDevices, Form
-from arboleda.simulator.plants.devices.layout import Section
-from arboleda.simulator.plants.devices.steps import Recover, Repeat, walk
+from arboleda_proofs.campaigns import random_plants
+from arboleda_proofs.campaigns.plants import Plant
+from arboleda_proofs.simulator.plants import devices
+from arboleda_proofs.simulator.plants.devices import DrawnDevices, Form
+from arboleda_proofs.simulator.plants.devices.layout import Section
+from arboleda_proofs.simulator.plants.devices.steps import Recover, Repeat, walk
 
 MANY_SEEDS = 10_000  # between a plant that does not fit and the next that is drawn instead
 Theme = Callable[[DrawnDevices], bool]

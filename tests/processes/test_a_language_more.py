@@ -22,12 +22,12 @@ from arboleda.dashboard.shell import language_of
 from arboleda.dashboard.tags import markup
 from arboleda.dashboard.wording import words
 from arboleda.model.sentence import OWN
-from arboleda.playback.report.page import Report, page
-from arboleda.playback.report.tries import ForkTrial
+from arboleda_proofs.playback.report.page import Report, page
+from arboleda_proofs.playback.report.tries import ForkTrial
 from arboleda.recorder.cause import Cause
 from arboleda.recorder.incident import Incident
 from arboleda.runtime.standby.waiting_room import waiting_page
-from arboleda.testing.plants import shipped
+from arboleda_proofs.testing.plants import shipped
 from arboleda.web.access import login
 
 app = FastAPI()

@@ -31,9 +31,9 @@ from arboleda.cli.main import cli
 from arboleda.dashboard.panel import OFFERS
 from arboleda.dashboard.wording import words
 from arboleda.model.messages import Verb
-from arboleda.simulator.faults.operators import KINDS
-from arboleda.testing.plants import shipped
-from arboleda.testing.rig import Rig
+from arboleda_proofs.simulator.faults.operators import KINDS
+from arboleda_proofs.testing.plants import shipped
+from arboleda_proofs.testing.rig import Rig
 from arboleda.views import view
 from arboleda.web.api import make_app, verb_arguments, verb_of
 from arboleda.web.access.auth import Role, allowed

@@ -59,12 +59,12 @@ print(*sys.modules)
 OF_A_PLANT = {"asyncio", "fastapi", "httpx", "nicegui", "paho", "rclpy", "ssl", "uvicorn"}
 OF_OTHER_COMMANDS = {
     "arboleda.bt_xml",
-    "arboleda.campaigns",
+    "arboleda_proofs.campaigns",
     "arboleda.plant_file.loader",
     "arboleda.plant_file.plant_check",
-    "arboleda.playback",
+    "arboleda_proofs.playback",
     "arboleda.sim",
-    "arboleda.simulator",
+    "arboleda_proofs.simulator",
     "arboleda_class.exercises",
     "arboleda_class.playground",
     "arboleda_drivers.virtual",
@@ -110,4 +110,7 @@ def test_an_everyday_command_loads_neither_the_check_of_plant_files_nor_what_pla
 def test_the_check_of_a_plant_file_loads_neither_a_plant_that_runs_nor_campaigns(tmp_path: Path) -> None:
     found = loaded(tmp_path, "check", str(Path(arboleda.__file__).with_name("plants") / "plant.yaml"))
     assert "arboleda.plant_file.plant_check" in found
-    assert found & {"fastapi", "httpx", "nicegui", "paho", "rclpy", "uvicorn", "arboleda.campaigns"} == set()
+    assert (
+        found & {"fastapi", "httpx", "nicegui", "paho", "rclpy", "uvicorn", "arboleda_proofs.campaigns"}
+        == set()
+    )

@@ -7,7 +7,7 @@ import sys
 
 SHOWN = """
 from arboleda.trees import fingerprint
-from arboleda.testing import shipped
+from arboleda_proofs.testing import shipped
 
 print(fingerprint.of_cell(shipped().cells[0], "storage", {}))
 """

@@ -7,7 +7,7 @@ import sys
 
 
 def test_loading_the_plugin_loads_nothing_else() -> None:
-    code = "import sys, arboleda.testing.plugin as p; print(*sys.modules)"
+    code = "import sys, arboleda_proofs.testing.plugin as p; print(*sys.modules)"
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     packages = {name.partition(".")[0] for name in ran.stdout.split()}
     heavy = {
@@ -23,4 +23,4 @@ def test_loading_the_plugin_loads_nothing_else() -> None:
     }
     assert packages & heavy == set()
     ours = {name for name in ran.stdout.split() if name.startswith("arboleda")}
-    assert ours == {"arboleda", "arboleda.testing", "arboleda.testing.plugin"}
+    assert ours == {"arboleda", "arboleda_proofs.testing", "arboleda_proofs.testing.plugin"}

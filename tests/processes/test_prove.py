@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.campaigns.proof.forks import CAN_FORK, run_all, run_groups
-from arboleda.campaigns.proof.proof import Proof
+from arboleda_proofs.campaigns.proof.forks import CAN_FORK, run_all, run_groups
+from arboleda_proofs.campaigns.proof.proof import Proof
 
 from ..unit.campaigns.lamp import Prove, calm_of, pairs_of, portions, summary
 from ..unit.campaigns.lamp import plant as plant

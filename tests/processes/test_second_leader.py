@@ -10,7 +10,7 @@ from arboleda.runtime import holdings
 from arboleda.runtime.build import Options, build
 from arboleda.runtime.parts.page import PagePlant
 from arboleda.store.plant_memory import OtherLeader, PlantMemory
-from arboleda.testing import shipped
+from arboleda_proofs.testing import shipped
 
 
 def test_it_has_made_no_page_of_which_a_process_has_one(

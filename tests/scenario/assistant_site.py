@@ -38,7 +38,6 @@ from arboleda.runtime.proposals.desk import ProposalDesk
 from arboleda.runtime.proposals.tasks import AssistantTasks
 from arboleda.runtime.version_desk import VersionDesk
 from arboleda.store.task_rows import TaskQuery
-from arboleda.testing import Rig
 from arboleda.views import view
 from arboleda.web.access.auth import Door, Role
 from arboleda.web.access.guard import Guard
@@ -46,6 +45,7 @@ from arboleda.web.access.names import names_for
 from arboleda.web.api import make_app
 from arboleda.web.desks.proposals import ProposalsApi
 from arboleda.web.plant_api import PlantApi, Snapshot
+from arboleda_proofs.testing import Rig
 
 from ..threads import run_here
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from arboleda.model.plant_model import Evidence
-from arboleda.testing import Rig, Witness, faults, shipped, slowed
+from arboleda_proofs.testing import Rig, Witness, faults, shipped, slowed
 
 from ..cells import with_robot
 

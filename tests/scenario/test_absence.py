@@ -16,9 +16,9 @@ from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home
 from arboleda.model.messages import Absence, OperatorRequest, Reason, Verb
 from arboleda.model.plant_model import Evidence
-from arboleda.simulator.world import BRIDGE, PLANT
-from arboleda.testing import shipped
-from arboleda.testing.rig import Rig
+from arboleda_proofs.simulator.world import BRIDGE, PLANT
+from arboleda_proofs.testing import shipped
+from arboleda_proofs.testing.rig import Rig
 
 from ..lengths import sample
 

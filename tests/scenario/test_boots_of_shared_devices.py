@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import yaml
 
-from arboleda.campaigns.random_plants import loaded
 from arboleda.model.messages import TaskState, Verb
-from arboleda.simulator.judged_world import JudgedWorld
-from arboleda.simulator.world import PLANT
+from arboleda_proofs.campaigns.random_plants import loaded
+from arboleda_proofs.simulator.judged_world import JudgedWorld
+from arboleda_proofs.simulator.world import PLANT
 
 FILE = """
     name: drawn_1090

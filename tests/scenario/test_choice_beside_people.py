@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import yaml
 
-from arboleda.campaigns.random_plants import loaded
 from arboleda.model.messages import Verb
-from arboleda.simulator.judged_world import JudgedWorld
+from arboleda_proofs.campaigns.random_plants import loaded
+from arboleda_proofs.simulator.judged_world import JudgedWorld
 
 FILE = """
     name: drawn_1103

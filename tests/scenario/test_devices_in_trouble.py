@@ -11,8 +11,8 @@ from arboleda.core.cell_states import CellState
 from arboleda.model.messages import InternalError, TaskChanged, TaskState, Verb
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.sim.machine import MachineBody
-from arboleda.simulator.network import keeps_its_place
-from arboleda.simulator.world import BRIDGE, PLANT, World
+from arboleda_proofs.simulator.network import keeps_its_place
+from arboleda_proofs.simulator.world import BRIDGE, PLANT, World
 
 from ..unit.kinds.station import plant
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.campaigns.request import Request
+from arboleda_proofs.campaigns.request import Request
 
 PINNED = Path(__file__).with_name("digests.json")
 SEEDS, CYCLES = range(1, 9), 12

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 import pytest
 import yaml
 
-from arboleda.campaigns.random_plants import loaded
-from arboleda.simulator.faults import Fault
-from arboleda.simulator.run import Simulation
-from arboleda.simulator.shrink import explicit
+from arboleda_proofs.campaigns.random_plants import loaded
+from arboleda_proofs.simulator.faults import Fault
+from arboleda_proofs.simulator.run import Simulation
+from arboleda_proofs.simulator.shrink import explicit
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 import yaml
 
-from arboleda.campaigns.random_plants import loaded
 from arboleda.model.messages import TaskState
-from arboleda.simulator.judged_world import JudgedWorld
-from arboleda.simulator.world import World
+from arboleda_proofs.campaigns.random_plants import loaded
+from arboleda_proofs.simulator.judged_world import JudgedWorld
+from arboleda_proofs.simulator.world import World
 
 FILE = """
     name: bench

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.testing.sim import Sim
+from arboleda_proofs.testing.sim import Sim
 
 from ..lengths import sample
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 import yaml
 
-from arboleda.campaigns.random_plants import loaded
 from arboleda.model.messages import TaskState, Verb
-from arboleda.simulator.faults import Fault
-from arboleda.simulator.judged_world import JudgedWorld
+from arboleda_proofs.campaigns.random_plants import loaded
+from arboleda_proofs.simulator.faults import Fault
+from arboleda_proofs.simulator.judged_world import JudgedWorld
 
 FILE = """
     name: drawn_602

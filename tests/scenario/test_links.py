@@ -8,11 +8,11 @@ import pytest
 
 from arboleda.model.messages import Reason, TaskChanged, TaskState
 from arboleda.model.plant_model import Evidence
-from arboleda.simulator.faults import Fault
-from arboleda.simulator.probes import Probes
-from arboleda.simulator.run import Simulation
-from arboleda.simulator.shrink import explicit
-from arboleda.testing import Rig, shipped
+from arboleda_proofs.simulator.faults import Fault
+from arboleda_proofs.simulator.probes import Probes
+from arboleda_proofs.simulator.run import Simulation
+from arboleda_proofs.simulator.shrink import explicit
+from arboleda_proofs.testing import Rig, shipped
 
 from ..lengths import sample
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 import yaml
 
-from arboleda.campaigns.random_plants import loaded
 from arboleda.model.messages import TaskState
-from arboleda.simulator.judged_world import JudgedWorld
+from arboleda_proofs.campaigns.random_plants import loaded
+from arboleda_proofs.simulator.judged_world import JudgedWorld
 
 FILE = """
     name: drawn_52445

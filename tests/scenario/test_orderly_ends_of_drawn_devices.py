@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.campaigns.random_plants import of_devices
 from arboleda.model.messages import Shutdown
-from arboleda.simulator.run import Simulation
-from arboleda.simulator.world import World
+from arboleda_proofs.campaigns.random_plants import of_devices
+from arboleda_proofs.simulator.run import Simulation
+from arboleda_proofs.simulator.world import World
 
 from ..lengths import sample
 

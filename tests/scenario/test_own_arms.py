@@ -6,16 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.campaigns.plants import Plant, PlantRotation
-from arboleda.campaigns.random_plants import ATTEMPTS, as_yaml
-from arboleda.campaigns.setting import Setting
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.plant_file.robot_models import mobile_models
-from arboleda.simulator.plants import draw
-from arboleda.testing import Sim
-from arboleda.testing.storage_layout import StorageLayout
+from arboleda_proofs.campaigns.plants import Plant, PlantRotation
+from arboleda_proofs.campaigns.random_plants import ATTEMPTS, as_yaml
+from arboleda_proofs.campaigns.setting import Setting
+from arboleda_proofs.simulator.plants import draw
+from arboleda_proofs.testing import Sim
+from arboleda_proofs.testing.storage_layout import StorageLayout
 
 from ..lengths import sample
 from ..unit.plant_file import own_arms

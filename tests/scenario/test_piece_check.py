@@ -12,8 +12,8 @@ from arboleda.model.messages import Check, Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence
 from arboleda.recipes import Kit, recipe, work
 from arboleda.sim.arm import ArmBody
-from arboleda.simulator.world import PLANT
-from arboleda.testing import Rig, Witness, faults, shipped, slowed
+from arboleda_proofs.simulator.world import PLANT
+from arboleda_proofs.testing import Rig, Witness, faults, shipped, slowed
 
 from .restarts import restart
 

@@ -21,7 +21,7 @@ cells:
     home: {deg: [0, 0], mm: 0}
     pickup: {deg: [45, 10], mm: 80}
 """
-BY_NAME = ("-p", "arboleda.testing.plugin")
+BY_NAME = ("-p", "arboleda_proofs.testing.plugin")
 
 
 @pytest.fixture
@@ -64,7 +64,7 @@ def test_a_breach_shows_the_line_of_the_test_the_rule_and_the_timeline(project: 
     result = run(
         project,
         """
-        from arboleda.simulator.invariants.invariant import Trigger, invariant
+        from arboleda_proofs.simulator.invariants.invariant import Trigger, invariant
 
         @invariant(Trigger.EXECUTED)
         def arms_rest(look):
@@ -72,7 +72,7 @@ def test_a_breach_shows_the_line_of_the_test_the_rule_and_the_timeline(project: 
             yield from (f"{board} moves" for board, _ in look.moment.executed if board == "arm_1")
 
         def test_it(sim, monkeypatch):
-            monkeypatch.setattr("arboleda.simulator.judged.INVARIANTS", (arms_rest,))
+            monkeypatch.setattr("arboleda_proofs.simulator.judged.INVARIANTS", (arms_rest,))
             sim.__init__(sim._folder)
             sim.plant("my.yaml")
             sim.submit("cell_1 0B 0")

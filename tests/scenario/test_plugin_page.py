@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.simulator.faults import KINDS
-from arboleda.simulator.levels import LEVELS
-from arboleda.testing import Sim
+from arboleda_proofs.simulator.faults import KINDS
+from arboleda_proofs.simulator.levels import LEVELS
+from arboleda_proofs.testing import Sim
 
 pytest_plugins = "pytester"
 
@@ -26,7 +26,7 @@ def test_a_test_of_the_page_passes(
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
     for name, text in FILES.items():
         pytester.path.joinpath(name).write_text(text, "utf-8")
-    result = pytester.runpytest("-p", "arboleda.testing.plugin", test)
+    result = pytester.runpytest("-p", "arboleda_proofs.testing.plugin", test)
     result.assert_outcomes(passed=FILES[test].count("\ndef test_") + FILES[test].startswith("def test_"))
 
 

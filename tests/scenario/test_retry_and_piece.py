@@ -13,10 +13,10 @@ from arboleda.model.messages import Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Retry
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
-from arboleda.testing import Rig, Witness, faults
-from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees.tree_run import TreeRun
 from arboleda.wire.transport import Publication
+from arboleda_proofs.testing import Rig, Witness, faults
+from arboleda_proofs.testing.storage_layout import StorageLayout
 
 Stage = Callable[..., tuple[Rig, Witness]]
 TASK = "sis_a 0B 7"

@@ -16,4 +16,4 @@ PAIR = Path(__file__).parents[2] / "examples/scara_pair"
 def test_the_tests_of_the_example_pass(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
     copytree(PAIR, pytester.path, dirs_exist_ok=True)
-    pytester.runpytest("-p", "arboleda.testing.plugin").assert_outcomes(passed=5)
+    pytester.runpytest("-p", "arboleda_proofs.testing.plugin").assert_outcomes(passed=5)

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.campaigns.random_plants import RandomPlants
-from arboleda.campaigns.setting import Setting
+from arboleda_proofs.campaigns.random_plants import RandomPlants
+from arboleda_proofs.campaigns.setting import Setting
 
 from ..lengths import sample
 

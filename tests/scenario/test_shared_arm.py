@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from arboleda.plant_file.loader import load
-from arboleda.simulator.climate import Climate
-from arboleda.simulator.run import Simulation
+from arboleda_proofs.simulator.climate import Climate
+from arboleda_proofs.simulator.run import Simulation
 
 from ..lengths import length
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.testing import Sim
+from arboleda_proofs.testing import Sim
 
 PLANT = """
 name: ovens

@@ -16,8 +16,8 @@ from arboleda.core.cell_states import CellState
 from arboleda.model.messages import Fact, Journal, Reason, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.plant_file.loader import load
-from arboleda.testing import Rig, Witness, faults, slowed
-from arboleda.testing.following import advised, follow, works
+from arboleda_proofs.testing import Rig, Witness, faults, slowed
+from arboleda_proofs.testing.following import advised, follow, works
 
 from ..lengths import sample
 from .restarts import crash_without_trail

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from arboleda.plant_file.loader import load
-from arboleda.simulator.faults import Fault
-from arboleda.simulator.run import Simulation
-from arboleda.simulator.shrink import explicit
+from arboleda_proofs.simulator.faults import Fault
+from arboleda_proofs.simulator.run import Simulation
+from arboleda_proofs.simulator.shrink import explicit
 
 PLANT = """
 name: cross

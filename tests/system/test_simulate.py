@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.campaigns.request import Request
+from arboleda_proofs.campaigns.request import Request
 
 from ..patience import PATIENCE_S
 from .conftest import paths
@@ -105,7 +105,7 @@ def test_hash_seeds_clocks_and_interpreters_make_no_difference(setting: Path, tm
 
 MAIN = """
 import os; print(os.getpid())
-from arboleda.campaigns import screen; screen.EVERY_S = 0.5  # a line says that it runs
+from arboleda_proofs.campaigns import screen; screen.EVERY_S = 0.5  # a line says that it runs
 from arboleda.cli.main import main; main()
 """
 

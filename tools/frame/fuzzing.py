@@ -14,7 +14,7 @@ from random import Random
 from typing import NoReturn
 
 from arboleda.model.messages import Report
-from arboleda.simulator.chance import Dice
+from arboleda_proofs.simulator.chance import Dice
 
 from .words import words
 

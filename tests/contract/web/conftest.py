@@ -9,6 +9,12 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI, WebSocket, WebSocketDisconnect
+from tests.patience import PATIENCE_S
+from tests.web_plant import TOKENS, Plant
+from tests.web_plant import local as local
+from tests.web_plant import open_to_all as open_to_all
+from tests.web_plant import plant as plant
+from tests.web_plant import web as web
 
 from arboleda.adapters.server_tls import ServerTls, pinned
 from arboleda.web import limits
@@ -17,13 +23,6 @@ from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import names_for
 from arboleda.web.api import make_app
 from arboleda.web.server import SecondLoop, Server
-
-from ...patience import PATIENCE_S
-from ...web_plant import TOKENS, Plant
-from ...web_plant import local as local
-from ...web_plant import open_to_all as open_to_all
-from ...web_plant import plant as plant
-from ...web_plant import web as web
 
 
 class Web:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
-from ...patience import PATIENCE_S
+from tests.patience import PATIENCE_S
 
 
 def test_a_stop_does_not_wait_behind_a_task_whose_id_is_looked_for(web, local, plant, monkeypatch):

@@ -15,14 +15,14 @@ from typing import Any
 import httpx2
 from mcp import Client, StdioServerParameters, stdio_client
 from mcp.client.streamable_http import streamable_http_client
+from tests.unit.assistant.asking import in_process, replied
+from tests.unit.assistant.asking import read as read
+from tests.web_plant import TOKENS, Plant
 
 from arboleda.assistant.bench import Bench
 from arboleda.model.messages import Verb
 from arboleda.web.access.auth import Role
 
-from ...unit.assistant.asking import in_process, replied
-from ...unit.assistant.asking import read as read
-from ...web_plant import TOKENS, Plant
 from .conftest import Web
 
 PROGRAM = "from arboleda.cli.main import main; main()"

@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from tests.patience import PATIENCE_S
+from tests.web_plant import QUEUED, TASK, VIEW, Plant
 
 from arboleda.cli.client import PlantClient
 from arboleda.cli.remote_plant import RemotePlant
@@ -19,8 +21,6 @@ from arboleda.runtime.standby.waiting_room import WaitingRoom
 from arboleda.runtime.state import StateDir
 from arboleda.runtime.web_options import WebOptions
 
-from ...patience import PATIENCE_S
-from ...web_plant import QUEUED, TASK, VIEW, Plant
 from .conftest import Web
 
 HERE = socket.gethostname()

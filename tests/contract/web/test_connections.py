@@ -12,13 +12,13 @@ from functools import partial
 
 import pytest
 import uvicorn
+from tests.patience import PATIENCE_S
+from tests.web_plant import VIEW
 
 from arboleda.model.errors import StartError
 from arboleda.web import server
 from arboleda.web.server import Server
 
-from ...patience import PATIENCE_S
-from ...web_plant import VIEW
 from .conftest import Web
 
 

@@ -6,9 +6,9 @@ import socket
 
 import httpx
 import pytest
+from tests.patience import PATIENCE_S
+from tests.web_plant import VIEW, Plant
 
-from ...patience import PATIENCE_S
-from ...web_plant import VIEW, Plant
 from .conftest import Web
 
 

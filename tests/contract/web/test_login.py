@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from tests.web_plant import TOKENS
+
 from arboleda.web.access.auth import Role
 
-from ...web_plant import TOKENS
 from .conftest import Web
 
 

@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.patience import PATIENCE_S
+from tests.web_plant import QUEUED, TASK, VIEW, Plant
 
 from arboleda.client import AsyncPlant, NoAnswer, NotFound, PlantError, WrongRequest
 from arboleda.client import Plant as Client
 
-from ...patience import PATIENCE_S
-from ...web_plant import QUEUED, TASK, VIEW, Plant
 from .conftest import Web, running
 
 SOURCES = Path(__file__).parents[3] / "src/arboleda"

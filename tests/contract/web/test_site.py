@@ -12,6 +12,8 @@ from typing import TypeVar
 import pytest
 from fastapi import FastAPI
 from fastapi.responses import JSONResponse
+from tests.patience import PATIENCE_S
+from tests.web_plant import TOKENS, VIEW, Plant
 
 from arboleda.dashboard.site.side import LastSeenPlant, RequestOutcome
 from arboleda.model.messages import Verb
@@ -22,8 +24,6 @@ from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import names_for
 from arboleda.web.server import Server
 
-from ...patience import PATIENCE_S
-from ...web_plant import TOKENS, VIEW, Plant
 from .conftest import running
 
 T = TypeVar("T")

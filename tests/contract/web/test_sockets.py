@@ -7,13 +7,13 @@ from contextlib import ExitStack
 from typing import Any
 
 import pytest
+from tests.patience import PATIENCE_S
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from arboleda.web import limits
 from arboleda.web.access.auth import Role
 
-from ...patience import PATIENCE_S
 from .conftest import Web
 
 

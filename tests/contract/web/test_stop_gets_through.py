@@ -15,14 +15,14 @@ from threading import Event, Semaphore
 import pytest
 from fastapi import FastAPI
 from starlette.types import Receive, Scope, Send
+from tests.patience import PATIENCE_S
+from tests.web_plant import TOKENS, VIEW, Plant
 
 from arboleda.model.messages import Verb
 from arboleda.web import server
 from arboleda.web.access.auth import Role
 from arboleda.web.server import Server
 
-from ...patience import PATIENCE_S
-from ...web_plant import TOKENS, VIEW, Plant
 from .conftest import Web
 
 STOPS = 20

@@ -9,15 +9,14 @@ from typing import Any
 
 import httpx
 import pytest
+from tests.patience import PATIENCE_S
 
 from arboleda.cli.client import PlantClient
 from arboleda.core.leaving import ends_motion
 from arboleda.model.messages import Verb
 from arboleda.runtime.build import App, Options, build
 from arboleda.store.sqlite import Store
-from arboleda.testing import shipped
-
-from ...patience import PATIENCE_S
+from arboleda_proofs.testing import shipped
 
 
 class Robots:

@@ -10,11 +10,11 @@ from contextlib import contextmanager
 
 import httpx
 import pytest
+from tests.patience import PATIENCE_MS, PATIENCE_S
+from tests.web_plant import TASK, VIEW, Plant
 
 from arboleda.web import server
 
-from ...patience import PATIENCE_MS, PATIENCE_S
-from ...web_plant import TASK, VIEW, Plant
 from .conftest import Web
 
 

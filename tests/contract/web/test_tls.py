@@ -15,6 +15,8 @@ from typing import Any
 
 import httpx
 import pytest
+from tests.patience import PATIENCE_S
+from tests.web_plant import TOKENS, VIEW
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
@@ -25,8 +27,6 @@ from arboleda.runtime.state import StateDir
 from arboleda.web import server
 from arboleda.web.access.auth import Role
 
-from ...patience import PATIENCE_S
-from ...web_plant import TOKENS, VIEW
 from ..conftest import Authority
 from .conftest import Web
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import httpx
+from tests.patience import PATIENCE_S
 
 from arboleda.runtime.standby.leader import LeaderInfo
 from arboleda.runtime.standby.waiting_room import WaitingRoom
 from arboleda.runtime.web_options import WebOptions
-
-from ...patience import PATIENCE_S
 
 
 def test_a_client_at_the_announced_port_is_sent_on_to_the_leader(tmp_path: Path) -> None:

@@ -10,14 +10,13 @@ from typing import Any
 
 import pytest
 from mcp import Client
+from tests.web_plant import Plant
 
 from arboleda.assistant.bench import Bench
 from arboleda.assistant.envelope import NOTE
 from arboleda.assistant.server import made
 from arboleda.client import AsyncPlant
 from arboleda.model.assistants import NO_LIMITS, Assistants
-
-from ...web_plant import Plant
 
 
 @pytest.fixture

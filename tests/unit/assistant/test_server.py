@@ -7,15 +7,15 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from tests.guarded_plant import guarded
+from tests.in_process import ORIGIN, Machine
+from tests.in_process import machine as machine
+from tests.web_plant import Plant
 
 from arboleda.assistant.bench import Bench
 from arboleda.model.assistants import NO_LIMITS, Assistants
-from arboleda.testing import Rig, shipped
+from arboleda_proofs.testing import Rig, shipped
 
-from ...guarded_plant import guarded
-from ...in_process import ORIGIN, Machine
-from ...in_process import machine as machine
-from ...web_plant import Plant
 from .asking import in_process, replied
 from .asking import read as read
 

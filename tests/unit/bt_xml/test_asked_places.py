@@ -13,7 +13,7 @@ from arboleda.core.plant import Plant
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import advance_check
 from arboleda.plant_file.loader import load
-from arboleda.simulator.judged_world import JudgedWorld
+from arboleda_proofs.simulator.judged_world import JudgedWorld
 
 from ..kinds.test_asked_places import PLANT, RECIPES, ends, written
 

@@ -9,16 +9,15 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from tests.lengths import length
 
 from arboleda.bt_xml.editing import desk
 from arboleda.bt_xml.editing.errors import EditError
 from arboleda.bt_xml.recipe import TreeRecipe
-from arboleda.campaigns.forms import differences_of
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.plant_file.loader import load
-
-from ...lengths import length
+from arboleda_proofs.campaigns.forms import differences_of
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 COPIED = {

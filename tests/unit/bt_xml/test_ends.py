@@ -10,7 +10,7 @@ from arboleda.bt_xml import ends
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
-from arboleda.simulator.run import Simulation
+from arboleda_proofs.simulator.run import Simulation
 
 from ..kinds.test_places import PLANT
 from .findings import looked_at, mistakes, tree, warnings

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
+from tests.lengths import sample
 
 from arboleda.bt_xml import checking, nodes, reading
 from arboleda.bt_xml.findings import Findings
@@ -24,7 +25,6 @@ from arboleda.model.sentence import as_sentence
 from arboleda.recipes import parallel, work
 from arboleda.recipes.authoring import Kit
 
-from ...lengths import sample
 from .findings import HEAD
 
 TICKS = 6

@@ -9,6 +9,11 @@ from pathlib import Path
 
 import pytest
 from fastapi import FastAPI
+from tests.guarded_plant import guarded
+from tests.in_process import Machine
+from tests.in_process import machine as machine
+from tests.web_plant import QUEUED, TASK, VIEW, Plant
+from tests.web_plant import plant as plant
 
 from arboleda.cli.client import PlantClient
 from arboleda.client import Conflict
@@ -18,12 +23,6 @@ from arboleda.runtime import tokens
 from arboleda.runtime.state import StateDir
 from arboleda.web import stream
 from arboleda.web.api import answer_in_sentences
-
-from ...guarded_plant import guarded
-from ...in_process import Machine
-from ...in_process import machine as machine
-from ...web_plant import QUEUED, TASK, VIEW, Plant
-from ...web_plant import plant as plant
 
 
 @pytest.fixture

@@ -7,12 +7,12 @@ from string import Formatter
 
 import pytest
 
-from arboleda.campaigns.setting import rules
 from arboleda.dashboard.findings import findings, plant_reasons
 from arboleda.dashboard.wording import words
 from arboleda.model.sentence import Phrase
 from arboleda.web.languages import contents
 from arboleda.web.languages.templates import Templates
+from arboleda_proofs.campaigns.setting import rules
 
 SENTENCES: dict[str, str] = contents("es", "findings")["sentences"]
 FEWER = {"  faults     {0} of {1} {2} enough:"}  # the value is a verb, of which Spanish needs no second form

@@ -11,7 +11,7 @@ from arboleda.cli.overview import SECTIONS
 from arboleda.cli.screen import says
 from arboleda.client.errors import Conflict
 from arboleda.model.errors import ArboledaError
-from arboleda.runtime.fault_desk import AN_INSTANT
+from arboleda_proofs.running.fault_desk import AN_INSTANT
 
 
 @pytest.fixture

@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
-from arboleda.cli import fault
 from arboleda.cli.main import main
 from arboleda.model.errors import ArboledaError
+from arboleda_proofs.commands import fault
 
 Typed = Callable[..., tuple[int, str]]
 DONE: dict[str, Any] = {"robot": "ra1", "kind": "no_grip", "about": "Grip beside the part", "left_s": 600.0}

@@ -15,6 +15,10 @@ from typing import Any
 import httpx
 import pytest
 from starlette.types import ASGIApp
+from tests.guarded_plant import guarded
+from tests.in_process import Machine
+from tests.in_process import machine as machine
+from tests.web_plant import QUEUED, TOKENS, VIEW, Plant
 
 from arboleda.cli import remote_plant
 from arboleda.cli.client import PlantClient
@@ -29,11 +33,6 @@ from arboleda.runtime.tokens import TOKENS as FILE
 from arboleda.runtime.web_options import WebOptions
 from arboleda.web import stream
 from arboleda.web.access.auth import Role
-
-from ...guarded_plant import guarded
-from ...in_process import Machine
-from ...in_process import machine as machine
-from ...web_plant import QUEUED, TOKENS, VIEW, Plant
 
 HERE, LEADER, OTHER = 8080, 8081, 8082  # ports of a process here, of the leader, of another standby
 LED = LeaderInfo(

@@ -12,7 +12,6 @@ from types import SimpleNamespace
 import pytest
 import yaml
 
-from arboleda.campaigns.request import Request
 from arboleda.cli import remote_plant
 from arboleda.cli import submit as command
 from arboleda.cli.client import PlantClient
@@ -20,6 +19,7 @@ from arboleda.cli.main import main
 from arboleda.cli.plant_options import located, plant_here
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime.state import StateDir, default_state, running_plants
+from arboleda_proofs.campaigns.request import Request
 
 Typed = Callable[..., tuple[int, str, str]]
 SHIPPED = files("arboleda").joinpath("plants", "plant.yaml")

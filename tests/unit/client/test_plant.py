@@ -9,6 +9,11 @@ from socket import gethostname
 from typing import Any
 
 import pytest
+from tests.guarded_plant import guarded
+from tests.in_process import ORIGIN, Machine
+from tests.in_process import machine as machine
+from tests.web_plant import KEPT, LATE, TASK, TOKENS, Plant
+from tests.web_plant import plant as plant
 
 from arboleda.client import (
     Conflict,
@@ -30,12 +35,6 @@ from arboleda.runtime.standby.waiting_room import WaitingRoom
 from arboleda.runtime.web_options import WebOptions
 from arboleda.web.access.auth import Role
 from arboleda.web.desks.draft import DraftApi
-
-from ...guarded_plant import guarded
-from ...in_process import ORIGIN, Machine
-from ...in_process import machine as machine
-from ...web_plant import KEPT, LATE, TASK, TOKENS, Plant
-from ...web_plant import plant as plant
 
 
 @pytest.fixture

@@ -8,8 +8,8 @@ import pytest
 from arboleda.core.plant import Plant
 from arboleda.model.messages import MotionState, OperatorRequest, Report, TaskChanged, TaskRequest, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
-from arboleda.testing import shipped
-from arboleda.testing.storage_layout import StorageLayout
+from arboleda_proofs.testing import shipped
+from arboleda_proofs.testing.storage_layout import StorageLayout
 
 
 class Hand:

@@ -6,7 +6,7 @@ from arboleda.dispatch.belief import Belief
 from arboleda.model.messages import MotionState, Reason, Report, TaskState
 from arboleda.model.sentence import OWN
 from arboleda.recipes import recipe
-from arboleda.testing.following import follow
+from arboleda_proofs.testing.following import follow
 
 from ..kinds.lab import Bench, model
 from ..kinds.station import plant

@@ -5,14 +5,13 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.cells import with_robot
 
 from arboleda.core.text import parse
 from arboleda.model.errors import TextError
 from arboleda.model.plant_model import Link
 from arboleda.model.task import Order
-from arboleda.testing import shipped
-
-from ...cells import with_robot
+from arboleda_proofs.testing import shipped
 
 SHIPPED = shipped()
 

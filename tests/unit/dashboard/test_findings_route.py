@@ -8,12 +8,11 @@ from typing import Any
 import pytest
 from fastapi import FastAPI
 from starlette.types import Receive, Scope, Send
+from tests.in_process import Caller, without_threads
 
 from arboleda.dashboard import findings_route
 from arboleda.web.access.auth import Role
 from arboleda.web.api import answer_in_sentences
-
-from ...in_process import Caller, without_threads
 
 FOUND = {"lines": ['the key "a" is missing', "cells.b: there is nothing to undo"]}
 SAID = {"lines": ['es: the key "a" is missing', "es: cells.b: there is nothing to undo"]}

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from tests.threads import run_here
 
 from arboleda.dashboard.past.frame_queue import FrameQueue
 from arboleda.dashboard.past.side import Start
@@ -15,8 +16,6 @@ from arboleda.dashboard.past.stills import Stills
 from arboleda.dashboard.past.visitor import Arrival, Visitor
 from arboleda.dashboard.wording import words
 from arboleda.recorder.errors import NoRecord
-
-from ...threads import run_here
 
 STARTS = [
     Start(epoch=9, began=0, is_own=False, is_same=False),

@@ -7,11 +7,10 @@ from typing import Any
 
 import pytest
 from fastapi import FastAPI
+from tests.in_process import Caller, without_threads
 
 from arboleda.dashboard import reports
 from arboleda.model.errors import ArboledaError
-
-from ...in_process import Caller, without_threads
 
 CONTENT = "<!doctype html><p>why</p>"
 

@@ -13,7 +13,7 @@ from arboleda.recipes.authoring import CHOOSE, FAIL, FALLBACK, IS, NO_OTHER, PAR
 from arboleda.recipes.decorators import INVERT, REPEAT, RETRY, TIMEOUT, TRY
 from arboleda.recipes.handles import BECOMES, DOING, SAYS
 from arboleda.recipes.holding import WORK
-from arboleda.testing.sim import Sim
+from arboleda_proofs.testing.sim import Sim
 
 ROOT = Path(__file__).parents[3]
 EXAMPLES = resources.files("arboleda") / "examples"

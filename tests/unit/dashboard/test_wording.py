@@ -5,8 +5,8 @@ from string import Formatter
 from typing import Any
 
 import pytest
+from tests.lengths import length
 
-from arboleda.campaigns.request import Request
 from arboleda.core import text
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
@@ -18,13 +18,12 @@ from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.sentence import OWN, Sentence
 from arboleda.plant_file.poses import HOME, STATION
 from arboleda.recipes import storage
-from arboleda.simulator.run import Simulation
 from arboleda.trees import paths, steps
 from arboleda.trees.tree_run import IN_RECOVERY
 from arboleda.views.tree_view import KINDS
 from arboleda.web.languages import contents
-
-from ...lengths import length
+from arboleda_proofs.campaigns.request import Request
+from arboleda_proofs.simulator.run import Simulation
 
 ENGLISH = LANGUAGES[0]
 

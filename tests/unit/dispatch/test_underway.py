@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.campaigns.request import shared
 from arboleda.dispatch.evidence import QUIET_S
 from arboleda.dispatch.underway import PATIENCE_S, UnderWay, Unfinished, UnnamedCommands
 from arboleda.kinds.arm import SetEffector
@@ -14,8 +13,9 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Switch
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Evidence
-from arboleda.testing import shipped
-from arboleda.testing.storage_layout import StorageLayout
+from arboleda_proofs.campaigns.request import shared
+from arboleda_proofs.testing import shipped
+from arboleda_proofs.testing.storage_layout import StorageLayout
 
 MODEL = shared()
 ARM = next(StorageLayout(cell).arm.name for cell in MODEL.cells if StorageLayout(cell).space.zones)

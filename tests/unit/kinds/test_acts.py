@@ -16,10 +16,10 @@ from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Journal, Outcome, Reason, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.sim.arm import ArmBody
-from arboleda.testing import faults, shipped
-from arboleda.testing.rig import Rig
 from arboleda.views.chronicle import Chronicle
 from arboleda.views.view import snapshot
+from arboleda_proofs.testing import faults, shipped
+from arboleda_proofs.testing.rig import Rig
 
 from .lab import OVEN, Bench, model
 from .tending import plant

@@ -11,8 +11,8 @@ from arboleda.model.errors import ConfigError
 from arboleda.plant_file import advance_check
 from arboleda.plant_file.loader import load
 from arboleda.recipes.place_questions import PlaceHandle, PlaceQuestion
-from arboleda.simulator.judged_world import JudgedWorld
-from arboleda.simulator.run import Simulation
+from arboleda_proofs.simulator.judged_world import JudgedWorld
+from arboleda_proofs.simulator.run import Simulation
 
 PLANT = """
 name: hands

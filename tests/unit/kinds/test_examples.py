@@ -12,6 +12,7 @@ from itertools import combinations, groupby
 from pathlib import Path
 
 import pytest
+from tests.lengths import length, sample
 from typer.testing import CliRunner
 
 import arboleda.drivers
@@ -32,10 +33,9 @@ from arboleda.plant_file import loader
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.machine import MachineBody
-from arboleda.testing.following import follow, works
 from arboleda.wire.payloads import OrderGoal
+from arboleda_proofs.testing.following import follow, works
 
-from ...lengths import length, sample
 from .lab import Bench
 
 EXAMPLES = Path(__file__).parents[3] / "examples"

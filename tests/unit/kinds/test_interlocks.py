@@ -11,8 +11,8 @@ from arboleda.model.messages import Fact, MotionState, Reason, Verb
 from arboleda.model.plant_model import Cell, Interlock, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.recipes import Kit, parallel, recipe, work
-from arboleda.testing.following import advised, follow
 from arboleda.wire.transport import Publication
+from arboleda_proofs.testing.following import advised, follow
 
 from .lab import Bench
 from .tending import IDS, LAMP, plant

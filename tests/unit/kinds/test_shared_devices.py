@@ -17,9 +17,9 @@ from arboleda.model.recipe import Recipe
 from arboleda.model.sentence import NOTHING
 from arboleda.recipes import Choice, Kit, parallel, recipe, work
 from arboleda.recipes.errors import RecipeError
-from arboleda.testing.following import advised, follow, works
 from arboleda.trees.cell_devices import CellDevices
 from arboleda.trees.tree_run import step_of
+from arboleda_proofs.testing.following import advised, follow, works
 
 from .lab import Bench
 from .tending import IDS, LAMP

@@ -14,8 +14,8 @@ from arboleda.model.plant_model import Cell, Interlock, PlantModel, Pose, Worksp
 from arboleda.model.recipe import Recipe
 from arboleda.model.whole_cells import whole_cell
 from arboleda.recipes import Kit, recipe, work
-from arboleda.testing.following import advised, follow
 from arboleda.views import view
+from arboleda_proofs.testing.following import advised, follow
 
 from .lab import Bench
 from .tending import FEED, GRIPPER, HOME, IDS, LAMP, VISE, arm

@@ -6,12 +6,11 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from tests.mutants.engine_bug import EngineBug, bug
+from tests.mutants.engine_bugs import ENGINE_BUGS
+from tests.mutants.planted_engine import nearest, sample
 
 from arboleda_mutation.sources import PACKAGE
-
-from ...mutants.engine_bug import EngineBug, bug
-from ...mutants.engine_bugs import ENGINE_BUGS
-from ...mutants.planted_engine import nearest, sample
 
 ROOT = Path(__file__).parents[3]
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import pytest
-
-from ...mutants.mutant import Mutant
-from ...mutants.mutants import MUTANTS
-from ...mutants.planted import PLANTED
+from tests.mutants.mutant import Mutant
+from tests.mutants.mutants import MUTANTS
+from tests.mutants.planted import PLANTED
 
 
 @pytest.mark.parametrize("mutant", [*MUTANTS, *PLANTED], ids=lambda mutant: mutant.bug[:60])

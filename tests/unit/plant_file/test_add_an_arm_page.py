@@ -15,7 +15,7 @@ from arboleda.plant_file import loader
 from arboleda.plant_file.own_models import ENDINGS, FULL_SPEED_S, LEAST_STEP, MOST_JOINTS, STEP_DEG, STEP_MM
 from arboleda.plant_file.shapes import ModelShape, OffsetShape
 from arboleda.plant_file.urdf import robot_urdf
-from arboleda.testing import Sim
+from arboleda_proofs.testing import Sim
 
 PAGE = (Path(__file__).parents[3] / "docs/how-to/add-an-arm.md").read_text("utf-8")
 URDF = PAGE.partition("```xml\n")[2].partition("```")[0]

@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.campaigns.plants import Plant
 from arboleda.cli.main import cli
 from arboleda.drivers.port import spec_of
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Link, PlantModel, Robot
 from arboleda.plant_file import drivers, loader
+from arboleda_proofs.campaigns.plants import Plant
 
 PLANT = """\
 name: lab

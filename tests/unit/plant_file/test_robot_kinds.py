@@ -10,7 +10,7 @@ import pytest
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
 from arboleda.plant_file.registry import COME_WITH_IT
-from arboleda.testing import Sim
+from arboleda_proofs.testing import Sim
 
 CART = """\
 from dataclasses import dataclass

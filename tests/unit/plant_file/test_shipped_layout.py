@@ -8,6 +8,7 @@ from functools import cache
 from itertools import combinations, permutations, product
 
 import pytest
+from tests.lengths import sample
 
 from arboleda.core import text
 from arboleda.geometry import bodies, kinematics
@@ -18,10 +19,8 @@ from arboleda.kinds.joints import Joint
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import Cell, Pose
 from arboleda.plant_file.urdf import robot_urdf
-from arboleda.testing import shipped
-from arboleda.testing.storage_layout import StorageLayout
-
-from ...lengths import sample
+from arboleda_proofs.testing import shipped
+from arboleda_proofs.testing.storage_layout import StorageLayout
 
 CELLS = {cell.name: cell for cell in shipped().cells}
 TASKS = [f"{cell} {path} {n}" for cell in CELLS for path in CELLS[cell].paths for n in range(9)]

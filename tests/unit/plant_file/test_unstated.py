@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.campaigns.mending.mend import edited
-from arboleda.campaigns.mending.offers import offers
-from arboleda.campaigns.plants import Plant, notes
 from arboleda.cli.main import cli
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import draft_check, loader, unstated
 from arboleda.plant_file.draft import draft_of
+from arboleda.plant_file.mend import edited
+from arboleda.plant_file.offers import offers
+from arboleda_proofs.campaigns.plants import Plant, notes
 
 PLANT = """
 name: lab

@@ -5,13 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from tests.cuts import each_cut
 
 from arboleda.model.errors import ConfigError, StartError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.changes import changes
 from arboleda.plant_file.versions import FACTS, FOLDER, Version, Versions, version_of, whole
-
-from ...cuts import each_cut
 
 AT = "2026-11-25T20:00:00+00:00"
 

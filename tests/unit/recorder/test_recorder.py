@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 from mcap.reader import make_reader
+from tests.threads import AtTheEnd, stand_in
 
 from arboleda.core.plant import Plant
 from arboleda.model.recording import Limits
@@ -21,9 +22,8 @@ from arboleda.recorder.recorder import Recorder
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import Step
 from arboleda.recorder.writing import Writing
-from arboleda.testing import Rig, shipped
+from arboleda_proofs.testing import Rig, shipped
 
-from ...threads import AtTheEnd, stand_in
 from .recorded import DEFAULT, Site, beginning_of
 
 STOPPED = "the record has stopped: {}; the plant goes on without it"

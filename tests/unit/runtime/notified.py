@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-
-from ...patience import PATIENCE_S
+from tests.patience import PATIENCE_S
 
 
 @pytest.fixture

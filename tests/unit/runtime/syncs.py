@@ -7,12 +7,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from tests.patience import SOON_S
 
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime.parts.durability import Durability
 from arboleda.store.sqlite import Store
-
-from ...patience import SOON_S
 
 
 class Disk(Store):

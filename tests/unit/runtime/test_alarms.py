@@ -23,10 +23,10 @@ from arboleda.runtime.alarm_options import TOPIC, alarm_options
 from arboleda.runtime.build import Options, build
 from arboleda.runtime.parts.alarms import AlarmsPart
 from arboleda.runtime.parts.commit_pace import Pace
-from arboleda.simulator.world import PLANT
-from arboleda.testing import shipped
-from arboleda.testing.rig import Rig
 from arboleda.views import alarms as view
+from arboleda_proofs.simulator.world import PLANT
+from arboleda_proofs.testing import shipped
+from arboleda_proofs.testing.rig import Rig
 
 from ..kinds.lab import Bench
 from ..kinds.test_people import attended, question, refill

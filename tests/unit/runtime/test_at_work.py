@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tests.cuts import each_cut
+
 from arboleda.model.plant_files import PlantFiles
 from arboleda.runtime import at_work
-
-from ...cuts import each_cut
 
 AT = "2026-11-25T20:00:00+00:00"
 

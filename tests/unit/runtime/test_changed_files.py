@@ -11,7 +11,7 @@ from arboleda.model.plant_files import PlantFiles
 from arboleda.model.recording import Recording
 from arboleda.plant_file.versions import MARK, Versions, version_of
 from arboleda.runtime.standby.changed_files import is_changed, read_again
-from arboleda.testing import shipped
+from arboleda_proofs.testing import shipped
 
 FILES = PlantFiles(plant="plant.yaml", contents={"plant.yaml": b"name: a", "t.xml": b"<root/>"})
 

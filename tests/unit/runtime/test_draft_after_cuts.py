@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.cuts import End, each_cut
 
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import versions
@@ -18,8 +19,6 @@ from arboleda.runtime import at_work
 from arboleda.runtime.draft_desk import DraftDesk
 from arboleda.runtime.draft_file import DAMAGED, FILE, FOLDER, MEANT, OPENED
 from arboleda.runtime.plant_folder import PlantFolder
-
-from ...cuts import End, each_cut
 
 AT = "2026-11-25T20:00:00+00:00"
 ANA = "ana-12345"

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import pytest
+from tests.patience import SOON_S
 
 from arboleda.adapters import clock
 from arboleda.core.leaving import MOST_UNSYNCED_S
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime.parts.durability import Durability
 
-from ...patience import SOON_S
 from .syncs import Disk, People
 from .syncs import disk as disk
 from .syncs import durability as durability

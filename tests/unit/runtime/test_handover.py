@@ -7,6 +7,7 @@ from itertools import count
 from typing import Any
 
 import pytest
+from tests.threads import AtOnce, stand_in
 
 from arboleda.adapters import clock
 from arboleda.model.errors import ArboledaError
@@ -17,8 +18,6 @@ from arboleda.runtime.standby import lease as lease_part
 from arboleda.runtime.standby.handover import CellResumption, hold_all
 from arboleda.runtime.standby.lease import LeasePart
 from arboleda.store.plant_memory import PlantMemory, Superseded
-
-from ...threads import AtOnce, stand_in
 
 
 class Plant:

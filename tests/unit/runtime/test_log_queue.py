@@ -6,12 +6,12 @@ from pathlib import Path
 from queue import Queue
 
 import pytest
+from tests.threads import AtTheEnd, stand_in
 
 from arboleda.runtime import log_queue
 from arboleda.runtime.log_file import LogFile
 from arboleda.runtime.log_queue import LONGEST, RATE, RATES, LogQueue, log_to
 
-from ...threads import AtTheEnd, stand_in
 from .shelf import Clock, Shelf
 from .shelf import clock as clock
 

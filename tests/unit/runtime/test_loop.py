@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import pytest
+from tests.threads import AtOnce, stand_in
 
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime import loop as module
 from arboleda.runtime.loop import Loop
 
-from ...threads import AtOnce, stand_in
 from .echo import Clock, read
 from .echo import clock as clock
 from .echo import machine as machine

@@ -21,9 +21,9 @@ from arboleda.runtime.parts.cell_times import CellTimes
 from arboleda.runtime.state import STORE
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery
-from arboleda.testing import shipped
-from arboleda.testing.rig import Rig
 from arboleda.web.desks.oee import OeeApi
+from arboleda_proofs.testing import shipped
+from arboleda_proofs.testing.rig import Rig
 
 BEGAN = 1_000_000.0  # Unix time of the rig's first second
 

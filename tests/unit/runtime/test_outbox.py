@@ -6,12 +6,11 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from tests.threads import AtOnce, stand_in
 
 from arboleda.adapters.webhook import DeliveryRefused, NotDelivered
 from arboleda.runtime.parts import outbox as module
 from arboleda.runtime.parts.outbox import Outbox
-
-from ...threads import AtOnce, stand_in
 
 
 class Receiver:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from tests.threads import AtOnce, stand_in
 
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime.parts import periodic
 from arboleda.runtime.parts.periodic import Periodic
-
-from ...threads import AtOnce, stand_in
 
 
 def test_all_are_looked_at_until_one_says_that_the_plant_must_end() -> None:

@@ -16,7 +16,7 @@ from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.part_list import PartList
 from arboleda.runtime.registry import Factory, Phase
 from arboleda.runtime.standby import factories as standby
-from arboleda.testing import shipped
+from arboleda_proofs.testing import shipped
 
 Install = Callable[[str, str], None]
 RAISES = "from arboleda.runtime.registry import Factory, Phase\n\n\nclass Part:\n"

@@ -23,9 +23,9 @@ from arboleda.runtime import at_work, tool_path
 from arboleda.runtime.draft_desk import DraftDesk
 from arboleda.runtime.plant_folder import PlantFolder
 from arboleda.runtime.teach_desk import TeachDesk
-from arboleda.testing import Rig
 from arboleda.web.desks.draft import DraftRefused
 from arboleda.web.desks.teach import Along, Button, Target, TeachRefused
+from arboleda_proofs.testing import Rig
 
 BEAT_S = 0.05
 EDITOR = {"editor": "ana-12345", "name": "Ana"}

@@ -7,13 +7,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from tests.in_process import ORIGIN, Caller
 
 from arboleda.runtime import tokens
 from arboleda.runtime.standby.leader import LeaderInfo
 from arboleda.runtime.standby.waiting_room import WaitingRoom
 from arboleda.runtime.web_options import WebOptions
-
-from ...in_process import ORIGIN, Caller
 
 LED = LeaderInfo(plant="demo", host="host-a", process=7, url="http://10.0.0.5:8080", epoch=3)
 NEAR = "http://127.0.0.1:8081"

@@ -7,14 +7,13 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
+from tests.web_plant import Plant
 
 from arboleda.model.errors import TextError
 from arboleda.model.sentence import Phrase
 from arboleda.runtime.endpoints import Place
 from arboleda.site.choosing import Choice, TaskRefused, chosen
 from arboleda.site.reach import PlantRefusal, PlantSilent
-
-from ...web_plant import Plant
 
 BOTH = "north/sis_a,south/sis_b,south/sis_a 0b 7"
 SILENT = Phrase("test.silent", "no answer")

@@ -10,6 +10,8 @@ from typing import Any, TypeVar
 import httpx
 import pytest
 from starlette.types import Message, Receive, Scope, Send
+from tests.in_process import Machine, without_threads
+from tests.web_plant import QUEUED, VIEW
 
 from arboleda.dashboard import frames
 from arboleda.dashboard.site.side import LastSeenPlant
@@ -17,9 +19,6 @@ from arboleda.runtime.endpoints import Place
 from arboleda.site import watch
 from arboleda.site.reach import ANSWER_S, NO_ANSWER
 from arboleda.site.watch import NOT_STOPPED, NOT_YET, STANDS_BY, STOPPED, STOPPED_ALL, Site
-
-from ...in_process import Machine, without_threads
-from ...web_plant import QUEUED, VIEW
 
 T = TypeVar("T")
 NEVER_S = 3600.0

@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.lengths import length, sample
 from tests.rights import modes_count
 
 from arboleda.core.choosing import LATER
@@ -26,7 +27,6 @@ from arboleda.store.memory_file import VERSION
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery, choice_of, course_of, unchecked_of
 
-from ...lengths import length, sample
 from .memory_samples import ACT, LATCH, ended, queued
 
 

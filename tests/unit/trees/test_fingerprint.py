@@ -8,13 +8,12 @@ from functools import partial
 from typing import Any
 
 import pytest
+from tests.cells import with_poses, with_robot
 
 from arboleda.model.plant_model import Cell
-from arboleda.testing import shipped
 from arboleda.trees import fingerprint, steps
 from arboleda.trees.leaves import Unless
-
-from ...cells import with_poses, with_robot
+from arboleda_proofs.testing import shipped
 
 MADE_BY_CODE = "ae0d51165bde685fa42ee56dc501189c"
 

@@ -7,8 +7,8 @@ import json
 import pytest
 
 from arboleda.model.messages import Fact
-from arboleda.testing import Rig, shipped
 from arboleda.trees.trail import Trail
+from arboleda_proofs.testing import Rig, shipped
 
 
 @pytest.fixture

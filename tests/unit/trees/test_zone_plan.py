@@ -7,15 +7,14 @@ from itertools import permutations
 from typing import Any
 
 import pytest
+from tests.cells import with_poses
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Crossing, Pose, Workspace
 from arboleda.plant_file.storage_form import plan_problems
-from arboleda.testing import shipped
-from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees.zone_plan import Leg, entered, passed, plan, recovery_zones
-
-from ...cells import with_poses
+from arboleda_proofs.testing import shipped
+from arboleda_proofs.testing.storage_layout import StorageLayout
 
 NONE = frozenset[str]()
 STATION, OTHER, PLACE = 7, 4, 8  # PLACE is where the shipped cell palletizes to

@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.testing import shipped
-from arboleda.testing.rig import Rig
 from arboleda.viewers.packml import STATES, Counts, tags
 from arboleda.views import view
+from arboleda_proofs.testing import shipped
+from arboleda_proofs.testing.rig import Rig
 
 CELL: dict[str, Any] = {
     "name": "line",

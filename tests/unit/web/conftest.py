@@ -6,14 +6,13 @@ from collections.abc import Callable
 from functools import partial
 
 import pytest
-
-from ...guarded_plant import Web, guarded
-from ...in_process import without_threads
-from ...web_plant import Plant
-from ...web_plant import local as local
-from ...web_plant import open_to_all as open_to_all
-from ...web_plant import plant as plant
-from ...web_plant import web as web
+from tests.guarded_plant import Web, guarded
+from tests.in_process import without_threads
+from tests.web_plant import Plant
+from tests.web_plant import local as local
+from tests.web_plant import open_to_all as open_to_all
+from tests.web_plant import plant as plant
+from tests.web_plant import web as web
 
 
 @pytest.fixture(autouse=True)

@@ -9,6 +9,9 @@ from urllib.parse import quote
 import pytest
 from fastapi import FastAPI
 from starlette.requests import Request
+from tests.guarded_plant import PRESENT, Web
+from tests.in_process import Caller
+from tests.web_plant import LATE, OFFER, OFFERS, QUEUED, TASK, VIEW, Plant
 
 from arboleda.core.leaving import STILL_WAITS, stop_left
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
@@ -17,10 +20,6 @@ from arboleda.model.sentence import Phrase
 from arboleda.oee.rows import OeeQuery
 from arboleda.store.task_rows import TaskQuery
 from arboleda.web.api import make_app, own_up
-
-from ...guarded_plant import PRESENT, Web
-from ...in_process import Caller
-from ...web_plant import LATE, OFFER, OFFERS, QUEUED, TASK, VIEW, Plant
 
 
 def test_the_view_is_the_plant(web):

@@ -10,11 +10,11 @@ import pytest
 
 from arboleda.core.plant import Plant
 from arboleda.model.sentence import in_json
-from arboleda.testing.plants import shipped
 from arboleda.views import view
 from arboleda.web import stream
 from arboleda.web.schema.bodies import Snapshot
 from arboleda.web.stream import Reader, changed
+from arboleda_proofs.testing.plants import shipped
 
 
 @pytest.fixture

@@ -6,12 +6,11 @@ import json
 import re
 
 import pytest
+from tests.guarded_plant import shared_app
+from tests.in_process import Caller
 
 from arboleda.model.messages import Verb
 from arboleda.web.schema import openapi
-
-from ...guarded_plant import shared_app
-from ...in_process import Caller
 
 DRAFT_STEPS = (
     "take",

@@ -9,12 +9,11 @@ from typing import Any
 
 import httpx
 import pytest
+from tests.guarded_plant import PRESENT, shared_app
 
 from arboleda.web.access.auth import Role
 from arboleda.web.desks.faults import BegunFault, FaultRefused
-from arboleda.web.routes import faults
-
-from ...guarded_plant import PRESENT, shared_app
+from arboleda_proofs.routes import faults
 
 BEGUN = BegunFault(number=1, robot="ra1", kind="no_grip", about="Grip beside the part", left_s=600.0)
 NO_GRIP = {"kind": "no_grip", "robot": "ra1", "seconds": 600}

@@ -12,15 +12,14 @@ from urllib.parse import unquote
 import httpx
 import pytest
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from tests.guarded_plant import Web
+from tests.in_process import Caller
+from tests.web_plant import TOKENS, Plant
 
 from arboleda.model.messages import Verb
 from arboleda.web import limits
 from arboleda.web.access.auth import Role, allowed
 from arboleda.web.access.guard import SerialRequests
-
-from ...guarded_plant import Web
-from ...in_process import Caller
-from ...web_plant import TOKENS, Plant
 
 HOST = "127.0.0.1:8080"
 SELDOM = 1e-9  # per second: what was used up stays used up

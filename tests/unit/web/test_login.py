@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import pytest
+from tests.web_plant import TOKENS
 
 from arboleda.model.errors import StartError
 from arboleda.web import limits
 from arboleda.web.access import auth
 from arboleda.web.access.auth import Door, Role
-
-from ...web_plant import TOKENS
 
 
 def log_in(web, token: str, **headers: str):

@@ -10,14 +10,13 @@ from typing import Any
 import pytest
 from fastapi.routing import APIRoute
 from tests.added_package import install
+from tests.in_process import Caller
+from tests.web_plant import Plant
 
 from arboleda.web import missing, routes
 from arboleda.web.api import make_app
 from arboleda.web.routes import routers
 from arboleda.web.shipped_routes import ROUTES
-
-from ...in_process import Caller
-from ...web_plant import Plant
 
 CODE = '''
 from fastapi import APIRouter

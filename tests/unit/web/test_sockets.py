@@ -8,14 +8,13 @@ from typing import Any
 
 import pytest
 from starlette.types import Message, Receive, Scope, Send
+from tests.guarded_plant import Web
+from tests.web_plant import TOKENS
 
 from arboleda.web import limits
 from arboleda.web.access.auth import LOCAL, Role
 from arboleda.web.access.guard import Sockets
 from arboleda.web.request import HttpError
-
-from ...guarded_plant import Web
-from ...web_plant import TOKENS
 
 HELLO: Message = {"type": "websocket.receive", "text": "hello"}
 CONNECT: Message = {"type": "websocket.connect"}

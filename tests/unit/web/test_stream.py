@@ -7,11 +7,10 @@ import json
 from collections.abc import AsyncIterator, Callable
 
 import pytest
+from tests.web_plant import TASK, VIEW, Plant
 
 from arboleda.web import limits
 from arboleda.web.stream import Changes, tell
-
-from ...web_plant import TASK, VIEW, Plant
 
 KNOWN = {"id": "t-1", "text": "sis_a 0b 7", "cell": "sis_a", "reason": None, "sentence": ""}
 

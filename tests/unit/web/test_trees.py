@@ -7,15 +7,14 @@ from typing import Any
 
 import httpx
 import pytest
+from tests.in_process import Caller
+from tests.web_plant import Plant
 
 from arboleda.bt_xml.editing.errors import EditError
 from arboleda.plant_file import loader
 from arboleda.web import limits
 from arboleda.web.access.auth import Role
 from arboleda.web.routes import trees
-
-from ...in_process import Caller
-from ...web_plant import Plant
 
 OWN_TREE = Path(__file__).parents[3] / "examples/own_tree/plant.yaml"
 

@@ -13,9 +13,9 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 
-from arboleda.campaigns.screen import console, progress
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.plant_file.user_file import check_writable
+from arboleda_proofs.campaigns.screen import console, progress
 
 from . import catalog, report
 from .report import Run

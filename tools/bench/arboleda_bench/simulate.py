@@ -23,14 +23,14 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from time import process_time
 
-from arboleda.campaigns.request import Request
-from arboleda.campaigns.setting import Setting
-from arboleda.campaigns.workers import collect_rarely
 from arboleda.model.errors import ArboledaError
-from arboleda.simulator.judged import INVARIANTS
-from arboleda.simulator.people import Attendant, Customers
-from arboleda.simulator.run import MINUTE_S
-from arboleda.simulator.world import World
+from arboleda_proofs.campaigns.request import Request
+from arboleda_proofs.campaigns.setting import Setting
+from arboleda_proofs.campaigns.workers import collect_rarely
+from arboleda_proofs.simulator.judged import INVARIANTS
+from arboleda_proofs.simulator.people import Attendant, Customers
+from arboleda_proofs.simulator.run import MINUTE_S
+from arboleda_proofs.simulator.world import World
 
 from .result import Aim, Figure, Result
 from .scene import Scene

@@ -67,11 +67,11 @@ def _runner(root: Path) -> Any:
     """Runs one seed: the name of the invariant that breaks, or "". Imports what may have a bug."""
     from importlib.resources import as_file, files
 
-    from arboleda.campaigns.plants import Plant
-    from arboleda.campaigns.random_plants import RandomPlants
-    from arboleda.campaigns.setting import Setting
-    from arboleda.campaigns.workers import collect_rarely
     from arboleda.plant_file import loader
+    from arboleda_proofs.campaigns.plants import Plant
+    from arboleda_proofs.campaigns.random_plants import RandomPlants
+    from arboleda_proofs.campaigns.setting import Setting
+    from arboleda_proofs.campaigns.workers import collect_rarely
 
     class Turns:
         """Plants of which each turn takes the next one."""

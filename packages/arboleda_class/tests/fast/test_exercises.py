@@ -6,20 +6,19 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from exercises.works import Sample, handed_in, samples, two
 from tests.lengths import length
 from typer.testing import CliRunner
 
-from arboleda.campaigns.proof.outcome import End
-from arboleda.campaigns.words import task_is, task_is_to
 from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskState
-from arboleda.simulator.faults import KINDS
 from arboleda_class.exercises import judge_process
 from arboleda_class.exercises.exercise import LANGUAGES, Exercise, catalog, exercise
 from arboleda_class.exercises.work import SHEET, packed, works
-
-from ..exercises.works import Sample, handed_in, samples, two
+from arboleda_proofs.campaigns.proof.outcome import End
+from arboleda_proofs.campaigns.words import task_is, task_is_to
+from arboleda_proofs.simulator.faults import KINDS
 
 LEAST = {True: 3, False: 10}  # works of each exercise that are right, and wrong ones
 QUICK = length(("query_first", "night"), ("query_first", "need", "night"))

@@ -8,9 +8,9 @@ import pytest
 
 from arboleda.geometry import bodies
 from arboleda.plant_file.urdf import robot_urdf
-from arboleda.simulator import mishaps
 from arboleda_class.playground import plants
 from arboleda_class.playground.session import Session
+from arboleda_proofs.simulator import mishaps
 
 MINUTE = 960  # ticks
 TASK = "sis_a 0A 8"

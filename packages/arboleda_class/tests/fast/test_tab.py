@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from arboleda.campaigns.request import Request
 from arboleda.web.languages import LANGUAGES, contents
 from arboleda_class.playground import plants
 from arboleda_class.playground.tab import Tab
+from arboleda_proofs.campaigns.request import Request
 
 OPENED = {"plant": None, "languages": ["en"], "seed": 0, "level": "none"}
 

@@ -9,14 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from exercises.works import samples
 from tests.scripts import load
 
 from arboleda.web.languages import LANGUAGES, contents
 from arboleda_class.exercises.exercise import catalog, exercise
 from arboleda_class.playground import plants
 from arboleda_class.playground.tab import Tab
-
-from ..exercises.works import samples
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
 LESSONS = {f"{each.stem}.py": each.read_text("utf-8") for each in EXAMPLES.glob("0*.py")}

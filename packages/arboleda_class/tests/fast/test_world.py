@@ -10,11 +10,11 @@ from py_trees.behaviours import Success
 from py_trees.composites import Sequence
 from tests.unit.kinds.tending import plant
 
-import arboleda.testing
+import arboleda_proofs.testing
 from arboleda.recipes import Kit, recipe, work
-from arboleda.testing import Misuse, shipped
 from arboleda_class.notebook import Drawing, World
 from arboleda_class.notebook.drawn import Happening, Table
+from arboleda_proofs.testing import Misuse, shipped
 
 
 @recipe("there")
@@ -158,7 +158,7 @@ def test_a_plant_that_dies_and_begins_anew_is_followed(world: World) -> None:
 
 def test_names_of_before_are_there_with_a_warning_that_says_the_new_ones() -> None:
     with pytest.warns(DeprecationWarning, match="use `from arboleda_class.notebook import World`"):
-        assert arboleda.testing.World is World
+        assert arboleda_proofs.testing.World is World
 
 
 def test_without_this_package_they_are_refused_with_the_line_that_installs_it(
@@ -167,4 +167,4 @@ def test_without_this_package_they_are_refused_with_the_line_that_installs_it(
     monkeypatch.setitem(sys.modules, "arboleda_class.notebook", None)
     refused = pytest.raises(ImportError, match=r"World needs .* type pip install 'arboleda\[class\]'")
     with pytest.warns(DeprecationWarning, match="World"), refused:
-        arboleda.testing.World  # noqa: B018 - the name is looked up, as by `from ... import`
+        arboleda_proofs.testing.World  # noqa: B018 - the name is looked up, as by `from ... import`

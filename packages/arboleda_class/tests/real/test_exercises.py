@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from exercises.works import handed_in
 from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
 from arboleda_class.exercises import judge_process
 from arboleda_class.exercises.exercise import exercise
 from arboleda_class.exercises.work import Work
-
-from ..exercises.works import handed_in
 
 FOREVER = """
 import sys

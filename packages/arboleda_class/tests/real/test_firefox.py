@@ -6,14 +6,13 @@ import json
 from collections.abc import Iterator
 
 import pytest
+from exercises.works import samples
 from tests.firefox import Page, firefox
 from tests.lengths import length
 from tests.shared import need_tool
 
 from arboleda.web.languages import contents
 from arboleda_class.playground.tab import Tab
-
-from ..exercises.works import samples
 
 pytestmark = [
     pytest.mark.system,

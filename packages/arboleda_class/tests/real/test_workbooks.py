@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from exercises.works import Sample, samples
 from tests.chromium import leave
 from tests.lengths import sample
 from tests.patience import LONG_MS
@@ -19,8 +20,6 @@ from arboleda_class.exercises.exercise import exercise
 from arboleda_class.exercises.judge import Judge
 from arboleda_class.exercises.judge_process import judged
 from arboleda_class.exercises.work import packed, works
-
-from ..exercises.works import Sample, samples
 
 pytestmark = [
     pytest.mark.system,

@@ -12,9 +12,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from arboleda.campaigns.draft.extract import shown
 from arboleda.host.limits import BEHIND
 from arboleda.model.errors import ArboledaError
+from arboleda_proofs.campaigns.draft.extract import shown
 
 SPARE_S = 270.0  # after the budget: what is under way is ended, a mend is looked for
 CHECK_S = 330.0

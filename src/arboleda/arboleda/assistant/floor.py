@@ -6,12 +6,12 @@ import asyncio
 from pathlib import Path
 from typing import Any
 
-from arboleda.campaigns.from_above import FloorPlan, Scene, as_svg
 from arboleda.client import AsyncPlant
 from arboleda.client.answers import Robot
 from arboleda.model.facts import shown
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
+from arboleda_proofs.campaigns.from_above import FloorPlan, Scene, as_svg
 
 from .looks import NothingThere, one
 

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import json as plain_json
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from arboleda.bt_xml.leaves import NotTheSame
+from arboleda.host.packages import extra
 from arboleda.model.errors import ConfigError
+from arboleda.model.packages import PROOFS
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file import advance_check, loader, plant_check, tree_file, unstated
+from arboleda.plant_file.answer import check_answer
+from arboleda.plant_file.findings import Source
 from arboleda.plant_file.user_file import check_writable
 
 from . import apply, nodes
@@ -128,13 +133,11 @@ def _of_cell(file: Path, model: PlantModel, cell: str) -> list[str] | None:
 def _as_data(file: Path, json: Path | None, *, mend: bool) -> None:
     """Write the answer where that is wanted, and say what would mend it; alone on the screen it ends the
     command after problems."""
-    from arboleda.campaigns.mending.answer import check_answer  # it takes the simulator, which loads a while
-    from arboleda.campaigns.mending.finding import Source
-
+    mending = extra("mend", PROOFS, "--mend") if mend else None
     to_screen = json is not None and str(json) == TO_SCREEN
     if json is not None and not to_screen:
         check_writable(json)
-    answer = check_answer(file, within_s=MEND_S if mend else 0.0)
+    answer = check_answer(file, mending=mending and partial(mending, within_s=MEND_S))
     text = plain_json.dumps(answer.plain, indent=1, ensure_ascii=False)
     if to_screen:
         print(text)

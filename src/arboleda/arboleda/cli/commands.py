@@ -16,7 +16,7 @@ import typer
 
 from arboleda.host.packages import entry_points
 from arboleda.model.outside import quoted
-from arboleda.model.packages import BOARDS, CLASS, DRIVERS, MISSING, PackageMissing
+from arboleda.model.packages import BOARDS, CLASS, DRIVERS, MISSING, PROOFS, PackageMissing
 from arboleda.model.sentence import Phrase
 from arboleda.views.verb_words import ABOUT
 
@@ -30,7 +30,12 @@ LEFT_OUT = Phrase(
 OF_PACKAGES = {  # extras of `arboleda`, by command
     "conformance": BOARDS,
     "exercise": CLASS,
+    "fault": PROOFS,
     "firmware-config": BOARDS,
+    "prove": PROOFS,
+    "replay": PROOFS,
+    "report": PROOFS,
+    "simulate": PROOFS,
     "virtual": DRIVERS,
 }
 
@@ -62,11 +67,6 @@ OURS: Mapping[str, Command] = {
         "token",
         "Show the token of viewers, operators or assistants of a plant open to a network (`up --host`).",
     ),
-    "simulate": Command(
-        "simulate",
-        "Run whole plants under virtual time, with faults drawn from a seed, and judge every step.",
-    ),
-    "prove": Command("prove", "Try every single fault at every moment of every recipe, and judge each run."),
     "bench": Command(
         "bench", "Measure this machine: our figures beside the least that the same run can take."
     ),
@@ -107,19 +107,11 @@ OURS: Mapping[str, Command] = {
     "handover": Command(
         "handover", "Have the standby of a plant lead it: what is at work is held, and goes on there."
     ),
-    "fault": Command(
-        "fault",
-        "Have something go wrong with a virtual device: cut its link, reboot its board, lose its part.",
-    ),
     "site": Command(
         "site", "Show many plants on one page: how each stands, trouble first, tasks and OEE over all."
     ),
     "backup": Command("backup", "Copy the plant's memory to a file, while the plant runs or not."),
     "restore": Command("backup", "Put a backup in the place of the plant's memory; the plant must not run."),
-    "replay": Command("replay", "Execute a record again, and compare every step with what it was."),
-    "report": Command(
-        "report", "Write why a task failed: one HTML file, without network, in English and Spanish."
-    ),
     "mcp": Command(
         "mcp", "Let an assistant (a language model) look at a plant, try its plant file, and propose changes."
     ),

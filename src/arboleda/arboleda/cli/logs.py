@@ -15,8 +15,8 @@ import yaml
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase
-from arboleda.playback.record_text import moment, sentence_of
 from arboleda.recorder.errors import NoRecord
+from arboleda.recorder.record_text import moment, sentence_of
 from arboleda.runtime.state import find_running
 
 from .language import allowed, say, word

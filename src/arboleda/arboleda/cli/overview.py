@@ -84,7 +84,9 @@ class Overview(WholeSentences):
 
     def sections(self, ctx: Any) -> Mapping[str, Sequence[str]]:
         listed = {name for names in SECTIONS.values() for name in names}
-        sections = dict(SECTIONS)
+        sections = {
+            title: tuple(name for name in names if name in commands()) for title, names in SECTIONS.items()
+        }
         for name, command in commands().items():
             if name not in listed:
                 sections[command.section] = (*sections.get(command.section, ()), name)

@@ -11,12 +11,14 @@ from typing import Annotated, Any
 
 import typer
 
+from arboleda.host.packages import extra
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import ENDED
 from arboleda.model.outside import plain
-from arboleda.model.sentence import Phrase, Sentence
-from arboleda.playback.record_text import moment
+from arboleda.model.packages import PROOFS
+from arboleda.model.sentence import Phrase
 from arboleda.recorder.errors import NoRecord
+from arboleda.recorder.record_text import moment
 
 from .language import say, word
 from .overview import WholeSentences
@@ -63,19 +65,6 @@ HAS_KB = Phrase("cli.record.has_kb", "{file} has {kilobytes} kB")
 BAD_ENDING = Phrase("cli.record.bad_ending", "{file}: must end in {endings}")
 TASK_OF = Phrase("cli.record.task_of", "{file}: --task ID is for files that end in .btlog or .yaml")
 OF_ONE_TASK = Phrase("cli.record.of_one_task", "{file}: a .btlog is of one task; say which with --task ID")
-NOT_REPLAYED = Phrase(
-    "cli.record.not_replayed",
-    "{file} cannot be replayed, only read: its first {number} files were deleted to make room.",
-)
-CASE = Phrase("cli.record.case", "{file} has {tasks}, {acts}, {faults} in {seconds} s")
-COUNTS = {  # of one, and of more or none
-    "tasks": (Phrase("cli.record.task", "{number} task"), Phrase("cli.record.tasks_of", "{number} tasks")),
-    "acts": (
-        Phrase("cli.record.act", "{number} act of operators"),
-        Phrase("cli.record.acts", "{number} acts of operators"),
-    ),
-    "faults": (Phrase("cli.record.fault", "{number} fault"), Phrase("cli.record.faults", "{number} faults")),
-}
 
 
 def last_of(file: Path | None, plant: Path | None, state: Path | None) -> Path:
@@ -231,13 +220,13 @@ def export(
         raise ConfigError((say(OF_ONE_TASK(file=str(output))),))
     record = reader.opened(last_of(file, plant, state))
     if output.suffix == ".btlog":
-        from arboleda.playback import btlog_export
+        from arboleda.recorder import btlog_export
 
         size = btlog_export.write(record, task or "", output)
         print(plain(say(HAS_KB(file=str(output), kilobytes=f"{size / 1e3:.1f}")), LONGEST))
         return
     if output.suffix == ".yaml":
-        _export_case(record, task, output)
+        extra("case", PROOFS, str(output))(record, task, output)
     elif output.suffix == ".jsonl":
         _say_exported(output, copying.as_lines(record, output))
     else:
@@ -249,28 +238,6 @@ def export(
 def _say_exported(output: Path, count: int) -> None:
     megabytes = f"{output.stat().st_size / 1e6:.1f}"
     print(plain(say(HAS_STEPS_SIZE(file=str(output), steps=count, megabytes=megabytes)), LONGEST))
-
-
-def _export_case(record: Any, task: str | None, output: Path) -> None:
-    from arboleda.plant_file.user_file import check_new
-    from arboleda.playback.case import writing
-    from arboleda.playback.case.reading import case_of
-
-    check_new(output)
-    if record.missing:
-        raise NoRecord(say(NOT_REPLAYED(file=str(record.paths[0]), number=record.missing)))
-    case = case_of(record, task)
-    writing.write(output, writing.as_yaml(case, record.first.beginning, output.name))
-    tasks = sum(act.task is not None for act in case.people)
-    acts = len(case.people) - tasks
-    made = _counted("tasks", tasks), _counted("acts", acts), _counted("faults", len(case.faults))
-    line = CASE(file=str(output), seconds=f"{case.seconds:.1f}", tasks=made[0], acts=made[1], faults=made[2])
-    print(plain(say(line), LONGEST))
-
-
-def _counted(of: str, number: int) -> Sentence:
-    one, more = COUNTS[of]
-    return (one if number == 1 else more)(number=number)
 
 
 def add_to(parent: typer.Typer) -> None:

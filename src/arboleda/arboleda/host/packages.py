@@ -9,6 +9,9 @@ from functools import lru_cache
 from importlib import metadata
 from typing import Any
 
+from arboleda.model.packages import MISSING, PackageMissing
+
+EXTRAS = "arboleda.extras"
 Folders = tuple[tuple[str, int], ...]  # each with the time of its last change
 
 
@@ -26,6 +29,17 @@ def registered(group: str, shipped: Mapping[str, str]) -> list[metadata.EntryPoi
     rows = [metadata.EntryPoint(name, value, group) for name, value in shipped.items()]
     others = [each for each in entry_points(group) if each.name not in shipped]
     return sorted((*rows, *others), key=lambda each: each.name)
+
+
+def extra(name: str, package: str, what: str) -> Any:
+    """What `package` brings for a command of the cell runner; PackageMissing where it is not installed.
+
+    `name` is that of its entry point in the group EXTRAS; `what` is what a person asked for.
+    """
+    for each in entry_points(EXTRAS):
+        if each.name == name:
+            return each.load()
+    raise PackageMissing(MISSING(what=what, package=package))
 
 
 def package_of(point: metadata.EntryPoint) -> str:

@@ -5,5 +5,4 @@ packages. They are read beside the entry points of installed packages, and loade
 PARTS = {
     "fleet": "arboleda.runtime.standby.factories:FACTORIES",
     "make": "arboleda.runtime.make.factories:FACTORIES",
-    "proofs": "arboleda.runtime.proof_factories:FACTORIES",
 }

@@ -10,6 +10,4 @@ ROUTES = {
     "make.teach": "arboleda.web.routes.teach:routes",
     "make.trees": "arboleda.web.routes.trees:routes",
     "make.versions": "arboleda.web.routes.versions:routes",
-    "proofs.faults": "arboleda.web.routes.faults:routes",
-    "proofs.reports": "arboleda.web.routes.reports:routes",
 }

@@ -7,17 +7,16 @@ import math
 from dataclasses import replace
 
 import pytest
+from tests.cells import with_poses
 
 from arboleda.dashboard.twin.scene import MARGIN, scene
 from arboleda.geometry import kinematics
 from arboleda.geometry.bodies import Body
 from arboleda.geometry.hull import hull
 from arboleda.model.plant_model import Cell, Crossing, PlantModel, Pose, Workspace
-from arboleda.testing import shipped
-from arboleda.testing.storage_layout import StorageLayout
 from arboleda.views.geometry import places
-
-from ....cells import with_poses
+from arboleda_proofs.testing import shipped
+from arboleda_proofs.testing.storage_layout import StorageLayout
 
 
 def zoned() -> PlantModel:

@@ -21,7 +21,6 @@ import httpx
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from arboleda.adapters import clock
-from arboleda.campaigns.request import Request
 from arboleda.core.plant import Plant
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command
@@ -32,15 +31,16 @@ from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import Step, as_json
 from arboleda.runtime.parts.local_plant import LocalPlant
 from arboleda.runtime.parts.orchestrator import Orchestrator
-from arboleda.simulator.people import Attendant, Customers
-from arboleda.simulator.run import MINUTE_S
-from arboleda.simulator.world import World
 from arboleda.store.sqlite import IN_MEMORY, Store
 from arboleda.store.task_rows import TaskHistory
 from arboleda.views import view
 from arboleda.views.resting_cells import RestingCells
 from arboleda.web.access.auth import Role
 from arboleda.web.api import make_app
+from arboleda_proofs.campaigns.request import Request
+from arboleda_proofs.simulator.people import Attendant, Customers
+from arboleda_proofs.simulator.run import MINUTE_S
+from arboleda_proofs.simulator.world import World
 
 from .. import plants
 from ..obedient import EPOCH, Yard, command_in, is_over

@@ -165,9 +165,9 @@ def page(exercise: Exercise, language: str) -> str:
 
 def _record(exercise: Exercise, folder: Path) -> None:
     """Write the record that belongs to an exercise."""
-    from arboleda.campaigns import flight
-    from arboleda.campaigns.plants import Plant
     from arboleda.plant_file import loader
+    from arboleda_proofs.campaigns import flight
+    from arboleda_proofs.campaigns.plants import Plant
 
     from .exercise import PLANT
     from .trial_run import run_trial

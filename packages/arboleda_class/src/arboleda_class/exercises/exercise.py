@@ -12,7 +12,7 @@ import yaml
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import among, quoted
-from arboleda.simulator.faults import Fault
+from arboleda_proofs.simulator.faults import Fault
 
 if TYPE_CHECKING:
     from importlib.abc import Traversable  # where Python 3.10 has it, and 3.14 no more

@@ -9,16 +9,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from arboleda.campaigns.plants import ELSEWHERE, Plant
-from arboleda.campaigns.proof.breaches import breaches_of
-from arboleda.campaigns.proof.calm import Calm, calm_runs
-from arboleda.campaigns.proof.forks import run_on
-from arboleda.campaigns.proof.outcome import IS_DONE, End
-from arboleda.campaigns.proof.proof import Proof
-from arboleda.campaigns.proof.proof_tally import Case, ProofTally
-from arboleda.campaigns.proof.scenario import scenarios
-from arboleda.campaigns.proof.stage import Stage
-from arboleda.campaigns.words import fault_words, task_is, task_is_to
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.facts import shown
 from arboleda.model.messages import Reason
@@ -26,7 +16,17 @@ from arboleda.model.outside import plain
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.plant_file.yaml_marks import YamlFault, plain_value
-from arboleda.simulator.faults import KINDS, Fault
+from arboleda_proofs.campaigns.plants import ELSEWHERE, Plant
+from arboleda_proofs.campaigns.proof.breaches import breaches_of
+from arboleda_proofs.campaigns.proof.calm import Calm, calm_runs
+from arboleda_proofs.campaigns.proof.forks import run_on
+from arboleda_proofs.campaigns.proof.outcome import IS_DONE, End
+from arboleda_proofs.campaigns.proof.proof import Proof
+from arboleda_proofs.campaigns.proof.proof_tally import Case, ProofTally
+from arboleda_proofs.campaigns.proof.scenario import scenarios
+from arboleda_proofs.campaigns.proof.stage import Stage
+from arboleda_proofs.campaigns.words import fault_words, task_is, task_is_to
+from arboleda_proofs.simulator.faults import KINDS, Fault
 
 from .exercise import PLANT, Exercise, Proving, Text, TimedFault, Trial
 from .trial_run import Course, run_trial

@@ -11,11 +11,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from arboleda.campaigns import flight
-from arboleda.campaigns.plants import Plant
 from arboleda.host import limits
 from arboleda.host.signals import kill_group
 from arboleda.plant_file.recipe_trial import PATH
+from arboleda_proofs.campaigns import flight
+from arboleda_proofs.campaigns.plants import Plant
 
 from .exercise import Text, exercise
 from .judge import Again, Finding, Judge, Verdict

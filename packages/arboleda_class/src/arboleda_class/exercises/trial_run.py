@@ -6,19 +6,19 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from arboleda.campaigns import words
-from arboleda.campaigns.plants import ELSEWHERE
-from arboleda.campaigns.proof.stage import ASKED_AT_S, HEARD_S, STUCK, entry_name
 from arboleda.core.plant import Plant
 from arboleda.dispatch.ledger import Entry
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import ENDED, TaskChanged, TaskState
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.sim.machine import MachineBody
-from arboleda.simulator.faults import Fault
-from arboleda.simulator.judged_world import BrokenInvariant, JudgedWorld
-from arboleda.simulator.people import FixedAnswers, answer_in_turn
-from arboleda.simulator.run import NO_EXCEPTION
+from arboleda_proofs.campaigns import words
+from arboleda_proofs.campaigns.plants import ELSEWHERE
+from arboleda_proofs.campaigns.proof.stage import ASKED_AT_S, HEARD_S, STUCK, entry_name
+from arboleda_proofs.simulator.faults import Fault
+from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
+from arboleda_proofs.simulator.people import FixedAnswers, answer_in_turn
+from arboleda_proofs.simulator.run import NO_EXCEPTION
 
 from .exercise import TimedFault, Trial
 

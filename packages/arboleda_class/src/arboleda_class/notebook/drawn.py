@@ -9,13 +9,13 @@ from typing import Any, NamedTuple
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.campaigns.from_above import HEIGHT, WIDTH, Scene, as_svg
 from arboleda.dashboard.wording import words
 from arboleda.drawing.picture import Picture, Word, picture
 from arboleda.drawing.svg import svg
 from arboleda.drawing.words import outline
 from arboleda.views import tree_view
 from arboleda.web.languages import FIRST, texts
+from arboleda_proofs.campaigns.from_above import HEIGHT, WIDTH, Scene, as_svg
 
 TOLD = ("name", "feedback")  # of a row of a tree: sentences of the plant
 LINE, CHARACTER, INDENT = 20, 7.4, 8  # px

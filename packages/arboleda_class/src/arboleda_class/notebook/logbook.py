@@ -7,10 +7,10 @@ from typing import Any
 
 from arboleda.core.plant import Plant
 from arboleda.dashboard.wording import words
-from arboleda.simulator.judged_world import JudgedWorld
 from arboleda.views import view
 from arboleda.views.chronicle import Chronicle
 from arboleda.views.resting_cells import RestingCells
+from arboleda_proofs.simulator.judged_world import JudgedWorld
 
 from .drawn import Happening
 

@@ -7,14 +7,14 @@ from html import escape
 from pathlib import Path
 from traceback import format_exception
 
-from arboleda.campaigns.from_above import FloorPlan
 from arboleda.dashboard.wording import words
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.examples import PLANT, found
-from arboleda.simulator.judged_world import JudgedWorld
-from arboleda.testing.sim import Sim
-from arboleda.testing.words import Plain, known
 from arboleda.web.languages import FIRST, LANGUAGES, texts
+from arboleda_proofs.campaigns.from_above import FloorPlan
+from arboleda_proofs.simulator.judged_world import JudgedWorld
+from arboleda_proofs.testing.sim import Sim
+from arboleda_proofs.testing.words import Plain, known
 
 from .drawn import Drawing, Table
 from .logbook import Logbook

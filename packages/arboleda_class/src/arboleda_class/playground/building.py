@@ -9,13 +9,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from arboleda.campaigns.plants import Plant
 from arboleda.geometry import bodies
 from arboleda.geometry.bodies import Body
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.plant_file.urdf import robot_urdf
+from arboleda_proofs.campaigns.plants import Plant
 
 PLANT = "plant.yaml"
 PROBLEM = re.compile(r"(?P<file>[^:\n]+):(?P<line>\d+)(?::\d+)?: (?P<text>.*)", re.DOTALL)

@@ -9,8 +9,8 @@ from typing import Any
 from arboleda.core.plant import Plant
 from arboleda.dashboard.page_state import PageState
 from arboleda.model.plant_model import PlantModel
-from arboleda.simulator.world import START_S
 from arboleda.views import twin_view, view
+from arboleda_proofs.simulator.world import START_S
 
 from .acts import Act
 from .run import LOOK_TICKS, TICK_S, Answer

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from arboleda.campaigns.plants import Plant
 from arboleda.model.plant_model import PlantModel
 from arboleda_class.exercises.exercise import PLANT, exercise
 from arboleda_class.exercises.judge import Again, Judge
 from arboleda_class.exercises.trial_run import run_trial
+from arboleda_proofs.campaigns.plants import Plant
 
 from .building import Texts, built
 from .film import Film

@@ -11,8 +11,8 @@ from arboleda.dashboard.page_api import Layout
 from arboleda.dashboard.tags import rows, tag
 from arboleda.dashboard.twin import pane
 from arboleda.dashboard.wording import Words, words
-from arboleda.simulator.mishaps import MISHAPS
 from arboleda.web.languages import texts
+from arboleda_proofs.simulator.mishaps import MISHAPS
 
 PARTS: Parts = {
     "cells": trees.build,

@@ -6,10 +6,10 @@ from importlib.resources import as_file, files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from arboleda.campaigns.plants import Plant
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
+from arboleda_proofs.campaigns.plants import Plant
 
 STARTER = "starter"
 NAMED = b"PLANT"  # in the files of the starter, for the name that a person gives

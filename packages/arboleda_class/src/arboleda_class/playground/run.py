@@ -9,12 +9,12 @@ from arboleda.core.advice import Hand
 from arboleda.dashboard.page_state import PageState
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, Verb
 from arboleda.model.plant_model import PlantModel
-from arboleda.simulator import hands
-from arboleda.simulator.climate import Climate
-from arboleda.simulator.judged_world import JudgedWorld
-from arboleda.simulator.mishaps import MISHAPS
 from arboleda.views import twin_view, view
 from arboleda.views.resting_cells import RestingCells
+from arboleda_proofs.simulator import hands
+from arboleda_proofs.simulator.climate import Climate
+from arboleda_proofs.simulator.judged_world import JudgedWorld
+from arboleda_proofs.simulator.mishaps import MISHAPS
 
 from .acts import Act, HandLent, MishapBegun, TaskAsked, VerbAsked
 

@@ -15,11 +15,11 @@ from arboleda.dashboard.wording import words
 from arboleda.geometry.bodies import Body
 from arboleda.model.messages import OperatorAnswer, Outcome, TaskChanged, Verb
 from arboleda.model.plant_model import PlantModel
-from arboleda.simulator.climate import Climate
-from arboleda.simulator.mishaps import MISHAPS
 from arboleda.views import view
 from arboleda.views.changes import changed
 from arboleda.web.languages import texts
+from arboleda_proofs.simulator.climate import Climate
+from arboleda_proofs.simulator.mishaps import MISHAPS
 
 from .acts import Act, HandLent, MishapBegun, TaskAsked, VerbAsked
 from .film import Film, FilmRun

@@ -8,14 +8,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.campaigns.request import Request
 from arboleda.dashboard.findings import findings
 from arboleda.geometry.bodies import Body
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import in_json
-from arboleda.simulator import mishaps
 from arboleda.web.languages import spoken
+from arboleda_proofs.campaigns.request import Request
+from arboleda_proofs.simulator import mishaps
 
 from . import building, files, judging, markup, plants, programs
 from .film import Film

@@ -5,13 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from plc.mappings import EXAMPLE, Example
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Robot
 from arboleda.plant_file import loader
 from arboleda_drivers.modbus.settings import Settings
-
-from ..plc.mappings import EXAMPLE, Example
 
 GATE_FACT = "gate: {discrete: 0, words: {closed: 0, open: 1}}"
 LOAD = "load: {write: [{holding: 0, value: 1}]}"

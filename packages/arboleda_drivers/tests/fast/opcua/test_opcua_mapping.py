@@ -5,13 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from plc.mappings import EXAMPLE, Example
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Robot
 from arboleda.plant_file import loader
 from arboleda_drivers.opcua.settings import Settings
-
-from ..plc.mappings import EXAMPLE, Example
 
 MAPPED = Example(file="opcua.yaml", driver="opcua", settings=Settings)
 UNCHANGED = MAPPED.text

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import pytest
+from joint_trajectory.test_joint_trajectory import ARM, GO, HALT, Rig
 
 from arboleda.drivers import Home, MotionState, Stop, StopMode
 from arboleda_drivers.joint_trajectory.machine import machine
 from arboleda_drivers.joint_trajectory.settings import Settings
 from arboleda_drivers.ros_action.events import CancelAll, CancelAnswer, MakeCall
 from arboleda_drivers.ros_action.health import READY_S, Call, CallAnswer, Health, HealthReading
-
-from ..joint_trajectory.test_joint_trajectory import ARM, GO, HALT, Rig
 
 RUNNING, PROTECTIVE_STOP, UNNAMED = 1, 3, 9
 UNLOCK = Call(service="dashboard_client/unlock_protective_stop", type="std_srvs/srv/Trigger")

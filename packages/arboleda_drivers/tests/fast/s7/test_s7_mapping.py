@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from plc.mappings import EXAMPLE, Example
 
 from arboleda.model.plant_model import Robot
 from arboleda.plant_file import loader
 from arboleda_drivers.s7.settings import Settings
-
-from ..plc.mappings import EXAMPLE, Example
 
 MAPPED = Example(file="s7.yaml", driver="s7", settings=Settings)
 LOAD = "load: {write: [{at: DB2.DBB0, value: 1}]}"

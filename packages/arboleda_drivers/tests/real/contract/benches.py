@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 
-from ..dobot import bench as dobot
-from ..gcode import bench as gcode
-from ..gripper_command import bench as gripper_command
-from ..joint_trajectory import bench as joint_trajectory
-from ..modbus import bench as modbus
-from ..nav2 import bench as nav2
-from ..opcua import bench as opcua
-from ..pylabrobot import bench as pylabrobot
-from ..s7 import bench as s7
-from ..serial_arm import bench as serial_arm
-from ..ur import bench as ur
-from ..vda5050 import bench as vda5050
+from dobot import bench as dobot
+from gcode import bench as gcode
+from gripper_command import bench as gripper_command
+from joint_trajectory import bench as joint_trajectory
+from modbus import bench as modbus
+from nav2 import bench as nav2
+from opcua import bench as opcua
+from pylabrobot import bench as pylabrobot
+from s7 import bench as s7
+from serial_arm import bench as serial_arm
+from ur import bench as ur
+from vda5050 import bench as vda5050
+
 from . import line_tcp, mqtt, ros
 from .bench import Bench
 

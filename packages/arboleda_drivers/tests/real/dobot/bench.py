@@ -10,14 +10,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from contract.bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
+from contract.tcp_ports import Ports
 from tests.patience import PATIENCE_S
 
 from arboleda.plant_file.loader import load
 from arboleda.runtime.build import App, Options, build
 from arboleda_drivers.dobot.frames import Feedback, Mode
-
-from ..contract.bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
-from ..contract.tcp_ports import Ports
 
 FRAME_S = 0.02
 HOME = "home"

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+from contract.bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
 from tests.patience import PATIENCE_S
 
 from arboleda.plant_file.loader import load
@@ -20,8 +21,6 @@ from arboleda_drivers.gcode.virtual.moonraker import ERROR, VirtualMoonraker, an
 from arboleda_drivers.virtual.faults import Faults
 from arboleda_drivers.virtual.pty_line import PtyLine
 from arboleda_drivers.virtual.web_socket_line import WebSocketLine
-
-from ..contract.bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
 
 Opened = tuple[App, Callable[[App], Device]]
 HOME = "home"

@@ -7,11 +7,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from contract.bench import OTHER, WORK, Bench, Device
+from ros_action.bench import PlayedServer
+
 from arboleda.plant_file.loader import load
 from arboleda.runtime.build import App, Options, build
-
-from ..contract.bench import OTHER, WORK, Bench, Device
-from ..ros_action.bench import PlayedServer
 
 OPENED = 0.08
 WORDS = {0.03: WORK, 0.05: OTHER}

@@ -7,11 +7,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from contract.bench import OTHER, WORK, Bench, Device
+from ros_action.bench import HOME, PlayedServer
+
 from arboleda.plant_file.loader import load
 from arboleda.runtime.build import App, Options, build
-
-from ..contract.bench import OTHER, WORK, Bench, Device
-from ..ros_action.bench import HOME, PlayedServer
 
 PATH_TOLERANCE = -4
 GOALS = {(0.0,) * 6: HOME, (10.0, 20.0, -30.0, 0.0, 5.0, 0.0): WORK, (5.0, 0.0, 0.0, 0.0, 0.0, 0.0): OTHER}

@@ -5,11 +5,11 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
-from arboleda_drivers.modbus.server import ModbusServer
+from contract.bench import HALT, LATCH
+from contract.press import Order, Words
+from plc.bench import bench
 
-from ..contract.bench import HALT, LATCH
-from ..contract.press import Order, Words
-from ..plc.bench import bench
+from arboleda_drivers.modbus.server import ModbusServer
 
 DRIVER = """
           modbus:

@@ -7,11 +7,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from contract.bench import OTHER, WORK, Bench, Device
+from ros_action.bench import HOME, PlayedServer
+
 from arboleda.plant_file.loader import load
 from arboleda.runtime.build import App, Options, build
-
-from ..contract.bench import OTHER, WORK, Bench, Device
-from ..ros_action.bench import HOME, PlayedServer
 
 WORDS = {(0.0, 0.0): HOME, (1.0, 0.0): WORK, (0.0, 1.0): OTHER}
 PLANT = """

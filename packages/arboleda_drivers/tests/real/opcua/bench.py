@@ -8,11 +8,11 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from arboleda_drivers.opcua.server import OpcUaServer
+from contract.bench import HALT, LATCH
+from contract.press import Order, Words
+from plc.bench import bench
 
-from ..contract.bench import HALT, LATCH
-from ..contract.press import Order, Words
-from ..plc.bench import bench
+from arboleda_drivers.opcua.server import OpcUaServer
 
 DRIVER = """
           opcua:

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
-from arboleda.runtime.build import App, Options, build
+from contract.bench import Bench, Device
+from contract.press import Order, Press, Wire, plant
 
-from ..contract.bench import Bench, Device
-from ..contract.press import Order, Press, Wire, plant
+from arboleda.runtime.build import App, Options, build
 
 
 class PlcWire(Protocol):

@@ -10,10 +10,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from arboleda.runtime.build import App, Options, build
+from contract.bench import HALT, LATCH, Bench, Device
+from contract.press import Order, Press, Words, plant
 
-from ..contract.bench import HALT, LATCH, Bench, Device
-from ..contract.press import Order, Press, Words, plant
+from arboleda.runtime.build import App, Options, build
 
 DRIVER = """
           pylabrobot:

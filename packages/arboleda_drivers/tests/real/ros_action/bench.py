@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, Protocol
 
+from contract.bench import HALT, LATCH, Ref
 from tests.patience import PATIENCE_S
-
-from ..contract.bench import HALT, LATCH, Ref
 
 STATE_S = 0.02
 HOME = "home"

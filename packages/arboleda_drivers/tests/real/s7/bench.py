@@ -6,11 +6,11 @@ import struct
 import threading
 from collections.abc import Callable
 
-from arboleda_drivers.s7.server import S7Server
+from contract.bench import HALT, LATCH
+from contract.press import Order, Words
+from plc.bench import bench
 
-from ..contract.bench import HALT, LATCH
-from ..contract.press import Order, Words
-from ..plc.bench import bench
+from arboleda_drivers.s7.server import S7Server
 
 DRIVER = """
           s7:

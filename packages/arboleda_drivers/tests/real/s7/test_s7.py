@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import IO, Any
 
 import pytest
+from modbus.test_modbus import Heard, is_heard, is_lost, load_command
 from tests.packages import ROOT
 
 from arboleda.drivers import Stop, StopMode
@@ -23,8 +24,6 @@ from arboleda_drivers.s7.adapter import S7
 from arboleda_drivers.s7.keys import Verb, Write
 from arboleda_drivers.s7.server import S7Server
 from arboleda_drivers.s7.settings import Settings
-
-from ..modbus.test_modbus import Heard, is_heard, is_lost, load_command
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("snap7")]
 

@@ -8,6 +8,7 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
+from contract.bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
 from tests.patience import PATIENCE_S
 
 from arboleda.plant_file.loader import load
@@ -17,8 +18,6 @@ from arboleda_drivers.serial_arm.virtual.faults import FAULTS
 from arboleda_drivers.serial_arm.virtual.machine import OVERLOAD, VirtualServos
 from arboleda_drivers.virtual.faults import Faults
 from arboleda_drivers.virtual.pty_line import PtyLine
-
-from ..contract.bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
 
 HOME = "home"
 POSES = {HOME: (0, 0, 0, 0, 0, 0), WORK: (10, 20, -30, 0, 5, 0), OTHER: (5, 0, 0, 0, 0, 0)}

@@ -11,6 +11,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from contract.bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
+from contract.tcp_ports import Ports
+from dobot.bench import RECIPES
 from tests.patience import PATIENCE_S
 
 from arboleda.plant_file.loader import load
@@ -19,10 +22,6 @@ from arboleda_drivers.ur import primary, rtde
 from arboleda_drivers.ur.arm_state import Mode, Runtime
 from arboleda_drivers.ur.machine import GREETING
 from arboleda_drivers.ur.rtde import Frame, Packet, PacketReader, packed, packed_frame
-
-from ..contract.bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
-from ..contract.tcp_ports import Ports
-from ..dobot.bench import RECIPES
 
 DASHBOARD, RTDE, PROGRAMS = range(3)
 FRAME_S = 0.02

@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dobot.test_virtual_dobot import COMMAND, switch
 from tests.packages import ROOT
-
-from ..dobot.test_virtual_dobot import COMMAND, switch
 
 pytestmark = pytest.mark.system
 

@@ -9,6 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from contract.bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
 from tests.patience import PATIENCE_S
 
 from arboleda.adapters.broker import EmbeddedBroker
@@ -18,8 +19,6 @@ from arboleda.plant_file.loader import load
 from arboleda.runtime.build import App, Options, build
 from arboleda.wire.transport import Connection, Delivery, Publication
 from arboleda_drivers.vda5050.messages import Headers, from_bytes, to_bytes
-
-from ..contract.bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
 
 BEAT_S = 0.1
 VERSION, TOPICS = "2.1", "uagv/v2/played/agv1"

@@ -16,7 +16,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.recipe_trial import PATH
 
-START = PATH + "from arboleda.campaigns.draft import {module}; {module}.main()"
+START = PATH + "from arboleda_proofs.campaigns.draft import {module}; {module}.main()"
 ENDING = "nothing is begun any more: the plant ends"
 NO_RESULT = "it ended without a result; try again, or run `arboleda {command}` on the plant file"
 

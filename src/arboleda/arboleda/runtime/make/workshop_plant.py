@@ -22,9 +22,9 @@ from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.model.recipe import Recipe
 from arboleda.plant_file import draft_check, driver_forms, loader
 from arboleda.recipes.authoring import WrittenRecipe
-from arboleda.simulator.faults import ON_ONE_HOST
 from arboleda.views import forms, tree_view
 from arboleda.web.languages import texts
+from arboleda_proofs.simulator.faults import ON_ONE_HOST
 
 Row = dict[str, Any]
 UNREAD = "the draft cannot be read yet; its problems say why"

@@ -1,0 +1,33 @@
+"""Build of this package, by pip and by colcon."""
+
+from setuptools import find_packages, setup
+
+setup(
+    name="arboleda_proofs",
+    version="0.1.0",
+    description="Simulator with truth, proofs, replay and forks of records for Arboleda",
+    license="Apache-2.0",
+    python_requires=">=3.10",
+    package_dir={"": "src"},
+    packages=find_packages("src"),
+    package_data={"arboleda_proofs": ["languages/*/*.yaml", "playback/report/*.html", "py.typed"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", ["resource/arboleda_proofs"]),
+        ("share/arboleda_proofs", ["package.xml"]),
+    ],
+    install_requires=["arboleda==0.1.0"],
+    entry_points={
+        "arboleda.commands": ["proofs = arboleda_proofs.commands:COMMANDS"],
+        "arboleda.extras": [
+            "case = arboleda_proofs.commands.record_case:export",
+            "mend = arboleda_proofs.campaigns.mending.answer:mend_of",
+        ],
+        "arboleda.languages": ["proofs = arboleda_proofs"],
+        "arboleda.parts": ["proofs = arboleda_proofs.running.factories:FACTORIES"],
+        "arboleda.routes": [
+            "proofs.faults = arboleda_proofs.routes.faults:routes",
+            "proofs.reports = arboleda_proofs.routes.reports:routes",
+        ],
+        "pytest11": ["arboleda = arboleda_proofs.testing.plugin"],
+    },
+)

@@ -1,0 +1,1 @@
+"""Simulator with truth, proofs, replay and forks of records."""

@@ -1,0 +1,180 @@
+"""Proof: all single faults at all instants of all scenarios of a plant, as numbered parts of the work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from hashlib import blake2b
+from typing import Any, TypeVar
+
+from arboleda.model.plant_model import PlantModel
+from arboleda_proofs.simulator.faults import Fault
+
+from .calm import Calm
+from .course import Course, course_of
+from .forks import run_all
+from .instants import Instant
+from .outcome import Outcome, Run
+from .scenario import Scenario
+from .single_faults import single_faults
+
+T = TypeVar("T")
+Tick = Callable[[], None]
+MOST = 32  # faults of a portion
+
+
+@dataclass(frozen=True, kw_only=True)
+class Portion:
+    """Portion of the work: faults of one part at one instant of one scenario, by their numbers."""
+
+    scenario: int
+    instant: int
+    part: int
+    first: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Proved:
+    """Proved portion: its different outcomes, which of them each fault has, and all traces as one hash."""
+
+    number: int
+    outcomes: tuple[Outcome, ...]
+    rows: tuple[int, ...]
+    digest: str
+
+    @property
+    def broken(self) -> bool:
+        """True if a fault broke an invariant."""
+        return any(each.broken for each in self.outcomes)
+
+    @property
+    def each(self) -> list[Outcome]:
+        """The outcome of each fault."""
+        return [self.outcomes[row] for row in self.rows]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Proof:
+    """Proof of a plant: calm runs that are sound, and `portions` in the order in which they are worth it.
+
+    `kinds`: only faults of these; none: of all.
+    """
+
+    model: PlantModel
+    calm: Sequence[Calm] = field(default_factory=tuple)
+    kinds: tuple[str, ...] = ()
+
+    @cached_property
+    def portions(self) -> list[Portion]:
+        """All portions: one form of each fault in the work of the device at work first, then of its board,
+        then on others, then all other forms; of each the beginnings of steps first.
+
+        Portions of one rank are spread over all tasks and instants, so that a short budget meets each.
+        """
+        ranks: dict[tuple[int, int], list[Portion]] = {}
+        for *rank, portion in self._ranked():
+            ranks.setdefault((rank[0], rank[1]), []).append(portion)
+        return [each for rank in sorted(ranks) for each in spread(ranks[rank])]
+
+    def instant(self, portion: Portion) -> Instant:
+        """The instant at which the faults of a portion begin."""
+        return self.calm[portion.scenario].instants[portion.instant]
+
+    def scenario(self, number: int) -> Scenario:
+        """The scenario of the portion of this number."""
+        return self.calm[self.portions[number].scenario].scenario
+
+    def name(self, number: int) -> str:
+        """The name of the portion of this number: its task, and its faults with their times as one hash."""
+        faults = blake2b(repr(self.faults(self.portions[number])).encode(), digest_size=16).hexdigest()
+        scenario = self.scenario(number)
+        return f"{scenario.cell} | {scenario.recipe} | {scenario.name} | {faults}"
+
+    def number(self, name: str) -> int:
+        """The number of the portion of this name; KeyError where there is none."""
+        return self._numbers[name]
+
+    def _course(self, row: int) -> Course:
+        """The course of the calm run of this number."""
+        if row not in self._courses:
+            self._courses[row] = course_of(self.model, self.calm[row])
+        return self._courses[row]
+
+    @cached_property
+    def _courses(self) -> dict[int, Course]:
+        return {}
+
+    @cached_property
+    def checked(self) -> dict[tuple[int, Fault], Sequence[Any]]:
+        """The checks that were tried for a fault in a scenario, by its number."""
+        return {}
+
+    @cached_property
+    def _numbers(self) -> dict[str, int]:
+        return {self.name(number): number for number in range(len(self.portions))}
+
+    def count(self, number: int) -> int:
+        """The number of runs of the portion of this number."""
+        return len(self.faults(self.portions[number]))
+
+    def faults(self, portion: Portion) -> list[Fault]:
+        """The faults of a portion."""
+        parts = self._parts[portion.scenario, portion.instant]
+        return parts[portion.part][portion.first : portion.first + MOST]
+
+    def singles(self, row: int) -> list[tuple[Instant, Fault]]:
+        """All faults of the scenario of this number, in the order of their instants."""
+        instants = self.calm[row].instants
+        return [
+            (instant, fault)
+            for number, instant in enumerate(instants)
+            for part in self._parts[row, number]
+            for fault in part
+        ]
+
+    @cached_property
+    def _parts(self) -> dict[tuple[int, int], list[list[Fault]]]:
+        """The faults of each instant of each scenario, in their parts."""
+        return {
+            (row, number): single_faults(
+                self.model, self.model.cell(calm.scenario.cell), instant, number=number, only=self.kinds
+            )
+            for row, calm in enumerate(self.calm)
+            for number, instant in enumerate(calm.instants)
+        }
+
+    def _ranked(self) -> Iterator[tuple[int, int, Portion]]:
+        for (row, number), parts in self._parts.items():
+            level = self.calm[row].instants[number].level
+            for part, faults in enumerate(parts):
+                for first in range(0, len(faults), MOST):
+                    yield part, level, Portion(scenario=row, instant=number, part=part, first=first)
+
+    def run(self, seed: int, *, tick: Tick | None = None) -> Proved:
+        """Run all faults of the portion of this number."""
+        portion = self.portions[seed]
+        calm = self.calm[portion.scenario]
+        tick, course = tick or (lambda: None), self._course(portion.scenario)
+        runs = run_all(self.model, calm, self.faults(portion), tick, course=course)
+        return proved_by(seed, runs)
+
+
+def spread(items: Sequence[T]) -> list[T]:
+    """The items in an order in which the first few are far apart: first, middle, quarters, eighths."""
+    bits = max(len(items) - 1, 0).bit_length()
+    turns = (int(f"{turn:0{bits}b}"[::-1], 2) for turn in range(2**bits))
+    return [items[turn] for turn in turns if turn < len(items)]
+
+
+def proved_by(number: int, runs: Sequence[Run]) -> Proved:
+    """The portion of this number, with these runs."""
+    outcomes = {run.outcome: None for run in runs}
+    numbers = {outcome: index for index, outcome in enumerate(outcomes)}
+    digest = blake2b("".join(run.digest for run in runs).encode(), digest_size=16).hexdigest()
+    return Proved(
+        number=number,
+        outcomes=tuple(outcomes),
+        rows=tuple(numbers[run.outcome] for run in runs),
+        digest=digest,
+    )

@@ -1,0 +1,188 @@
+"""Request of a person to `arboleda simulate`, checked as a whole before anything runs."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from importlib.resources import as_file, files
+from itertools import count
+from pathlib import Path
+
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_files import PlantFiles
+from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import loader
+from arboleda_proofs.simulator.checks import BadFaults
+from arboleda_proofs.simulator.levels import LEVELS
+
+from .defaults import CYCLES, LEVEL, SEED, SEEDS
+from .faults_file import FaultsFile, line_of, read
+from .plants import Plant, PlantRotation, Plants, notes, unjudged
+from .random_plants import RandomPlants, loaded
+from .setting import Setting
+
+OF_DRAWN = "drawn plants: whatever link a robot declares, it is simulated with a virtual board on MQTT"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """Request: the options; None stands for one that was not given.
+
+    `plant_here` is the plant file of the working directory, for where no plant is named.
+    """
+
+    plant: Path | None = None
+    plant_here: Path | None = None
+    drawn_plants: bool = False
+    seed: int | None = None
+    seeds: int | None = None
+    cycles: int = CYCLES
+    faults: str = LEVEL
+    until_failure: bool = False
+    any_of: bool = False
+    standby: bool = False
+    revises: bool = False
+
+    @property
+    def changes_files(self) -> bool:
+        """True if the plant's files are changed while it runs: as asked, or as in the file of a seed."""
+        return self.revises or (self.faults_file is not None and self.faults_file.revises)
+
+    @property
+    def two_hosts(self) -> bool:
+        """True if a second host waits to lead: as asked, or as in the file of a broken seed."""
+        return self.standby or (self.faults_file is not None and self.faults_file.standby)
+
+    @property
+    def first(self) -> int:
+        """The first seed, or the only one."""
+        if self.faults_file is not None and self.faults_file.seed is not None:
+            return self.faults_file.seed
+        return SEED if self.seed is None else self.seed
+
+    @property
+    def count(self) -> int | None:
+        """The number of seeds; None: until something breaks."""
+        if self.faults_file is not None and self.faults_file.seed is not None:
+            return 1
+        return self.seeds or (None if self.until_failure else 1 if self.has_people else SEEDS)
+
+    @property
+    def has_people(self) -> bool:
+        """True if a file says what people do: then seeds differ by little."""
+        return (
+            self.faults_file is not None
+            and isinstance(self.faults_file.climate, dict)
+            and "people" in self.faults_file.climate
+        )
+
+    @property
+    def turn(self) -> Iterable[int]:
+        """The seeds, one after the other."""
+        return count(self.first) if self.count is None else range(self.first, self.first + self.count)
+
+    @cached_property
+    def faults_file(self) -> FaultsFile | None:
+        """The contents of the file that `faults` names; None if it is a level."""
+        if self.faults in LEVELS:
+            return None
+        if not os.path.exists(self.faults):  # unlike Path.exists, False for what can be no file's name
+            known = ", ".join(LEVELS)
+            raise ConfigError((f"--faults: '{self.faults}' is neither a file nor a level ({known})",))
+        return read(Path(self.faults), self.seed)
+
+    @cached_property
+    def plants(self) -> Plants:
+        """The plants that the seeds run on; a broken seed of a file runs on the plant that is in there."""
+        if self.faults_file is not None and self.faults_file.plant_file is not None:
+            return PlantRotation(plants=(loaded(self.faults_file.plant_file, self.faults_file.plant_files),))
+        return RandomPlants() if self.drawn_plants else PlantRotation(plants=self._by_files)
+
+    @property
+    def _by_files(self) -> tuple[Plant, ...]:
+        wanted = self.faults_file.plant if self.faults_file else None
+        named = self.plant or self.plant_here
+        known = [loader.load_with_files(named)] if named else []
+        if named is None or (self.plant is None and wanted not in (None, known[0][0].name)):
+            known += [_shared(), loader.load_with_files()]
+        plants = tuple(Plant(declared=model, files=read) for model, read in known)
+        if wanted is None:
+            return plants
+        if found := tuple(plant for plant in plants if plant.name == wanted):
+            return found
+        raise ConfigError((f"{self.faults}: is of the plant {wanted}; name its file with --plant",))
+
+    @cached_property
+    def setting(self) -> Setting:
+        """The setting of the simulation; ConfigError if the plant or the faults cannot be used."""
+        setting = Setting(
+            plants=self.plants,
+            cycles=self.cycles,
+            level=self.faults,
+            faults_data=self.faults_file.climate if self.faults_file else None,
+            seconds=self.faults_file.seconds if self.faults_file else None,
+            any_of=self.any_of,
+            standby=self.two_hosts,
+            revises=self.changes_files,
+        )
+        try:
+            for seed in self._checked:
+                setting.climate(seed)
+                setting.script(setting.plant(seed))
+        except BadFaults as error:
+            where = line_of(Path(self.faults), error.place)
+            name = setting.plant(seed).name
+            raise ConfigError((f"{self.faults}: {where}{error} (plant {name})",)) from None
+        return setting
+
+    @property
+    def _checked(self) -> Iterable[int]:
+        """The seeds that stand for all: faults of a file must be possible in each plant."""
+        if self.faults_file is None:
+            return range(self.first, self.first + 1)
+        if isinstance(self.plants, PlantRotation):
+            return range(self.first, self.first + len(self.plants.plants))
+        return range(self.first, self.first + (self.count or 1))
+
+    @property
+    def notes(self) -> list[str]:
+        """The notes for a person on what is simulated."""
+        if isinstance(self.plants, PlantRotation):
+            return notes(self.plants.plants)
+        return [OF_DRAWN]
+
+    @property
+    def unjudged(self) -> list[str]:
+        """The sentences on what nobody can judge, as the plant files do not state it."""
+        return unjudged(self.plants.plants) if isinstance(self.plants, PlantRotation) else []
+
+    def replay(self, seed: int) -> str:
+        """The command that runs one seed again, step by step."""
+        cycles = ["--cycles", str(self.cycles)] if self.cycles != CYCLES else []
+        faults = ["--faults", self.faults] if self.faults != LEVEL else []
+        return self._trace("--seed", str(seed), *cycles, *faults)
+
+    def replay_shrunk(self, file: Path, seed: int) -> str:
+        """The same with the faults that `file` says are enough."""
+        return self._trace("--seed", str(seed), "--faults", str(file), drawn=False)
+
+    def _trace(self, *words: str, drawn: bool = True) -> str:
+        plant = ["--plant", str(self.plant)] if self.plant else []
+        plant += ["--drawn-plants"] if self.drawn_plants and drawn else []
+        plant += ["--any-of"] if self.any_of else []
+        plant += ["--standby"] if self.standby else []
+        plant += ["--revisions"] if self.revises else []
+        return shlex.join(["arboleda", "simulate", *words, *plant, "--trace"])
+
+
+def shared() -> PlantModel:
+    """The second packaged plant, with the features that the shipped one does not use."""
+    return _shared()[0]
+
+
+def _shared() -> tuple[PlantModel, PlantFiles]:
+    with as_file(files("arboleda") / "plants" / "shared.yaml") as path:
+        return loader.load_with_files(path)

@@ -1,0 +1,180 @@
+"""The command `arboleda prove`: its options and its exit status."""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from arboleda.cli.language import language, say
+from arboleda.cli.plant_options import IN_FOLDER, PLANT_VARIABLE, StateFolder, folder, is_typed, plant_here
+from arboleda.model.sentence import Phrase
+from arboleda.plant_file.user_file import check_writable
+
+BUDGET = "10m"
+HELP = f"""Try every single fault at every moment of every recipe, and judge each run.
+
+\b
+arboleda prove                          the plant of this folder, for {BUDGET}
+arboleda prove my_plant.yaml            your plant; what is kept is not run again
+arboleda prove my_plant.yaml --recipe weigh --budget all
+arboleda prove my_plant.yaml --html out.html --tests test_found.py
+
+Each recipe runs once without faults, for each class of parameters and each answer that can lead elsewhere.
+Then each kind of fault begins before and after each event of that run, and in the middle between two,
+one run each. Steps' beginnings come first, so that a short budget is spent well.
+
+Exit status: 0 every invariant held, 1 one was broken, or a task failed where nothing had
+gone wrong, 2 bad input or nothing was run, 130 Ctrl-C."""
+BUDGETS = re.compile(r"(\d+(?:\.\d+)?)(s|m|h)")
+SECONDS = {"s": 1.0, "m": 60.0, "h": 3600.0}
+ALL = "all"
+
+PlantArgument = Annotated[
+    Path | None,
+    typer.Argument(
+        metavar="PLANT",
+        help=f"Plant file. [default: {IN_FOLDER} of this folder, else the shipped plant]",
+    ),
+]
+SamePlant = Annotated[
+    Path | None,
+    typer.Option(
+        "--plant",
+        metavar="FILE",
+        envvar=PLANT_VARIABLE,
+        help="The same as PLANT, as other commands have it.",
+    ),
+]
+Recipes = Annotated[
+    list[str] | None,
+    typer.Option("--recipe", metavar="NAME", help="Only this recipe; may be given several times."),
+]
+Faults = Annotated[
+    list[str] | None,
+    typer.Option("--fault", metavar="KIND", help="Only this kind of fault; may be given several times."),
+]
+Budget = Annotated[
+    str,
+    typer.Option(
+        metavar="TIME", help="Begin no more runs after so long: 30s, 10m, 2h; all: until everything is run."
+    ),
+]
+Json = Annotated[
+    Path | None,
+    typer.Option(
+        "--json",
+        metavar="FILE",
+        help="Write the whole answer; -: print progress, then the answer, as lines of JSON and nothing else.",
+    ),
+]
+Html = Annotated[
+    Path | None,
+    typer.Option("--html", metavar="FILE", help="Write the answer as one page, in English and Spanish."),
+]
+JUnit = Annotated[
+    Path | None, typer.Option("--junit", metavar="FILE", help="Write it as JUnit XML, for a CI server.")
+]
+Tests = Annotated[
+    Path | None, typer.Option("--tests", metavar="FILE", help="Write a pytest for each invariant that broke.")
+]
+Badge = Annotated[
+    Path | None, typer.Option("--badge", metavar="FILE", help="Write a badge as SVG, for one's own README.")
+]
+Anew = Annotated[bool, typer.Option("--anew", help="Run again also what was run before.")]
+Pairs = Annotated[
+    bool,
+    typer.Option(
+        "--pairs",
+        help="Then try two faults in one run, the most likely ones first, for the rest of the budget.",
+    ),
+]
+Mend = Annotated[
+    bool,
+    typer.Option(
+        "--mend",
+        help="Then look for a change of the files that mends what is found: each is tried, for some minutes.",
+    ),
+]
+Jobs = Annotated[
+    int | None,
+    typer.Option(metavar="N", min=1, help="How many processes share the runs. [default: one per processor]"),
+]
+PAIRS_TAKE = Phrase(
+    "cli.prove.pairs_take", "--pairs: all pairs take years; give a --budget that is a time, not {all}"
+)
+PLANT_TWICE = Phrase("cli.prove.plant_twice", "two plant files are named, {plant} and {other}; name one")
+NO_BUDGET = Phrase("cli.prove.no_budget", "--budget: {budget} is no time; write 30s, 10m, 2h or {all}")
+
+
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command("prove", help=HELP, short_help=HELP.partition("\n")[0])(prove)
+
+
+def prove(
+    context: typer.Context,
+    plant: PlantArgument = None,
+    same_plant: SamePlant = None,
+    recipe: Recipes = None,
+    fault: Faults = None,
+    budget: Budget = BUDGET,
+    json: Json = None,
+    html: Html = None,
+    junit: JUnit = None,
+    tests: Tests = None,
+    badge: Badge = None,
+    pairs: Pairs = False,
+    mend: Mend = False,
+    anew: Anew = False,
+    jobs: Jobs = None,
+    state: StateFolder = None,
+) -> None:
+    from arboleda_proofs.campaigns import screen  # the simulator takes a while to load
+    from arboleda_proofs.campaigns.proof.proof_campaign import ProofCampaign
+    from arboleda_proofs.campaigns.proof.proof_lines import STANDARD_OUTPUT, ProofLines
+    from arboleda_proofs.campaigns.proof.proof_request import ProofRequest
+    from arboleda_proofs.campaigns.workers import processors
+
+    if plant is not None and is_typed(context, "same_plant"):
+        raise typer.BadParameter(say(PLANT_TWICE(plant=str(plant), other=str(same_plant))))
+    plant = plant_here(plant or same_plant)
+    is_read_along = json is not None and str(json) == STANDARD_OUTPUT
+    json = None if is_read_along else json
+    for file in (json, html, junit, tests, badge):
+        if file is not None:
+            check_writable(file)
+    if pairs and budget == ALL:
+        raise typer.BadParameter(say(PAIRS_TAKE(all=ALL)))
+    request = ProofRequest(
+        plant=plant,
+        recipes=tuple(recipe or ()),
+        kinds=tuple(fault or ()),
+        budget_s=seconds_of(budget),
+        folder=folder(plant, state) / "prove",
+        anew=anew,
+        pairs=pairs,
+        mend=mend,
+        json=json,
+        html=html,
+        junit=junit,
+        tests=tests,
+        badge=badge,
+    )
+    lines = ProofLines(sys.stdout if is_read_along else None)
+    console = screen.console(language=language(), quiet=is_read_along)
+    raise typer.Exit(ProofCampaign(request, console, lines).run(jobs or processors()))
+
+
+def seconds_of(budget: str) -> float:
+    """The seconds of a budget as people write it."""
+    if budget == ALL:
+        return math.inf
+    found = BUDGETS.fullmatch(budget)
+    if found is None:
+        raise typer.BadParameter(say(NO_BUDGET(budget=repr(budget), all=ALL)))
+    return float(found[1]) * SECONDS[found[2]]

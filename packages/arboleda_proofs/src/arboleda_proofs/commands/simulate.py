@@ -1,0 +1,213 @@
+"""The command `arboleda simulate`: its options and its exit status."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.text import Text
+
+from arboleda.cli.language import language, say
+from arboleda.cli.plant_options import IN_FOLDER, StoreAddress, plant_here
+from arboleda.model.sentence import Phrase
+from arboleda.plant_file.user_file import check_new, check_writable
+from arboleda.runtime.standby.postgres import refuse_without_library
+from arboleda_proofs.campaigns.defaults import CYCLES, LEVEL, SEED, SEEDS
+from arboleda_proofs.simulator.levels import CRASHES, LEVELS
+
+HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, and judge every step.
+
+\b
+arboleda simulate                            {SEEDS} seeds on the plant of this folder, else on two
+arboleda simulate --plant my_plant.yaml      your plant
+arboleda simulate --drawn-plants             a plant of its own for each seed
+arboleda simulate --standby                  on two hosts, of which one stands by
+arboleda simulate --revisions                whose files are changed while they run
+arboleda simulate --until-failure            seed after seed until something breaks
+arboleda simulate --seed 4711 --trace        one seed, line by line, the same every time
+arboleda simulate --seed 4711 --record seed.mcap  and look at it: arboleda replay seed.mcap --page
+arboleda simulate --seeds 500 --json out.json
+arboleda simulate --seeds 9999 --store postgresql://... --worker  on as many hosts as there are
+arboleda simulate --faults out.json --trace  what broke in there, with the faults it takes
+arboleda simulate --faults night.yaml        what a plant did: arboleda record export night.yaml
+
+Exit status: 0 every invariant held, 1 one was broken, or a task failed where nothing had
+gone wrong, 2 bad input, 130 Ctrl-C."""
+
+Plant = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help=f"Plant file. [default: {IN_FOLDER} of this folder, else odd seeds the shipped plant and even"
+        " seeds one with shared zones]",
+    ),
+]
+DrawnPlants = Annotated[
+    bool,
+    typer.Option("--drawn-plants", help="Draw a plant file from each seed, any that `arboleda check` takes."),
+]
+Seed = Annotated[int | None, typer.Option(metavar="N", min=0, help=f"The first seed. [default: {SEED}]")]
+Seeds = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        min=1,
+        help=f"How many seeds. [default: {SEEDS}; 1 with --trace or --record; no end with --until-failure]",
+    ),
+]
+Cycles = Annotated[
+    int,
+    typer.Option(metavar="N", min=1, help="How many tasks are ended in each seed, at least."),
+]
+Faults = Annotated[
+    str,
+    typer.Option(
+        metavar="LEVEL|FILE",
+        help=f"How much goes wrong: {', '.join(LEVELS)}; or a file of faults, or one that --json wrote.",
+    ),
+]
+AnyOf = Annotated[
+    bool,
+    typer.Option(
+        "--any-of", help="Have about half of the tasks name several cells, of which the plant chooses one."
+    ),
+]
+Standby = Annotated[
+    bool,
+    typer.Option(
+        "--standby",
+        help="Simulate each plant on two hosts and one store, with what befalls those: leaders that are"
+        " killed, frozen or cut off, clocks that drift, planned changes.",
+    ),
+]
+Revised = Annotated[
+    bool,
+    typer.Option(
+        "--revisions",
+        help="Have engineers change the plant's files while it runs: targets, times, retries, recipes.",
+    ),
+]
+UntilFailure = Annotated[bool, typer.Option("--until-failure", help="End at the first broken invariant.")]
+Json = Annotated[
+    Path | None, typer.Option("--json", metavar="FILE", help="Write what came of every seed to this file.")
+]
+Record = Annotated[
+    Path | None,
+    typer.Option(
+        "--record",
+        metavar="FILE",
+        help="Write one seed: to FILE.mcap as a flight record, else all that happens, an object per line.",
+    ),
+]
+Trace = Annotated[bool, typer.Option("--trace", help="Print all that happens in one seed.")]
+KeepPlant = Annotated[
+    Path | None,
+    typer.Option(
+        "--keep-plant",
+        metavar="DIR",
+        help="Write a drawn plant to this folder: of the one seed, or of the broken one that is shrunk.",
+    ),
+]
+Jobs = Annotated[
+    int | None,
+    typer.Option(metavar="N", min=1, help="How many processes share the seeds. [default: one per processor]"),
+]
+
+Worker = Annotated[
+    bool,
+    typer.Option(
+        "--worker",
+        help="Share the seeds with every worker of the same options: they are rows of the --store.",
+    ),
+]
+ONE_SEED = Phrase("cli.simulate.one_seed", "--trace and --record are for one seed; choose it with --seed")
+DRAWN_OR_PLANT = Phrase("cli.simulate.drawn_or_plant", "--drawn-plants and --plant exclude each other")
+STANDBY_OR_REVISIONS = Phrase(
+    "cli.simulate.standby_or_revisions", "--standby and --revisions exclude each other"
+)
+OWN_DEATHS = Phrase("cli.simulate.own_deaths", "--standby has deaths of its own: leave out --faults crashes")
+WORKER_ALONE = Phrase(
+    "cli.simulate.worker_alone",
+    "--worker needs --store, and is one process: not with --jobs, --trace, --record, --until-failure",
+)
+NO_KEEPING = Phrase("cli.simulate.no_keeping", "--keep-plant is not for a --worker, which shrinks nothing")
+
+
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command("simulate", help=HELP, short_help=HELP.partition("\n")[0])(simulate)
+
+
+def simulate(
+    plant: Plant = None,
+    drawn_plants: DrawnPlants = False,
+    seed: Seed = None,
+    seeds: Seeds = None,
+    cycles: Cycles = CYCLES,
+    faults: Faults = LEVEL,
+    any_of: AnyOf = False,
+    standby: Standby = False,
+    revisions: Revised = False,
+    until_failure: UntilFailure = False,
+    json: Json = None,
+    record: Record = None,
+    trace: Trace = False,
+    keep_plant: KeepPlant = None,
+    jobs: Jobs = None,
+    store: StoreAddress = "",
+    worker: Worker = False,
+) -> None:
+    # the simulator takes a while to load, and only this command needs it
+    from arboleda_proofs.campaigns import (
+        screen,
+        single_seed,
+    )
+    from arboleda_proofs.campaigns.flight import SUFFIX
+    from arboleda_proofs.campaigns.request import Request
+    from arboleda_proofs.campaigns.seed_campaign import SeedCampaign
+    from arboleda_proofs.campaigns.workers import processors
+
+    alone = trace or record is not None
+    if alone and ((seeds or 1) > 1 or until_failure):
+        raise typer.BadParameter(say(ONE_SEED()))
+    if drawn_plants and plant is not None:
+        raise typer.BadParameter(say(DRAWN_OR_PLANT()))
+    if standby and revisions:
+        raise typer.BadParameter(say(STANDBY_OR_REVISIONS()))
+    if standby and faults == CRASHES:
+        raise typer.BadParameter(say(OWN_DEATHS()))
+    request = Request(
+        plant=plant,
+        plant_here=plant_here(None),
+        drawn_plants=drawn_plants,
+        seed=seed,
+        seeds=1 if alone else seeds,
+        cycles=cycles,
+        faults=faults,
+        until_failure=until_failure,
+        any_of=any_of,
+        standby=standby,
+        revises=revisions,
+    )
+    if worker and (not store or alone or until_failure or jobs is not None):
+        raise typer.BadParameter(say(WORKER_ALONE()))
+    if keep_plant is not None and worker:
+        raise typer.BadParameter(say(NO_KEEPING()))
+    if json is not None:
+        check_writable(json)
+    if record is not None:
+        (check_new if record.suffix == SUFFIX else check_writable)(record)
+    console = screen.console(language=language())
+    for note in request.notes:
+        console.print(Text(note, style="dim"), soft_wrap=True)
+    if worker:
+        refuse_without_library()
+        from arboleda_proofs.campaigns.shared import work
+
+        raise typer.Exit(work(request, console, store, json))
+    if alone:
+        raise typer.Exit(
+            single_seed.run(request, console, trace=trace, record=record, file=json, keep=keep_plant)
+        )
+    raise typer.Exit(SeedCampaign(request, console, json, keep_plant).run(jobs or processors()))

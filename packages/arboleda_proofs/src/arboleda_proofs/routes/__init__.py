@@ -1,0 +1,1 @@
+"""Routes of faults by hand and of reports."""

@@ -1,0 +1,1 @@
+"""Parts of a running plant: faults by hand, the demonstration, reports of failures."""

@@ -1,0 +1,138 @@
+"""`arboleda report` on records of simulated runs."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from html import unescape
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from arboleda.cli.main import cli
+from arboleda.model.errors import ConfigError
+from arboleda_proofs.playback.report import reading
+from arboleda_proofs.routes.reports import DATA, TaskReport
+from arboleda_proofs.simulator.faults import KINDS, Fault
+from arboleda_proofs.simulator.world import World
+from arboleda_proofs.testing import Sim
+
+from .test_fork_command import written
+
+Act = Callable[[World], None]
+
+
+def fault(kind: str, target: str, seconds: float = 0.0, **more: Any) -> Act:
+    def begin(world: World) -> None:
+        end = KINDS[kind].begin(world, Fault(kind=kind, at=0.0, target=target, seconds=seconds, **more))
+        if end is not None:
+            world.at(world.now + seconds, lambda _: end())
+
+    return begin
+
+
+def reported(folder: Path, at: float, act: Act) -> str:
+    """The report of a task in which something went wrong; what the command says is checked."""
+    record = written(folder, None, "sis_a 0B 7 #lot", (at, act))
+    target = folder / "lot.html"
+    arguments = ["report", "lot", "--record", str(record), "--output", str(target)]
+    outcome = CliRunner().invoke(cli, arguments, catch_exceptions=False)
+    assert outcome.exit_code == 0 and outcome.output.splitlines()[1].startswith(f"{target} has ")
+    content = target.read_text("utf-8")
+    assert unescape(content).count(outcome.output.splitlines()[0]) >= 1
+    return content
+
+
+def test_of(content: str) -> str:
+    found = re.search(r"<pre id=test>(.*?)</pre>", content, re.DOTALL)
+    assert found is not None
+    return unescape(found[1])
+
+
+test_of.__test__ = False  # type: ignore[attr-defined]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("at", "act", "cause", "same"),
+    [
+        (
+            5.3,
+            fault("mute", "ra_1", 2.6),
+            "ra1 said nothing for 2.",
+            "no telemetry for 1.5 s while moving to s",
+        ),
+        (
+            5.3,
+            fault("driver_alarm", "ra_1", 4.0),
+            "ra1 reported a fault of its own",
+            "the board reports a fault",
+        ),
+        (2.5, fault("brown_out", "rm_sis_a", 3.0), "the board of rm_sis_a booted", "driving path 0B"),
+        (
+            3.0,
+            fault("stuck_effector", "ra_1", 30.0),
+            "clamp of ra1 did not do",
+            "while switching the effector on",
+        ),
+    ],
+)
+def test_the_test_of_a_report_fails_in_the_same_way(
+    tmp_path: Path, at: float, act: Act, cause: str, same: str
+) -> None:
+    content = reported(tmp_path, at, act)
+    assert cause in content
+    names: dict[str, Any] = {}
+    exec(test_of(content), names)
+    with pytest.raises(AssertionError, match=same):
+        names["test_what_failed_in_sis_a"](Sim())
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", ["stuck_effector", "opened_effector"])
+def test_forks_that_do_not_fail_as_the_record_did_say_that_they_prove_nothing(
+    tmp_path: Path, kind: str
+) -> None:
+    act = fault(kind, "ra_1", 30.0 if kind == "stuck_effector" else 0.0)
+    content = reported(tmp_path, 3.0 if kind == "stuck_effector" else 6.0, act)
+    assert "forks prove nothing here" in content and "no prueban nada" in content
+    assert "Forks that were really run" not in content
+    assert "had nothing befallen the devices" not in content
+
+
+@pytest.mark.long
+def test_a_report_is_small_whole_and_in_two_languages(tmp_path: Path) -> None:
+    content = reported(tmp_path, 5.3, fault("mute", "ra_1", 2.6))
+    assert len(content.encode()) < 2_000_000
+    assert not re.search(r"(src|href)=", content.split("<script>")[0])
+    assert "ra1 no dijo nada durante" in content and "ir a la estación 7 [*]" in content
+    assert "failed sis_a 0B 7 (id lot): ra1: no telemetry for 1.5 s" in content  # the fork without a change
+    assert "Forks that were really run" in content and "prove nothing" not in content
+    assert content.count("done sis_a 0B 7 (id lot)") == 2  # without what befell it, and with more patience
+
+
+@pytest.mark.long
+def test_a_report_has_its_facts_as_data(tmp_path: Path) -> None:
+    content = reported(tmp_path, 5.3, fault("mute", "ra_1", 2.6))
+    found = DATA.search(content)
+    assert found is not None
+    report = TaskReport.model_validate({**json.loads(found[1])["facts"], "state": "written"})
+    assert (report.task, report.cell, report.reason) == ("lot", "sis_a", "link_lost")
+    assert report.cause is not None and (report.cause.kind, report.cause.robot) == ("silence", "ra1")
+    assert report.cause.key == "cause.silence" and "ra1 said nothing for 2." in report.cause.sentence
+    assert report.evidence is not None and report.evidence.troubles[0].kind == "silence"
+    assert report.evidence.last_command is not None and report.evidence.last_command.at_s < 0
+
+
+def test_a_task_without_failure_and_one_that_is_nowhere_are_sentences(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reading, "FLUSH_S", -9.0)
+    record = written(tmp_path, None, "sis_a 0B 7 #lot", None)
+    with pytest.raises(ConfigError, match="lot: it is done, so there is nothing to report"):
+        CliRunner().invoke(cli, ["report", "lot", "--record", str(record)], catch_exceptions=False)
+    with pytest.raises(ConfigError, match="other: no record of this plant has such a task"):
+        CliRunner().invoke(cli, ["report", "other", "--state", str(tmp_path)], catch_exceptions=False)

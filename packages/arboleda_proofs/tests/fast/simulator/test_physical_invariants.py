@@ -1,0 +1,456 @@
+"""Each invariant of zones, motion, grip and stop holds for a plant that works, and bites."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+import pytest
+from tests.cells import with_poses
+from tests.lengths import sample
+
+from arboleda.dispatch import evidence
+from arboleda.dispatch.evidence import Verdict
+from arboleda.dispatch.ledger import Feed
+from arboleda.dispatch.whereabouts import Whereabouts
+from arboleda.dispatch.zones import Zones
+from arboleda.kinds.arm import SetEffector
+from arboleda.kinds.joints import MoveJoints
+from arboleda.model.commands import Home
+from arboleda.model.messages import Verb
+from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.model.sentence import Sentence
+from arboleda.sim.arm import ArmBody
+from arboleda.sim.mobile import MobileBody
+from arboleda.trees import steps
+from arboleda.trees.cell_commands import CellCommands
+from arboleda.trees.cell_zones import CellZones
+from arboleda.trees.context import Context
+from arboleda.trees.failures import Failures
+from arboleda.trees.handling import Handling
+from arboleda.trees.leaves import Piece, TakeZones
+from arboleda.trees.parts import Parts
+from arboleda.wire.payloads import EffectorGoal, Goal, JointsGoal, encode
+from arboleda.wire.rivals import Rivals
+from arboleda.wire.topics import Channel, topic
+from arboleda.wire.transport import Publication
+from arboleda_proofs.simulator.invariants.grips import GRIPS
+from arboleda_proofs.simulator.invariants.invariant import Judges, Look
+from arboleda_proofs.simulator.invariants.motion import MOTION
+from arboleda_proofs.simulator.invariants.part_places import (
+    done_tasks_leave_nothing_behind,
+    parts_are_taken_and_put_where_they_can_be,
+    recipes_end_as_they_say,
+)
+from arboleda_proofs.simulator.invariants.stop import STOP
+from arboleda_proofs.simulator.invariants.zones import ZONES
+from arboleda_proofs.simulator.record import Record
+from arboleda_proofs.simulator.truth.truth import Truth
+from arboleda_proofs.simulator.world import World
+from arboleda_proofs.testing.plants import shipped
+
+OF_PARTS = (
+    parts_are_taken_and_put_where_they_can_be,
+    done_tasks_leave_nothing_behind,
+    recipes_end_as_they_say,
+)
+INVARIANTS = (*ZONES, *MOTION, *GRIPS, *OF_PARTS, *STOP)
+ARM, MOBILE = "ra_1", "rm_sis_a"
+Patch = pytest.MonkeyPatch
+
+
+class Watch:
+    """A world that has been on for half a second, and the sentences that each invariant has yielded since."""
+
+    def __init__(self, model: PlantModel | None = None, **world: Any) -> None:
+        self.world = World(model or shipped("sis_a"), **world)
+        self.truth = Truth(self.world)
+        self.found: dict[str, list[str]] = {}
+        self._look = Look(world=self.world, truth=self.truth, record=Record(self.world))
+        self.world.watchers.append(self._check)
+        self.wait(0.5)
+
+    @property
+    def body(self) -> Any:
+        return self.world.boards[ARM].body
+
+    def wait(self, seconds: float, until: Callable[[], bool] = lambda: False) -> None:
+        self.world.advance(seconds, until)
+
+    def task(self, text: str = "sis_a palletizing", wait_s: float = 20.0) -> None:
+        self.world.request_task(text)
+        self.wait(wait_s)
+
+    def carry(self) -> None:
+        """Be in the middle of the way from pick-up to place."""
+        self.task(wait_s=0.0)
+        self.wait(60.0, until=lambda: self.body.holding and self.body.moving)
+        self.wait(0.1)
+
+    def verb(self, verb: Verb, scope: str = "", wait_s: float = 1.0) -> None:
+        self.world.request_verb(verb, scope)
+        self.wait(wait_s)
+
+    def say(self, channel: Channel, make: Callable[..., Goal], **fields: Any) -> None:
+        """A stranger with better numbers than anybody's commands ra1."""
+        goal = make(**fields, seq=1, epoch=9999)
+        self.world.publish(Publication(topic=topic(ARM, channel), payload=encode(goal)))
+        self.wait(0.01)
+
+    def _check(self) -> None:
+        self.truth.look()
+        for name, sentence in Judges(INVARIANTS).after_a_step(self._look):
+            self.found.setdefault(name, []).append(sentence)
+
+
+def zoned() -> PlantModel:
+    """Three cells whose pick-ups lie in one zone."""
+    plant = shipped()
+    cells = []
+    for cell in plant.cells:
+        assert cell.handover is not None
+        pickup = replace(cell.taker.targets[cell.handover.otherwise], zones=frozenset({"centre"}))
+        cells.append(with_poses(cell, pickup=pickup))
+    return replace(plant, zones=("centre",), cells=tuple(cells))
+
+
+def test_every_invariant_says_what_must_hold() -> None:
+    for each in INVARIANTS:
+        assert each.sentence.endswith("."), each.name
+    assert len({each.name for each in INVARIANTS}) == len(INVARIANTS)
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("model", [shipped, zoned], ids=["shipped", "zoned"])
+def test_nothing_is_found_while_all_goes_well(model: Callable[[], PlantModel]) -> None:
+    watch = Watch(model())
+    for round in range(4):
+        for cell in watch.world.model.cells:
+            watch.world.request_task(f"{cell.name} 0B {3 * round % 9}")
+            watch.world.request_task(f"{cell.name} palletizing")
+        watch.wait(30.0)
+    assert watch.found == {}
+
+
+FAULTS: dict[str, Callable[[Watch], None]] = {
+    "power": lambda watch: watch.world.crash(ARM),
+    "mobile's power": lambda watch: watch.world.crash(MOBILE),
+    "lost steps": lambda watch: watch.body.lose_steps(0, 3),
+    "alarm": lambda watch: watch.world.boards[ARM].fail(round(watch.world.now * 1e6)),
+    "bridge": lambda watch: watch.world.crash("bridge"),
+    "plant": lambda watch: watch.world.crash(),
+    "stall": lambda watch: watch.world.stall(ARM, 3.0),
+    "stop": lambda watch: watch.verb(Verb.STOP),
+    "hold": lambda watch: watch.verb(Verb.HOLD, "sis_a"),
+    "cancel": lambda watch: watch.verb(Verb.CANCEL, "sis_a"),
+}
+
+
+@pytest.mark.sampled(13)
+@pytest.mark.parametrize(("fault", "after_s"), sample(product(FAULTS, (0.4, 1.0, 1.3, 1.6, 2.2)), every=4))
+def test_nothing_is_found_when_a_fault_is_handled(fault: str, after_s: float) -> None:
+    watch = Watch(zoned())
+    for cell in watch.world.model.cells:
+        watch.world.request_task(f"{cell.name} palletizing")
+    watch.wait(after_s)
+    watch.world.faults_active = 1
+    FAULTS[fault](watch)
+    watch.wait(10.0)
+    for verb in (Verb.CLEAR, Verb.RESET, Verb.RESUME):
+        watch.verb(verb, "sis_a")
+    watch.verb(Verb.HOME, "ra1", wait_s=10.0)
+    watch.verb(Verb.ABANDON, "sis_a", wait_s=10.0)
+    assert watch.found == {}
+
+
+def everybody_gets_it(patch: Patch) -> Watch:
+    patch.setattr(CellZones, "take", lambda self, robot, zones, *, inside=False: True)
+    patch.setattr(CellCommands, "_objection", lambda self, command: None)
+    watch = Watch(zoned())
+    for cell in watch.world.model.cells:
+        watch.world.request_task(f"{cell.name} palletizing")
+    watch.wait(5.0)
+    return watch
+
+
+def freed_at_a_stop(patch: Patch) -> Watch:
+    patch.setattr(Whereabouts, "place", lambda self, space: space.home)
+    watch = Watch(zoned())
+    watch.carry()
+    watch.verb(Verb.STOP)
+    return watch
+
+
+def entered_unasked(patch: Patch) -> Watch:
+    patch.setattr(CellCommands, "_objection", lambda self, command: None)
+    patch.setattr(Zones, "request", lambda self, robot, zones: True)
+    watch = Watch(zoned())
+    watch.task()
+    return watch
+
+
+def told_once(patch: Patch) -> Watch:
+    said: dict[TakeZones, Sentence] = {}
+    awaited = TakeZones._awaited
+    patch.setattr(TakeZones, "_awaited", lambda self: said.setdefault(self, awaited(self)))
+    watch = Watch(zoned())
+    for cell in watch.world.model.cells:
+        watch.world.request_task(f"{cell.name} palletizing")
+    watch.wait(20.0)
+    return watch
+
+
+def moved_unhomed(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.world.crash(ARM)
+    watch.world.boards[ARM].homed = True
+    watch.wait(1.0)
+    watch.task()
+    return watch
+
+
+def moved_after_a_told_boot(patch: Patch) -> Watch:
+    patch.setattr(evidence, "displaced", lambda before, belief, report: False)
+    watch = Watch(shipped("sis_a", evidence=Evidence.JOINTS, assume_homed=True))
+    watch.world.crash(ARM)
+    watch.wait(3.0)
+    watch.task()
+    return watch
+
+
+def began_by_itself(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.body.start(round(watch.world.now * 1e6), JointsGoal(q=(9.0, 9.0, 0.0), seq=None, epoch=None))
+    watch.world.wake(ARM)
+    watch.wait(1.0)
+    return watch
+
+
+def switched_by_itself(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.body.switch_effector(True)
+    watch.wait(1.0)
+    return watch
+
+
+def obeyed_a_stranger(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.say(Channel.JOINTS, JointsGoal, q=(9.0, 9.0, 0.0))
+    return watch
+
+
+def beyond_its_limits(patch: Patch) -> Watch:
+    patch.setattr(ArmBody, "admits", lambda self, goal: True)
+    patch.setattr("arboleda.sim.board.SILENCE_US", 60_000_000)  # of the stranger that is about to speak
+    patch.setattr(Rivals, "answer", lambda *args, **options: False)  # the bridge would halt what it begins
+    watch = Watch()
+    watch.say(Channel.JOINTS, JointsGoal, q=(170.0, 0.0, 0.0))
+    watch.wait(5.0)
+    return watch
+
+
+def done_when_accepted(command: type) -> Callable[[Patch], Watch]:
+    """The plant takes a command for done as soon as it hears anything."""
+
+    def break_it(patch: Patch) -> Watch:
+        rule: Any = lambda entry, belief, report: Verdict(feed=Feed.DONE)  # noqa: E731
+        patch.setitem(evidence.RULES, (command, Evidence.IDS), rule)
+        if command is SetEffector:
+            patch.setattr(ArmBody, "switch_effector", lambda self, on: None)
+        watch = Watch()
+        if command is Home:
+            watch.task(wait_s=1.0)
+            watch.world.crash(ARM)
+            watch.wait(10.0)
+            watch.verb(Verb.HOME, "ra1")
+        watch.task()
+        return watch
+
+    return break_it
+
+
+def never_reached(patch: Patch) -> Watch:
+    patch.setattr(evidence, "reached", lambda entry, belief: False)
+    watch = Watch()
+    watch.wait(30.0)
+    watch.task()
+    return watch
+
+
+def gripped_at_home(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.say(Channel.EFFECTOR, EffectorGoal, on=True)
+    return watch
+
+
+def began_with_the_effector_on(patch: Patch) -> Watch:
+    patch.setattr(Parts, "holding", [])
+    watch = Watch()
+    watch.body.switch_effector(True)
+    watch.wait(1.0)
+    watch.task()
+    return watch
+
+
+def opened_on_the_way(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.carry()
+    watch.say(Channel.EFFECTOR, EffectorGoal, on=False)
+    return watch
+
+
+def a_part_from_nowhere(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.body.holding = True
+    watch.wait(0.5)
+    return watch
+
+
+def lost_for_no_reason(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.carry()
+    watch.body.lose_piece()
+    watch.wait(0.5)
+    return watch
+
+
+def twice(order: Any, context: Context) -> Any:
+    """A storage recipe that stores two parts."""
+    space = context.cell.taker
+    station = space.targets[order.values["station"]]
+    arm, pickup = space.robot.name, space.targets["pickup"]
+
+    def once() -> list[Any]:
+        gripped = steps.grip(context, arm, pickup, check=False)
+        return [(pickup, gripped), (station, steps.let_go(context, arm, check=False))]
+
+    return steps.task("storage", steps.tour(context, arm, [*once(), *once()]), context)
+
+
+def two_parts(patch: Patch) -> Watch:
+    watch = Watch(recipes={"storage": twice})
+    watch.task("sis_a 0B 7", wait_s=30.0)
+    return watch
+
+
+def not_brought(order: Any, context: Context) -> Any:
+    """A storage recipe that waits for no mobile robot."""
+    space = context.cell.taker
+    arm, pickup = space.robot.name, space.targets["pickup"]
+    gripped = steps.grip(context, arm, pickup, check=False)
+    return steps.task("storage", steps.tour(context, arm, [(pickup, gripped), (space.home, [])]), context)
+
+
+def taken_too_early(patch: Patch) -> Watch:
+    watch = Watch(recipes={"storage": not_brought})
+    watch.task("sis_a 0B 7")
+    return watch
+
+
+def nothing_was_done(patch: Patch) -> Watch:
+    watch = Watch(recipes={"storage": lambda order, context: steps.start(context)})
+    watch.task("sis_a 0B 7")
+    return watch
+
+
+def moved_while_latched(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.verb(Verb.STOP)
+    watch.world.boards[ARM].latched = False
+    watch.say(Channel.JOINTS, JointsGoal, q=(9.0, 9.0, 0.0))
+    return watch
+
+
+def arm_runs_on(patch: Patch) -> Watch:
+    patch.setattr(ArmBody, "stop", lambda self, now_us: None)
+    watch = Watch()
+    watch.task("sis_a palletizing", wait_s=0.45)
+    watch.verb(Verb.STOP)
+    return watch
+
+
+def mobile_runs_on(patch: Patch) -> Watch:
+    patch.setattr(MobileBody, "stop", lambda self, now_us: None)
+    watch = Watch()
+    watch.task("sis_a 0B 7", wait_s=1.0)
+    watch.verb(Verb.STOP, wait_s=10.0)
+    return watch
+
+
+def robbed_unnoticed(patch: Patch) -> Watch:
+    patch.setattr(Failures, "opened_effector", lambda self: None)
+    watch = misses_no_part(patch)
+    watch.world.request_task("sis_a 0B 7")
+    watch.wait(60.0, until=lambda: watch.body.holding and watch.body.moving)
+    watch.world.manual.open_effector(ARM)
+    watch.wait(30.0)
+    return watch
+
+
+def misses_no_part(patch: Patch) -> Watch:
+    """Nobody looks for a part on the way, nor where it belongs."""
+    patch.setattr(Parts, "lost", lambda self: None)
+    patch.setattr(Piece, "_seen", lambda self: True)
+    return Watch()
+
+
+def lost_unnoticed(patch: Patch) -> Watch:
+    watch = misses_no_part(patch)
+    watch.carry()
+    watch.body.lose_piece()
+    watch.wait(30.0)
+    return watch
+
+
+def checked_unseen(patch: Patch) -> Watch:
+    patch.setattr(Handling, "miss", lambda self, check: None)
+    watch = Watch(shipped("sis_a", evidence=Evidence.JOINTS))
+    watch.task(wait_s=60.0)
+    return watch
+
+
+BREAKS: list[tuple[str, Callable[[Patch], Watch]]] = [
+    ("one_robot_per_zone", everybody_gets_it),
+    ("zone_released_only_outside", freed_at_a_stop),
+    ("zone_entered_only_when_held", entered_unasked),
+    ("a_wait_names_its_cause", told_once),
+    ("no_unhomed_move", moved_unhomed),
+    ("no_move_after_a_boot_that_was_told", moved_after_a_told_boot),
+    ("nothing_moves_unasked", began_by_itself),
+    ("nothing_moves_unasked", switched_by_itself),
+    ("nothing_moves_unasked", obeyed_a_stranger),
+    ("arm_stays_within_limits", beyond_its_limits),
+    ("done_is_true", done_when_accepted(MoveJoints)),
+    ("done_is_true", done_when_accepted(SetEffector)),
+    ("done_is_true", done_when_accepted(Home)),
+    ("tiny_moves_succeed", never_reached),
+    ("effector_on_only_for_a_part", gripped_at_home),
+    ("effector_on_only_for_a_part", began_with_the_effector_on),
+    ("effector_off_only_where_legal", opened_on_the_way),
+    ("parts_conserved", a_part_from_nowhere),
+    ("parts_conserved", lost_for_no_reason),
+    ("parts_are_taken_and_put_where_they_can_be", two_parts),
+    ("parts_are_taken_and_put_where_they_can_be", taken_too_early),
+    ("done_tasks_leave_nothing_behind", taken_too_early),
+    ("recipes_end_as_they_say", nothing_was_done),
+    ("done_tasks_bring_their_parts", robbed_unnoticed),
+    ("done_tasks_bring_their_parts", lost_unnoticed),
+    ("unchecked_is_as_said", checked_unseen),
+    ("latched_board_stays_still", moved_while_latched),
+    ("stop_holds", moved_while_latched),
+    ("speed_never_rises_after_stop", arm_runs_on),
+    ("speed_never_rises_after_stop", mobile_runs_on),
+]
+
+
+@pytest.mark.sampled(7)
+@pytest.mark.parametrize(("name", "break_it"), BREAKS, ids=[f"{n}-{b.__name__}" for n, b in BREAKS])
+def test_it_bites(name: str, break_it: Callable[[Patch], Watch], monkeypatch: Patch) -> None:
+    assert name in break_it(monkeypatch).found
+
+
+def test_every_invariant_has_something_that_breaks_it() -> None:
+    elsewhere = {"recovery_takes_its_zones"}  # it needs seeds, and has its bug in tests/mutants
+    assert {name for name, _ in BREAKS} | elsewhere == {each.name for each in INVARIANTS}
