@@ -94,11 +94,11 @@ images:  ## build the image of a container for amd64 and arm64, arboleda:VERSION
 campaign: install  ## simulate 1000 seeds with every kind of fault; SEEDS=... CYCLES=... for others, JOBS=... processes
 	$(SIMULATE) --seeds $(CALM_SEEDS) --cycles 20 --faults none
 	$(SIMULATE) --seeds $(SEEDS) --cycles $(CYCLES) --json campaign.json
-	$(BIN)/python scripts/campaign campaign.json $(SEEDS)
+	$(BIN)/python tools/campaign campaign.json $(SEEDS)
 
 drawn-campaign: install  ## simulate 500 plants that are drawn from seeds, with every kind of fault; DRAWN_SEEDS=... for others
 	$(SIMULATE) --drawn-plants --seeds $(DRAWN_SEEDS) --cycles $(DRAWN_CYCLES) --json drawn.json
-	$(BIN)/python scripts/campaign drawn.json $(DRAWN_SEEDS)
+	$(BIN)/python tools/campaign drawn.json $(DRAWN_SEEDS)
 
 devices-campaign: install  ## simulate the examples of cells of devices with every kind of fault; DEVICE_SEEDS=... for more seeds
 	@for plant in lab_bench assembly machine_tending own_tree; do \
@@ -115,14 +115,14 @@ standby-campaign: install  ## simulate plants on two hosts, one of which stands 
 	$(SIMULATE) --standby --seeds $(STANDBY_SEEDS) --cycles $(STANDBY_CYCLES)
 
 kills: install  ## kill a plant with -9 at 1000 random instants, count what came of its tasks; an hour; KILLS="--kills 12" for others
-	PYTHONPATH=kills $(BIN)/python -m arboleda_kills $(KILLS)
+	PYTHONPATH=tools:tools/kills $(BIN)/python -m arboleda_kills $(KILLS)
 
 hosts: install  ## a plant on hosts of its own (network namespaces; root): 1000 faults of hosts and links; HOSTS="--faults 60" for others
-	PYTHONPATH=kills:bench $(BIN)/python -m arboleda_kills.hosts $(HOSTS)
+	PYTHONPATH=tools:tools/kills:tools/bench $(BIN)/python -m arboleda_kills.hosts $(HOSTS)
 
 mutants:  ## plant 400 small bugs in core and wire, see which of them tests and simulator find; hours
 	@scripts/install test
-	PYTHONPATH=mutation $(BIN)/python -m arboleda_mutation $(MUTANTS)
+	PYTHONPATH=tools:tools/mutation $(BIN)/python -m arboleda_mutation $(MUTANTS)
 
 exercises:  ## judge every right and wrong work of the exercises; minutes
 	@scripts/install test
@@ -171,7 +171,7 @@ lint:  ## check style, format, types and the import rules
 	$(BIN)/mypy
 	$(BIN)/mypy --config-file tests/mypy.ini
 	$(BIN)/mypy --explicit-package-bases firmware/test/*.py
-	$(BIN)/mypy --scripts-are-modules $$(grep -lE '^#!.*python' scripts/* 2>/dev/null) scripts/*.py
+	$(BIN)/mypy --scripts-are-modules $$(grep -lE '^#!.*python' scripts/* tools/* 2>/dev/null) scripts/*.py tools/*.py
 	@PYTHONPATH=src/arboleda_bringup $(BIN)/lint-imports # pip does not install that one
 
 diagrams:  ## write docs/reference/states.md anew from the state tables of the core
@@ -185,7 +185,7 @@ reference:  ## write docs/reference/api.md and verbs.md anew from docstrings and
 
 proof:  ## write docs/reference/proof.md anew from runs of the shipped plant and the examples; minutes
 	@scripts/install
-	@page=$$($(BIN)/python scripts/proof-table) && printf '%s\n' "$$page" >docs/reference/proof.md
+	@page=$$($(BIN)/python tools/proof-table) && printf '%s\n' "$$page" >docs/reference/proof.md
 
 shots:  ## take pictures of the page, on screens of several sizes, into shots/; needs chromium
 	@scripts/install test

@@ -1,4 +1,4 @@
-"""Programs of scripts/ in this process: as modules, which no name imports, and what they print."""
+"""Programs of scripts/ and tools/ in this process: as modules, which no name imports, and what they print."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any
 from unittest import mock
 
-SCRIPTS = Path(__file__).parents[1] / "scripts"
+ROOT = Path(__file__).parents[1]
 
 
 def load(name: str) -> Any:
-    loader = SourceFileLoader(name.replace("-", "_"), str(SCRIPTS / name))
+    loader = SourceFileLoader(name.replace("-", "_"), str(_program(name)))
     spec = spec_from_loader(loader.name, loader)
     assert spec is not None
     module = module_from_spec(spec)
@@ -28,5 +28,9 @@ def load(name: str) -> Any:
 def printed(name: str, *words: str) -> str:
     """What the program prints."""
     with mock.patch.object(sys, "argv", [name, *words]), redirect_stdout(StringIO()) as said:
-        runpy.run_path(str(SCRIPTS / name), run_name="__main__")
+        runpy.run_path(str(_program(name)), run_name="__main__")
     return said.getvalue()
+
+
+def _program(name: str) -> Path:
+    return next(path for folder in ("scripts", "tools") if (path := ROOT / folder / name).is_file())

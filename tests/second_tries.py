@@ -23,7 +23,8 @@ import pytest
 ROOT = Path(__file__).parents[1]
 LEDGER = Path(__file__).with_name("second_tries.tsv")
 OURS = f"{ROOT}/"
-PRODUCT = tuple(f"{ROOT / name}/" for name in ("src", "bench", "kills", *ROOT.glob("packages/*/src")))
+FOLDERS = ("src", "tools/bench", "tools/kills", *ROOT.glob("packages/*/src"))
+PRODUCT = tuple(f"{ROOT / name}/" for name in FOLDERS)
 LIBRARIES = "/site-packages/"
 INSTALLED = "/site-packages/arboleda"  # as colcon installs the product
 OWN_TESTS = "/test/"  # of a package of ROS 2, whose tests lie beside its product

@@ -1,4 +1,4 @@
-"""What scripts/campaign makes of a summary."""
+"""What tools/campaign makes of a summary."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from arboleda_proofs.simulator.faults import KINDS
 
 from ..scripts import load
 
-SCRIPT = Path(__file__).parents[2] / "scripts" / "campaign"
+SCRIPT = Path(__file__).parents[2] / "tools" / "campaign"
 
 
 @pytest.fixture

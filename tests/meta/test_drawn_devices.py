@@ -1,4 +1,4 @@
-"""What scripts/drawn-devices runs and says."""
+"""What tools/drawn-devices runs and says."""
 
 from __future__ import annotations
 

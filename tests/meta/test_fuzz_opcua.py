@@ -1,4 +1,4 @@
-"""A short run of scripts/fuzz-opcua, and that it finds what it is for."""
+"""A short run of tools/fuzz-opcua, and that it finds what it is for."""
 
 from __future__ import annotations
 

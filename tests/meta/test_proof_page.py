@@ -1,4 +1,4 @@
-"""docs/reference/proof.md is what `scripts/proof-table` finds: it has all plants, and one is run again."""
+"""docs/reference/proof.md is what `tools/proof-table` finds: it has all plants, and one is run again."""
 
 from __future__ import annotations
 

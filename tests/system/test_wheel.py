@@ -17,7 +17,7 @@ from arboleda import __version__
 from ..patience import PATIENCE_S
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("src/arboleda/arboleda", "src/arboleda_ros/arboleda_ros", "bench/arboleda_bench")
+PACKAGES = ("src/arboleda/arboleda", "src/arboleda_ros/arboleda_ros", "tools/bench/arboleda_bench")
 DESCRIPTION = "src/arboleda_description/arboleda_description"
 RUN = "from arboleda.cli.entry import main; main()"
 Command = Callable[..., "subprocess.CompletedProcess[str]"]

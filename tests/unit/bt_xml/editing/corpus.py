@@ -11,7 +11,7 @@ from arboleda_make.editing.tree_text import TreeText
 
 HERE = Path(__file__).parents[4]
 RULES = Path(__file__).parents[1]
-WHERE = ("examples/**/*.xml", "tests/**/*.py", "docs/**/*.md", "scripts/fuzz-trees", "tests/**/*.xml")
+WHERE = ("examples/**/*.xml", "tests/**/*.py", "docs/**/*.md", "tools/fuzz-trees", "tests/**/*.xml")
 FILE = re.compile(r"(?:<\?xml[^>]*>\s*)?<root\b.*?</root>\n?", re.DOTALL)
 
 

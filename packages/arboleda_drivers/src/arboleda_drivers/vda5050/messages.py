@@ -1,6 +1,6 @@
 """Messages of VDA 5050 as bytes: their headers, and whether they fit the schema of their version and topic.
 
-The schemas are the structure of those that the standard publishes (MIT); `scripts/vda5050-schemas` made them.
+The schemas are the structure of those that the standard publishes (MIT); `tools/vda5050-schemas` made them.
 """
 
 from __future__ import annotations

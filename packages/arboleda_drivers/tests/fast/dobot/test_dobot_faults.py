@@ -1,4 +1,4 @@
-"""A plant with a Dobot under the faults of its controller; `scripts/driver-faults dobot` runs more seeds."""
+"""A plant with a Dobot under the faults of its controller; `tools/driver-faults dobot` runs more seeds."""
 
 from __future__ import annotations
 

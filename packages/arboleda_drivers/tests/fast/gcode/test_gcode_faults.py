@@ -1,6 +1,6 @@
 """Plants with a gantry behind GRBL, Marlin and Moonraker under their faults.
 
-`scripts/driver-faults gcode-grbl`, `gcode-marlin` and `gcode-moonraker` run more seeds.
+`tools/driver-faults gcode-grbl`, `gcode-marlin` and `gcode-moonraker` run more seeds.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A base behind the actions of Nav2, under faults; `scripts/driver-faults` runs more seeds."""
+"""A base behind the actions of Nav2, under faults; `tools/driver-faults` runs more seeds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A belt behind a PLC under its faults, on Modbus, OPC UA and S7; `scripts/driver-faults` runs more seeds."""
+"""A belt behind a PLC under its faults, on Modbus, OPC UA and S7; `tools/driver-faults` runs more seeds."""
 
 from __future__ import annotations
 

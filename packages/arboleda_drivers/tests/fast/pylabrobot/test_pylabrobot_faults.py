@@ -1,4 +1,4 @@
-"""A heated shaker of PyLabRobot under faults; `scripts/driver-faults pylabrobot` runs more seeds."""
+"""A heated shaker of PyLabRobot under faults; `tools/driver-faults pylabrobot` runs more seeds."""
 
 from __future__ import annotations
 

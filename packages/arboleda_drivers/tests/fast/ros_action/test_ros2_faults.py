@@ -1,4 +1,4 @@
-"""An arm and a gripper behind actions of ROS 2, under faults; `scripts/driver-faults` runs more seeds."""
+"""An arm and a gripper behind actions of ROS 2, under faults; `tools/driver-faults` runs more seeds."""
 
 from __future__ import annotations
 

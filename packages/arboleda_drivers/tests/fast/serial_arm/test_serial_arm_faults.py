@@ -1,4 +1,4 @@
-"""A plant with an arm of bus servos under faults; `scripts/driver-faults serial_arm-feetech` runs more."""
+"""A plant with an arm of bus servos under faults; `tools/driver-faults serial_arm-feetech` runs more."""
 
 from __future__ import annotations
 

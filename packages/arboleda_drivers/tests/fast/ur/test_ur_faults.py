@@ -1,4 +1,4 @@
-"""A plant with an arm of Universal Robots under its faults; `scripts/driver-faults ur` runs more seeds."""
+"""A plant with an arm of Universal Robots under its faults; `tools/driver-faults ur` runs more seeds."""
 
 from __future__ import annotations
 

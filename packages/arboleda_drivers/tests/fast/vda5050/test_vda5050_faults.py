@@ -1,4 +1,4 @@
-"""A plant with a vehicle of VDA 5050 under its faults; `scripts/driver-faults` runs more seeds."""
+"""A plant with a vehicle of VDA 5050 under its faults; `tools/driver-faults` runs more seeds."""
 
 from __future__ import annotations
 

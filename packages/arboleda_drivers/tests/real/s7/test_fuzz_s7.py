@@ -1,4 +1,4 @@
-"""A short run of scripts/fuzz-s7, and that it finds what it is for."""
+"""A short run of tools/fuzz-s7, and that it finds what it is for."""
 
 from __future__ import annotations
 

@@ -1,0 +1,91 @@
+"""Campaign of an arm of Universal Robots under its faults, and the failures that each may cause."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from arboleda.model.messages import Reason
+from arboleda.model.plant_model import PlantModel
+from arboleda_drivers.ur.settings import Settings
+from arboleda_drivers.ur.virtual.faults import FAULTS
+from arboleda_drivers.ur.virtual.machine import VirtualUr
+
+from .rig import Hear
+from .storage import StorageRig
+from .ur_loopback import Loopback
+
+PERIOD_S = 0.04  # a fifth of the frames is enough to see every state
+
+NO_WORK = {Reason.DEVICE_FAULT, Reason.REJECTED, Reason.NOT_HOMED}
+NO_LINK = {Reason.LINK_LOST}
+CAUSES: dict[str, set[Reason]] = {
+    "protective_stop": NO_WORK,
+    "safeguard": NO_WORK,
+    "stop_button": NO_WORK,
+    "local_control": {*NO_WORK, *NO_LINK, Reason.STOP_UNCONFIRMED},
+    "slider": {Reason.DEADLINE},
+    "popup": {Reason.REJECTED},
+    "power_off": NO_WORK,
+    "brakes_stuck": NO_WORK,
+    "program_stopped": {Reason.DEVICE_FAULT},
+    "other_program": {Reason.DEVICE_FAULT, Reason.DEADLINE},
+    "joint_limit": {Reason.DEVICE_FAULT},
+    "reboot": {Reason.REBOOTED, *NO_WORK, *NO_LINK},
+    "refuse": {Reason.REJECTED, Reason.STOP_UNCONFIRMED},
+    "not_begun": {Reason.REJECTED},
+    "echo_lost": {Reason.REJECTED, Reason.DEVICE_FAULT},
+    "wrong_number": {Reason.REJECTED, Reason.DEVICE_FAULT},
+    "late_start": set(),
+    "late_runtime": set(),
+    "heartbeat_lost": {Reason.DEVICE_FAULT},
+    "dashboard_mute": NO_LINK,
+    "late_replies": NO_LINK,
+    "unasked_replies": NO_LINK,
+    "rate_drops": set(),
+    "mute": NO_LINK,
+    "frozen": NO_LINK,
+    "garbled": NO_LINK,
+    "torn": NO_LINK,
+    "old_rtde": NO_LINK,
+    "in_use": NO_LINK,
+    "connections_full": NO_LINK,
+    "hang_up": NO_LINK,
+    "lie": {Reason.NOT_REACHED},
+    "short": {Reason.NOT_REACHED},
+    "stall": {Reason.DEADLINE},
+    "deaf": {Reason.STOP_UNCONFIRMED},
+    "stuck_output": {Reason.REJECTED},
+    "slow": {Reason.DEADLINE},
+}
+
+
+class UrRig(StorageRig):
+    """Test with parts that go from the pick to the place; it sees the arm's place and its output."""
+
+    driver = "ur"
+    causes = CAUSES
+
+    def __init__(self, shipped: PlantModel) -> None:
+        super().__init__(shipped, FAULTS)
+        self._ur = VirtualUr(self.faults, running=True, period_s=PERIOD_S)
+        self._driver: Loopback | None = None
+
+    def join(self, hear: Hear, now: float) -> Loopback:
+        self._driver = Loopback(self.layout.arm, self._ur, hear, now)
+        return self._driver
+
+    @property
+    def shows(self) -> tuple[Sequence[float], bool]:
+        output = Settings(host="ur").output
+        return self._ur.joints, bool(output is not None and self._ur.outputs >> output & 1)
+
+    def moves(self) -> tuple[int, int]:
+        if self._driver is None:
+            return (0, 0)
+        return (sum("movej" in text for text in self._driver.programs), self._driver.given)
+
+    def by_hand(self) -> None:
+        """Unlock the arm at its pendant, power it and release its brakes."""
+        assert self._driver is not None
+        for line in ("stop", "unlock protective stop", "brake release"):
+            self._driver.tell(line)

@@ -1,0 +1,1 @@
+"""Frame of the tools: what a person types, what a run tells, and how fuzzers run."""
