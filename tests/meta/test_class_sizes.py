@@ -19,7 +19,7 @@ LARGER: Mapping[str, int] = {
     "arboleda.client.plant.AsyncPlant": 45,
     "arboleda.client.plant.Plant": 45,
     "arboleda_proofs.simulator.truth.arm.ArmTruth": 44,
-    "arboleda.store.postgres.memory.PostgresMemory": 42,
+    "arboleda_fleet.postgres.memory.PostgresMemory": 42,
     "arboleda_drivers.dobot.machine.Machine": 42,
     "arboleda_drivers.gcode.moonraker.MoonrakerMachine": 41,
     "arboleda_proofs.simulator.world.World": 41,

@@ -23,34 +23,34 @@ SEEING = ("invariants", "recorded", "truth")  # what an invariant saw is said th
 OF_BOARDS = PACKAGES["arboleda_boards"]
 OF_CLASS = PACKAGES["arboleda_class"]
 OF_MAKERS = PACKAGES["arboleda_drivers"]
+OF_MAKING = PACKAGES["arboleda_make"]
+OF_PROOFS = PACKAGES["arboleda_proofs"]
 AT_A_START = {  # of a driver, which `check` says, too
     *("addresses.py", "checks.py", "health.py", "limits.py", "nodes.py", "paths.py", "port.py", "reading.py"),
     *("keys.py", "registers.py", "settings.py", "stream.py", "variables.py"),
 }
+
+
+def _files(folder: Path, *patterns: str) -> list[Path]:
+    """The modules of a folder by these patterns, each of which has some."""
+    found = [sorted(folder.glob(each)) for each in patterns]
+    assert all(found), f"{folder} has none by one of {patterns}"
+    return [file for files in found for file in files]
+
+
 FILES = (
-    *sorted(PACKAGE.glob("plant_file/*.py")),
-    *sorted(PACKAGE.glob("kinds/*.py")),
-    *sorted(PACKAGE.glob("campaigns/*.py")),
-    *sorted(PACKAGE.glob("campaigns/proof/*.py")),
-    *sorted(OF_BOARDS.glob("conformance/*.py")),
-    OF_CLASS / "exercises/trial_run.py",
-    *sorted(OF_CLASS.glob("playground/*.py")),
-    *(file for folder in SEEING for file in sorted(PACKAGE.glob(f"simulator/{folder}/*.py"))),
-    PACKAGE / "simulator/findings.py",
-    PACKAGE / "wire/strict.py",
-    PACKAGE / "wire/payloads.py",
-    PACKAGE / "client/http.py",
-    PACKAGE / "bt_xml/checking.py",
-    PACKAGE / "bt_xml/reading.py",
-    PACKAGE / "runtime/draft_desk.py",
-    PACKAGE / "runtime/plant_folder.py",
-    PACKAGE / "runtime/version_desk.py",
-    *sorted(PACKAGE.glob("runtime/make/*.py")),
-    *sorted(PACKAGE.glob("runtime/proposals/*.py")),
-    *sorted(PACKAGE.glob("drivers/*.py")),  # settings, and why there is no link or nothing is sent
-    *sorted(
+    *_files(PACKAGE, "plant_file/*.py", "kinds/*.py"),
+    *_files(PACKAGE, "wire/strict.py", "wire/payloads.py", "client/http.py"),
+    *_files(PACKAGE, "bt_xml/checking.py", "bt_xml/reading.py"),
+    *_files(PACKAGE, "drivers/*.py"),  # settings, and why there is no link or nothing is sent
+    *_files(OF_BOARDS, "conformance/*.py"),
+    *_files(OF_CLASS, "exercises/trial_run.py", "playground/*.py"),
+    *_files(OF_PROOFS, "campaigns/*.py", "campaigns/proof/*.py", "simulator/findings.py"),
+    *_files(OF_PROOFS, *(f"simulator/{folder}/*.py" for folder in SEEING)),
+    *_files(OF_MAKING, "drafts/*.py", "versions/desk.py", "trying/*.py", "proposals/*.py"),
+    *(
         file
-        for file in OF_MAKERS.glob("*/*.py")
+        for file in _files(OF_MAKERS, "*/*.py")
         if file.parent.name != "virtual" and file.name != "server.py"
     ),
 )
