@@ -12,7 +12,7 @@ import typer
 from arboleda.bt_xml.leaves import NotTheSame
 from arboleda.host.packages import extra
 from arboleda.model.errors import ConfigError
-from arboleda.model.packages import PROOFS
+from arboleda.model.packages import MAKE
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file import advance_check, loader, plant_check, tree_file, unstated
@@ -134,7 +134,7 @@ def _of_cell(file: Path, model: PlantModel, cell: str) -> list[str] | None:
 def _as_data(file: Path, json: Path | None, *, mend: bool) -> None:
     """Write the answer where that is wanted, and say what would mend it; alone on the screen it ends the
     command after problems."""
-    mending = extra("mend", PROOFS, "--mend") if mend else None
+    mending = extra("mend", MAKE, "--mend") if mend else None
     to_screen = json is not None and str(json) == TO_SCREEN
     if json is not None and not to_screen:
         check_writable(json)
