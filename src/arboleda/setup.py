@@ -16,6 +16,7 @@ setup(
             "examples/*/*.yaml",
             "examples/*/*/*.py",
             "examples/*/*/*.urdf",
+            "examples/*/*/*/*/*.yaml",
             "plants/*.yaml",
             "py.typed",
             "starter/*",

@@ -24,6 +24,7 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.sentence import OWN
+from arboleda.store.package_table import PackageTable
 from arboleda.store.plant_memory import PRUNED, PlantMemory
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import History, TaskHistory, TaskQuery
@@ -61,6 +62,7 @@ class Places:
             return seen | {
                 "facts": [memory.facts(fact) for fact in Fact],
                 "journal": memory.entries(),
+                "table": PackageTable(memory, "acme").rows(),
                 "tasks": [replace(row, number=0) for row in memory.tasks(TaskQuery(limit=None))],
                 "figures": figures(history, OeeQuery(since_s=0.0), 1000.0),
             }
@@ -84,6 +86,14 @@ def test_facts(places: Places) -> None:
     places.hold_the_same(
         lambda memory: memory.keep(fact("ra1", "switching"), fact("ra2", "off"), fact("ra1", "on")),
         lambda memory: memory.keep(fact(ODD, ODD, Fact.STEP), fact("ra1", None), fact("nobody", None)),
+    )
+
+
+def test_the_table_of_a_package(places: Places) -> None:
+    places.hold_the_same(
+        lambda memory: PackageTable(memory, "acme").put({"a": "1", ODD: ODD, "b": "2"}),
+        lambda memory: PackageTable(memory, "acme").put({"a": None, "b": "3", "nobody": None}),
+        lambda memory: PackageTable(memory, "acme.other").put({"b": "4"}),
     )
 
 

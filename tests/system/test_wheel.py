@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import sysconfig
+import venv
 from collections.abc import Callable
 from pathlib import Path
 from zipfile import ZipFile
 
+import httpx
 import pytest
 from packaging.metadata import Metadata
 from tests.packages import PACKAGES as BESIDE
@@ -15,6 +18,7 @@ from tests.packages import PACKAGES as BESIDE
 from arboleda import __version__
 
 from ..patience import PATIENCE_S
+from .conftest import Process
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("src/arboleda/arboleda", "src/arboleda_ros/arboleda_ros", "tools/bench/arboleda_bench")
@@ -101,3 +105,50 @@ def test_the_wheel_of_a_package_beside_it_holds_the_package(name: str, clone: Pa
 def test_it_runs_a_plant_where_nothing_else_is(installed: Command) -> None:
     ran = installed("run", "sis_a 0B 7", "--no-ros", "--rate", "10")
     assert ran.returncode == 0, ran.stderr
+
+
+@pytest.fixture
+def extended(clone: Path, wheel: Path, tmp_path: Path) -> Path:
+    """The command of an environment that has libraries, the wheel of the runner, and beside it that of
+    examples/extension."""
+    extension = built(clone / "examples/extension", tmp_path / "extension")
+    venv.create(tmp_path / "environment")
+    python = tmp_path / "environment/bin/python"
+    libraries = tmp_path / "libraries"
+    libraries.mkdir()
+    for each in Path(sysconfig.get_path("purelib")).iterdir():
+        if "arboleda" not in each.name and each.suffix != ".pth":
+            (libraries / each.name).symlink_to(each)
+    site = "import sysconfig; print(sysconfig.get_path('purelib'))"
+    folder = subprocess.run([python, "-c", site], check=True, capture_output=True, text=True).stdout.strip()
+    (Path(folder) / "libraries.pth").write_text(f"{libraries}\n", "utf-8")
+    pip = (sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--no-index", "--no-deps")
+    subprocess.run([*pip, wheel, extension], check=True)
+    return python.with_name("arboleda")
+
+
+@pytest.mark.system
+def test_an_extension_is_installed_beside_it(
+    extended: Path, start: Callable[..., Process], tmp_path: Path
+) -> None:
+    alone = {"PYTHONPATH": "", "HOME": str(tmp_path), "XDG_STATE_HOME": str(tmp_path)}
+
+    def arboleda(*words: str, language: str = "en") -> Process:
+        return start(
+            str(extended), *words, "--state", str(tmp_path / "state"), env=alone | {"ARBOLEDA_LANG": language}
+        )
+
+    for count, language, said in (
+        (1, "en", "sis_a: tasks that ended here: 1"),
+        (2, "es", "sis_a: tareas que terminaron aquí: 2"),
+    ):
+        plant = arboleda("up", "--no-ros", "--rate", "10")
+        plant.wait_for("HTTP API")
+        assert arboleda("submit", f"sis_a 0B {count}", "--wait").wait() == 0
+        asked = arboleda("ended", language=language)
+        assert asked.wait() == 0 and said in asked.lines, asked.output
+        page = next(line.split()[-1] for line in plant.lines if line.startswith("Page:"))
+        assert httpx.get(f"{page}/api/ended").json()["sis_a"] == count
+        assert "sis_a.ended" in httpx.get(page).text
+        assert plant.interrupt() == 0, plant.output
+        assert "left out" not in plant.output and "Traceback" not in plant.output, plant.output

@@ -439,6 +439,16 @@ def test_once_something_cannot_be_kept_nobody_hears_of_the_end_of_a_task(plant, 
     assert heard == plant.robots.messages == [TASK]
 
 
+def test_a_listener_that_breaks_neither_ends_the_plant_nor_keeps_others_from_being_told(
+    plant, crashes, caplog
+):
+    heard = []
+    plant.listeners += [{}.__getitem__, heard.append]
+    turn(plant, TASK)
+    assert heard == plant.robots.messages == [TASK] and not crashes
+    assert "internal error in what is told of the plant" in caplog.text
+
+
 def test_an_operators_request_is_answered(plant):
     future = plant.operate(Verb.HOME, "ra1", by_hand=True)
     plant.plant.says = lambda events: [answer(events[0], "ra1 moves")]

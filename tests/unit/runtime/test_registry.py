@@ -97,6 +97,48 @@ def test_a_package_may_refuse_the_start_with_a_sentence(tmp_path: Path, put: Ins
             built(tmp_path)
 
 
+LISTENS = """
+from arboleda.runtime.parts.orchestrator import Orchestrator
+from arboleda.runtime.registry import Factory, Phase
+
+TOLD = []
+
+
+def breaks(what):
+    TOLD.append(what)
+    raise ValueError("the shelf is full")
+
+
+def make(assembly):
+    assembly.need(Orchestrator).{listeners}.append(breaks)
+    return ()
+
+
+PARTS = [Factory(phase=Phase.VIEWS, make=make)]
+"""
+
+
+@pytest.mark.parametrize("listeners", ["listeners", "observers", "watchers"])
+def test_a_listener_of_a_package_that_breaks_is_left_out_once_and_the_plant_goes_on(
+    tmp_path: Path, put: Install, listeners: str
+) -> None:
+    put("acme", LISTENS.format(listeners=listeners))
+    app = built(tmp_path)
+    heard: list[Any] = []
+    getattr(app.plant, listeners).append(heard.append)
+    try:
+        for id in ("lot", "next"):
+            asked = app.plant.submit(f"sis_a 0B 7 #{id}")
+            app.plant.loop.turn()
+            app.plant.halt()  # what is shown then is shown at once
+            app.plant.loop.turn()
+            assert asked.done()
+    finally:
+        app.stop()
+    assert len(sys.modules["acme"].TOLD) == 1 and len(heard) > 1
+    assert [note for note in app.notes if "left out" in note] == [SAID]
+
+
 class Noted:
     """A part that notes what is done with it."""
 

@@ -22,6 +22,7 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.sentence import OWN
+from arboleda.store.package_table import PackageTable
 from arboleda.store.plant_memory import PRUNED
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery, answers_of, course_of
@@ -94,6 +95,21 @@ def test_a_fact_is_kept_replaced_and_forgotten(site):
         store.keep(Remember(fact=Fact.QUARANTINE, name="nowhere", value=None))
         assert store.facts(Fact.EFFECTOR) == {"ra2": "off"}
         assert store.facts(Fact.LATCH) == {"ra1": "on"}
+
+
+def test_the_table_of_a_package_is_there_after_a_restart(site):
+    with site.memory() as store:
+        table = PackageTable(store, "acme")
+        assert table.rows() == {}
+        table.put({"a": "1", ODD: ODD, "b": "2"})
+        PackageTable(store, "acme.other").put({"a": "7"})
+    with site.memory() as store:
+        table = PackageTable(store, "acme")
+        table.put({"a": None, "b": "3", "nobody": None})
+        table.put({})
+        assert table.rows() == {ODD: ODD, "b": "3"}
+        assert PackageTable(store, "acme.other").rows() == {"a": "7"}
+        assert [store.facts(fact) for fact in Fact] == [{}] * len(Fact)
 
 
 def test_the_journal_is_read_newest_first(site):

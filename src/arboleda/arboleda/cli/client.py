@@ -95,6 +95,10 @@ class PlantClient:
         """The view of the plant."""
         return self._row("GET", "/api/plant")
 
+    def get(self, path: str) -> dict[str, Any]:
+        """The object that a route answers, also one of a package."""
+        return self._row("GET", path)
+
     def task(self, task: str) -> dict[str, Any]:
         """One task by its id."""
         return self._row("GET", f"/api/tasks/{task}")

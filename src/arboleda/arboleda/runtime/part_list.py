@@ -65,8 +65,10 @@ class PartList:
                 part.stop()
 
     def leave_out(self, package: str, error: BaseException) -> None:
-        """Note that a package breaks, and make no other part of it."""
+        """Note once that a package breaks, and make no other part of it."""
         LOG.debug("the package %s broke", package, exc_info=error)
+        if package in self._left_out:
+            return
         self._left_out.add(package)
         self.notes.append(LEFT_OUT.format(package=plain(package), why=plain(error_text(error), LONGEST)))
         LOG.warning("%s", self.notes[-1])

@@ -75,6 +75,16 @@ class Assembly(Offers):
     def __post_init__(self) -> None:
         super().__init__()
 
+    def leave_out_raiser(self, error: Exception) -> bool:
+        """Leave out the package of the listener that raised this; False where it is of none."""
+        called = error.__traceback__ and error.__traceback__.tb_next  # the first is who called the listener
+        module = called.tb_frame.f_globals.get("__name__", "") if called else ""
+        for point in registered(GROUP):
+            if _top(point.module) == _top(module):
+                self.leave_out(package_of(point), error)
+                return True
+        return False
+
 
 def packaged(leave_out: Callable[[str, BaseException], None]) -> Iterator[tuple[str, Factory]]:
     """The factories of packages, each with its package; one that cannot be loaded is left out."""
@@ -87,3 +97,7 @@ def packaged(leave_out: Callable[[str, BaseException], None]) -> Iterator[tuple[
             leave_out(package_of(point), error)
             continue
         yield from ((package_of(point), each) for each in factories)
+
+
+def _top(module: str) -> str:
+    return module.partition(".")[0]

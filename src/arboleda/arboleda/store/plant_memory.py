@@ -94,7 +94,7 @@ class PlantMemory(ABC):
         """Close the memory; idempotent."""
 
     @abstractmethod
-    def _write(self, *statements: Statement, durable: bool) -> None:
+    def write(self, *statements: Statement, durable: bool) -> None:
         """Commit all of the statements, or none; what is to be `durable` may wait for `sync`."""
 
     @abstractmethod
@@ -105,7 +105,7 @@ class PlantMemory(ABC):
         """Put in order what has been written for a while; for one thread, which may have to wait."""
 
     @abstractmethod
-    def _read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
+    def read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
         """The rows of a query."""
 
     @abstractmethod
@@ -156,7 +156,7 @@ class PlantMemory(ABC):
         """Commit facts, and forget those whose value is None: all of them, or none."""
         last_words = {(fact.fact, fact.name): fact for fact in facts}.values()
         durable = any(outlives_power(fact) for fact in facts)
-        self._write(*map(_kept, last_words), durable=durable)
+        self.write(*map(_kept, last_words), durable=durable)
 
     def note(self, *facts: Remember) -> None:
         """Write facts that may be committed later, by `settle` or with what is written next. They survive a
@@ -174,7 +174,7 @@ class PlantMemory(ABC):
 
     def facts(self, fact: Fact) -> dict[str, str]:
         """The stored facts: value by name."""
-        rows = self._read("SELECT name, value FROM fact WHERE fact = ? ORDER BY name", fact.value)
+        rows = self.read("SELECT name, value FROM fact WHERE fact = ? ORDER BY name", fact.value)
         if not all(isinstance(each, str) for row in rows for each in row):
             raise self._damaged()
         return dict(rows)
@@ -185,7 +185,7 @@ class PlantMemory(ABC):
         word = PUT_TO_WORK if entry.verb is None else entry.verb.value
         row = (unix_s, word, entry.scope, str(entry.sentence), entry.cell, sentence_json)
         insert = "INSERT INTO journal (unix_s, verb, scope, sentence, cell, said) VALUES (?, ?, ?, ?, ?, ?)"
-        self._write((insert, row), durable=outlives_power(entry))
+        self.write((insert, row), durable=outlives_power(entry))
 
     def task(
         self,
@@ -206,12 +206,12 @@ class PlantMemory(ABC):
             columns = "id, text, cell, recipe, state, accepted_s, asked_by, choice"
             values = ", ".join("?" * len(row))
             insert = f"INSERT INTO task ({columns}) VALUES ({values}) ON CONFLICT (id) DO NOTHING"
-            self._write((insert, row), durable=durable)
+            self.write((insert, row), durable=durable)
         elif state is TaskState.RUNNING:
             begin = (
                 "UPDATE task SET state = ?, started_s = ?, attempts = 1 WHERE id = ? AND started_s IS NULL"
             )
-            self._write((begin, (state.value, unix_s, change.task)), durable=durable)
+            self.write((begin, (state.value, unix_s, change.task)), durable=durable)
         elif state is not TaskState.REFUSED:
             sentence_json = json.dumps(change.sentence.data(), ensure_ascii=False)
             reason = None if change.reason is None else change.reason.value
@@ -224,17 +224,17 @@ class PlantMemory(ABC):
             )
             how, unchecked = course_written(change.course), unchecked_written(change.unchecked)
             outcome = (state.value, reason, str(change.sentence), sentence_json, unix_s)
-            self._write((end, (*outcome, answers_json, how, unchecked, change.task)), durable=durable)
+            self.write((end, (*outcome, answers_json, how, unchecked, change.task)), durable=durable)
 
     def attempted(self, task: str, attempts: int) -> None:
         """Commit the number of times that a task was begun."""
-        self._write(("UPDATE task SET attempts = ? WHERE id = ?", (attempts, task)), durable=False)
+        self.write(("UPDATE task SET attempts = ? WHERE id = ?", (attempts, task)), durable=False)
 
     def forget_tasks(self, before_unix_s: float) -> None:
         """Forget the oldest tasks that ended before a time, at most PRUNED of them."""
         oldest = "SELECT number FROM task WHERE ended_s < ? ORDER BY ended_s LIMIT ?"
         delete = f"DELETE FROM task WHERE number IN ({oldest})"
-        self._write((delete, (before_unix_s, PRUNED)), durable=False)
+        self.write((delete, (before_unix_s, PRUNED)), durable=False)
 
     def began(self, unix_s: float, before_unix_s: float) -> None:
         """Commit that the plant runs, and forget downtimes that ended long ago."""
@@ -245,31 +245,31 @@ class PlantMemory(ABC):
             ("DELETE FROM run WHERE seen_s < ?", (before_unix_s,)),
             ("INSERT INTO run (since_s, seen_s, ended) VALUES (?, ?, 0)", (unix_s, unix_s)),
         ):
-            self._write(statement, durable=False)
+            self.write(statement, durable=False)
 
     def note_run(self, unix_s: float, *, ended: bool = False) -> None:
         """Commit that the plant still runs, or that it was ended."""
         last = "number = (SELECT max(number) FROM run)"
         update = f"UPDATE run SET seen_s = ?, ended = ? WHERE {last}"
-        self._write((update, (unix_s, int(ended))), durable=False)
+        self.write((update, (unix_s, int(ended))), durable=False)
 
     def stands(self, cell: str, state: str | None, unix_s: float) -> None:
         """Commit that a cell does no work from now on, in this state; None: it works again."""
         over = "UPDATE down SET until_s = ? WHERE cell = ? AND until_s IS NULL"
-        self._write((over, (unix_s, cell)), durable=False)
+        self.write((over, (unix_s, cell)), durable=False)
         if state is not None:
             begun = "INSERT INTO down (cell, state, since_s) VALUES (?, ?, ?)"
-            self._write((begun, (cell, state, unix_s)), durable=False)
+            self.write((begun, (cell, state, unix_s)), durable=False)
 
     def tasks(self, query: TaskQuery) -> list[TaskRow]:
         """The tasks that a query asks for, the last accepted first."""
         statement, values = selection(query)
-        return [to_row(row) for row in self._read(statement, *values)]
+        return [to_row(row) for row in self.read(statement, *values)]
 
     def entries(self, limit: int = 100) -> list[JournalEntry]:
         """The last acts, the newest first."""
         columns = "id", "unix_s", "verb", "scope", "sentence", "cell", "said"
-        rows = self._read(f"SELECT {', '.join(columns)} FROM journal ORDER BY id DESC LIMIT ?", limit)
+        rows = self.read(f"SELECT {', '.join(columns)} FROM journal ORDER BY id DESC LIMIT ?", limit)
         for _, unix_s, *texts, cell, sentence_json in rows:
             known = [*texts, cell or "", sentence_json or ""]
             if not isinstance(unix_s, float) or not all(isinstance(text, str) for text in known):

@@ -173,7 +173,7 @@ class Store(PlantMemory):
     def begin(self, *facts: Remember) -> None:
         """Commit as well on which boot of its host this start writes: a later one may lack its end."""
         rows = (row_of_fact((fact.fact.value, fact.name), fact.value) for fact in facts)
-        self._write(*rows, row_of_fact(BOOT, self._boot), durable=True)
+        self.write(*rows, row_of_fact(BOOT, self._boot), durable=True)
         self._ends_well, self.may_lack_writes = True, False
 
     def note(self, *facts: Remember) -> None:
@@ -231,7 +231,7 @@ class Store(PlantMemory):
             raise ArboledaError(f"The plant's memory {self.path} is closed.")
         return self._opened
 
-    def _write(self, *statements: Statement, durable: bool) -> None:
+    def write(self, *statements: Statement, durable: bool) -> None:
         self.settle()
         self._unfolded += 1
         with self._explained(ArboledaError):
@@ -241,7 +241,7 @@ class Store(PlantMemory):
                 _carry_out(self._db, statements)
         self.confirm()  # after the commit, so that nobody hears of a write to a file that is not in its place
 
-    def _read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
+    def read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
         self.settle()
         with self._explained(ArboledaError):
             return self._db.execute(statement, values).fetchall()

@@ -143,7 +143,7 @@ class PostgresMemory(PlantMemory):
         self.standbys = tuple(Standby(host=plain(host), url=plain(url)) for host, url in row[1])
         return bool(row[0])
 
-    def _write(self, *statements: Statement, durable: bool) -> None:
+    def write(self, *statements: Statement, durable: bool) -> None:
         if self._epoch is None:
             raise ArboledaError(f"The plant's memory {self.name} is not led by this process.")
         parts = [f"w{n} AS ({text} RETURNING 1)" for n, (text, _) in enumerate(statements)]
@@ -157,7 +157,7 @@ class PostgresMemory(PlantMemory):
     def sync(self) -> None:
         """Nothing is left to do: each commit already chose whether the server waits for its disk."""
 
-    def _read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
+    def read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
         return self._patiently(lambda db: db.execute(translated(statement), plain_values(values)).fetchall())
 
     def _patiently(self, do: Callable[[Impatient], T]) -> T:

@@ -18,6 +18,7 @@ from arboleda.departures.leading import LEASE_S, RENEW_S
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import Fact, Journal, Remember, TaskChanged, TaskState, Verb
 from arboleda.model.sentence import OWN
+from arboleda.store.package_table import PackageTable
 from arboleda.store.plant_memory import Standby, Superseded
 from arboleda.store.task_rows import TaskQuery
 from arboleda_fleet.postgres.history import PostgresHistory
@@ -60,6 +61,7 @@ WRITES: dict[str, Callable[[PostgresMemory], object]] = {
     "a start": lambda memory: memory.began(5.0, 4.0),
     "an end": lambda memory: memory.note_run(5.0, ended=True),
     "a cell that stands": lambda memory: memory.stands("sis_a", "held", 5.0),
+    "a row of a package": lambda memory: PackageTable(memory, "acme").put({"a": "1"}),
     "its lease": lambda memory: memory.renew(),
 }
 

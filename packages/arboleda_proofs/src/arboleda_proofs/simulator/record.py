@@ -21,6 +21,7 @@ from arboleda.model.messages import (
     OperatorRequest,
     Remember,
     Report,
+    SystemStart,
     TaskChanged,
     TaskRequest,
     TaskState,
@@ -708,6 +709,7 @@ class Record:
 
 TAKES: dict[type, Callable[[Record, Any], None]] = {
     Command: Record._on_command,
+    SystemStart: lambda record, start: record.tasks.announce(start.cell, record.world.plant.now),
     TaskChanged: Record._on_task,
     OperatorAnswer: Record._on_answer,
     Remember: Record._on_fact,

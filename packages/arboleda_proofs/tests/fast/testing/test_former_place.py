@@ -23,7 +23,7 @@ def test_without_the_package_the_import_says_what_installs_it(monkeypatch: pytes
         sys, "path", [each for each in sys.path if not Path(each, "arboleda_proofs").is_dir()]
     )
     with (
-        pytest.warns(DeprecationWarning),
+        pytest.warns(DeprecationWarning, match="Rig"),
         pytest.raises(ImportError, match=r"pip install 'arboleda\[proofs\]'"),
     ):
         from arboleda.testing import Rig  # noqa: F401

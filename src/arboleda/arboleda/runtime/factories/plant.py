@@ -42,6 +42,7 @@ def plant(assembly: Assembly) -> Iterable[Part]:
             held.memory,
             history=held.recalled,
             drops_waiting=not assembly.options.keeps_waiting,
+            leave_out_raiser=assembly.leave_out_raiser,
         )
         made.diagnoses.append(held.pace.diagnosis)
         assembly.offer(Orchestrator, made)

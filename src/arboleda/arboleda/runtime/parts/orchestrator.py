@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
+from functools import partial
 from typing import Any, NamedTuple, Protocol
 from uuid import uuid4
 
@@ -65,6 +66,7 @@ from arboleda.views.resting_cells import RestingCells
 from ..loop import Loop, StepInFlight
 from ..memory import begun, kept_task, kept_tasks, remembered
 from .durability import Durability
+from .listeners import Listeners
 from .part import Crash
 from .router import PlantPort
 from .slices import PAUSE_S, Slices
@@ -172,6 +174,9 @@ class Orchestrator:
     only stops, and screens show the last kept snapshot. Tasks that wait at the end are left for the next
     start, unless it `drops_waiting`. If its thread is busy when somebody asks for a stop, the stop leaves
     beside it, by `stops`.
+
+    `leave_out_raiser` gets what a listener raises, and leaves out the package of that; False where it is of
+    none.
     """
 
     def __init__(
@@ -183,6 +188,7 @@ class Orchestrator:
         *,
         history: History | None = None,
         drops_waiting: bool = False,
+        leave_out_raiser: Callable[[Exception], bool] = lambda _: False,
     ) -> None:
         now, memory = clock.seconds(), remembered(store) if store is not None else {}
         kept = kept_tasks(store, clock_s=now, unix_s=time.time()) if store is not None else []
@@ -201,9 +207,10 @@ class Orchestrator:
         )
         self.stops = Stops(model, epoch, self._send_beside)
         self.durability = Durability(store, self._tell, self._forget)
-        self.listeners: list[Callable[[TaskChanged], None]] = []
-        self.watchers: list[Callable[[dict[str, Any]], None]] = []
-        self.observers: list[Callable[[Plant], None]] = []  # told after each step; they must not wait
+        gives_up = partial(_gives_up, leave_out_raiser)
+        self.listeners: Listeners[TaskChanged] = Listeners(gives_up)
+        self.watchers: Listeners[dict[str, Any]] = Listeners(gives_up)
+        self.observers: Listeners[Plant] = Listeners(gives_up)  # told after each step; they must not wait
         self.reacted: Callable[[float], None] = lambda _seconds: None
         self.recorder: FlightRecorder | None = None
         self.diagnoses: list[
@@ -469,8 +476,7 @@ class Orchestrator:
         _log(message)
         self._answer(message)
         if isinstance(message, TaskChanged):
-            for listener in self.listeners:
-                listener(message)
+            self.listeners.tell(message)
         if isinstance(message, RevisionAnswer):
             return
         if self._port is not None and may_leave(message, self._standing):
@@ -643,11 +649,8 @@ class Orchestrator:
         self.durability.wake()
         if self.recorder is not None:
             self.recorder.stepped(self.plant, now, events, messages)
-        for observer in self.observers if self._amnesia is None else ():
-            try:
-                observer(self.plant)
-            except Exception as error:  # noqa: BLE001 - whatever is told of a plant must not end it
-                _log_defect("what is told of the plant", error)
+        if self._amnesia is None:
+            self.observers.tell(self.plant)
         if self.plant.intake.closed and self.plant.at_rest:
             self._at_rest.set()
         if self._showing is not None:
@@ -714,9 +717,7 @@ class Orchestrator:
         if self.recorder is not None and not self.recorder.trouble:
             drawn = yield from twin_view.in_parts(self.plant)
             self.recorder.saw(snapshot, drawn)
-        for watcher in self.watchers:
-            watcher(snapshot)
-            yield
+        yield from self.watchers.telling(snapshot)
         if self._ros is not None:
             yield from self._ros.publish_view(snapshot)
             if self._ros.diagnosed:
@@ -744,6 +745,14 @@ def _bundled(messages: Sequence[Any]) -> list[Any]:
         else:
             last.append(each)
     return bundled
+
+
+def _gives_up(leave_out_raiser: Callable[[Exception], bool], error: Exception) -> bool:
+    """True where a listener raised this because its package breaks; a defect of the runner is logged."""
+    if leave_out_raiser(error):
+        return True
+    _log_defect("what is told of the plant", error)
+    return False
 
 
 def _log_defect(where: str, error: Exception) -> None:

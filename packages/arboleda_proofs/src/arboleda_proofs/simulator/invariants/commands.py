@@ -308,8 +308,9 @@ def _low_place(look: Look, command: Command, cell: Cell) -> str | None:
 
 @invariant(Trigger.COMMANDED)
 def tasks_take_their_time(look: Look) -> Iterator[str]:
-    """A task commands nothing before `dwell_s` has passed since it began, and an arm nothing before as long
-    has passed since its effector was told to grip or to let go, unless a recovery or an operator has begun.
+    """A task commands nothing before `dwell_s` has passed since it was announced, and an arm of one that was
+    nothing before as long has passed since its effector was told to grip or to let go, unless a recovery or
+    an operator has begun.
     """
     for sent in look.record.commands.new:
         cell = look.record.cells[sent.entry.cell] if sent.entry is not None else None
@@ -322,14 +323,16 @@ def tasks_take_their_time(look: Look) -> Iterator[str]:
 
 def _waits_since(look: Look, cell: KnownCell, sent: SentCommand) -> float | None:
     """The time since which a command has to wait: of an effector that was switched, or of the task."""
+    task = look.record.tasks.open.get(look.record.tasks.running.get(cell.name, ""))
+    if task is None or task.announced is None:
+        return None  # a tree of people, which has its own times
     before = sent.before
     if before is not None and before.entry is not None and before.entry.cell == cell.name:
         is_grip = isinstance(before.command, Switch) and before.command.grips is not None
         is_effector = look.world.model.robots[sent.robot].has_effector
         if is_grip and is_effector and before.state is State.DONE and not before.verbs:
             return before.at
-    task = look.record.tasks.open.get(look.record.tasks.running.get(cell.name, ""))
-    return None if task is None else task.began
+    return task.announced
 
 
 COMMANDS = (

@@ -21,7 +21,8 @@ class KnownTask:
     """A task that was accepted; `number` counts the accepted ones; `cancelled`: an operator has cancelled it,
     None if that may have meant this task.
 
-    `message` is the last word on it; `accepted` is when it first came, `began` when it was told to run.
+    `message` is the last word on it; `accepted` is when it first came, `began` when it was told to run,
+    `announced` when its tree told that it starts, which a tree of people need not.
     """
 
     id: str
@@ -33,6 +34,7 @@ class KnownTask:
     accepted: float
     cancelled: bool | None = False
     began: float | None = None
+    announced: float | None = None
 
 
 @dataclass(slots=True)
@@ -117,6 +119,11 @@ class Tasks:
         self.changes.append(Change(change, before, answer, first, task.cancelled if task else False))
         if not answer:
             self._follow(change, task, now)
+
+    def announce(self, cell: str, now: float) -> None:
+        """Take in that the tree of a cell's task tells that it starts."""
+        if (task := self.open.get(self.running.get(cell, ""))) is not None:
+            task.announced = now
 
     def _answered(self, change: TaskChanged, *, is_repeated: bool) -> KnownTask | None:
         """The ended task that this word only repeats, as an answer to a repeated request; None for news."""

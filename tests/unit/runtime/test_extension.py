@@ -1,0 +1,159 @@
+"""examples/extension: a package from outside adds a command, a part, a route, a card and a table."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from tests.added_package import register
+from tests.in_process import Caller
+from typer.testing import CliRunner
+
+from arboleda.cli.commands import commands
+from arboleda.cli.main import cli
+from arboleda.dashboard import page
+from arboleda.dashboard.added import AddedParts
+from arboleda.dashboard.wording import words
+from arboleda.model.messages import Verb
+from arboleda.runtime.build import App, Options, build
+from arboleda.runtime.parts.local_plant import LocalPlant
+from arboleda.views import view
+from arboleda.web.api import make_app
+from arboleda.web.languages import contents, texts
+from arboleda_proofs.testing import shipped
+
+ROOT = Path(__file__).parents[3]
+EXAMPLE = ROOT / "examples/extension"
+FILES = [each for each in sorted(EXAMPLE.rglob("*.*")) if each.suffix in (".py", ".js", ".yaml", ".toml")]
+MOST_LINES = 150
+CACHES = (commands, contents, texts, words)
+
+
+def entry_points() -> dict[str, list[str]]:
+    """What its setup.py registers."""
+    keywords = ast.walk(ast.parse((EXAMPLE / "setup.py").read_text("utf-8")))
+    (found,) = (each for each in keywords if isinstance(each, ast.keyword) and each.arg == "entry_points")
+    registered: dict[str, list[str]] = ast.literal_eval(found.value)
+    return registered
+
+
+@pytest.fixture(autouse=True)
+def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The example is installed: from its folder, as `pip install -e` does it."""
+    register(tmp_path / "site", "arboleda_ended", entry_points())
+    for folder in (tmp_path / "site", EXAMPLE):
+        monkeypatch.syspath_prepend(folder)
+    for each in CACHES:
+        each.cache_clear()
+    yield
+    for each in CACHES:
+        each.cache_clear()
+
+
+@pytest.fixture
+def app(tmp_path: Path) -> Iterator[App]:
+    """A plant that nobody has started: its steps are taken by hand."""
+    made = built(tmp_path)
+    yield made
+    made.stop()
+
+
+def built(tmp_path: Path) -> App:
+    return build(shipped("sis_a"), {"orchestrator"}, Options(state_dir=tmp_path / "state", page=False))
+
+
+def end_a_task(app: App, id: str = "lot") -> None:
+    """Have a task end that nothing has begun."""
+    app.plant.submit(f"sis_a 0B 7 #{id}")
+    app.plant.loop.turn()
+    app.plant.operate(Verb.CANCEL, id)
+    app.plant.loop.turn()
+
+
+def asked(app: App) -> Any:
+    """What the route answers."""
+    return Caller(make_app(app.offers.need(LocalPlant))).get("/api/ended").json()
+
+
+def left_out(app: App) -> list[str]:
+    return [note for note in app.notes if "left out" in note]
+
+
+def test_it_is_short() -> None:
+    assert sum(len(each.read_text("utf-8").splitlines()) for each in FILES) <= MOST_LINES
+
+
+@pytest.mark.parametrize("page", ["write-an-extension.md", "write-an-extension.es.md"])
+def test_its_page_shows_all_of_its_code(page: str) -> None:
+    text = (ROOT / "docs/how-to" / page).read_text("utf-8")
+    assert [each for each in FILES if f"\n{each.read_text('utf-8')}```\n" not in text] == []
+
+
+def test_its_part_counts_and_its_route_tells(app: App) -> None:
+    assert asked(app) == {"sis_a": 0} and left_out(app) == []
+    end_a_task(app)
+    assert asked(app) == {"sis_a": 1}
+    assert "/api/ended" in make_app(app.offers.need(LocalPlant)).openapi()["paths"]
+
+
+def test_its_table_is_there_after_a_restart(app: App, tmp_path: Path) -> None:
+    end_a_task(app)
+    app.plant.loop.turn()
+    app.stop()
+    again = built(tmp_path)
+    try:
+        assert asked(again) == {"sis_a": 1}
+        end_a_task(again, "next")
+        assert asked(again) == {"sis_a": 2}
+    finally:
+        again.stop()
+
+
+@pytest.mark.parametrize(
+    ("language", "said"), [("en", "tasks that ended here: 1"), ("es", "tareas que terminaron aquí: 1")]
+)
+def test_its_card_is_on_the_page(app: App, language: str, said: str) -> None:
+    end_a_task(app)
+    plant: Any = app.offers.need(LocalPlant)
+    layout, told = view.layout(shipped("sis_a")), list[Any]()
+    parts = AddedParts(lambda *why: told.append(why))
+    assert 'data-live="sis_a.ended"' in page.drawn(parts, plant, layout, words(language), None)[1]
+    snapshot = {"cells": [{"name": "sis_a", "teaching": None, "state": "idle", "not_ready": None}]}
+    now: Any = SimpleNamespace(snapshot=snapshot, links=app.links(), words=words(language))
+    assert parts.face(now)["text/sis_a.ended"] == [said, ""] and told == []
+
+
+@pytest.mark.parametrize(
+    ("language", "said", "brief"),
+    [
+        ("en", "sis_a: tasks that ended here: 1", "Show how many tasks ended in each cell."),
+        ("es", "sis_a: tareas que terminaron aquí: 1", "Muestra cuántas tareas terminaron en cada celda."),
+    ],
+)
+def test_its_command_asks_the_plant(
+    app: App, monkeypatch: pytest.MonkeyPatch, language: str, said: str, brief: str
+) -> None:
+    end_a_task(app)
+    monkeypatch.setenv("ARBOLEDA_LANG", language)
+    monkeypatch.setattr(
+        "arboleda_ended.command.client", lambda *_: SimpleNamespace(get=lambda path: asked(app))
+    )
+    assert CliRunner().invoke(cli, ["ended"]).output == f"{said}\n"
+    assert brief in CliRunner().invoke(cli, ["--help"]).output
+
+
+def test_where_its_part_breaks_the_plant_goes_on(app: App, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As where the disk does not take its table."""
+
+    def full(*_: object) -> None:
+        raise OSError("the disk is full")
+
+    monkeypatch.setattr("arboleda.store.package_table.PackageTable.put", full)
+    for id in ("lot", "next"):
+        end_a_task(app, id)
+        app.plant.loop.turn()
+    assert left_out(app) == ["the package ended is left out of this plant: OSError: the disk is full"]
