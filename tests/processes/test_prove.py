@@ -9,9 +9,9 @@ import pytest
 from arboleda_proofs.campaigns.proof.forks import CAN_FORK, run_all, run_groups
 from arboleda_proofs.campaigns.proof.proof import Proof
 
-from ..unit.campaigns.lamp import Prove, calm_of, pairs_of, portions, summary
-from ..unit.campaigns.lamp import plant as plant
-from ..unit.campaigns.lamp import prove as prove
+from packages.arboleda_proofs.tests.fast.campaigns.lamp import Prove, calm_of, pairs_of, portions, summary
+from packages.arboleda_proofs.tests.fast.campaigns.lamp import plant as plant
+from packages.arboleda_proofs.tests.fast.campaigns.lamp import prove as prove
 
 
 @pytest.mark.skipif(not CAN_FORK, reason="this system cannot fork")

@@ -20,7 +20,7 @@ from arboleda.plant_file.draft_check import CheckResult
 from arboleda.plant_file.recipe_trial import PATH
 from arboleda.plant_file.unstated import Unstated
 
-START = PATH + "from arboleda.plant_file import draft_process; draft_process.main()"
+START = PATH + "from arboleda_make.drafts import process; process.main()"
 AT_MOST_S = 300.0
 IN_LINE = 4  # checks that may wait: each keeps a thread of the server
 KINDNESS = 10  # that of `nice`: whatever the plant does comes first
