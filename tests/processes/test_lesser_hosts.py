@@ -21,9 +21,8 @@ for platform in sys.argv[1:]:
         if os.wait()[1]: sys.exit(platform)
         continue
     lesser_host.pretend(platform)
-    import arboleda, arboleda_drivers, arboleda_fleet
-    for package in (arboleda, arboleda_drivers, arboleda_fleet):
-        for module in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
+    for name in {["arboleda", *PACKAGES]!r}:
+        for module in pkgutil.walk_packages(importlib.import_module(name).__path__, name + "."):
             importlib.import_module(module.name)
     print(platform, len([name for name in sys.modules if name.startswith("arboleda")]))
     break
@@ -32,8 +31,7 @@ for platform in sys.argv[1:]:
 
 def test_every_module_is_imported_where_the_system_has_less() -> None:
     command = [sys.executable, "-c", IMPORT_ALL, *NOWHERE]
-    beside = (PACKAGES[name].parent for name in ("arboleda_drivers", "arboleda_fleet"))
-    path = os.pathsep.join(map(str, (PACKAGE.parent, *beside)))
+    path = os.pathsep.join(map(str, (PACKAGE.parent, *(each.parent for each in PACKAGES.values()))))
     environ = {**os.environ, "PYTHONPATH": path}
     ran = subprocess.run(command, env=environ, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr

@@ -23,4 +23,4 @@ def test_loading_the_plugin_loads_nothing_else() -> None:
     }
     assert packages & heavy == set()
     ours = {name for name in ran.stdout.split() if name.startswith("arboleda")}
-    assert ours == {"arboleda", "arboleda_proofs.testing", "arboleda_proofs.testing.plugin"}
+    assert ours == {"arboleda_proofs", "arboleda_proofs.testing", "arboleda_proofs.testing.plugin"}
