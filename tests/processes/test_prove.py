@@ -5,13 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-
-from arboleda_proofs.campaigns.proof.forks import CAN_FORK, run_all, run_groups
-from arboleda_proofs.campaigns.proof.proof import Proof
-
 from packages.arboleda_proofs.tests.fast.campaigns.lamp import Prove, calm_of, pairs_of, portions, summary
 from packages.arboleda_proofs.tests.fast.campaigns.lamp import plant as plant
 from packages.arboleda_proofs.tests.fast.campaigns.lamp import prove as prove
+
+from arboleda_proofs.campaigns.proof.forks import CAN_FORK, run_all, run_groups
+from arboleda_proofs.campaigns.proof.proof import Proof
 
 
 @pytest.mark.skipif(not CAN_FORK, reason="this system cannot fork")
