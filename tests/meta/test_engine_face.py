@@ -14,12 +14,13 @@ from arboleda.engine import inspection
 ROOT = Path(__file__).parents[2]
 HOUSE = Path(arboleda.__file__).parent
 MOST = 60
-OUTSIDE = (HOUSE, *(ROOT / each for each in ("packages", "src/arboleda_ros", "bench", "examples", "kills")))
+OUTSIDE = (HOUSE, *(ROOT / each for each in ("packages", "src/arboleda_ros", "examples", "tools")))
 ENGINE = ("core", "dispatch", "engine", "resume", "trees")
 
 
 def reached_for(module: str) -> set[str]:
     """The names that modules outside of the engine import from one of it."""
+    assert all(folder.is_dir() for folder in OUTSIDE)
     paths = [path for folder in OUTSIDE for path in folder.rglob("*.py")]
     outside = [path for path in paths if not {HOUSE / each for each in ENGINE} & {*path.parents}]
     nodes = [node for path in outside for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]

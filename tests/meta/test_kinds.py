@@ -18,7 +18,7 @@ from arboleda.model.plant_model import Cell, Robot
 from arboleda.plant_file.registry import COME_WITH_IT
 
 ROOT = Path(arboleda.__file__).parent
-ROOTS = (ROOT, PACKAGES["arboleda_proofs"], PACKAGES["arboleda_make"])
+ROOTS = (ROOT, *(PACKAGES[f"arboleda_{each}"] for each in ("fleet", "make", "proofs")))
 ENGINE = ("model", "dispatch", "trees", "resume", "core")
 ABOVE = (
     "cli",
@@ -35,6 +35,8 @@ ABOVE = (
     "trying",
     "mending",
     "proposals",
+    "standby",
+    "postgres",
 )
 ROOMS = (*ENGINE, *ABOVE, "wire", "views", "adapters", "sim", "simulator", "dashboard", "testing")
 NAMED_AS_ROLES = {
@@ -72,6 +74,7 @@ def _concrete() -> set[str]:
 
 def _files(package: str) -> Iterator[tuple[str, Path]]:
     """The modules of a package of the runner, or of one beside it, by their places in it."""
+    assert any((root / package).is_dir() for root in ROOTS), package
     for root in ROOTS:
         yield from ((str(path.relative_to(root)), path) for path in sorted((root / package).rglob("*.py")))
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from ..packages import PACKAGES
 from ..scripts import load
 
 ROOT = Path(__file__).parents[2]
@@ -16,6 +17,7 @@ def test_the_parts_are_those_that_who_runs_a_plant_installs() -> None:
     parts = CHECK.optional_parts((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     assert {"modbus", "opcua", "certs", "postgres", "mcp"} <= set(parts)
     assert not CHECK.OF_DEVELOPERS & set(parts)
+    assert not {name.removeprefix("arboleda_") for name in PACKAGES} & set(parts)
 
 
 def test_what_a_part_of_a_package_needs_is_asked_for_and_not_the_package() -> None:

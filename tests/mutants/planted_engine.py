@@ -26,7 +26,7 @@ from arboleda_mutation.children import Children, Ended, Say, Work
 from arboleda_mutation.judging import FOLDERS, SIMULATOR, TESTS, warm
 from arboleda_mutation.planted import plant
 from arboleda_mutation.reach import Reach, Tracer
-from arboleda_mutation.sources import PACKAGE, Sources, fingerprint
+from arboleda_mutation.sources import PACKAGE, PROOFS, Sources, fingerprint
 
 from .engine_bug import EngineBug
 from .engine_bugs import ENGINE_BUGS
@@ -115,7 +115,7 @@ def _tests() -> dict[str, str]:
 
 def _worlds() -> list[Path]:
     """What a run of the simulator goes by, and not only its judgement."""
-    folders = [path for path in sorted((ROOT / PACKAGE / "simulator").iterdir()) if path.is_dir()]
+    folders = [path for path in sorted((ROOT / PROOFS / "simulator").iterdir()) if path.is_dir()]
     return [path.relative_to(ROOT) for path in folders if path.name != "invariants"]
 
 

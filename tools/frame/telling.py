@@ -19,7 +19,7 @@ def stopwatch() -> Callable[[str], None]:
 
 
 def counts(counted: Mapping[str, int]) -> str:
-    """How often what came, in one line."""
+    """Counts of ends, in one line."""
     return ", ".join(f"{name} {count}" for name, count in counted.items()) or "none"
 
 

@@ -14,13 +14,17 @@ from .book import Book, Verdict
 from .children import Children, Ended, Work
 from .mutant import Mutant
 from .reach import Reach
-from .sources import ENGINE, PACKAGE, Sources, fingerprint
+from .sources import ENGINE, PACKAGE, PROOFS, Sources, fingerprint
 
 TESTS, SIMULATOR = JUDGES = ("tests", "simulator")
-SIMULATED = ("kinds", "recipes", "views", "wire", "sim", "simulator", "plant_file", "campaigns", "plants")
+SIMULATED = ("kinds", "recipes", "views", "wire", "sim", "plant_file", "plants")
 FOLDERS = {
-    TESTS: (str(PACKAGE), "wire_vectors"),
-    SIMULATOR: ("examples", *(str(PACKAGE / each) for each in (*ENGINE, *SIMULATED))),
+    TESTS: (str(PACKAGE), str(PROOFS), "wire_vectors"),
+    SIMULATOR: (
+        "examples",
+        *(str(PACKAGE / each) for each in (*ENGINE, *SIMULATED)),
+        *(str(PROOFS / each) for each in ("simulator", "campaigns")),
+    ),
 }
 LIBRARIES = ("fastapi", "httpx", "PIL", "py_trees", "pydantic", "rich.progress", "typer", "yaml")
 Told = Callable[[str], None]

@@ -12,6 +12,7 @@ from . import trees
 from .mutant import Mutant
 
 PACKAGE = Path("src/arboleda/arboleda")
+PROOFS = Path("packages/arboleda_proofs/src/arboleda_proofs")
 ENGINE = ("model", "dispatch", "trees", "resume", "core")
 MUTATED = (*ENGINE, "departures", "recipes", "views", "wire")
 
@@ -54,9 +55,10 @@ class Sources:
 
 
 def fingerprint(root: Path, folders: Iterable[str]) -> str:
-    """Changes whenever something in one of the folders does."""
+    """Changes whenever something in one of the folders does; FileNotFoundError where one is missing."""
     found = sha256()
     for folder in folders:
+        (root / folder).stat()
         for path in sorted((root / folder).rglob("*")):
             if path.suffix in (".py", ".yaml", ".json") and "__pycache__" not in path.parts:
                 found.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())

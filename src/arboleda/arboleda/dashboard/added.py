@@ -1,4 +1,4 @@
-"""What packages add to the page of one plant; a package that breaks is left out of it."""
+"""Parts that packages add to the page of one plant; a package that breaks is left out of it."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class AddedParts:
                 self._leave_out(package, error)
 
     def face(self, moment: Moment) -> Face:
-        """What changes over time in the sections of packages."""
+        """The changes over time in the sections of packages."""
         found: Face = {}
         for package, part in [*self._parts]:
             try:

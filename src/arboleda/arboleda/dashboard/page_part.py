@@ -1,4 +1,4 @@
-"""What a package adds to the page of a plant: sections, requests that they make, and what changes in them.
+"""Part of the page that a package adds: sections, requests that they make, and what changes in them.
 
 A package registers a `PagePart` under the entry point group `arboleda.page`, under its own name or as
 PACKAGE.WHAT where it has several.
@@ -81,7 +81,7 @@ class Request:
 
 @dataclass(frozen=True, kw_only=True)
 class Act:
-    """What a page can ask for: `name` is the key of its words, `take` does it, in the server's event loop."""
+    """Request of a page: `name` is the key of its words, `take` does it, in the server's event loop."""
 
     name: str
     take: Callable[[Request], Awaitable[None]]
@@ -100,7 +100,7 @@ class OtherRecord:
 
 @dataclass(frozen=True, kw_only=True)
 class PagePart:
-    """What a package adds to the page.
+    """Part of the page that a package adds.
 
     The module `assets.script` exports `start()`, and `arrive(there)` where it wants to know to which tab,
     cell and task somebody goes. `acts` are by the words with which a script asks for them. `face` is what

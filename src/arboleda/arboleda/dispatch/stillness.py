@@ -20,7 +20,7 @@ class Moment(NamedTuple):
 
 
 class Stillness:
-    """What a robot's reports say of its standing still. Reports are told apart by their numbers, as two of
+    """Standing still of a robot, by its reports. Reports are told apart by their numbers, as two of
     them may come at one time.
 
     `is_sure`: its place is no older than its last stop; of what goes nowhere, its facts.

@@ -28,7 +28,7 @@ def registered(group: str) -> list[metadata.EntryPoint]:
 
 
 def extra(name: str, package: str, what: str) -> Any:
-    """What `package` brings for a command of the cell runner; PackageMissing where it is not installed.
+    """An object that `package` brings for a command of the runner; PackageMissing where it is not installed.
 
     `name` is that of its entry point in the group EXTRAS; `what` is what a person asked for.
     """

@@ -306,7 +306,7 @@ def _check(message: Payload, delivery: Delivery, form: Form) -> None:
 
 
 def _of_rivals(news: News | None, robot: Robot, labels: Labels) -> Sentence | None:
-    """What others have newly done to a robot."""
+    """A sentence on an act of others at a robot, if it is new."""
     if news is News.TAKEN and labels.foreign is not None:
         return rejections.taken(robot, *labels.foreign)
     if news is None or labels.beaten_by is None:

@@ -76,7 +76,7 @@ class BoardReports:
     def of_telemetry(
         self, at: float, message: Telemetry, q: tuple[float, ...] | None, facts: Facts | None
     ) -> Report:
-        """What telemetry says, with what it newly shows of commands."""
+        """The report of telemetry: state, place, and the commands that the board names."""
         answered, answer = self._labels.answered or (None, None)
         failed, failure = self._labels.failed or (None, None)
         return self.report(

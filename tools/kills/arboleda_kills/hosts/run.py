@@ -23,10 +23,10 @@ from ..judge import Kill, Verdict, judge
 from ..people import OVER, People, Said
 from .books import keep_books, truly
 from .cast import DATA, DATABASE_PORT, HOSTS, LEFT, RIGHT, UNHEARD, Cast, HostPlant
+from .entrances import Ways
 from .faults import Fault, Scene
 from .network import Network
 from .visitors import Visitors
-from .ways import Ways
 
 NAME = "arboleda"
 SCHEMA = schema_of(NAME)

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from arboleda.model.plant_model import Cell
 
 from ..people import OVER
-from .ways import Way
+from .entrances import Way
 
 PACE_S = 2.0  # between two tasks of one of them, and before a task is asked for once more
 TRIES = 100

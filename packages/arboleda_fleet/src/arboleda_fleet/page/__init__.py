@@ -1,1 +1,1 @@
-"""What pages show of several cells and plants: the OEE of cells, and the page on many plants."""
+"""Views of several cells and plants: the OEE of cells, and the page on many plants."""

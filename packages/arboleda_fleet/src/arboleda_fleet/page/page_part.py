@@ -1,4 +1,4 @@
-"""What the figures of several cells add to the page of a plant."""
+"""Part of a plant's page: the OEE of its cells."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ class OpenDraft:
 
     @property
     def started(self) -> Version:
-        """What the plant was started with."""
+        """The version that the plant was started with."""
         found = at_work.known(self._state)
         if found is None:
             raise DraftRefused(UNKNOWN)

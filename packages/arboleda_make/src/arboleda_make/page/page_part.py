@@ -1,4 +1,4 @@
-"""What changing a plant adds to its page."""
+"""Part of a plant's page: Make, Draw, Teach and Changes."""
 
 from __future__ import annotations
 

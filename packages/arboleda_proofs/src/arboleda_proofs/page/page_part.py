@@ -1,4 +1,4 @@
-"""What the proofs add to the page of a plant."""
+"""Part of a plant's page: faults by hand, reports of failures, the demonstration."""
 
 from __future__ import annotations
 
