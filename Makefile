@@ -169,7 +169,6 @@ lint:  ## check style, format, types and the import rules
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
-	$(BIN)/mypy --config-file tests/mypy.ini
 	$(BIN)/mypy --explicit-package-bases firmware/test/*.py
 	$(BIN)/mypy --scripts-are-modules $$(grep -lE '^#!.*python' scripts/* tools/* 2>/dev/null) scripts/*.py tools/*.py
 	@PYTHONPATH=src/arboleda_bringup $(BIN)/lint-imports # pip does not install that one

@@ -69,7 +69,7 @@ def _example(name: str) -> Plant:
 
 @cache
 def _packaged(name: str) -> Plant:
-    with as_file(files("arboleda").joinpath("plants", f"{name}.yaml")) as path:
+    with as_file(files("arboleda").joinpath(f"plants/{name}.yaml")) as path:
         return Plant(declared=loader.load(path) if name == "shared" else loader.load())
 
 

@@ -63,7 +63,7 @@ ENDED = (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED)
 def read(recipes: str, plant: str = "plant.yaml") -> PlantModel:
     """A packaged plant that uses these recipes."""
     with TemporaryDirectory() as made:
-        text = files("arboleda").joinpath("plants", plant).read_text("utf-8")
+        text = files("arboleda").joinpath(f"plants/{plant}").read_text("utf-8")
         Path(made, "plant.yaml").write_text(text.replace("\nname: ", "\nuses: [own.py]\nname: ", 1), "utf-8")
         Path(made, "own.py").write_text(recipes, "utf-8")
         return loader.load(Path(made, "plant.yaml"))
