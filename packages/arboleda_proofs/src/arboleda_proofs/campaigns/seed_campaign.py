@@ -121,7 +121,7 @@ class SeedCampaign:
     def _story(self, shrunk: ShrunkBreach, injected: int) -> None:
         result = shrunk.result
         self._say("")
-        breach_text.breach(self._console, result, shrunk.plant.name)
+        breach_text.breach(self._console, result, shrunk.plant)
         breach_text.faults(self._console, result, injected)
         breach_text.plant(self._console, shrunk.plant)
         breach_text.timeline(self._console, result)

@@ -44,7 +44,7 @@ def run(
     tally.add(result)
     if file is not None:
         summary.write(file, request, tally, None, complete=True)
-    breach_text.breach(console, result, request.setting.plant(result.seed).name)
+    breach_text.breach(console, result, request.plants.of(result.seed))
     for line in flown:
         console.print(Text(line), soft_wrap=True)
     console.print(Text(f"digest {result.digest}: {report.amount(tally)}"), soft_wrap=True)

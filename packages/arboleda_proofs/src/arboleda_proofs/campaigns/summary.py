@@ -70,7 +70,7 @@ def _broken(request: Request, tally: Tally, seed: int, shrunk: ShrunkBreach | No
     assert best.broken is not None
     return {
         "invariant": best.broken.invariant,
-        "must_hold": rules().get(best.broken.invariant, ""),
+        "must_hold": rules(plant).get(best.broken.invariant, ""),
         "seen": best.broken.sentence,
         "seconds": round(best.seconds, 3),
         "minutes": best.minutes,
