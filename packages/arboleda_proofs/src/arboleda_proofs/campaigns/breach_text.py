@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 from rich.console import Console
 from rich.text import Text
@@ -12,7 +11,6 @@ from arboleda.model.counting import counted
 from arboleda_proofs.simulator.run import Result
 
 from .plants import Plant, notes
-from .random_plants import keep
 from .setting import rules
 from .words import fault_words
 
@@ -58,12 +56,6 @@ def plant(console: Console, needed: Plant) -> None:
             _say(console, f"    {line}", "yellow")
     for note in notes([needed]):
         _say(console, f"  note       {note}")
-
-
-def kept(console: Console, drawn: Plant, folder: Path | None) -> None:
-    """Write a drawn plant into a folder where one is named, and say so."""
-    if folder is not None:
-        _say(console, f"  plant      {keep(drawn, folder)}")
 
 
 def timeline(console: Console, result: Result) -> None:

@@ -1,4 +1,4 @@
-"""Plants that seeds are simulated on; `random_plants.py` has those that seeds draw."""
+"""Plants that seeds are simulated on."""
 
 from __future__ import annotations
 

@@ -34,7 +34,6 @@ def summary(request: Request, tally: Tally, shrunk: ShrunkBreach | None, *, comp
     return {
         "arboleda": __version__,
         "plant": str(request.plant) if request.plant else None,
-        "drawn_plants": request.drawn_plants,
         "cycles": request.cycles,
         "level": request.faults,
         "standby": request.two_hosts,
