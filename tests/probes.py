@@ -14,8 +14,7 @@ from arboleda.engine import Act, steps
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import Heartbeat, OperatorAnswer, Report, TaskChanged, TaskState, Verb
 from arboleda.sim.board import SILENCE_US, Board
-
-from .world import BRIDGE, World
+from arboleda_proofs.simulator.world import BRIDGE, World
 
 WORD = re.compile(rb'"rechazo":"(\w+)"')
 LATCH = b'{"paro":1'
