@@ -6,19 +6,13 @@ from collections.abc import Sequence
 
 from .steps import (
     Ask,
-    Becomes,
     Choice,
     Choose,
     Fail,
     Fallback,
     Follow,
     Gets,
-    Given,
-    Go,
-    Grip,
-    Home,
     Invert,
-    LetGo,
     Limits,
     OfPaths,
     Parallel,
@@ -29,7 +23,6 @@ from .steps import (
     Repeat,
     Retry,
     Run,
-    Says,
     Step,
     Tell,
     Timeout,
@@ -39,6 +32,7 @@ from .steps import (
     Visit,
     Wait,
     Work,
+    call_of,
     walk,
 )
 
@@ -135,22 +129,13 @@ def _way(value: Value, way: Step) -> str:
 
 
 def _call(step: Step) -> str:
-    if isinstance(step, Tell):
-        return f"{step.role}.{step.verb}({_given(step.values)})"
-    if isinstance(step, Ask):
-        return f"{step.role}.ask({step.question!r}, {list(step.answers)!r}, at_most_s={step.at_most_s})"
-    if isinstance(step, Says):
-        return f"{step.role}.says({_facts(step)})"
-    if isinstance(step, Becomes):
-        return f"{step.role}.becomes({_facts(step)}, at_most_s={step.at_most_s})"
+    call = call_of(step)
+    if call is not None:
+        words = [_value(value) for _, value in call.given[: call.unnamed]]
+        named = [_given(call.given[call.unnamed :])] if call.given[call.unnamed :] else []
+        return f"{call.role}.{call.verb}({', '.join([*words, *named])})"
     if isinstance(step, Gets):
         return f"cell.place({_value(step.place)}).gets_{step.what}(at_most_s={step.at_most_s})"
-    if isinstance(step, Go):
-        return f"{step.role}.go({_value(step.target)})"
-    if isinstance(step, Home):
-        return f"{step.role}.home()"
-    if isinstance(step, Grip | LetGo):
-        return f"{step.role}.{'grip' if isinstance(step, Grip) else 'let_go'}()"
     if isinstance(step, Tour):
         return f"{step.role}.tour(Pick({_value(step.source)}), Place({step.goal!r}), 'home')"
     if isinstance(step, Follow):
@@ -162,13 +147,11 @@ def _call(step: Step) -> str:
     return f"cell.wait({step.seconds if isinstance(step, Wait) else 0})"
 
 
-def _facts(step: Says | Becomes) -> str:
-    return _given(((step.fact, step.value), *step.also))
-
-
-def _given(values: Given) -> str:
+def _given(values: Sequence[tuple[str, Value | Param | tuple[str, ...]]]) -> str:
     return ", ".join(f"{name}={_value(value)}" for name, value in values)
 
 
-def _value(value: Value | Param) -> str:
-    return value.name if isinstance(value, Param) else repr(value)
+def _value(value: Value | Param | tuple[str, ...]) -> str:
+    if isinstance(value, Param):
+        return value.name
+    return repr(list(value) if isinstance(value, tuple) else value)

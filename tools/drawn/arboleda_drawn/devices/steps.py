@@ -304,6 +304,42 @@ class Recipe:
     ends: tuple[tuple[str, Value], ...] = ()
 
 
+@dataclass(frozen=True, kw_only=True)
+class Call:
+    """A step that tells, asks or looks at one role, as both forms write it: its verb, and what that is given.
+
+    The first `unnamed` of `given` stand without their names in Python.
+    """
+
+    role: str
+    verb: str
+    given: tuple[tuple[str, Value | Param | tuple[str, ...]], ...] = ()
+    unnamed: int = 0
+
+
+def call_of(step: Step) -> Call | None:
+    """The call that a step is; None for any other step."""
+    if isinstance(step, Tell):
+        return Call(role=step.role, verb=step.verb, given=step.values)
+    if isinstance(step, Ask):
+        asked = (("question", step.question), ("answers", step.answers), ("at_most_s", step.at_most_s))
+        return Call(role=step.role, verb="ask", given=asked, unnamed=2)
+    if isinstance(step, Says):
+        return Call(role=step.role, verb="says", given=_facts(step))
+    if isinstance(step, Becomes):
+        return Call(role=step.role, verb="becomes", given=(*_facts(step), ("at_most_s", step.at_most_s)))
+    if isinstance(step, Go | Visit):
+        verb = "go" if isinstance(step, Go) else "visit"
+        return Call(role=step.role, verb=verb, given=(("target", step.target),), unnamed=1)
+    if isinstance(step, Home | Grip | LetGo):
+        return Call(role=step.role, verb={Home: "home", Grip: "grip", LetGo: "let_go"}[type(step)])
+    return None
+
+
+def _facts(step: Says | Becomes) -> Given:
+    return ((step.fact, step.value), *step.also)
+
+
 def walk(step: Step) -> Iterator[Step]:
     """The step and all in it."""
     yield step

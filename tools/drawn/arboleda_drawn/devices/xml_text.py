@@ -6,17 +6,11 @@ from collections.abc import Mapping, Sequence
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from .steps import (
-    Ask,
-    Becomes,
     Choose,
     Fail,
     Fallback,
     Gets,
-    Go,
-    Grip,
-    Home,
     Invert,
-    LetGo,
     Parallel,
     Param,
     Recipe,
@@ -24,14 +18,13 @@ from .steps import (
     Repeat,
     Retry,
     Run,
-    Says,
     Step,
-    Tell,
     Timeout,
     Value,
     Visit,
     Wait,
     Work,
+    call_of,
     walk,
 )
 
@@ -93,8 +86,15 @@ def _id(name: str) -> str:
 
 def _node(step: Step) -> tuple[str, dict[str, str], Sequence[Step]]:
     """The name of a node, its attributes and the steps below it."""
-    if isinstance(step, Tell | Ask | Says | Becomes | Gets | Go | Home | Grip | LetGo | Visit):
-        return _leaf(step)
+    call = call_of(step)
+    if call is not None:
+        answer = getattr(step, "answer", "")
+        given = {name: text_of(value) for name, value in call.given}
+        below = (step.body,) if isinstance(step, Visit) else ()
+        return f"{call.role}_{call.verb}", given | ({"answer": f"{{{answer}}}"} if answer else {}), below
+    if isinstance(step, Gets):
+        place = {"place": text_of(step.place), "at_most_s": text_of(step.at_most_s)}
+        return f"place_gets_{step.what}", place, ()
     if isinstance(step, Choose) and len(step.ways) == 1:
         return "Sequence", {}, [step.ways[0][1]]
     if isinstance(step, Choose):
@@ -129,41 +129,10 @@ def _node(step: Step) -> tuple[str, dict[str, str], Sequence[Step]]:
     )
 
 
-def _leaf(step: Step) -> tuple[str, dict[str, str], Sequence[Step]]:
-    if isinstance(step, Tell):
-        answer = {"answer": f"{{{step.answer}}}"} if step.answer else {}
-        return f"{step.role}_{step.verb}", {**{n: text_of(v) for n, v in step.values}, **answer}, ()
-    if isinstance(step, Ask):
-        given = {"question": step.question, "answers": ";".join(step.answers)}
-        return (
-            f"{step.role}_ask",
-            {**given, "at_most_s": text_of(step.at_most_s), "answer": f"{{{step.answer}}}"},
-            (),
-        )
-    if isinstance(step, Says):
-        return f"{step.role}_says", _facts(step), ()
-    if isinstance(step, Becomes):
-        return f"{step.role}_becomes", {**_facts(step), "at_most_s": text_of(step.at_most_s)}, ()
-    if isinstance(step, Gets):
-        return (
-            f"place_gets_{step.what}",
-            {"place": text_of(step.place), "at_most_s": text_of(step.at_most_s)},
-            (),
-        )
-    if isinstance(step, Visit):
-        return f"{step.role}_visit", {"target": text_of(step.target)}, (step.body,)
-    if isinstance(step, Go):
-        return f"{step.role}_go", {"target": text_of(step.target)}, ()
-    ways = {Home: "home", Grip: "grip", LetGo: "let_go"}
-    return f"{step.role}_{ways[type(step)]}", {}, ()  # type: ignore[union-attr]
-
-
-def _facts(step: Says | Becomes) -> dict[str, str]:
-    return {fact: text_of(value) for fact, value in ((step.fact, step.value), *step.also)}
-
-
-def text_of(value: Value | Param) -> str:
+def text_of(value: Value | Param | tuple[str, ...]) -> str:
     """A value as an attribute of a node."""
+    if isinstance(value, tuple):
+        return ";".join(value)
     if isinstance(value, Param):
         return f"{{{value.name}}}"
     if isinstance(value, bool):
