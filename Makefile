@@ -172,7 +172,7 @@ lint:  ## check style, format, types and the import rules
 	$(BIN)/mypy --config-file tests/mypy.ini
 	$(BIN)/mypy --explicit-package-bases firmware/test/*.py
 	$(BIN)/mypy --scripts-are-modules $$(grep -lE '^#!.*python' scripts/* tools/* 2>/dev/null) scripts/*.py tools/*.py
-	@PYTHONPATH=src/arboleda_bringup $(BIN)/lint-imports # pip does not install that one
+	@PYTHONPATH=src/arboleda_bringup:tools:tools/drawn $(BIN)/lint-imports # pip does not install these
 
 diagrams:  ## write docs/reference/states.md anew from the state tables of the core
 	@scripts/install
