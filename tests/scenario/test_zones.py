@@ -18,8 +18,8 @@ from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.views.zone_rows import zone_rows
 from arboleda_proofs.testing import Rig, Witness, faults, slowed
-from arboleda_proofs.testing.following import advised, follow, works
 
+from ..following import advised, follow, works
 from ..lengths import sample
 from .restarts import crash_without_trail
 

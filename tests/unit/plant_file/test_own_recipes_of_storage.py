@@ -8,6 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
+from tests.following import follow
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskState, Verb
@@ -19,7 +20,6 @@ from arboleda.views import forms
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.run import Simulation
 from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.following import follow
 from arboleda_proofs.testing.rig import Rig
 
 RECIPES = """
