@@ -76,14 +76,14 @@ CORE_BUGS = (
     bug(
         "core/readiness.py",
         "A cell starts with a part in its hand.",
-        "        found += [astray[1] if astray else None, self.part_in_hand()]\n",
-        "        found += [astray[1] if astray else None]\n",
+        "        failures += [astray[1] if astray else None, self.part_in_hand()]\n",
+        "        failures += [astray[1] if astray else None]\n",
     ),
     bug(
         "core/readiness.py",
         "A cell starts with a robot astray.",
-        "        found += [astray[1] if astray else None, self.part_in_hand()]\n",
-        "        found += [self.part_in_hand()]\n",
+        "        failures += [astray[1] if astray else None, self.part_in_hand()]\n",
+        "        failures += [self.part_in_hand()]\n",
     ),
     bug(
         "core/task_queue.py",

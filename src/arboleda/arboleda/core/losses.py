@@ -1,4 +1,4 @@
-"""Losses of a held task: what an operator does that leaves it nothing to go on with."""
+"""Losses of a held task: acts of an operator after which the task can only be abandoned."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ HOMED_MEANWHILE = Phrase("cell.homed_meanwhile", "{arm} was homed meanwhile")
 
 
 def let_go(run: CellRun, robot: str) -> None:
-    """Note that the operator has an effector opened, which had a part of the task."""
+    """Note that the operator has an effector opened that held a part of the task."""
     if robot in run.context.parts.holding:
         lost = Failure(reason=Reason.PART_LOST, sentence=LET_GO(arm=robot))
         run.lose(NO_PART(arm=robot), run.trouble or lost)
 
 
 def uproot(run: CellRun, robot: str) -> None:
-    """Note that a robot that goes from pose to pose is homed, and so is not where the task left it."""
+    """Note that a robot with poses is homed, and so is not where the task left it."""
     if robot in run.cell.workspaces and run.context.devices.has(robot):
         run.lose(HOMED_MEANWHILE(arm=robot))

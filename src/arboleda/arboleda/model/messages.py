@@ -84,16 +84,18 @@ class TaskAnswer:
 
 @dataclass(frozen=True, kw_only=True)
 class Course:
-    """Course of a task that was done: the s it took, and after how many each of its steps began last, by
-    the step's name and its number among those of that name. While it was held no time passed.
+    """Course of a task that was done: how long it took, and when each step began last, in s without holds.
+
+    The key of a step is its name with its number among the steps of that name.
     """
 
     seconds: float
     begun: Mapping[str, float]
 
-    def left(self, step: str, seconds: float) -> float | None:
-        """Time in s that was left so many s after this step had begun, at least what was left when the next
-        one began; None where it did not come to this step.
+    def remaining_s(self, step: str, seconds: float) -> float | None:
+        """The time (s) that the task needed from `seconds` after a step began; None without that step.
+
+        It is at least the time that it needed from the begin of the next step.
         """
         at = self.begun.get(step)
         if at is None:

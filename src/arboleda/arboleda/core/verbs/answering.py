@@ -35,7 +35,7 @@ class Answering:
         self._clock = clock
 
     def plan(self, request: OperatorRequest, person: str) -> Callable[[], None]:
-        """One of the answers to what is being asked; where it names a question, only to that one."""
+        """Plan an answer to the open question of a person; one that names another question is refused."""
         id, word = request.argument("question"), str(request.argument("answer") or "")
         people = [name for name, robot in self._dispatcher.model.robots.items() if robot.link is Link.SCREEN]
         if person not in people:
