@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from arboleda.dispatch.ledger import State
-from arboleda.dispatch.stillness import Moment
+from arboleda.dispatch.stillness import ReportMoment
 from arboleda.model.commands import Motion
 from arboleda.model.messages import Failure, Reason
 from arboleda.trees.context import Context
@@ -21,7 +21,7 @@ class Hold:
     """
 
     trouble: Failure
-    since: dict[str, Moment]
+    since: dict[str, ReportMoment]
     by: float
     paused: bool
 
@@ -56,7 +56,7 @@ class HoldAfterAbsence:
             return None
         return hold
 
-    def _is_proved(self, since: dict[str, Moment]) -> bool:
+    def _is_proved(self, since: dict[str, ReportMoment]) -> bool:
         """True where the devices rest and can work, and each command that failed may be given anew.
 
         A command that was never taken may, and a motion whose link was lost: it begins where the robot is.

@@ -9,7 +9,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.dispatch.booking import BROKEN_OFF
-from arboleda.dispatch.stillness import Moment
+from arboleda.dispatch.stillness import ReportMoment
 from arboleda.model.advice import Advice
 from arboleda.model.cell_states import TABLE, Cause, CellState, after
 from arboleda.model.messages import Failure, Reason, RevisionName, TaskState, Verb
@@ -79,7 +79,7 @@ class CellRun:
         self.following: NextVersion | None = None  # put to work, and not taken yet
         self.version: RevisionName | None = None  # taken while the plant ran
         self.cancelling = False  # True while its task is to end as cancelled
-        self.stopped_after: dict[str, Moment] = {}  # of its robots, at its last stop
+        self.stopped_after: dict[str, ReportMoment] = {}  # of its robots, at its last stop
         self.stop_by = 0.0  # when they have to stand, s of the cell's time
         self._changed = changed
         self._recovers_anew = False

@@ -9,7 +9,7 @@ from arboleda.core.reasons import HELD, HELD_STRANDED
 from arboleda.core.teaching import HOLD_S
 from arboleda.dispatch.belief import FAULTY, FENCED, MOVING, OFFLINE, STOPPED, UNANSWERED, UNHEARD, UNHOMED
 from arboleda.dispatch.ledger import TABLE, Feed, Ledger
-from arboleda.dispatch.stillness import Moment, Stillness
+from arboleda.dispatch.stillness import ReportMoment, Stillness
 from arboleda.resume.trail import Trail
 from arboleda.resume.walk_back import MORE
 from arboleda.trees.part_places import EMPTY, trouble_in
@@ -37,8 +37,8 @@ __all__ = [
     "UNKNOWN_S",
     "Feed",
     "Ledger",
-    "Moment",
     "News",
+    "ReportMoment",
     "Stillness",
     "Trail",
     "path_of",

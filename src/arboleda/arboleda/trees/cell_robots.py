@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.dispatch.stillness import Moment
+from arboleda.dispatch.stillness import ReportMoment
 from arboleda.model.commands import Position
 from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, MotionState
@@ -146,12 +146,12 @@ class CellRobots:
                 found.add(robot.name)
         return [(beliefs[name], unnamed.of(name)) for name in sorted(found)]
 
-    def moments(self) -> dict[str, Moment]:
+    def moments(self) -> dict[str, ReportMoment]:
         """Now, as each robot of the cell tells the time, for `moving_since`."""
         beliefs, now = self._dispatcher.beliefs, self._time.plant_now
-        return {robot.name: Moment(beliefs[robot.name].reports, now) for robot in self._cell.robots}
+        return {robot.name: ReportMoment(beliefs[robot.name].reports, now) for robot in self._cell.robots}
 
-    def moving_since(self, moments: dict[str, Moment]) -> list[str]:
+    def moving_since(self, moments: dict[str, ReportMoment]) -> list[str]:
         """The online robots of the cell not seen still since then; who finishes its work may move."""
         ending = [name for name in moments if not self._dispatcher.ledger.finishes(name)]
         online = {name: belief for name in ending if (belief := self._dispatcher.beliefs[name]).online}

@@ -220,8 +220,8 @@ class Act(Leaf):
     def _give(self) -> None:
         make, attempt = self.anew if self.left else self.make, self.given_times + 1
         self.entry = self.context.commands.send(make, self.doing, step=self.number_in_tree, attempt=attempt)
-        self.given_times += self.entry.left
-        self.left_before, self.left = self.left, self.left or self.entry.left
+        self.given_times += self.entry.was_sent
+        self.left_before, self.left = self.left, self.left or self.entry.was_sent
         if self.entry.too_early:
             self.time.wake_at(self.patient_until)
 

@@ -39,13 +39,13 @@ class Keeps:
 
 def command_kept(entry: Entry | None) -> dict[str, Any] | None:
     """The record of the last command of a step; None where none may have left."""
-    if entry is None or not entry.left:
+    if entry is None or not entry.was_sent:
         return None
     command = entry.command
     return {
         "robot": command.robot,
         "effect": nearest(EFFECTS, type(command)),
-        "goal": entry.way[-1] if entry.way else None,
+        "goal": entry.positions[-1] if entry.positions else None,
         "sets": entry.sets,
         "grips": command.grips if isinstance(command, Switch) else None,
         "before": entry.before,
