@@ -36,7 +36,7 @@ ZONES = (
         "An arm gives its zones back without being seen outside.",
         edit(
             CellZones.leave,
-            "held = self._left(robot, self._zones.held_by(robot))",
+            "held = self._seen_outside(robot, self._zones.held_by(robot))",
             "held = self._zones.held_by(robot)",
         ),
         seeds=SHARED,

@@ -43,7 +43,7 @@ RESTARTS = (
     mutant(
         "tasks_go_on_from_what_was_kept",
         "Nobody looks whether a device has booted since its task was kept.",
-        edit(WalkBack._more_commands, "if belief.boot_id != known.boot:", "if False:"),
+        edit(WalkBack._more_commands, "if belief.boot_id != knowledge.boot:", "if False:"),
         weather={**DIES, "reboot": 20.0},
     ),
     mutant(

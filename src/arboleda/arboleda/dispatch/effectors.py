@@ -25,7 +25,7 @@ AS_REBOOTED = Phrase("effector.as_rebooted", "as its board rebooted")
 EMPTIED = "true"
 
 
-class Handling(Enum):
+class HandlingStep(Enum):
     """Step of a part's way through an effector."""
 
     TOLD_TO_TAKE = "told to take"
@@ -54,7 +54,7 @@ class Effectors:
         self.opened: dict[str, Sentence] = {}
         self.cut_off: set[str] = set()
         self.version = 0
-        self.watchers: dict[str, list[Callable[[str, Handling], None]]] = {name: [] for name in holders}
+        self.watchers: dict[str, list[Callable[[str, HandlingStep], None]]] = {name: [] for name in holders}
         self._emptied = {name for name in holders if memory.value(Fact.EMPTIED, name) is not None}
         self._memory = memory
         self._ledger = ledger
@@ -72,7 +72,7 @@ class Effectors:
         if not command.grips:
             self.grips.open(command.robot, command.id)
         if not command.grips or self.grips[command.robot] is Grip.OFF:
-            handling = Handling.TOLD_TO_TAKE if command.grips else Handling.TOLD_TO_LET_GO
+            handling = HandlingStep.TOLD_TO_TAKE if command.grips else HandlingStep.TOLD_TO_LET_GO
             self._tell(command.robot, handling)
         self.set(command.robot, Grip.SWITCHING)
 
@@ -93,8 +93,8 @@ class Effectors:
         if self.grips.set(robot, grip):
             self.version += 1
             if grip is not Grip.SWITCHING:
-                empty = Handling.TAKEN_OUT if taken_out else Handling.EMPTY
-                self._tell(robot, Handling.HELD if grip is Grip.ON else empty)
+                empty = HandlingStep.TAKEN_OUT if taken_out else HandlingStep.EMPTY
+                self._tell(robot, HandlingStep.HELD if grip is Grip.ON else empty)
             self._memory.remember(Fact.EFFECTOR, robot, grip.value)
         if grip is Grip.OFF:
             self.unopened.discard(robot)
@@ -137,7 +137,7 @@ class Effectors:
             self.grips.forget_opening(tool)
         self.grips.will_not_open(tool, report.rejected, report.failed)
 
-    def _tell(self, robot: str, handling: Handling) -> None:
+    def _tell(self, robot: str, handling: HandlingStep) -> None:
         for watcher in self.watchers[robot]:
             watcher(robot, handling)
 
