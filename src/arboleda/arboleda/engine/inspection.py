@@ -14,33 +14,3 @@ from arboleda.resume.trail import Trail
 from arboleda.resume.walk_back import MORE
 from arboleda.trees.part_places import EMPTY, trouble_in
 from arboleda.trees.tree_run import IN_RECOVERY, path_of
-
-__all__ = [
-    "EMPTY",
-    "FAULTY",
-    "FENCED",
-    "HEARTBEAT_S",
-    "HELD",
-    "HELD_STRANDED",
-    "HOLD_S",
-    "IN_RECOVERY",
-    "LAST",
-    "MORE",
-    "MOVING",
-    "OFFLINE",
-    "SETTLES_IN",
-    "STOPPED",
-    "TABLE",
-    "UNANSWERED",
-    "UNHEARD",
-    "UNHOMED",
-    "UNKNOWN_S",
-    "Feed",
-    "Ledger",
-    "News",
-    "ReportMoment",
-    "Stillness",
-    "Trail",
-    "path_of",
-    "trouble_in",
-]
