@@ -284,8 +284,8 @@ OF_CELLS = (
     bug(
         ZONE_PLAN,
         "No node on the way lies in a zone.",
-        "    inside = _lying(space, way[1:] or way)\n",
-        "    inside = _lying(space, way[-1:])\n",
+        "    inside = _lying(space, positions[1:] or positions)\n",
+        "    inside = _lying(space, positions[-1:])\n",
     ),
     bug(
         ZONE_PLAN,

@@ -24,7 +24,7 @@ RESTARTS = (
     mutant(
         "asked_again_is_the_same_task",
         "A task that has ended is kept without its text.",
-        edit(Task.of.__func__, "text=kept.text", 'text=""'),
+        edit(Task.of.__func__, "text=record.text", 'text=""'),
         weather={**DIES, "double_submit": 20.0},
         likely=12,
     ),

@@ -516,7 +516,7 @@ def raises_at_a_verb(patch: Patch) -> None:
 def knows_no_accents(patch: Patch) -> None:
     """A word with an accent is none of the answers."""
     of_ascii = lambda word, names: next((name for name in names if word.isascii() and name == word), None)  # noqa: E731
-    patch.setattr("arboleda.core.verbs.answering.known", of_ascii)
+    patch.setattr("arboleda.core.verbs.answering.matching", of_ascii)
 
 
 def advises_nothing(patch: Patch) -> None:

@@ -11,7 +11,7 @@ from arboleda.model.commands import Question
 from arboleda.model.messages import OperatorRequest
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Link
-from arboleda.model.recipe import known
+from arboleda.model.recipe import matching
 from arboleda.model.sentence import Phrase
 
 from .scopes import VerbRefusal
@@ -48,7 +48,7 @@ class Answering:
         assert isinstance(entry.command, Question)
         if id not in (None, entry.command.id):
             raise VerbRefusal(OTHER_QUESTION(question=str(id), person=person, text=entry.command.text))
-        answer = known(word, entry.command.answers)
+        answer = matching(word, entry.command.answers)
         if answer is None:
             raise VerbRefusal(NO_ANSWER(word=quoted(word), person=person, known=entry.command.answers))
         return partial(self._answer, person, answer)
