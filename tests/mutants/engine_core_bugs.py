@@ -56,7 +56,7 @@ CORE_BUGS = (
         "    cell.interrupt(cell.trouble or given_up)\n    cell.become(Cause.ENDED)\n",
     ),
     bug(
-        "core/losses.py",
+        "core/verbs/releasing.py",
         "An operator who opens a hand strands nobody.",
         "        run.lose(NO_PART(arm=robot), run.trouble or lost)\n",
         "        run.trouble = run.trouble or (lost if run.task else None)\n",

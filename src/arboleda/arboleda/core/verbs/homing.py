@@ -14,7 +14,7 @@ from arboleda.model.messages import OperatorRequest
 from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.model.sentence import Phrase, Sentence
 
-from .. import losses
+from ..cell import CellRun
 from ..readiness import STILL_DOING
 from .cell_by_cell import AT_REST, Doing, at_rest
 from .scopes import Scopes, VerbRefusal
@@ -39,6 +39,7 @@ CANNOT_REPORT = Phrase(
     "refusal.cannot_report",
     "{robot} cannot report a homing; put it at its reference and say: home {robot} --by-hand",
 )
+HOMED_MEANWHILE = Phrase("cell.homed_meanwhile", "{arm} was homed meanwhile")
 
 
 class Homing:
@@ -79,7 +80,7 @@ class Homing:
         """Have a robot run its homing routine; no other robot gets into its zones meanwhile."""
         cell = self._scopes.in_charge(name)
         if not self._dispatcher.beliefs[name].is_cleared_by_homing:
-            losses.uproot(cell, name)
+            _uproot(cell, name)
         users = [run for run in self._scopes.of_robots(frozenset([name])) if name in run.cell.zone_users]
         for run in (each for each in users if each.state in AT_REST):
             run.context.zones.forsake()
@@ -114,7 +115,7 @@ class Homing:
         for name in sorted(robots):
             if by_hand:
                 self._dispatcher.declare_homed(name)
-                losses.uproot(self._scopes.in_charge(name), name)
+                _uproot(self._scopes.in_charge(name), name)
             else:
                 self._doing.sent.append(self.home(name))
 
@@ -144,6 +145,12 @@ class Homing:
             return CANNOT_REPORT(robot=name)
         obstacle = self._dispatcher.obstacles.objection(partial(Home, robot=name))
         return obstacle.sentence if obstacle else None
+
+
+def _uproot(run: CellRun, robot: str) -> None:
+    """Note that a robot with poses is homed, so that it is not where the cell's held task left it."""
+    if robot in run.cell.workspaces and run.context.devices.has(robot):
+        run.lose(HOMED_MEANWHILE(arm=robot))
 
 
 class HomingAtStart:

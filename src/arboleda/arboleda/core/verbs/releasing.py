@@ -9,10 +9,10 @@ from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.zones import Zones
 from arboleda.model.advice import sentence
 from arboleda.model.cell_states import CellState
-from arboleda.model.messages import OperatorRequest
+from arboleda.model.messages import Failure, OperatorRequest, Reason
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda.resume.walk_back import NO_PART
 
-from .. import losses
 from ..cell import CellRun
 from ..readiness import STILL_DOING
 from .cell_by_cell import CellByCell, Doing
@@ -28,6 +28,7 @@ HOLDS_NOTHING_ANY_MORE = Phrase(
     "refusal.holds_nothing_any_more",
     "no part is known to be in {devices}, so nothing has to be said of it; go on with {next}",
 )
+LET_GO = Phrase("part.let_go", "{arm} let go of its part on the operator's word")
 AT_WORK = (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING)
 
 
@@ -75,7 +76,7 @@ class Releasing:
 
     def _empty(self, holding: list[tuple[CellRun, str]]) -> None:
         for cell, name in holding:
-            losses.let_go(cell, name)
+            _lose_part(cell, name)
             self._dispatcher.effectors.declare_empty(self._dispatcher.beliefs[name])
             self._dispatcher.wake([name])
 
@@ -96,7 +97,7 @@ class Releasing:
         for name in self._holders(cell, robots):
             if name in cell.cell.shared:
                 cell.context.devices.claim(name)
-            losses.let_go(cell, name)
+            _lose_part(cell, name)
             make = self._dispatcher.model.robots[name].let_go
             now, name_of_cell = self._clock(), cell.cell.name
             self._doing.sent.append(self._dispatcher.send(make, name_of_cell, RELEASING(), now, by_hand=True))
@@ -113,6 +114,13 @@ class Releasing:
             if holder is not None and self._dispatcher.model.robots[device].held_fact is not None:
                 return WITH_OTHER(device=device, cell=holder)
         return NO_EFFECTOR(robot=first)
+
+
+def _lose_part(run: CellRun, robot: str) -> None:
+    """Note that the operator has an effector opened that held a part of the cell's task."""
+    if robot in run.context.parts.holding:
+        lost = Failure(reason=Reason.PART_LOST, sentence=LET_GO(arm=robot))
+        run.lose(NO_PART(arm=robot), run.trouble or lost)
 
 
 def _nothing_held(able: list[tuple[CellRun, str]]) -> Sentence:
