@@ -460,7 +460,7 @@ def forgets_its_latch(patch: Patch) -> None:
 def any_answer_counts(patch: Patch) -> None:
     """Whatever a device answered last is taken for the answer to what it was asked now."""
 
-    def answered(entry: Any, belief: Any, report: Any) -> Verdict | None:
+    def answered(entry: Any, belief: Any, report: Any) -> CommandVerdict | None:
         return None if report.answer is None else CommandVerdict(feed=Feed.DONE, answer=report.answer)
 
     patch.setitem(evidence.RULES, (Query, Evidence.IDS), answered)
@@ -715,7 +715,7 @@ def test_a_process_that_nobody_saw_at_work_is_not_done(monkeypatch: Patch) -> No
         """The mill is told twice to shut its door."""
         return work(cell.device("mill").close(), cell.device("mill").close())
 
-    def lax(entry: Any, *_: object) -> Verdict | None:
+    def lax(entry: Any, *_: object) -> CommandVerdict | None:
         return CommandVerdict(feed=Feed.DONE) if entry.observations.on_goal_since else None
 
     closing = replace(MILL.verbs["close"], effect=Effect.PROCESS)

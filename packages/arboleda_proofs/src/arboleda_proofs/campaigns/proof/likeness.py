@@ -17,7 +17,7 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 
 from arboleda.engine import Belief, Entry, Plant
-from arboleda.engine.inspection import Ledger, ReportMoment, News
+from arboleda.engine.inspection import Ledger, News, ReportMoment
 from arboleda.kinds.declared import DeviceKind
 from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.model.recipe import Recipe
