@@ -36,7 +36,7 @@ ZONES = (
         "An arm gives its zones back without being seen outside.",
         edit(
             CellZones.leave,
-            "held = self._left(robot, self._zones.held_by(robot))",
+            "held = self._seen_outside(robot, self._zones.held_by(robot))",
             "held = self._zones.held_by(robot)",
         ),
         seeds=SHARED,
@@ -207,7 +207,7 @@ PLANTED_PARTS = (
     mutant(
         "recipes_end_as_they_say",
         "A task that failed and was recovered counts as done.",
-        edit(CellRun._ended, "if found is not None:", "if found is not None and not recovered:"),
+        edit(CellRun._ended, "if failure is not None:", "if failure is not None and not recovered:"),
     ),
     mutant(
         "done_tasks_bring_their_parts",

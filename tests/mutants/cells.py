@@ -29,10 +29,10 @@ COLLECT = "out = self.dispatcher.outbox.copy()\n    self.dispatcher.outbox.clear
 STAYS_SHORT = (
     " or at < observed.stopped_since + QUIET_S:\n"
     "        return False\n"
-    "    if not entry.way:\n"
+    "    if not entry.positions:\n"
     "        return True\n"
     "    if belief.position == entry.origin:\n"
-    "        return False  # who never left may have said only the end of an earlier move\n"
+    "        return False  # a robot that never left may have told the end of an earlier move\n"
     "    return belief"
 )
 PATIENCE_S = 60.0  # enough for what comes to rest at all

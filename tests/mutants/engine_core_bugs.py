@@ -56,7 +56,7 @@ CORE_BUGS = (
         "    cell.interrupt(cell.trouble or given_up)\n    cell.become(Cause.ENDED)\n",
     ),
     bug(
-        "core/losses.py",
+        "core/verbs/releasing.py",
         "An operator who opens a hand strands nobody.",
         "        run.lose(NO_PART(arm=robot), run.trouble or lost)\n",
         "        run.trouble = run.trouble or (lost if run.task else None)\n",
@@ -76,14 +76,14 @@ CORE_BUGS = (
     bug(
         "core/readiness.py",
         "A cell starts with a part in its hand.",
-        "        found += [astray[1] if astray else None, self.part_in_hand()]\n",
-        "        found += [astray[1] if astray else None]\n",
+        "        failures += [astray[1] if astray else None, self.part_in_hand()]\n",
+        "        failures += [astray[1] if astray else None]\n",
     ),
     bug(
         "core/readiness.py",
         "A cell starts with a robot astray.",
-        "        found += [astray[1] if astray else None, self.part_in_hand()]\n",
-        "        found += [self.part_in_hand()]\n",
+        "        failures += [astray[1] if astray else None, self.part_in_hand()]\n",
+        "        failures += [self.part_in_hand()]\n",
     ),
     bug(
         "core/task_queue.py",

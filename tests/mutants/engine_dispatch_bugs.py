@@ -27,8 +27,8 @@ OF_EVIDENCE = (
     bug(
         EVIDENCE,
         "A way counts as driven at its last node but one.",
-        "entry.observations.passed == len(entry.way) - 1",
-        "entry.observations.passed >= len(entry.way) - 2",
+        "entry.observations.passed == len(entry.positions) - 1",
+        "entry.observations.passed >= len(entry.positions) - 2",
     ),
     bug(
         EVIDENCE,
@@ -65,13 +65,13 @@ OF_EVIDENCE = (
         "Whoever says nothing of a fact has reached it.",
         "    if reported is None:\n"
         "        return _failed(entry, Reason.NOT_REACHED, FACT_UNSAID, fact=name)\n",
-        "    if reported is None:\n        return Verdict(feed=Feed.DONE)\n",
+        "    if reported is None:\n        return CommandVerdict(feed=Feed.DONE)\n",
     ),
     bug(
         EVIDENCE,
         "Off its target counts as done.",
-        "return _off_target(entry, belief) if _elsewhere(entry, belief) else Verdict(feed=Feed.DONE)",
-        "return Verdict(feed=Feed.DONE)",
+        "return _off_target(entry, belief) if _elsewhere(entry, belief) else CommandVerdict(feed=Feed.DONE)",
+        "return CommandVerdict(feed=Feed.DONE)",
     ),
     bug(
         EVIDENCE,
@@ -305,7 +305,7 @@ OF_DISPATCHER = (
     bug(
         DISPATCHER,
         "Silence fails no command.",
-        "            self.booking.book(entry, Verdict(feed=Feed.FAILED, failure=failure), now)\n\n\n"
+        "            self.booking.book(entry, CommandVerdict(feed=Feed.FAILED, failure=failure), now)\n\n\n"
         "def _facts_shown",
         "            entry.interference = failure.sentence\n\n\ndef _facts_shown",
     ),

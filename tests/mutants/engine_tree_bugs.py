@@ -167,7 +167,7 @@ OF_PLACES = (
     bug(
         PLACES,
         "What a person takes out of a hand lies where it was taken.",
-        "            if handling is Handling.EMPTY:\n                here = self",
+        "            if handling is HandlingStep.EMPTY:\n                here = self",
         "            if handling:\n                here = self",
     ),
     bug(
@@ -284,8 +284,8 @@ OF_CELLS = (
     bug(
         ZONE_PLAN,
         "No node on the way lies in a zone.",
-        "    inside = _lying(space, way[1:] or way)\n",
-        "    inside = _lying(space, way[-1:])\n",
+        "    inside = _lying(space, positions[1:] or positions)\n",
+        "    inside = _lying(space, positions[-1:])\n",
     ),
     bug(
         ZONE_PLAN,
@@ -365,13 +365,13 @@ OF_WALK_BACK = (
     bug(
         WALK,
         "A boot meanwhile is not compared.",
-        "        if belief.boot_id != known.boot:\n            return Trouble",
+        "        if belief.boot_id != knowledge.boot:\n            return Doubt",
         "        if False:\n            return Trouble",
     ),
     bug(
         WALK,
         "Commands of which nobody knows are not looked for.",
-        "        if not known.explains(belief.receipt):\n",
+        "        if not knowledge.explains(belief.receipt):\n",
         "        if False:\n",
     ),
     bug(
@@ -401,14 +401,14 @@ OF_WALK_BACK = (
     bug(
         WALK,
         "A robot that was moved meanwhile goes on.",
-        "        return Trouble(Reason.INTERRUPTED, MOVED(robot=belief.robot.name), NOBODY_KNOWS())",
+        "        return Doubt(Reason.INTERRUPTED, MOVED(robot=belief.robot.name), NOBODY_KNOWS())",
         "        return None",
     ),
     bug(
         WALK,
         "What is proven done begins anew.",
-        "            if known is not Fate.DONE:\n                step.begin_anew()",
-        "            if known is None or known is Fate.DONE:\n                step.begin_anew()",
+        "            if outcome is not Fate.DONE:\n                step.begin_anew()",
+        "            if outcome is None or outcome is Fate.DONE:\n                step.begin_anew()",
     ),
     bug(
         "trees/node_state.py",
@@ -437,8 +437,8 @@ OF_WALK_BACK = (
     bug(
         "resume/keeping.py",
         "A task is kept when it begins, and never again.",
-        "        if state == self._kept_of:\n            return None\n",
-        "        if self._kept_of and numbers == self._kept_of[-1]:\n            return None\n",
+        "        if state == self._last_state:\n            return None\n",
+        "        if self._last_state and numbers == self._kept_of[-1]:\n            return None\n",
     ),
     bug(
         "resume/keeping.py",

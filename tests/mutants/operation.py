@@ -69,8 +69,8 @@ PEOPLE = (
         "A task starts whatever its robots say.",
         edit(
             Readiness.objection,
-            "found = [self._context.robots.obstacle(robot.name) for robot in self._cell.reached]",
-            "found = []",
+            "failures = [self._context.robots.obstacle(robot.name) for robot in self._cell.reached]",
+            "failures = []",
         ),
     ),
     mutant(

@@ -29,7 +29,7 @@ PLANTED = (
     mutant(
         "tasks_go_to_the_best_cell",
         "A task whose step takes longer than ever counts as nearly done.",
-        edit(Course.left, "min(at + seconds, following)", "min(at + seconds, self.seconds)"),
+        edit(Course.remaining_s, "min(at + seconds, following)", "min(at + seconds, self.seconds)"),
         any_of=True,
     ),
     mutant(
@@ -61,7 +61,7 @@ PLANTED = (
     mutant(
         "accepted_tasks_are_kept",
         "The oldest task is forgotten though it runs.",
-        edit(Intake.remember, "if known.ended_at is not None", ""),
+        edit(Intake.remember, "if task.ended_at is not None", ""),
         weather={"flood_of_tasks": 3.0},
     ),
     mutant(

@@ -21,7 +21,7 @@ from .mutant import edit, mutant
 TOLD = "self.outlet.stop(report.robot, "
 ASKED = f"{TOLD}StopMode(report.robot in self.latches.stopped))"
 RETURNED = (
-    "if latched and (new_link or (belief.online and not was_online)):  # it may have forgotten its stop"
+    "if latched and (new_link or (belief.online and not was_online)):  # its board may have lost the stop"
 )
 
 COMMANDS = (

@@ -24,7 +24,7 @@ RESTARTS = (
     mutant(
         "asked_again_is_the_same_task",
         "A task that has ended is kept without its text.",
-        edit(Task.of.__func__, "text=kept.text", 'text=""'),
+        edit(Task.of.__func__, "text=record.text", 'text=""'),
         weather={**DIES, "double_submit": 20.0},
         likely=12,
     ),
@@ -37,13 +37,13 @@ RESTARTS = (
     mutant(
         "no_step_is_done_twice",
         "A task that was at work begins from its first step.",
-        edit(Intake.take_back, "Task.of(kept, text.parse(", "Task(kept.id, text.parse("),
+        edit(Intake.take_back, "Task.of(record, text.parse(", "Task(record.id, text.parse("),
         weather=DIES,
     ),
     mutant(
         "tasks_go_on_from_what_was_kept",
         "Nobody looks whether a device has booted since its task was kept.",
-        edit(WalkBack._more_commands, "if belief.boot_id != known.boot:", "if False:"),
+        edit(WalkBack._more_commands, "if belief.boot_id != knowledge.boot:", "if False:"),
         weather={**DIES, "reboot": 20.0},
     ),
     mutant(
@@ -69,7 +69,7 @@ PLANTED_RESTARTS = (
     mutant(
         "parts_are_taken_and_put_where_they_can_be",
         "A task that was at work waits again.",
-        edit(Intake.take_back, "Task.of(kept, text.parse(", "Task(kept.id, text.parse("),
+        edit(Intake.take_back, "Task.of(record, text.parse(", "Task(record.id, text.parse("),
         weather=DIES,
     ),
 )

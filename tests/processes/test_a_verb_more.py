@@ -6,7 +6,7 @@ from pathlib import Path
 
 from .copied_tree import CopiedTree
 
-ROW = """    WIPE = "wipe", Row(scopes=_CELLS, arguments=(Argument(name="times", type=int),))
+ROW = """    WIPE = "wipe", VerbRow(scopes=_CELLS, arguments=(Argument(name="times", type=int),))
 """
 PROCEDURE = """            Verb.WIPE: CellByCell(doing, check=not_holdable, do=hold),
 """

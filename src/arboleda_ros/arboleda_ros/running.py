@@ -24,9 +24,9 @@ from arboleda.plant_file.loader import load_recorded
 from arboleda.plant_file.versions import Versions
 from arboleda.runtime.alarm_options import alarm_options
 from arboleda.runtime.build import App, Options, build
+from arboleda.runtime.interrupts import raise_at_signals
 from arboleda.runtime.log_file import LogFile
 from arboleda.runtime.log_queue import log_to
-from arboleda.runtime.waiting import raise_at_signals
 from arboleda.runtime.web_options import WebOptions
 from arboleda.web.access.names import LOCAL
 from arboleda_ros import missing_libraries

@@ -204,23 +204,28 @@ def test_the_time_for_which_a_task_was_held_is_not_learned() -> None:
 
 def test_what_is_left_is_what_was_left_at_that_step_less_what_it_took_so_far() -> None:
     times = PastTimes(went("sis_a 0B 1", Course(seconds=20.0, begun={"a": 0.0, "b": 4.0, "c": 12.0})))
-    assert [times.left(order("sis_a 0B 1"), [("b", seconds)]) for seconds in (0.0, 5.0)] == [16.0, 11.0]
+    assert [times.remaining_s(order("sis_a 0B 1"), [("b", seconds)]) for seconds in (0.0, 5.0)] == [
+        16.0,
+        11.0,
+    ]
 
 
 def test_a_step_that_takes_longer_than_ever_leaves_what_comes_after_it() -> None:
     times = PastTimes(went("sis_a 0B 1", Course(seconds=20.0, begun={"a": 0.0, "b": 4.0, "c": 12.0})))
-    assert times.left(order("sis_a 0B 1"), [("b", 3600.0)]) == 8.0
-    assert times.left(order("sis_a 0B 1"), [("c", 3600.0)]) == 0.0
+    assert times.remaining_s(order("sis_a 0B 1"), [("b", 3600.0)]) == 8.0
+    assert times.remaining_s(order("sis_a 0B 1"), [("c", 3600.0)]) == 0.0
 
 
 def test_steps_are_known_of_other_tasks_of_the_recipe_and_of_no_other_recipe() -> None:
     courses = [Course(seconds=seconds, begun={"b": 4.0}) for seconds in (10.0, 12.0, 30.0)]
     times = PastTimes(went("sis_a 0B 1", *courses))
-    assert times.left(order("sis_a 0C 4"), [("b", 1.0)]) == 7.0
-    assert times.left(order("sis_b 0C 4"), [("b", 1.0)]) == 7.0
-    assert times.left(order("sis_a 0C 4"), [("other", 0.5), ("b", 1.0)]) == 7.0, "the last that is known"
-    assert times.left(order("sis_a 0C 4"), [("other", 0.5)]) is None
-    assert times.left(order("sis_a palletizing", recipe="palletizing"), [("b", 1.0)]) is None
+    assert times.remaining_s(order("sis_a 0C 4"), [("b", 1.0)]) == 7.0
+    assert times.remaining_s(order("sis_b 0C 4"), [("b", 1.0)]) == 7.0
+    assert times.remaining_s(order("sis_a 0C 4"), [("other", 0.5), ("b", 1.0)]) == 7.0, (
+        "the last that is known"
+    )
+    assert times.remaining_s(order("sis_a 0C 4"), [("other", 0.5)]) is None
+    assert times.remaining_s(order("sis_a palletizing", recipe="palletizing"), [("b", 1.0)]) is None
 
 
 def test_a_task_that_was_held_long_is_not_nearly_done(rig: Rig) -> None:

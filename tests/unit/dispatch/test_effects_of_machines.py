@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from arboleda.dispatch.belief import Belief
-from arboleda.dispatch.evidence import QUIET_S, Before, Verdict, judge
+from arboleda.dispatch.evidence import QUIET_S, Before, CommandVerdict, judge
 from arboleda.dispatch.ledger import Entry, Feed
 from arboleda.model.commands import Command, Motion, Process, Query, Switch
 from arboleda.model.facts import Facts, Value
@@ -60,7 +60,7 @@ def facts(**values: Value) -> Facts:
     return tuple(values.items())
 
 
-def verdict(command: Command, level: Evidence, *said: dict[str, Any]) -> Verdict | None:
+def verdict(command: Command, level: Evidence, *said: dict[str, Any]) -> CommandVerdict | None:
     """The first end that reports half a second apart prove; the machine stood still with its door closed."""
     belief = Belief(Robot(name="mill", mqtt="mill", link=Link.MQTT, evidence=level, timeout_s=5.0), 1.5, 1)
     belief.merge(Report(at=-0.1, robot="mill", state=STOPPED, facts=facts(door="closed", clamped=False)))
@@ -123,4 +123,6 @@ def test_a_switch_is_done_once_its_fact_is_reported(level: Evidence) -> None:
 @pytest.mark.parametrize("level", Evidence, ids=lambda level: level.value)
 def test_a_query_takes_no_answer_but_its_own(level: Evidence) -> None:
     assert verdict(LOOKING, level, {"answered": "1-0", "answer": "good"}) is None
-    assert verdict(LOOKING, level, {"answered": ID, "answer": "bad"}) == Verdict(feed=Feed.DONE, answer="bad")
+    assert verdict(LOOKING, level, {"answered": ID, "answer": "bad"}) == CommandVerdict(
+        feed=Feed.DONE, answer="bad"
+    )

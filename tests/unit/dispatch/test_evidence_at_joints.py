@@ -10,7 +10,7 @@ import pytest
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.evidence import QUIET_S, Before, judge, strayed
 from arboleda.dispatch.ledger import Entry, Feed
-from arboleda.dispatch.stillness import Moment
+from arboleda.dispatch.stillness import ReportMoment
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import MotionState, Reason, Report
@@ -220,7 +220,7 @@ def test_a_node_that_is_told_so_long_after_the_stop_is_where_a_robot_stands() ->
 def test_a_halt_is_not_proven_by_what_was_said_before_the_robot_heard_it() -> None:
     judged = move(GOAL)
     belief = judged.belief
-    moment = Moment(belief.reports, 1.0)
+    moment = ReportMoment(belief.reports, 1.0)
     judged.hear(1.01, HALFWAY, STOPPED)
     judged.hear(1.02, HALFWAY, STOPPED)
     assert not belief.stillness.still_since(moment)
@@ -234,7 +234,7 @@ def test_a_halt_is_not_proven_by_nodes_that_may_be_from_before_the_robot_stopped
     """It is halted on an edge, at whose end it stops; on the way there it tells one node all the time."""
     judged = drive(0, 3)
     belief = judged.belief
-    moment = Moment(belief.reports, 1.0)
+    moment = ReportMoment(belief.reports, 1.0)
     judged.stays(1.01, 1.5, 0, MOVING)
     judged.hear(1.5, state=STOPPED)
     judged.hear(1.507, 0)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from arboleda.dispatch.belief import RATE_S
 from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.dispatch.report_rate import RATE_S
 from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import Evidence
 from arboleda_proofs.testing import shipped

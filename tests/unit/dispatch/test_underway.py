@@ -26,7 +26,7 @@ MOVES = [MoveJoints(id=f"7-{number}", robot=ARM, q=(0.0, 0.0, 0.0)) for number i
 def test_what_left_is_under_way_until_it_or_a_later_one_is_named() -> None:
     under_way = UnderWay(MODEL)
     for move in MOVES:
-        under_way.left(move)
+        under_way.leaves(move)
     under_way.hear(Report(at=1.0, robot=ARM), 1.0)
     assert under_way.ids == {ARM: ["7-1", "7-2"]}
     under_way.hear(Report(at=1.1, robot=ARM, accepted="7-2"), 1.1)
@@ -35,7 +35,7 @@ def test_what_left_is_under_way_until_it_or_a_later_one_is_named() -> None:
 
 def test_what_a_heard_arm_does_not_name_in_time_was_lost() -> None:
     under_way = UnderWay(MODEL)
-    under_way.left(MOVES[0])
+    under_way.leaves(MOVES[0])
     under_way.hear(Report(at=1.0, robot=ARM), 1.0)
     assert not under_way.is_overdue(ARM, 1.0)
     assert under_way.is_overdue(ARM, 1.0 + PATIENCE_S)
@@ -43,20 +43,20 @@ def test_what_a_heard_arm_does_not_name_in_time_was_lost() -> None:
 
 def test_an_arm_that_shares_nothing_is_not_followed() -> None:
     under_way = UnderWay(shipped("sis_a"))
-    under_way.left(MoveJoints(id="7-1", robot="ra1", q=(0.0, 0.0, 0.0)))
+    under_way.leaves(MoveJoints(id="7-1", robot="ra1", q=(0.0, 0.0, 0.0)))
     assert under_way.ids == {}
 
 
 def test_work_of_an_arm_that_names_no_command_is_under_way_until_its_end_or_the_time_of_an_answer() -> None:
     under_way = UnderWay(MODEL)
     move = MoveJoints(id="7-1", robot=MUTE, q=(0.0, 0.0, 0.0))
-    under_way.left(move)
+    under_way.leaves(move)
     for at in (1.0, 1.0 + QUIET_S / 2):
         under_way.hear(Report(at=at, robot=MUTE), at)
         assert under_way.ids == {MUTE: ["7-1"]}
     under_way.hear(Report(at=1.0 + QUIET_S, robot=MUTE), 1.0 + QUIET_S)
     assert under_way.ids == {}
-    under_way.left(move)
+    under_way.leaves(move)
     under_way.ended(move)
     assert under_way.ids == {}
 
@@ -64,7 +64,7 @@ def test_work_of_an_arm_that_names_no_command_is_under_way_until_its_end_or_the_
 def test_what_left_for_a_board_is_counted_until_it_or_a_later_one_is_named() -> None:
     unnamed = UnnamedCommands(MODEL)
     for move in MOVES:
-        unnamed.left(move)
+        unnamed.leaves(move)
     unnamed.hear(Report(at=1.0, robot=ARM, accepted="7-1"))
     assert unnamed.of(ARM) == 1
     unnamed.hear(Report(at=1.1, robot=ARM, rejected="7-2"))
@@ -73,7 +73,7 @@ def test_what_left_for_a_board_is_counted_until_it_or_a_later_one_is_named() -> 
 
 def test_who_numbers_nothing_has_nothing_to_name() -> None:
     unnamed = UnnamedCommands(MODEL)
-    unnamed.left(MoveJoints(id="7-1", robot=MUTE, q=(0.0, 0.0, 0.0)))
+    unnamed.leaves(MoveJoints(id="7-1", robot=MUTE, q=(0.0, 0.0, 0.0)))
     assert unnamed.of(MUTE) == 0
 
 

@@ -17,10 +17,10 @@ def files(content: bytes) -> PlantFiles:
 
 
 def test_each_start_replaces_what_the_last_one_was_made_of(tmp_path: Path) -> None:
-    assert at_work.known(tmp_path) is None
+    assert at_work.version(tmp_path) is None
     for content in (b"name: a", b"name: b"):
         at_work.keep(tmp_path, files(content), AT)
-    found = at_work.known(tmp_path)
+    found = at_work.version(tmp_path)
     assert (
         found is not None and found.files.contents == {"p.yaml": b"name: b"} and [*found.others] == ["r.py"]
     )
@@ -30,14 +30,14 @@ def test_each_start_replaces_what_the_last_one_was_made_of(tmp_path: Path) -> No
 def test_of_a_start_without_a_record_nothing_is_known(tmp_path: Path) -> None:
     at_work.keep(tmp_path, files(b"name: a"), AT)
     at_work.keep(tmp_path, None, AT)
-    assert at_work.known(tmp_path) is None
+    assert at_work.version(tmp_path) is None
 
 
 def test_a_kill_leaves_what_was_at_work_before_or_what_is_now(tmp_path: Path) -> None:
     state = tmp_path / "state"
     at_work.keep(state, files(b"name: a"), AT)
     for cut in each_cut(state, lambda: at_work.keep(state, files(b"name: b"), AT)):
-        found = at_work.known(state)
+        found = at_work.version(state)
         if not cut.power:
             assert found is not None and found.files.contents["p.yaml"] in (b"name: a", b"name: b"), cut
 
@@ -47,5 +47,5 @@ def test_a_start_goes_on_after_a_power_cut(tmp_path: Path) -> None:
     at_work.keep(state, files(b"name: a"), AT)
     for cut in each_cut(state, lambda: at_work.keep(state, files(b"name: b"), AT)):
         at_work.keep(state, files(b"name: c"), AT)
-        found = at_work.known(state)
+        found = at_work.version(state)
         assert found is not None and found.files.contents["p.yaml"] == b"name: c", cut

@@ -38,7 +38,7 @@ class Commands:
 
     def send(self, *_: Any, **__: Any) -> Any:
         self.sent += 1
-        return SimpleNamespace(open=True, left=True, too_early=False, failure=None)
+        return SimpleNamespace(open=True, was_sent=True, too_early=False, failure=None)
 
 
 def run_of(make: Any) -> tuple[TreeRun, Behaviour]:
@@ -88,7 +88,7 @@ class Refused:
     def send(self, *_: Any, **__: Any) -> Any:
         self.sent += 1
         lost = Failure(reason=Reason.LINK_LOST, sentence="it is lost")
-        return SimpleNamespace(open=False, left=False, too_early=False, failure=lost, state=None)
+        return SimpleNamespace(open=False, was_sent=False, too_early=False, failure=lost, state=None)
 
     def cancel_all(self) -> None:
         """Nothing is open."""

@@ -19,9 +19,9 @@ from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase
 from arboleda.runtime import invocation
 from arboleda.runtime.build import App
+from arboleda.runtime.interrupts import interruptible, taken_from, until_interrupted
 from arboleda.runtime.log_file import LogFile
 from arboleda.runtime.log_queue import LogQueue, log_to
-from arboleda.runtime.waiting import interruptible, taken_from, until_interrupted
 
 from .errand import Errand
 from .language import finding, say

@@ -1,4 +1,4 @@
-"""Acts of operators, the last ones, and what became of each: asked, under way, done or failed, and why."""
+"""The last acts of operators with their outcomes, and the last faults that people provoked."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import reduce
 
 from arboleda.dispatch.ledger import Entry, State
-from arboleda.model.messages import Outcome, Verb
+from arboleda.model.messages import FaultByHand, Outcome, Verb
 from arboleda.model.sentence import BOTH, Phrase, Sentence
 from arboleda.model.verbs import Arguments
 
@@ -19,14 +19,14 @@ ENDED = {
     Outcome.UNCHECKED: Phrase("act.not_checked", "{did}: not checked ({why})"),
     Outcome.FAILED: Phrase("act.failed", "{did}: failed ({why})"),
 }
-KEPT = 20  # what a screen shows of them; the journal has all
+SHOWN = 20  # as many as a screen shows; the journal has all
 
 
 @dataclass(frozen=True, kw_only=True)
 class OperatorAct:
-    """Act of an operator, at `at` s of the plant's clock, and what became of it so far.
+    """Act of an operator, at `at` s of the plant's clock, with its outcome so far.
 
-    `ended_at` is when it had come to its end that was still to come, or failed at once.
+    `ended_at` is when its commands ended, or when it failed at once; None where it was done at once.
     """
 
     number: int
@@ -48,10 +48,10 @@ class OperatorAct:
 
 
 class Acts:
-    """The last acts, oldest first; those that devices carry out are looked at until they have ended."""
+    """The last acts, oldest first; acts that devices carry out are looked at until they have ended."""
 
     def __init__(self) -> None:
-        self.last: deque[OperatorAct] = deque(maxlen=KEPT)
+        self.last: deque[OperatorAct] = deque(maxlen=SHOWN)
         self._count = 0
         self.under_way: dict[int, tuple[OperatorAct, Sequence[Entry]]] = {}
 
@@ -60,7 +60,7 @@ class Acts:
         return self._count + 1
 
     def add(self, act: OperatorAct, entries: Sequence[Entry]) -> None:
-        """An act for which these commands have left."""
+        """Take in an act, for which these commands have left."""
         self._count = act.number
         self.last.append(act)
         if act.outcome is Outcome.UNDER_WAY:
@@ -78,6 +78,30 @@ class Acts:
                 if each.number == number:
                     self.last[place] = over
             yield over, entries
+
+
+@dataclass(frozen=True, kw_only=True)
+class NumberedFault:
+    """Fault of a virtual device that began or ended `at` s of the plant's clock; `number` grows with each."""
+
+    number: int
+    at: float
+    robot: str
+    sentence: Sentence
+
+
+class ProvokedFaults:
+    """The last faults that people had virtual devices show, oldest first."""
+
+    def __init__(self) -> None:
+        self.last: deque[NumberedFault] = deque(maxlen=SHOWN)
+        self._count = 0
+
+    def note(self, fault: FaultByHand) -> None:
+        """Take in a fault."""
+        self._count += 1
+        numbered = NumberedFault(number=self._count, at=fault.at, robot=fault.robot, sentence=fault.sentence)
+        self.last.append(numbered)
 
 
 def outcome_of(entries: Sequence[Entry]) -> tuple[Outcome, Sentence | None]:

@@ -1,4 +1,4 @@
-"""Advisor: finds the ways out of a cell's present state, by the cell, its robots and the zones alone."""
+"""Advisor: the acts that lead a cell out of its present state, by the cell, its robots and the zones."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Refusal = Callable[[OperatorRequest], "Sentence | None"]
 
 
 class Advisor:
-    """Knows the ways out of every cell, from nothing but the present state."""
+    """Finds the ways out of every cell, from the present state alone."""
 
     def __init__(self, cells: Mapping[str, CellRun], refusal: Refusal) -> None:
         self._cells = cells
@@ -38,16 +38,15 @@ class Advisor:
         return tuple(replace(each, refusal=self._refused(each)) for each in self.ways_out(cell))
 
     def ways_out(self, cell: str, visited: frozenset[str] = frozenset()) -> tuple[Advice, ...]:
-        """The advice, in the order to follow it; none where the cell works or only time is needed.
+        """The advice in the order to follow it; none where the cell works, or will go on by itself.
 
-        `visited`: the cells that wait for this one to give its zones back.
+        `visited` are the cells that wait for zones of this cell.
         """
         run = self._cells[cell]
         lead = LEADS.get(run.state)
         if lead is None or run.closed or run.manual.teaching is not None:
             return ()
-        found: dict[Advice, None] = dict.fromkeys(lead(self, run, visited | {cell}))
-        return tuple(found)
+        return tuple(dict.fromkeys(lead(self, run, visited | {cell})))  # each once
 
     def _refused(self, advice: Advice) -> Sentence | None:
         if isinstance(advice.do, Hand):
@@ -158,7 +157,7 @@ class Advisor:
         yield from by_reason
 
     def _stoppers(self, run: CellRun, device: str) -> list[str]:
-        """The other cells that share a device and whose stop keeps it; nothing where this one's does."""
+        """The other cells whose stop keeps a shared device stopped; none where this cell's own stop does."""
         runs = self._runs[device]
         if run.state in STOPPING or not run.context.devices.is_stopped(device):
             return []
@@ -185,8 +184,9 @@ class Advisor:
         yield Advice(do=Verb.HOME, scope=robot, why=why, by_hand=True)
 
     def _freeing(self, run: CellRun, zones: Mapping[str, str], visited: frozenset[str]) -> Iterator[Advice]:
-        """Acts by which others give zones back, first those of their cells; of two that wait for each other,
-        and for a robot that is not heard, somebody may answer for a zone being empty.
+        """Acts by which robots give zones back, by the advice of their cells.
+
+        Where two cells wait for each other, or a robot is not heard, a person may answer for an empty zone.
         """
         for holder in sorted(set(zones.values())):
             its = [zone for zone in sorted(zones) if zones[zone] == holder]
@@ -195,11 +195,11 @@ class Advisor:
                 continue
             other = self._run_of(holder)
             if other.state is CellState.EXECUTE and holder in other.cell.shared:
-                continue  # it is not ours to move while a task of another cell uses it
+                continue  # nobody moves it while a task of another cell uses it
             locks = other.context.zones.interlocks
             if (facts := locks.in_the_way(holder, its)) is not None:
                 if run.context.zones.awaited(holder, locks.led_into(holder, its)):
-                    continue  # there it would meet whoever is in that zone
+                    continue  # in that zone it would meet another robot
                 yield Advice(do=Hand.FREE, scope=holder, why=IN_THE_WAY(device=holder, facts=facts))
                 continue
             why = HOLDS_ZONES(arm=holder, zones=tuple(its))
@@ -219,7 +219,7 @@ class Advisor:
                 yield from self._overriding(silent, holder, instead=by_hand)
 
     def _run_of(self, robot: str) -> CellRun:
-        """The cell of a robot; of a shared device that which holds it, where one does."""
+        """The cell of a robot; of a shared device the cell that holds it, else the first."""
         runs = self._runs[robot]
         return next((run for run in runs if run.context.devices.holds(robot)), runs[0])
 
@@ -238,7 +238,7 @@ def _request(verb: Verb, scope: str, *, by_hand: bool = False) -> OperatorReques
 
 
 def _letting_go(run: CellRun, robot: str) -> Iterator[Advice]:
-    """Advice against a tool that may open late, for which its robot stays where it is."""
+    """Advice to release a tool that may open late, for which its robot takes no move."""
     tool = run.context.parts.opening_tool(robot)
     if tool is not None:
         why = MAY_LET_GO(robot=robot, tool=tool)
@@ -246,8 +246,10 @@ def _letting_go(run: CellRun, robot: str) -> Iterator[Advice]:
 
 
 def _releasing(run: CellRun, robot: str, why: Sentence, *, instead: bool = False) -> Iterator[Advice]:
-    """To have a robot let go of its part, or to take that out by hand: first where it could not, or where
-    that needs what nobody brings about meanwhile; as another way where it cannot be told to.
+    """Advice to have a robot let go of its part, or to take the part out by hand.
+
+    By hand comes first where the robot failed to let go, or a precondition keeps it from opening. It is the
+    alternative where the robot cannot be told to.
     """
     release = Advice(do=Verb.RELEASE, scope=robot, why=why, drops=(robot,), instead=instead)
     by_hand = Advice(do=Verb.RELEASE, scope=robot, why=why, by_hand=True, instead=instead)
@@ -263,7 +265,7 @@ def _releasing(run: CellRun, robot: str, why: Sentence, *, instead: bool = False
 
 
 def _running_home(run: CellRun, robot: str, why: Sentence) -> Iterator[Advice]:
-    """To have a robot find its reference, or to home it at its own controls where that has failed."""
+    """Advice to home a robot by its routine, or first at its own controls where the routine has failed."""
     failed = (Verb.HOME, robot) in run.in_vain
     if failed:
         yield Advice(do=Hand.REFERENCE, scope=robot, why=why)
@@ -271,7 +273,7 @@ def _running_home(run: CellRun, robot: str, why: Sentence) -> Iterator[Advice]:
 
 
 def _is_cleared_by_homing(run: CellRun, robot: str) -> bool:
-    """True where homing leads a robot out of its fault, unless that has failed: then a person does."""
+    """True where homing leads a robot out of its fault, and has not failed yet."""
     failed = (Verb.HOME, robot) in run.in_vain
     return not failed and run.context.robots.belief(robot).is_cleared_by_homing
 
@@ -290,16 +292,16 @@ def _can_be_taken_home(run: CellRun, robot: str) -> bool:
     return by_hand and robots.obstacle(robot) is None
 
 
-def _until_it_moves(ways: Sequence[Advice]) -> Iterator[Advice]:
+def _until_it_moves(advices: Sequence[Advice]) -> Iterator[Advice]:
     """Up to and including the first verb that is for a robot or its cell, not for a zone."""
-    for each in ways:
+    for each in advices:
         yield each
         if isinstance(each.do, Verb) and each.do is not Verb.OVERRIDE:
             return
 
 
 def _stopping(run: CellRun, why: Sentence) -> Iterator[Advice]:
-    """Somebody else stopped a robot: our own stop, which can be cleared."""
+    """Advice where somebody else stopped a robot: the plant stops it too, as its own stop can be cleared."""
     for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):
         yield Advice(do=verb, scope=run.cell.name, why=why)
 
@@ -315,7 +317,7 @@ def _running_again(run: CellRun) -> Iterator[Advice]:
 
 
 def _mending_books(run: CellRun) -> Iterator[Advice]:
-    """To make room at a place, or to bring a part there, where the last task failed for want of that."""
+    """Advice to make room at a place, or to bring a part there, where the last task failed for that."""
     trouble = run.place_trouble
     if trouble is not None and run.context.places.is_so_still(trouble):
         hand = Hand.TAKE_OUT if trouble.key == part_places.FULL.key else Hand.PUT_IN
@@ -323,9 +325,9 @@ def _mending_books(run: CellRun) -> Iterator[Advice]:
 
 
 def _can_bring_back(run: CellRun) -> bool:
-    """True where a robot carries what holds a part, and a recovery knows where that belongs.
+    """True where a robot's own hand may hold a part, and a recovery knows where the part belongs.
 
-    A clamp on a bench, and a robot whose part came from nobody knows where, keep it however often one tries.
+    No recovery empties a clamp on a bench, or the hand of a robot whose part came from an unknown place.
     """
     context, spaces = run.context, run.cell.workspaces
     carriers = [name for name, space in spaces.items() if space.hand.name in context.parts.holding]
@@ -342,8 +344,8 @@ def _movers(run: CellRun) -> tuple[str, ...]:
 
 
 STOPPING = (CellState.ABORTING, CellState.ABORTED, CellState.CLEARING, CellState.STOPPED)
-AT_THE_DEVICE = (Reason.LINK_LOST, Reason.DEVICE_FAULT, Reason.NOT_HOMED)  # why it cannot be told to let go
-AT_HAND = (CellState.IDLE, CellState.HELD)  # where a robot that is stopped was stopped by somebody else
+AT_THE_DEVICE = (Reason.LINK_LOST, Reason.DEVICE_FAULT, Reason.NOT_HOMED)  # the device takes no command
+AT_HAND = (CellState.IDLE, CellState.HELD)  # a robot that is stopped then was stopped by somebody else
 HANDS: dict[Reason, Hand] = {Reason.LINK_LOST: Hand.BRING_BACK, Reason.DEVICE_FAULT: Hand.REPAIR}
 Lead = Callable[[Advisor, CellRun, "frozenset[str]"], Iterator[Advice]]
 LEADS: dict[CellState, Lead] = {

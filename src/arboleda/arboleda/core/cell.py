@@ -9,7 +9,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.dispatch.booking import BROKEN_OFF
-from arboleda.dispatch.stillness import Moment
+from arboleda.dispatch.stillness import ReportMoment
 from arboleda.model.advice import Advice
 from arboleda.model.cell_states import TABLE, Cause, CellState, after
 from arboleda.model.messages import Failure, Reason, RevisionName, TaskState, Verb
@@ -25,7 +25,7 @@ from arboleda.trees.leaves import title_of
 from arboleda.trees.part_places import trouble_in
 from arboleda.trees.tree_run import TreeRun, path_of
 
-from .absence import Absence
+from .absence import HoldAfterAbsence
 from .manual_mode import ManualMode
 from .readiness import Readiness
 from .task_queue import TaskQueue
@@ -33,7 +33,7 @@ from .task_queue import TaskQueue
 
 @dataclass(frozen=True, kw_only=True)
 class NextVersion:
-    """Another version of a cell, which it takes once it rests between two tasks; `taken` is told then."""
+    """Another version of a cell, which takes it between two tasks; `taken` is called then."""
 
     version: RevisionName
     cell: Cell
@@ -42,9 +42,9 @@ class NextVersion:
 
 
 class CellRun:
-    """The moving part of a cell; `changed(task)` is told of every change of one of its tasks.
+    """A cell at work: its state, queue, task and tree. `changed(task)` hears of every change of its tasks.
 
-    `stop`: how far it came out of a stop of an earlier start, which is not over before clear and reset.
+    `stop` is the state of a cell that was stopped in an earlier start: a stop lasts until clear and reset.
     """
 
     def __init__(
@@ -66,21 +66,21 @@ class CellRun:
         self.task: Task | None = None
         self.run = TreeRun(context)
         self.keeping = Keeping(context, self.run, build)
-        self.awaits: Sentence | None = None  # for what a task of an earlier start waits before it can go on
+        self.awaits: Sentence | None = None  # what a task of an earlier start waits for
         self.trouble: Failure | None = None  # why it is held
-        self.stranded: Sentence | None = None  # why no step of a held task can go on from there
-        self.place_trouble: Sentence | None = None  # for which the last task failed
-        self.in_vain: set[tuple[Verb, str]] = set()  # what was done to get on, and failed, since it worked
+        self.stranded: Sentence | None = None  # why a held task can only be abandoned
+        self.place_trouble: Sentence | None = None  # the full or empty place for which the last task failed
+        self.in_vain: set[tuple[Verb, str]] = set()  # verbs and scopes that failed since it worked
         self.manual = ManualMode(context, self.queue)
-        self.absence = Absence(context, self.run)
+        self.absence = HoldAfterAbsence(context, self.run)
         self.dirty = False
         self.closed = False
-        self.awaits_restart = False  # no further task begins before that
-        self.following: NextVersion | None = None  # while it has not taken it
-        self.version: RevisionName | None = None  # the one that it took while the plant ran
-        self.cancelling = False  # its task, so that this ends as cancelled
-        self.stopped_after: dict[str, Moment] = {}  # what its robots had said when it was stopped last
-        self.stop_by = 0.0  # until when they have to stand, s of the cell's time
+        self.awaits_restart = False  # no further task begins until then
+        self.following: NextVersion | None = None  # put to work, and not taken yet
+        self.version: RevisionName | None = None  # taken while the plant ran
+        self.cancelling = False  # True while its task is to end as cancelled
+        self.stopped_after: dict[str, ReportMoment] = {}  # of its robots, at its last stop
+        self.stop_by = 0.0  # when they have to stand, s of the cell's time
         self._changed = changed
         self._recovers_anew = False
 
@@ -109,7 +109,7 @@ class CellRun:
 
     @property
     def waits_for_grip(self) -> bool:
-        """True while only a part in a gripper holds the cell, so that it is idle as soon as that is out."""
+        """True while only a part in a gripper holds the cell: it is idle once the part is out."""
         trouble = self.trouble if self.state is CellState.HELD and self.task is None else None
         return trouble is not None and trouble.reason is Reason.INTERRUPTED
 
@@ -121,7 +121,10 @@ class CellRun:
         return self.state in BETWEEN_TASKS and not self.context.commands.open()
 
     def stop(self) -> None:
-        """The operator's stop (software): the task has failed; the robots are latched by the caller."""
+        """Stop (software), for an operator: the task has failed, and its robots are latched by the caller.
+
+        It asks no robot first and waits for none: the state stays `aborting` until reports show all standing.
+        """
         self.queue.paused = True
         self.manual.end(STOPPED(cell=self.cell.name))
         self.become(Cause.STOP)
@@ -142,15 +145,15 @@ class CellRun:
         self.context.time.pause()
         self.context.commands.cancel_motions()
 
-    def lose(self, what: Sentence, failure: Failure | None = None) -> None:
-        """Note that its task has lost what it needs to go on, so that it can only be abandoned."""
+    def lose(self, why: Sentence, failure: Failure | None = None) -> None:
+        """Note why its task, if one runs, can only be abandoned."""
         if self.task is not None:
-            self.trouble, self.stranded = failure or self.trouble, what
+            self.trouble, self.stranded = failure or self.trouble, why
 
     def outlast(self, failure: Failure) -> None:
-        """Hold what is at work, because the plant was away; a cell with nothing under way goes on.
+        """Hold a cell at work, because the plant was away. An idle cell goes on: nothing was interrupted.
 
-        Where the plant file says so, a held one goes on too, as soon as its devices prove what they did.
+        Where the plant file says so, the hold ends by itself once the devices prove what they did.
         """
         if self.state is CellState.EXECUTE:
             paused = self.queue.paused
@@ -167,9 +170,9 @@ class CellRun:
         self._changed(task)
 
     def close(self, *, drops_waiting: bool) -> None:
-        """The plant ends: what runs is halted and stays as it is for the next start, no other task starts.
+        """The plant ends: a running task is halted and kept for the next start, and no other task starts.
 
-        `drops_waiting`: there is no next start for the tasks of this one; they end.
+        `drops_waiting`: no start comes after this one, so its tasks end.
         """
         self.closed = True
         self.manual.end(ASKED_TO_END())
@@ -191,7 +194,10 @@ class CellRun:
             self._finish(task, TaskState.CANCELLED if cancelled else TaskState.FAILED)
 
     def break_down(self, failure: Failure) -> None:
-        """Something of the cell raised: its task has failed, and it is held unless it is stopped."""
+        """Something of the cell raised: its task has failed, and the cell is held unless it is stopped.
+
+        It does not recover, since a recovery is made of the same leaves and rules as what raised.
+        """
         self.context.time.go_on()
         self.manual.end(failure.sentence)
         self.interrupt(failure)
@@ -204,7 +210,7 @@ class CellRun:
         self.dirty = True
 
     def leave_as_it_is(self) -> None:
-        """From held to idle without a move; a recovery that was held is given up."""
+        """Go from held to idle without a move, and give up a recovery that was held."""
         self.run.drop()
         self.context.time.go_on()
         self.become(Cause.ENDED)
@@ -236,7 +242,7 @@ class CellRun:
         self.look(self.run.begin(lambda: self.keeping.make(task.order)))
 
     def recover(self, *, anew: bool = False) -> None:
-        """Drop what runs, halting it, and run the recovery alone; `anew`: after one that failed."""
+        """Drop and halt the task's tree, and run the recovery alone; `anew`: after a recovery that failed."""
         self._recovers_anew = anew
         self.stranded = self.awaits = None
         self.keeping.end()
@@ -247,19 +253,19 @@ class CellRun:
         self.look(self.run.begin(lambda: steps.recovery(self.context)))
 
     def set_parts(self, parts: Mapping[str, int]) -> None:
-        """Take the word of a person on how many parts are at places, who has seen to these places then."""
+        """Take a person's word on how many parts are at places, and that these are no trouble any more."""
         self.context.places.set(parts)
         if self.place_trouble is not None and self.place_trouble.values["place"] in parts:
             self.place_trouble = None
 
     def look(self, status: Status) -> None:
-        """Take what a tick of the tree came to."""
+        """Take the status that a tick of the tree has returned."""
         if status is not Status.RUNNING:
             self._ended(recovered=status is Status.SUCCESS)
 
     def _ended(self, *, recovered: bool) -> None:
-        """The tree has come to its end: the task is over, and the cell ready or held."""
-        task, found, leaf = self.task, self.context.failures.first, self.context.failures.leaf
+        """The tree has ended: the task is over, and the cell idle or held."""
+        task, failure, leaf = self.task, self.context.failures.first, self.context.failures.leaf
         course = self.run.course
         self.run.drop()
         if not recovered:
@@ -271,9 +277,9 @@ class CellRun:
             self.become(Cause.ENDED)
         if task is None:
             return
-        self.place_trouble = None if found is None else trouble_in(found.sentence)
-        if found is not None:
-            task.fail(found, path_of(leaf) if leaf else None, title_of(leaf) if leaf else None)
+        self.place_trouble = None if failure is None else trouble_in(failure.sentence)
+        if failure is not None:
+            task.fail(failure, path_of(leaf) if leaf else None, title_of(leaf) if leaf else None)
         if self.cancelling:
             self._finish(task, TaskState.CANCELLED)
         elif task.failure:
@@ -283,7 +289,7 @@ class CellRun:
             self._finish(task, TaskState.DONE)
 
     def _note_in_vain(self, failure: Failure) -> None:
-        """A recovery that somebody wanted once more has failed as well, by what the cell itself cannot do."""
+        """Note a recovery that was retried in vain, unless something outside of the cell broke it off."""
         if self._recovers_anew and failure.reason not in BROKEN_OFF:
             self.in_vain.add((Verb.RETRY, self.cell.name))
             self.in_vain.update((Verb.RELEASE, robot) for robot in self.context.parts.unopened)

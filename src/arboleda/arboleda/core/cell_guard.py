@@ -16,7 +16,7 @@ BROKE_IN_STEP = Phrase("cell.broke_in_step", "{cell}: {kind} in a step: {error}"
 
 
 class CellGuard:
-    """Guard of the cells; `told` has the last error of each of them since somebody asked for something."""
+    """Guard of the cells; `told` has the last error of each cell since the last request of anybody."""
 
     def __init__(
         self, cells: dict[str, CellRun], dispatcher: Dispatcher, news: News, clock: Callable[[], float]
@@ -28,14 +28,14 @@ class CellGuard:
         self._clock = clock
 
     def run(self, cell: str, act: Callable[[], None]) -> None:
-        """Do something that belongs to one cell."""
+        """Do something for one cell; where it raises, that cell breaks down and no other."""
         try:
             act()
         except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
             self.break_down(cell, error)
 
     def break_down(self, cell: str, error: Exception) -> None:
-        """Hold a cell in which something raised; the error is told whole, once until somebody acts."""
+        """Hold a cell in which something raised. An equal error is told once until the next request."""
         self._news.changes += 1
         self._news.revised.add(cell)
         text = plain(" ".join(str(error).split()))

@@ -1,4 +1,4 @@
-"""Steps of a cell: what it does by itself, as far as it can, each time that something happened to it."""
+"""Steps that a cell does by itself, each time that something happened to it."""
 
 from __future__ import annotations
 
@@ -17,12 +17,16 @@ STOP_UNCONFIRMED = Phrase("cell.stop_unconfirmed", "{robots} did not confirm the
 
 
 def advance(run: CellRun, *, woken: bool) -> bool:
-    """Do what can be done now: tick the tree until it rests, start the next task; whether it did."""
+    """Leave a state that waits, tick the tree, start the next task; True where anything was done.
+
+    A cell takes another version before its next task, so no task begins by one version and ends by another.
+    """
     run.dirty = run.context.time.woken() or woken or run.dirty
     if run.state is CellState.EXECUTE and not run.dirty:
         return False
     did = run.manual.teaching is not None and run.manual.go_on()
-    did |= _transit(run)
+    leave = WAITS.get(run.state)
+    did |= leave is not None and leave(run)
     if run.dirty and run.run.tree is not None and run.state is CellState.EXECUTE:
         run.look(run.run.tick())
         did = True
@@ -50,12 +54,6 @@ def _revise(run: CellRun, following: NextVersion) -> None:
     following.taken(following)
 
 
-def _transit(run: CellRun) -> bool:
-    """Leave a state that only waits for something to come true."""
-    wait = WAITS.get(run.state)
-    return wait is not None and wait(run)
-
-
 def _halted(run: CellRun) -> bool:
     """Leave `holding` once no motion is open."""
     if any(entry.halts for entry in run.context.commands.open()):
@@ -75,7 +73,7 @@ def _cleared(run: CellRun) -> bool:
 
 
 def _found_unsettled(run: CellRun) -> bool:
-    """Leave `idle` where a part may hang in the effector; while it is taught that is as it should be."""
+    """Leave `idle` where an effector may hold a part, unless the cell is taught: a teacher grips parts."""
     if run.manual.teaching is not None:
         return False
     unsettled = run.readiness.part_in_hand()
@@ -86,7 +84,7 @@ def _found_unsettled(run: CellRun) -> bool:
 
 
 def _settled(run: CellRun) -> bool:
-    """Leave `held` where only the effector was the trouble; else keep what goes wrong meanwhile."""
+    """Leave `held` where only a part in an effector was the trouble; else note faults that come meanwhile."""
     if run.waits_for_grip and not run.context.parts.holding:
         run.leave_as_it_is()
         return True
@@ -99,7 +97,7 @@ def _settled(run: CellRun) -> bool:
 
 
 def _miss_part(run: CellRun) -> None:
-    """Note that an effector was opened meanwhile, by whomever."""
+    """Note where anybody has opened an effector with a part of the task."""
     if run.task is None or run.stranded:
         return
     gone = run.context.failures.opened_effector()
@@ -130,13 +128,13 @@ def _aborted(run: CellRun) -> bool:
 
 
 def _fault(run: CellRun) -> Failure | None:
-    """The fault that came during a hold: an interrupted step that failed, a robot that cannot."""
+    """The fault that came during a hold: an interrupted step that failed, a robot that takes no command."""
     for act in run.run.interrupted():
         entry = act.entry
         if entry is not None and entry.state is State.FAILED and not entry.too_early:
             return entry.failure
-    found = (run.context.robots.obstacle(robot.name, was=True) for robot in run.cell.reached)
-    return next((failure for failure in found if failure), None)
+    obstacles = (run.context.robots.obstacle(robot.name, was=True) for robot in run.cell.reached)
+    return next((failure for failure in obstacles if failure), None)
 
 
 WAITS: dict[CellState, Callable[[CellRun], bool]] = {
@@ -146,3 +144,4 @@ WAITS: dict[CellState, Callable[[CellRun], bool]] = {
     CellState.IDLE: _found_unsettled,
     CellState.HELD: _settled,
 }
+"""By state that waits for something: the function that leaves the state once that is so."""

@@ -1,6 +1,4 @@
-"""Cells as an earlier start left them: stopped, taught, or with a task that is held at its step until devices
-prove what became of it, and people say how it goes on.
-"""
+"""Cells as an earlier start left them: stopped, taught, or with a task that is held at its step."""
 
 from __future__ import annotations
 
@@ -15,39 +13,39 @@ from arboleda.model.task import Task
 from .cell import CellRun
 
 
-def walk_back(run: CellRun, task: Task, kept: str) -> None:
+def walk_back(run: CellRun, task: Task, trail_text: str) -> None:
     """Hold a task that was at work when an earlier start ended, until a person says how it goes on."""
     run.task, run.queue.paused, run.state = task, True, CellState.HELD
     run.context.answers, run.context.commands.task = task.answers, hash_of(task.id)
     run.context.time.pause()
-    run.stranded = run.keeping.revive(task.order, kept)
+    run.stranded = run.keeping.revive(task.order, trail_text)
     trail = run.keeping.walk.trail if run.keeping.walk else None
     if trail is not None:
         run.trouble, run.cancelling = trail.failure, trail.cancels
 
 
 def look_back(run: CellRun) -> None:
-    """Judge a task of an earlier start by what its devices have said by now."""
+    """Judge a task of an earlier start by the reports of its devices until now."""
     if run.keeping.walk is not None and run.state is CellState.HELD:
         judged(run)
 
 
 def judged(run: CellRun) -> bool:
-    """Look what devices say of the steps at which an earlier start ended; whether that is news.
+    """Judge the steps at which an earlier start left a task by its devices' reports; True where that is news.
 
-    What keeps a task from going on stays so, whatever they say later.
+    A reason that keeps the task from going on stays, whatever devices report later.
     """
     if run.run.tree is None:
         return False
-    before, found = (run.awaits, run.trouble, run.stranded), run.keeping.judge()
-    run.awaits = found.waits
-    run.trouble = run.trouble or found.failure
-    run.stranded = run.stranded or found.stranded
+    before, finding = (run.awaits, run.trouble, run.stranded), run.keeping.judge()
+    run.awaits = finding.waits
+    run.trouble = run.trouble or finding.failure
+    run.stranded = run.stranded or finding.stranded
     return before != (run.awaits, run.trouble, run.stranded)
 
 
 def trail_of(run: CellRun) -> str | None:
-    """The place of its task in the tree, to be kept; None where that is kept already."""
+    """The trail of a cell's task, to be kept; None where this very trail was kept last."""
     if run.task is None or run.run.tree is None:
         return None
     holds = run.state in (CellState.HOLDING, CellState.HELD)
@@ -56,14 +54,14 @@ def trail_of(run: CellRun) -> str | None:
 
 
 def stop_of(cell: Cell, model: PlantModel, latches: Latches) -> CellState | None:
-    """State of a cell that was stopped in an earlier start, on its way out; None where it was not stopped."""
+    """The state of a cell that was stopped in an earlier start; None where it was not stopped."""
     if _was_stopped(cell, model, latches.stopped):
         return CellState.ABORTED
     return CellState.STOPPED if _was_stopped(cell, model, latches.cleared) else None
 
 
 def _was_stopped(cell: Cell, model: PlantModel, stopped: set[str]) -> bool:
-    """True for a cell that had been stopped: one of its own robots was, or what it shares, by itself."""
+    """True where a robot of the cell alone is stopped, or a shared one that no other cell's stop explains."""
     if not stopped.isdisjoint(cell.own):
         return True
     for name in stopped.intersection(cell.shared):
@@ -73,9 +71,7 @@ def _was_stopped(cell: Cell, model: PlantModel, stopped: set[str]) -> bool:
 
 
 def end_teaching(cells: dict[str, CellRun], memory: FactMemory) -> None:
-    """A cell that was being taught when an earlier start ended begins nothing by itself: somebody may stand
-    beside it.
-    """
+    """Pause the queues of cells that were taught when an earlier start ended: a person may stand there."""
     for name in sorted(memory.names(Fact.MANUAL)):
         memory.remember(Fact.MANUAL, name, None)
         if name in cells:

@@ -1,4 +1,4 @@
-"""Envelope of running tasks: the effectors that may have switched without this being durable."""
+"""Envelope of a running task: the effectors that it may tell to switch before their new grip is durable."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from arboleda.resume.trail import Trail
 from .cell import CellRun
 
 
-def unsettled(memory: Memory, kept: Iterable[KeptTask]) -> Iterator[Remember]:
-    """The changes of what is kept after a power cut, which may have undone the last of it.
+def unsettled(memory: Memory, tasks: Iterable[KeptTask]) -> Iterator[Remember]:
+    """The facts to change after a power cut, which may have undone the last writes.
 
-    An effector of a running task's envelope counts as switching until its device reports what it holds.
+    The command that switched an effector of an envelope may have left, and its grip be lost. So each of them
+    counts as switching until its device reports whether it holds anything.
     """
     grips = memory.get(Fact.EFFECTOR, {})
-    for task in kept:
+    for task in tasks:
         if task.state is TaskState.RUNNING:
             for name in _envelope(memory.get(Fact.STEP, {}).get(task.id)):
                 if grips.get(name) != Grip.SWITCHING.value:
@@ -26,12 +27,12 @@ def unsettled(memory: Memory, kept: Iterable[KeptTask]) -> Iterator[Remember]:
 
 
 def of_task(run: CellRun) -> Iterable[str]:
-    """The effectors that the task of a cell may tell to switch before this is durable."""
+    """The envelope of a cell's task; empty without a task."""
     return run.keeping.envelope if run.task is not None and run.task.ended_at is None else ()
 
 
 def _envelope(trail: str | None) -> Iterable[str]:
-    """The envelope of a task, of which every trail has it; none where another version wrote that."""
+    """The envelope in a trail; empty where another version of Arboleda wrote the trail."""
     try:
         return () if trail is None else Trail.read(trail).begun.envelope
     except ValueError:

@@ -27,8 +27,8 @@ CUT_OFF = Phrase(
     "the plant ended while this was at work; nobody knows how far it came, so it is not done again",
 )
 Choose = Callable[[Sequence[Order]], tuple[Order, Sentence]]
-"""Of the orders that a text allows the one that is carried out, and why that one."""
-HISTORY = 1000  # tasks remembered by id, unless more of them wait: only ended ones are forgotten
+"""Chooses one of the orders that a text allows, and says why."""
+HISTORY = 1000  # tasks remembered by id; more where more wait, since only ended tasks are forgotten
 
 
 class Intake:
@@ -43,62 +43,59 @@ class Intake:
         self._count = 0
 
     def task(self, words: str, choose: Choose) -> Task:
-        """The new or already known task of a text; TextError or QueueFull says why there is none.
+        """The task of a text: a new one, or that with its id; TextError or QueueFull says why there is none.
 
-        `choose` is asked where the text of a new one names several cells.
+        `choose` is called where the text of a new task names several cells.
         """
         orders = self.orders(words)
         id = orders[0].id
-        known = self.tasks.get(id) if id else None
-        if known is None:
+        earlier = self.tasks.get(id) if id else None
+        if earlier is None:
             self._count += 1
             order, choice = choose(orders) if len(orders) > 1 else (orders[0], None)
             return Task(id or f"t-{self.epoch}-{self._count}", order, choice)
-        if all(known.order.text != order.text for order in orders):
-            raise TextError(ID_TAKEN(id=known.id, text=known.order.text))
-        return known
+        if all(earlier.order.text != order.text for order in orders):
+            raise TextError(ID_TAKEN(id=earlier.id, text=earlier.order.text))
+        return earlier
 
     def orders(self, words: str) -> Sequence[Order]:
-        """Those that a text allows; TextError or QueueFull says why there is none."""
+        """The orders that a text allows; TextError or QueueFull says why there is none."""
         if self.closed:
             raise QueueFull(ENDING())
         return text.alternatives(words, self.model)
 
-    def take_back(self, kept: KeptTask, now: float) -> Task:
-        """A task of an earlier start under its old id; one that waited for what this plant does not offer any
-        more is cancelled.
-        """
-        task = Task.of(kept)
-        if kept.ended_at is None:
+    def take_back(self, record: KeptTask, now: float) -> Task:
+        """The task of an earlier start, under its id; cancelled if it waits and this plant cannot do it."""
+        task = Task.of(record)
+        if record.ended_at is None:
             try:
-                task = Task.of(kept, text.parse(kept.text, self.model))
-                if kept.is_bound and kept.state is TaskState.QUEUED:
+                task = Task.of(record, text.parse(record.text, self.model))
+                if record.is_bound and record.state is TaskState.QUEUED:
                     raise TextError(OTHER_START())
             except TextError as error:
-                if kept.state is TaskState.QUEUED:
+                if record.state is TaskState.QUEUED:
                     task.fail(gone(error.sentence))
                     task.become(TaskState.CANCELLED, now)
         self.remember(task)
         return task
 
     def read_again(self, order: Order) -> Order:
-        """The same order to the plant as it is now; TextError where its text means nothing, or other work."""
-        found = text.parse(order.text, self.model)
-        if found.recipe != order.recipe or [*found.values] != [*order.values]:
-            raise TextError(OTHER_WORK(text=order.text, recipe=found.recipe))
-        return found
+        """The order in the plant of now; TextError where its text means nothing there, or other work."""
+        read = text.parse(order.text, self.model)
+        if read.recipe != order.recipe or [*read.values] != [*order.values]:
+            raise TextError(OTHER_WORK(text=order.text, recipe=read.recipe))
+        return read
 
     def still_allowed(self, task: Task, version: str) -> Order:
-        """The order of a task that waits, read again; TextError also where it was allowed for another version
-        than this one."""
+        """The order of a task that waits, read again; TextError too where another version allowed it."""
         if task.version not in ("", version):
             raise TextError(OTHER_VERSION())
         return self.read_again(task.order)
 
-    def recall(self, kept: KeptTask) -> None:
-        """A task that has ended so long ago that only its keeper knew it."""
-        if kept.id not in self.tasks and kept.ended_at is not None:
-            self.remember(Task.of(kept))
+    def recall(self, record: KeptTask) -> None:
+        """Remember a task that ended so long ago that only the store has it."""
+        if record.id not in self.tasks and record.ended_at is not None:
+            self.remember(Task.of(record))
 
     def knows(self, task: Task) -> bool:
         return task.id in self.tasks
@@ -107,10 +104,10 @@ class Intake:
         """Keep a task by its id; past HISTORY the oldest ended one goes, where there is one."""
         self.tasks[task.id] = task
         if len(self.tasks) > HISTORY:
-            ended = (known.id for known in self.tasks.values() if known.ended_at is not None)
+            ended = (task.id for task in self.tasks.values() if task.ended_at is not None)
             self.tasks.pop(next(ended, ""), None)
 
 
 def gone(why: Sentence) -> Failure:
-    """The failure of a task that waited for what the plant does not offer any more."""
+    """The failure of a task that waited, and that the plant does not take any more."""
     return Failure(reason=Reason.PRECONDITION, sentence=GONE(why=why))

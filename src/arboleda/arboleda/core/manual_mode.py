@@ -14,9 +14,9 @@ NOT_TOUCHED = Phrase("teach.not_touched", "nobody touched it for {seconds:g} s")
 
 
 class ManualMode:
-    """Manual mode of one cell; `teaching` is what its teacher does, None while nobody teaches it.
+    """Manual mode of one cell; `teaching` is None while nobody teaches the cell.
 
-    `when_over` is called each time it has ended, with the reason.
+    `when_over` is called with the reason each time that a teaching has ended.
     """
 
     def __init__(self, context: Context, queue: TaskQueue) -> None:
@@ -26,7 +26,7 @@ class ManualMode:
         self.when_over: Callable[[Teaching, Sentence], None] = lambda teaching, why: None
 
     def begin(self, teaching: Teaching) -> None:
-        """Begin it: the queue pauses, and no task starts before the end of it."""
+        """Begin a teaching: the queue pauses, and no task starts before its end."""
         context = self._context
         self._queue.paused = True
         for robot in filter(context.devices.has, context.cell.zone_users):
@@ -34,14 +34,14 @@ class ManualMode:
         self.teaching = teaching
 
     def end(self, why: Sentence) -> None:
-        """End it; what moves is halted."""
+        """End the teaching, and halt what moves."""
         teaching, self.teaching = self.teaching, None
         if teaching is not None:
             teaching.end()
             self.when_over(teaching, why)
 
     def go_on(self) -> bool:
-        """Go on with what its teacher holds, or end it where nobody touches it; whether anything was done."""
+        """Go on with the button that is held, or end a forgotten teaching; True where anything was done."""
         if self.teaching is None:
             return False
         if self.teaching.is_forgotten:

@@ -1,4 +1,4 @@
-"""News of the cells: to which something happened, and of which people are told something else."""
+"""News of a step: the cells to which something happened, and the cells whose view changed."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ from collections.abc import Iterable
 
 
 class News:
-    """News of the cells, in this step.
+    """News of a step. `touched` has the cells that may have waited for an event of the step.
 
-    `touched` are those to which something happened that they may wait for, `revised` those of which anything
-    that is told may have changed. `changes` grows whenever something changed beside what robots report.
+    `revised` has the cells whose view may have changed. `changes` grows with each change other than a report.
     """
 
     def __init__(self, cells: Iterable[str]) -> None:

@@ -1,4 +1,4 @@
-"""Verbs of the operator: has each carried out by what it is about, or refuses it."""
+"""Verbs of operators: a table of who plans each verb; acts are done, journalled and followed to their end."""
 
 from __future__ import annotations
 
@@ -73,9 +73,9 @@ ACTS_TOLD = {
 
 
 class Operator:
-    """Carries out verbs wherever in their scope they can be done; refuses those that can be done nowhere.
+    """Carries out a verb wherever in its scope that can be done; refuses it where it can be done nowhere.
 
-    `table` says who does each of them: `CellByCell` in one cell after the other, anything else by its plan.
+    `table` has for each verb a `CellByCell`, which does it cell by cell, or the function that plans it.
     """
 
     def __init__(
@@ -124,7 +124,7 @@ class Operator:
         }
 
     def act(self, request: OperatorRequest) -> OperatorAct:
-        """Do it and journal it; VerbRefusal says why nothing was done."""
+        """Do what is asked, and journal it; VerbRefusal says why nothing was done."""
         scope = scope_of(request)
         do = self._planned(request, scope)
         self._doing.begin()
@@ -149,7 +149,7 @@ class Operator:
         return act
 
     def look(self) -> bool:
-        """Journal what has become of acts that devices carry out; whether one has ended."""
+        """Journal the ends of acts that devices carry out; True where one has ended."""
         news = False
         for act, entries in self.acts.ended(self._clock()):
             self._journal(act, act.ended, act.outcome)
@@ -166,7 +166,7 @@ class Operator:
         return None
 
     def _planned(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
-        """The function that carries out the request; VerbRefusal where something speaks against it."""
+        """The function that carries out the request; VerbRefusal says what speaks against it."""
         if request.arguments:
             _require_its_own(request)
         row = self.table[request.verb]
@@ -182,7 +182,7 @@ class Operator:
         return (Outcome.SENT, None) if verb.row.stops else outcome_of(self._doing.sent)
 
     def _learn(self, verb: Verb, entries: Sequence[Entry]) -> None:
-        """Note acts that devices could not do: they are advised after other ways, until they succeed."""
+        """Note acts that devices could not do: these are advised last, until they succeed."""
         for entry in entries:
             tried = (verb, entry.command.robot)
             if entry.state is State.DONE:
@@ -202,7 +202,7 @@ class Operator:
         self._dispatcher.outbox.append(entry)
 
     def _with_shared(self, verb: Verb, scope: str, did: Sentence) -> Sentence:
-        """The sentence about an act, and that the stop of one cell stopped what it shares with others."""
+        """The sentence about an act; of a cell's stop also that its shared devices stop for other cells."""
         cell = self._cells.get(scope) if verb.row.stops else None
         if cell is None or not cell.cell.shared:
             return did
@@ -213,12 +213,12 @@ class Operator:
 
 
 def arguments_of(request: OperatorRequest) -> Arguments:
-    """The arguments of a request, in the letters in which they are shown."""
+    """The arguments of a request, in the letters in which people see them."""
     return tuple((name, each.lower() if isinstance(each, str) else each) for name, each in request.arguments)
 
 
 def _require_its_own(request: OperatorRequest) -> None:
-    """VerbRefusal where a verb is told what it does not take."""
+    """VerbRefusal for an argument that the verb does not take."""
     takes = [each.name for each in request.verb.arguments]
     for name, _ in request.arguments:
         if name not in takes:

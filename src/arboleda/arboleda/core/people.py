@@ -1,4 +1,4 @@
-"""People at the plant: has their verbs carried out, and what a teacher holds; tells why not."""
+"""People at the plant: their verbs, and the buttons that a teacher holds, are carried out or refused."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class People:
         self._dispatcher.outbox.append(answer)
 
     def jog(self, jog: Jog) -> None:
-        """Take what a teacher holds; what is of no teaching, or of an earlier one, is nothing."""
+        """Take the button that a teacher holds; one of another teaching than the present is passed over."""
         run = self._cells.get(jog.cell)
         if run is None or run.manual.teaching is None or run.manual.teaching.session != jog.session:
             return

@@ -51,41 +51,40 @@ from arboleda.model.task import Order
 from arboleda.trees.context import Context
 
 from . import envelope
-from .acts import OperatorAct
+from .acts import OperatorAct, ProvokedFaults
 from .advisor import Advisor
 from .cell import CellRun
 from .cell_guard import CellGuard
 from .choosing import Prospect
 from .earlier_start import end_teaching, look_back, stop_of
-from .homing_at_start import HomingAtStart
 from .intake import Intake
 from .news import News
 from .operator import RESTART_UNWANTED, RESTART_WANTED, Operator
 from .people import People
-from .provoked import ProvokedFaults
 from .revisions import Revisions
 from .rounds import Rounds
 from .task_desk import TaskDesk
+from .verbs.homing import HomingAtStart
 from .zone_watch import ZoneWatch
 
 HEARTBEAT_S = 0.25
 AWAY = Phrase("plant.away", "the plant was away for {seconds:.1f} s")
-# A plant steps at least as often as it beats. Boards stop by themselves after 1 s without a beat, so whoever
-# was away for longer finds robots that stand, however long the plant file lets them be silent.
+# A plant steps at least at each heartbeat. Boards stop by themselves after 1 s without one. So a
+# plant that was away for longer finds robots that stand, however long its file lets robots be silent.
 SHORTEST_ABSENCE_S, LONGEST_STALL_S = 1.0, 1.5
 Request = TaskRequest | OperatorRequest
-SETTLES_IN = 3  # reports that say the same: by then it shows that a robot stands still
+SETTLES_IN = 3  # equal reports in a row, by which a robot is seen to stand still
 
 
 class Plant:
-    """All cells of a plant; `epoch` names this start and must be higher than any before.
+    """All cells of a plant. `epoch` names this start of the plant, and is higher than that of all before.
 
-    `memory` is what earlier starts had to keep: latches, effectors, zones that may be occupied; `kept` are
-    their tasks in the order of acceptance: those that have not ended, and the last that have. `recipes` stand
-    in for those of the cells; `versions` can be put to work while it runs, and whoever runs it may add to
-    them. `next_deadline` is when `step` is due again without any event, s; a plant that is stepped more than
-    `away_after_s` after its last step was away. `revisions`: by cell, a number that changes whenever anything
-    that is told of it may have, but for times, the rate of reports, and what it shares.
+    `memory` has the facts of earlier starts: latches, effectors, zones that may be occupied. `kept` has the
+    tasks of earlier starts in the order of acceptance: all that have not ended, and the last that have.
+    `recipes` replace the cells' recipes by name. `versions` are models that can be put to work while the
+    plant runs; the process that runs it may add some. `next_deadline` (s) is when `step` is due without an
+    event. A plant was away if its last step was more than `away_after_s` ago. `revisions` has a number by
+    cell, which grows whenever the cell's view may change, but for times, rates and shared devices.
     """
 
     def __init__(
@@ -101,16 +100,16 @@ class Plant:
     ) -> None:
         memory = memory or {}
         self.versions = {**(versions or {})}
-        self.restart_by = ""  # who wants a restart once all cells rest
+        self.restart_by = ""  # the person who wants a restart once all cells rest
         self.model = model
         self.epoch = epoch
         self.now = now
-        clock = partial(getattr, self, "now")  # the trees ask all the time: no call of Python's
+        clock = partial(getattr, self, "now")  # trees read it all the time: this costs no Python call
         self.intake = Intake(model, epoch)
         self.dispatcher = dispatcher = Dispatcher(model, epoch, memory)
         if memory.get(Fact.QUARANTINE):
             for belief in dispatcher.beliefs.values():
-                if belief.robot.goes:  # what it tells may be older than its last move of an earlier start
+                if belief.robot.goes:  # its first report may be older than its last move of an earlier start
                     belief.stillness.doubt(until=now + SHORTEST_ABSENCE_S)
         self.zones = Zones((*model.zones, *model.shared), memory.get(Fact.QUARANTINE, {}))
         self.cells: dict[str, CellRun] = {}
@@ -133,7 +132,9 @@ class Plant:
         self._steps = False
         self._tasks.take_back(kept)
         end_teaching(self.cells, dispatcher.memory)
-        self._first_homing = HomingAtStart(model, dispatcher.beliefs, self._operator)
+        self._first_homing = HomingAtStart(
+            model, dispatcher.beliefs, self._operator.scopes, self._operator.homing
+        )
         self._handlers: dict[type, Callable[[Any], None]] = {
             TaskRequest: self._tasks.take,
             OperatorRequest: self._people.operate,
@@ -149,7 +150,10 @@ class Plant:
         self.next_deadline = now
 
     def step(self, now: float, events: Iterable[Event]) -> list[Command | Notice]:
-        """Take in `events` in order, then deadlines up to `now` (s, never decreasing); what must go out."""
+        """Take in `events` in order, then deadlines up to `now` (s, never decreasing); return what to send.
+
+        Zones follow the events, and trees follow the zones: a tree asks for a zone by all that was heard.
+        """
         events, away_s = [*events], now - self.now
         if LateDeparture in map(type, events):
             events = self._without_late_departures(events)
@@ -158,14 +162,16 @@ class Plant:
             events = _requests_last(events, now)
         self.now, self._steps = now, True
         for event in events:
+            # Deadlines expire between events, in the order of time. So a late step, with many events at
+            # once, decides as punctual steps would have; a report that comes at a deadline is still in time.
             if event.at > self.next_deadline:
                 self._expire(math.nextafter(event.at, -math.inf))
             if isinstance(event, Report):
                 self._on_report(event)
             else:
-                for name in self._news.touched:  # whoever asks finds judged what was heard before
+                for name in self._news.touched:  # a request meets tasks as the reports before it judge them
                     self._guard.run(name, partial(look_back, self.cells[name]))
-                if not isinstance(event, TaskRequest | Jog):  # which are for the cell that takes them
+                if not isinstance(event, TaskRequest | Jog):  # those touch the cell that takes them alone
                     self._news.touched.update(self.cells)
                     self._news.revised.update(self.cells)
                 self._guard.told.clear()
@@ -191,26 +197,27 @@ class Plant:
         return out
 
     def _without_late_departures(self, events: list[Event]) -> list[Event]:
-        """The other events: what left late is due later, whatever was heard meanwhile."""
+        """The other events. A command that left late is due later, before any deadline is looked at."""
         for event in events:
             if isinstance(event, LateDeparture):
                 self.dispatcher.left_late(event.id, event.late_s)
         self.next_deadline = self._earliest()
         return [event for event in events if not isinstance(event, LateDeparture)]
 
-    def precedes_commands(self, kept: Remember | Journal | TaskChanged) -> bool:
-        """True for what has to be durable before a command leaves; not for effectors in an envelope.
+    def precedes_commands(self, notice: Remember | Journal | TaskChanged) -> bool:
+        """True for a notice that has to be durable before any command leaves.
 
-        Of a task that is its begin, with which its envelope is kept: what comes later is durable after that,
-        and who asked for it, or waits for its end, is told once it is.
+        Of a task only its begin precedes: its envelope is kept then. An effector of the envelope does not
+        precede, since after a power cut it counts as switching anyway. People hear of all other changes once
+        these are durable.
         """
-        if isinstance(kept, TaskChanged):
-            return kept.state is TaskState.RUNNING
-        if not outlives_power(kept):
+        if isinstance(notice, TaskChanged):
+            return notice.state is TaskState.RUNNING
+        if not outlives_power(notice):
             return False
-        if not isinstance(kept, Remember) or kept.fact is not Fact.EFFECTOR:
+        if not isinstance(notice, Remember) or notice.fact is not Fact.EFFECTOR:
             return True
-        return not any(kept.name in envelope.of_task(run) for run in self._runs.get(kept.name, ()))
+        return not any(notice.name in envelope.of_task(run) for run in self._runs.get(notice.name, ()))
 
     @property
     def version(self) -> int:
@@ -240,14 +247,14 @@ class Plant:
 
     @property
     def at_rest(self) -> bool:
-        """True where no command is open and no task runs, but for those that are left for the next start."""
+        """True where no command is open, and no task runs but those held for the next start."""
         runs = self.cells.values()
         ended = all(run.tree is None or (run.closed and run.state is CellState.HELD) for run in runs)
         return not self.dispatcher.ledger.entries and ended
 
     @property
     def may_restart(self) -> bool:
-        """True where a restart is wanted, and it would cut nothing short: no task, command or teaching."""
+        """True where a restart is wanted, and would cut no task, command or teaching short."""
         return (
             self.restart_by != ""
             and self.at_rest
@@ -275,7 +282,7 @@ class Plant:
 
     def _at_work(self, holder: str) -> bool:
         """True where the work of a robot, or a cell, comes to an end by itself."""
-        cell = self.cells.get(self.zones.holder(holder) or holder)  # of a shared robot that which has it
+        cell = self.cells.get(self.zones.holder(holder) or holder)  # of a shared robot the cell that holds it
         if cell is not None:
             return cell.state is CellState.EXECUTE
         executes = any(run.state is CellState.EXECUTE for run in self._runs.get(holder, ()))
@@ -292,12 +299,13 @@ class Plant:
         return min(self._next_beat, self._rounds.next_wake, self.dispatcher.next_deadline)
 
     def _come_back(self, away_s: float) -> None:
-        """Hold what was at work when the plant fell silent.
+        """Hold the cells that were at work when the plant fell silent.
 
         Robots have stopped themselves meanwhile, and people may have gone near them. So nothing that was
-        under way moves before an operator says so, and the time away does not pass for the trees.
+        under way moves before an operator says so, unless the plant file allows that. The absence counts from
+        the plant's last step: the trees' time pauses there, so no wait of a step runs out meanwhile.
         """
-        left, self.now = self.now, self.now + away_s
+        silent_since, self.now = self.now, self.now + away_s
         failure = Failure(reason=Reason.LINK_LOST, sentence=AWAY(seconds=away_s))
         self.dispatcher.outbox.append(Absence(seconds=away_s))
         self._first_homing.robots.clear()
@@ -306,7 +314,7 @@ class Plant:
         self._news.changes += 1
         for name, cell in self.cells.items():
             if cell.state is CellState.EXECUTE:
-                cell.context.time.pause(at=left)
+                cell.context.time.pause(at=silent_since)
             self._guard.run(name, partial(cell.outlast, failure))
 
     def _on_report(self, report: Report) -> None:
@@ -321,10 +329,10 @@ class Plant:
             for run in runs:
                 if is_news or run.state is not CellState.IDLE:
                     self._news.revised.add(run.cell.name)
-                    if run.state is not CellState.EXECUTE:  # what such a cell waits for shows in reports
+                    if run.state is not CellState.EXECUTE:  # such a cell waits for facts that reports show
                         self._news.touched.add(run.cell.name)
                 if report.piece is not None and run.context.sensors.awaited:
-                    run.context.sensors.awaited = False  # who goes on waiting asks again
+                    run.context.sensors.awaited = False  # a leaf that waits on sets it again
                     self.dispatcher.ledger.changed.add(run.cell.name)
             if report.robot in self._first_homing.robots:
                 self._news.revised.update(run.cell.name for run in runs)
@@ -360,17 +368,15 @@ class Plant:
 
     def _on_shutdown(self, event: Shutdown) -> None:
         self.intake.closed = True
-        self._news.changes += 1  # a cell may be held by it that had told nobody anything
+        self._news.changes += 1  # it may hold a cell without any other message
         for name, cell in self.cells.items():
             self._guard.run(name, partial(cell.close, drops_waiting=event.drops_waiting))
 
 
-def _requests_last(events: Iterable[Event], now: float) -> list[Event]:
-    """The events that a plant finds which was away, with requests of people as if they asked now.
+def _requests_last(events: Sequence[Event], now: float) -> list[Event]:
+    """The events of a plant that was away: requests come last, as if people asked now.
 
-    They ask for it of robots as they are now, so the plant hears first what those have said since.
+    People mean the robots as they stand now, so the plant hears the robots' reports first.
     """
-    found = list(events)
-    requests = [each for each in found if isinstance(each, Request)]
-    news = [each for each in found if not isinstance(each, Request)]
-    return [*news, *(replace(request, at=now) for request in requests)]
+    requests = [replace(each, at=now) for each in events if isinstance(each, Request)]
+    return [*(each for each in events if not isinstance(each, Request)), *requests]

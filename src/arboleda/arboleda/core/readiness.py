@@ -1,4 +1,4 @@
-"""Readiness of a cell: what its robots still do, hold or lack, so that no task can start."""
+"""Readiness of a cell: why none of its tasks can start, by what its robots still do, hold or lack."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ class Readiness:
         """The first thing that keeps an idle cell from starting a task; None where it is ready."""
         if busy := self.busy():
             return busy
-        found = [self._context.robots.obstacle(robot.name) for robot in self._cell.reached]
+        failures = [self._context.robots.obstacle(robot.name) for robot in self._cell.reached]
         astray = self._context.zones.astray()
-        found += [astray[1] if astray else None, self.part_in_hand()]
-        return next((failure.sentence for failure in found if failure), None)
+        failures += [astray[1] if astray else None, self.part_in_hand()]
+        return next((failure.sentence for failure in failures if failure), None)
 
     def busy(self) -> Sentence | None:
         """The command that a robot of the cell still carries out, or the question that a person has open."""

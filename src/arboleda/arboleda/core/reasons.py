@@ -1,4 +1,4 @@
-"""Reasons, for the operator, why a cell stands still, and what leads on."""
+"""Reasons why a cell stands still, and what to do about them, for operators."""
 
 from __future__ import annotations
 
@@ -52,9 +52,7 @@ def of_waiting(run: CellRun) -> Sentence | None:
 
 
 def of_hindrance(run: CellRun) -> Sentence | None:
-    """The reason why a task that came now would not start by itself after those before it; None where it
-    would.
-    """
+    """The reason why a new task would not start by itself after the tasks before it; None where it would."""
     if run.state is not CellState.EXECUTE:
         return of_waiting(run)
     if run.awaits_restart:
@@ -68,10 +66,10 @@ def of_hold(run: CellRun) -> Sentence | None:
     """The cause of a hold and what can be done about it; None where the cell is not held."""
     if run.state is not CellState.HELD:
         return None
-    name, why, ways = run.cell.name, cause_of_hold(run), _next(run)
+    name, why, next_steps = run.cell.name, cause_of_hold(run), _next(run)
     if run.stranded:
-        return HELD_STRANDED(cell=name, why=why, stranded=run.stranded, next=ways)
-    return HELD(cell=name, why=why, next=ways)
+        return HELD_STRANDED(cell=name, why=why, stranded=run.stranded, next=next_steps)
+    return HELD(cell=name, why=why, next=next_steps)
 
 
 def cause_of_hold(run: CellRun) -> Sentence:
@@ -88,15 +86,15 @@ def cause_of_stop(run: CellRun) -> Sentence:
 
 
 def of_earlier_task(run: CellRun) -> Sentence | None:
-    """The place at which this start has found a task that was at work, and what to do; None without one."""
+    """The step at which an earlier start left a task, and what to do; None without such a task."""
     if (at_work := _at_work(run)) is None:
         return None
-    found = FOUND if run.stranded is None else FOUND_STRANDED
-    return found(cell=run.cell.name, found=at_work, why=run.stranded or NOTHING)
+    phrase = FOUND if run.stranded is None else FOUND_STRANDED
+    return phrase(cell=run.cell.name, found=at_work, why=run.stranded or NOTHING)
 
 
 def _at_work(run: CellRun) -> Sentence | None:
-    """The step at which an earlier start ended, until somebody says how the task goes on."""
+    """The step at which an earlier start left the task; None once somebody said how the task goes on."""
     if run.keeping.walk is None or run.task is None:
         return None
     step = step_of(run.tree)

@@ -1,4 +1,4 @@
-"""Versions of the plant while it runs: each cell takes the one that is put to work once it rests."""
+"""Versions of the plant while it runs: each cell takes the version that was put to work once it rests."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CHANGES_TOLD = 20  # in the journal; the version has all of them
 
 
 class Revisions:
-    """Versions by digest, which can be put to work; `use` has the plant go by another model."""
+    """Versions that can be put to work, by digest; `use` makes another model that of the plant."""
 
     def __init__(
         self,
@@ -43,7 +43,7 @@ class Revisions:
         self._use = use
 
     def take(self, event: Revision) -> None:
-        """Have each cell take another version once it rests; what waits is held against it at once."""
+        """Have each cell take another version once it rests. Tasks that wait are read by it at once."""
         self._news.changes += 1
         version, number = event.version, event.version.number
         model, present = self._versions.get(version.digest), self._dispatcher.model
@@ -73,7 +73,7 @@ class Revisions:
         )
 
     def _without_unfit(self, run: CellRun, version: str) -> list[str]:
-        """Read again what waits in a cell for this version; the ids of those that end by it."""
+        """Read the tasks that wait in a cell by this version; the ids of tasks that it does not take."""
         unfit = []
         for task in [*run.queue]:
             try:
@@ -84,7 +84,7 @@ class Revisions:
         return unfit
 
     def _taken(self, taken: NextVersion) -> None:
-        """Go by another version of a cell, which it has taken now."""
+        """Go by the version that a cell has just taken."""
         name, present = taken.cell.name, self._dispatcher.model
         cells = tuple(taken.cell if cell.name == name else cell for cell in present.cells)
         self._use(replace(present, cells=cells))
@@ -94,10 +94,10 @@ class Revisions:
 
 
 def _put_to_work(event: Revision) -> Journal:
-    """The entry of the journal about a version that is put to work."""
+    """The journal's entry about a version that is put to work."""
     lines = tuple(map(plain, event.changes[:CHANGES_TOLD]))
-    left = len(event.changes) - len(lines)
-    changes = (*lines, *((f"... ({left})",) if left else ())) or ("-",)
+    untold = len(event.changes) - len(lines)
+    changes = (*lines, *((f"... ({untold})",) if untold else ())) or ("-",)
     by = plain(event.by) or "-"
     sentence = PUT_TO_WORK(number=event.version.number, by=by, changes=changes)
     return Journal(verb=None, scope="", cell=None, sentence=sentence)

@@ -1,4 +1,4 @@
-"""Rounds over the cells in a step: each does what it can, again while that makes others do more."""
+"""Rounds over the cells in a step: each cell does what it can, until no cell has given another more to do."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .earlier_start import trail_of
 from .news import News
 from .zone_watch import ZoneWatch
 
-ROUND_BOUND = 100  # rounds over the cells in one step; more means cells that never leave each other in peace
+ROUND_BOUND = 100  # rounds in one step; more means cells that wake each other for ever
 
 
 class Rounds:
@@ -42,9 +42,9 @@ class Rounds:
         self._wakes: dict[str, float] = {}  # by cell
 
     def go(self, now: float) -> None:
-        """Let the cells to which something happened do what they can, again while that makes them do more."""
+        """Let each cell to which something happened do what it can, round after round until none does."""
         ledger, news = self._dispatcher.ledger, self._news
-        soon = math.nextafter(now, math.inf)  # after a hold, rounding may bring a wake so much earlier
+        soon = math.nextafter(now, math.inf)  # a wake after a hold may be earlier by one rounding
         if self.next_wake <= soon:
             woken = [name for name, at in self._wakes.items() if at <= soon]
             news.touched.update(woken)
@@ -73,10 +73,11 @@ class Rounds:
             self._guard.break_down(name, ArboledaError(restless))
 
     def keep_trail(self, run: CellRun, before: int) -> None:
-        """Have it kept where a cell's task stands, before any command of what is newer in the outbox leaves,
-        and before anybody hears that the task runs.
+        """Put the trail of a cell's task into the outbox, before each command there from index `before` on.
 
-        It says of steps that they are done, so what those have left behind is kept before it.
+        A restart has to know the step of each command that has left, so the trail precedes commands, and the
+        word that the task runs. The trail says which steps are done, so the facts that those steps changed
+        precede the trail. A stop waits for no trail: stops leave before anything of their step is kept.
         """
         text = trail_of(run)
         if text is None or run.task is None:
@@ -93,7 +94,7 @@ class Rounds:
         outbox += others
 
     def _advanced(self, name: str, *, woken: bool) -> bool:
-        """Let a cell do what it can; whether it did."""
+        """Let a cell do what it can; True where it did anything."""
         before = len(self._dispatcher.outbox)
         try:
             did = advance(self._cells[name], woken=woken)
@@ -113,12 +114,12 @@ class Rounds:
 
 
 def _waits(message: Command | Notice, task: Task) -> bool:
-    """True for a command, and for the word that a task runs."""
+    """True for a message that waits for the trail: a command but a stop, and the word that the task runs."""
     if isinstance(message, TaskChanged):
         return message.task == task.id and message.state is TaskState.RUNNING
     return isinstance(message, Command) and not isinstance(message, Stop)
 
 
 def _is_fact(message: Command | Notice) -> bool:
-    """True for a fact, but for that a task stands nowhere any more: that is told after its end."""
+    """True for a fact, but not for the removal of a trail: that follows the end of its task."""
     return isinstance(message, Remember) and not (message.fact is Fact.STEP and message.value is None)

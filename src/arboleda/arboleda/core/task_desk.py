@@ -1,4 +1,4 @@
-"""Desk for tasks: accepts or refuses what is asked for, and tells of each change of a task."""
+"""Desk for tasks: accepts or refuses requests, and tells of each change of a task."""
 
 from __future__ import annotations
 
@@ -49,10 +49,10 @@ class TaskDesk:
         self._news = news
         self._clock = clock
 
-    def take_back(self, kept: Iterable[KeptTask]) -> None:
-        """Queue again what waited when an earlier start ended, and hold what was at work then at its step."""
+    def take_back(self, records: Iterable[KeptTask]) -> None:
+        """Queue the tasks that waited when an earlier start ended, and hold those at work at their steps."""
         now, memory = self._clock(), self._dispatcher.memory
-        tasks = [(each.state, self._intake.take_back(each, now)) for each in kept]
+        tasks = [(each.state, self._intake.take_back(each, now)) for each in records]
         for name, run in self._cells.items():
             own = [task for _, task in tasks if task.order.cell == name]
             waiting = [task for task in own if task.state is TaskState.QUEUED]
@@ -62,18 +62,18 @@ class TaskDesk:
                 trail = memory.value(Fact.STEP, task.id)
                 if trail is not None and run.task is None and run.state is CellState.IDLE:
                     walk_back(run, task, trail)
-        known = {run.task for run in self._cells.values()}
+        at_work_here = {run.task for run in self._cells.values()}
         for was, task in tasks:
-            if task.state is TaskState.RUNNING and task not in known:
+            if task.state is TaskState.RUNNING and task not in at_work_here:
                 task.fail(Failure(reason=Reason.INTERRUPTED, sentence=CUT_OFF()))
                 task.become(TaskState.FAILED, now)
             if task.state is not was:
                 self.tell(task)
-        for id in memory.names(Fact.STEP) - {task.id for task in known if task}:
+        for id in memory.names(Fact.STEP) - {task.id for task in at_work_here if task}:
             memory.remember(Fact.STEP, id, None)
 
     def take(self, request: TaskRequest) -> None:
-        """Accept what is asked for, or refuse it."""
+        """Accept a request for a task, or refuse it."""
         try:
             if request.kept is not None:
                 self._intake.recall(request.kept)

@@ -22,8 +22,9 @@ LEFT_OVER_ONE = Phrase(
 
 
 class TaskQueue(deque[Task]):
-    """Tasks in the order of acceptance. While `paused` none of them starts; `left_over`: tasks of an earlier
-    start wait, since nobody said `resume`.
+    """Tasks in the order of acceptance. None starts while the queue is `paused`.
+
+    `left_over`: it is paused since tasks of an earlier start wait, and nobody said `resume` yet.
     """
 
     def __init__(self, cell: Cell) -> None:
@@ -33,7 +34,7 @@ class TaskQueue(deque[Task]):
         self._cell = cell
 
     def revise(self, cell: Cell) -> None:
-        """Go by another version of the cell from now on; what waits stays, be it more than its limit."""
+        """Go by another version of the cell from now on; tasks that wait stay, also above its limit."""
         self._cell = cell
 
     @property
@@ -64,14 +65,14 @@ class TaskQueue(deque[Task]):
         self.append(task)
 
     def take_back(self, waiting: Sequence[Task], *, cut_off: bool) -> None:
-        """Take the tasks that waited here when an earlier start ended, be they more than the limit.
+        """Take the tasks that waited here when an earlier start ended, also above the limit.
 
-        They start once somebody says so, or where the cell goes on by itself and none was cut off at work.
+        They start once somebody says `resume`; at once where the plant file says so and none was cut off.
         """
         self.extend(waiting)
         if waiting and (cut_off or not self._cell.goes_on):
             self.paused = self.left_over = True
 
     def resume(self) -> None:
-        """Let its tasks start."""
+        """Let the tasks start."""
         self.paused = self.left_over = False

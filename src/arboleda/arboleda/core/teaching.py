@@ -1,4 +1,4 @@
-"""Teaching of one cell: who does it, the button that is held, and the short goals that follow from that."""
+"""Teaching of one cell: the button that a teacher holds becomes short moves, which end with it."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from arboleda.model.sentence import OWN, Phrase, Sentence, as_sentence
 from arboleda.trees.context import Context
 
 HOLD_S = 0.2
-"""For so long a button counts as held after the plant was told so last."""
+"""A button counts as held for so long after the plant was last told so."""
 FRESH_S = 0.12
-"""For so long the next short goal follows the one before; after that the plant waits to be told again."""
+"""Short goals follow each other for so long after the plant was last told; then it waits to be told again."""
 HOME = "home"
 DOING = Phrase("doing.teach", "being taught by {teacher}")
 TAUGHT = Phrase("cell.taught", "{cell} is being taught by {teacher}; automatic {cell} ends that")
@@ -37,24 +37,22 @@ LET_GO_OF = Phrase("teach.let_go_of", "{robot} was halted: the button is not hel
 
 @dataclass(kw_only=True)
 class Press:
-    """Button that is held, `until` s of the plant's time unless that is said again; `entry` is its last
-    command.
-    """
+    """Button that is held, until `until` s of the plant's time; `entry` is its last command."""
 
     jog: Jog
     until: float
     entry: Entry | None = None
 
     def hold(self, jog: Jog) -> None:
-        """It is held on; of one button the goal may change, and nothing else."""
+        """Hold it on. The goal of a button may change, and nothing else."""
         if (jog.robot, jog.word, jog.values) == (self.jog.robot, self.jog.word, self.jog.values):
             self.jog, self.until = jog, max(self.until, jog.at + HOLD_S)
 
 
 class Teaching:
-    """Manual mode of one cell, `session` by its number: no task runs, and nothing moves but what is held.
+    """Manual mode of one cell: no task runs, and nothing moves but by the button that is held.
 
-    `trouble` is why the last press has come to nothing, or to its end too early.
+    `session` is its number. `trouble` is why the last press moved nothing, or ended too early.
     """
 
     def __init__(self, context: Context, *, session: int, teacher: str) -> None:
@@ -65,11 +63,11 @@ class Teaching:
         self._context = context
         self._press: Press | None = None
         self._halting: Entry | None = None  # the last command of the press before
-        self._over = 0  # presses up to this number are over, whatever is said of them later
+        self._over = 0  # presses up to this number are over, even if a late message says more of them
 
     @property
     def due(self) -> float:
-        """The time at which it is to be looked at although nothing happens, s of the plant's time."""
+        """The time at which `look` is due without an event, s of the plant's time."""
         ends_at = self._touched_at + self._context.cell.teach.ends_after_s
         return ends_at if self._press is None else min(ends_at, self._press.until)
 
@@ -80,7 +78,7 @@ class Teaching:
 
     @property
     def is_forgotten(self) -> bool:
-        """True once nobody has touched it for so long that it ends."""
+        """True once nobody has touched a button for so long that the teaching ends."""
         return self._context.time.plant_now >= self._touched_at + self._context.cell.teach.ends_after_s
 
     @property
@@ -89,27 +87,25 @@ class Teaching:
         return None if self._press is None else self._press.jog
 
     def refusal(self, jog: Jog) -> Sentence | None:
-        """The reason for which nothing would come of a new press; None where it can begin, and of one that is
-        known already.
-        """
+        """The reason why a new press would move nothing; None where it can begin, or was taken before."""
         is_new = jog.number > self._over and (self._press is None or jog.number != self._press.jog.number)
         why = self.objection(jog) if is_new else None
         return None if why is None or self._context.commands.may_come_to_rest(jog.robot) else why
 
     def objection(self, jog: Jog) -> Sentence | None:
-        """The reason for which nothing would come of a press now; None where it can begin."""
+        """The reason why a press would move nothing now; None where it can begin."""
         cell = self._context.cell
         robot = next((each for each in cell.reached if each.name == jog.robot and not each.is_person), None)
         if robot is None:
-            known = tuple(each.name for each in cell.reached if not each.is_person)
-            return NOT_OF_CELL(robot=quoted(jog.robot), cell=cell.name, known=known)
+            names = tuple(each.name for each in cell.reached if not each.is_person)
+            return NOT_OF_CELL(robot=quoted(jog.robot), cell=cell.name, known=names)
         try:
             return self._objection(robot, jog)
         except ArboledaError as error:
             return as_sentence(error)
 
     def take(self, jog: Jog) -> bool:
-        """Take what is said of a button; whether that changes anything."""
+        """Take a message about a button; True where it changes anything."""
         self._touched_at = jog.at
         held = self._press
         if held is not None and jog.at > held.until:
@@ -128,7 +124,7 @@ class Teaching:
         return True
 
     def look(self) -> bool:
-        """Go on with what is held, or halt what is not held any more; whether anything was done."""
+        """Go on with the button that is held, or halt after one that is not; True where anything was done."""
         press = self._press
         if press is None:
             return False
@@ -140,14 +136,14 @@ class Teaching:
         return self._go_on(press)
 
     def end(self) -> None:
-        """Halt what moves; nothing more is taken."""
+        """Halt what moves, and take no press any more."""
         if self._press is not None:
             self._end_press(None)
         self._over = 2**63
 
     @property
     def _is_under_way(self) -> bool:
-        """True while a command of this press, or of the one before, has not ended."""
+        """True while a command of this press, or of the press before, has not ended."""
         entries = (self._halting, None if self._press is None else self._press.entry)
         return any(each is not None and each.open for each in entries)
 
@@ -161,10 +157,10 @@ class Teaching:
         if self._is_under_way:  # it is halted first, and then looked at again
             return None
         if robot.name in self._context.cell.shared and self._context.devices.holder(robot.name) is None:
-            found = self._context.robots.obstacle(robot.name)
+            obstacle = self._context.robots.obstacle(robot.name)
         else:
-            found = self._context.commands.objection(make)
-        return None if found is None else found.sentence
+            obstacle = self._context.commands.objection(make)
+        return None if obstacle is None else obstacle.sentence
 
     def _out_of_reach(self, robot: Robot, jog: Jog) -> Sentence | None:
         if jog.word == HOME and not self._context.robots.homes_by_routine(robot.name):
@@ -191,11 +187,11 @@ class Teaching:
             return partial(robot.verb_command, jog.word, jog.values)
         here, teach = self._context.robots.position(robot.name), self._context.cell.teach
         assert here is not None and jog.goal is not None
-        way = robot.motion.stride(here, jog.goal, turn=teach.turn, slide=teach.slide)
-        return partial(robot.go, way=way)
+        stride = robot.motion.stride(here, jog.goal, turn=teach.turn, slide=teach.slide)
+        return partial(robot.go, way=stride)
 
     def _go_on(self, press: Press) -> bool:
-        """Give the next command of a press, or find it at its end."""
+        """Give the next command of a press, or end the press."""
         ended, press.entry, self._halting = press.entry, None, None
         jog = press.jog
         if ended is not None and ended.failure is not None and not ended.too_early:
@@ -210,7 +206,7 @@ class Teaching:
         self._take_hold_of(robot)
         press.entry = self._context.commands.send(self._make(robot, jog), DOING(teacher=self.teacher))
         if not _is_halted(press.entry.command):
-            press.until = math.inf  # it comes to its own end, whoever waits for that
+            press.until = math.inf  # the command ends by itself, whether the button is held or not
         return True
 
     def _take_hold_of(self, robot: Robot) -> None:

@@ -1,4 +1,4 @@
-"""Watch over zones and shared devices: who is in them, by what is heard, and who gives them back."""
+"""Watch over zones and shared devices: which robots reports show in them, and when they are given back."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from .cell_guard import CellGuard
 
 
 class ZoneWatch:
-    """Watch over the zones of a plant; `interlocked` are the devices that may occupy some, with their cell.
+    """Watch over the zones of a plant.
 
-    Of what cells share that is the first of them.
+    `interlocked` has each device that may occupy zones, with its cell; a shared device with its first cell.
     """
 
     def __init__(
@@ -34,15 +34,15 @@ class ZoneWatch:
         self._guard = guard
 
     def follow_interlocks(self) -> None:
-        """Have devices occupy and leave zones as they say how they stand."""
+        """Have devices occupy and leave zones as their reports say."""
         for run, device in self.interlocked:
             self._guard.run(run.cell.name, partial(run.context.zones.follow, device))
 
     def look(self) -> None:
-        """Look who is in zones, and has shared devices."""
+        """Quarantine or give back the zones of robots, then shared devices."""
         inside = self._zones.robots
         for name, cell in self._cells.items() if inside else ():
-            # One that cells share may have homed for a cell without zones, and held those of another.
+            # A shared robot may home for a cell without zones, and holds those of its other cells meanwhile.
             movers = filter(cell.context.devices.answers_for, cell.cell.workspaces)
             machines = filterfalse(cell.context.devices.is_lent, cell.cell.interlocked)
             for robot in (*movers, *machines):
@@ -51,21 +51,22 @@ class ZoneWatch:
         self.give_back_shared()
 
     def give_back_shared(self) -> None:
-        """Give back the shared devices that an idle cell still holds; it keeps those that are silent."""
+        """Give back shared devices that idle cells hold; a silent device stays with its cell."""
         for device in self._dispatcher.model.shared:
             holder = self._cells.get(self._zones.holder(device) or "")
             if holder is not None:
-                # a cell that is held, stopped or taught keeps what it has
+                # a cell that is held, stopped or taught keeps its devices
                 ended = holder.state is CellState.IDLE and holder.manual.teaching is None
                 keep = partial(holder.context.devices.keep, device, ended=ended)
                 self._guard.run(holder.cell.name, keep)
 
     def _look_at(self, cell: CellRun, robot: str) -> None:
-        """A robot that is not heard may still be where it was; one that is seen outside is not."""
+        """Quarantine the zones of a robot whose place is unknown: it may still be in them.
+
+        Others are given back once no step of the cell's task can need them, and the robot is seen outside.
+        """
         belief = self._dispatcher.beliefs[robot]
         if not belief.online or belief.unhomed:
             self._zones.quarantine(robot)
-        elif cell.manual.teaching is None and (
-            cell.tree is None or cell.stranded
-        ):  # no step of it needs them any more
+        elif cell.manual.teaching is None and (cell.tree is None or cell.stranded):
             cell.context.zones.leave(robot)

@@ -1,4 +1,4 @@
-"""Belief about one robot, merged from its reports."""
+"""Belief about one robot, merged from its reports; and what troubles keep it from commands."""
 
 from __future__ import annotations
 
@@ -13,11 +13,30 @@ from arboleda.model.messages import BUILT_IN, Failure, MotionState, Reason, Rece
 from arboleda.model.plant_model import Evidence, Link, Robot
 from arboleda.model.sentence import OWN, Phrase, Sentence
 
-from .report_rate import RATE_S, ReportRate
 from .stillness import Stillness
 
+RATE_S = 2.0  # the rate of reports is counted over at least this long
 MERGED = ("epoch", "boot_id", "state", "q", "node", "homed", "effector", "piece", "receipt")
 _merged = attrgetter(*MERGED)
+
+
+class ReportRate:
+    """Rate of a robot's reports: `hz` is None until it was counted, `since` when it was counted last."""
+
+    def __init__(self) -> None:
+        self.hz: float | None = None
+        self.since = 0.0
+        self._reports = 0
+
+    def count(self, at: float, reports: int, *, online: bool) -> None:
+        """Take the number of the last report, where the rate is due to be counted."""
+        if reports == 1 or not online:
+            self.hz = None
+        elif at - self.since < RATE_S:
+            return
+        else:
+            self.hz = (reports - self._reports) / (at - self.since)
+        self.since, self._reports = at, reports
 
 
 @cache
@@ -37,11 +56,11 @@ def _fact_under(name: str | None) -> Callable[[Report | Belief], Value | None]:
 
 
 class Belief:
-    """The last word of a robot on everything it reports; None means it never said.
+    """The last values that a robot reported; None for what it never reported.
 
-    `supervised`: whether silence means anything; a robot at `state` speaks only when it moves.
-    `stale_at`: when silence will have lasted too long; None where that cannot happen (again).
-    `barred`: a command was refused because of a stop which it does not tell: it has none, or did not hear it.
+    `supervised`: silence means a lost link; a robot at `state` only reports when it moves, so its does not.
+    `stale_at` is when it will have been silent for too long; None for a robot that cannot fall silent.
+    `barred`: it refused a command for a stop that it does not report, and has not restarted its bridge since.
     """
 
     def __init__(self, robot: Robot, stale_after_s: float, plant_epoch: int) -> None:
@@ -49,11 +68,11 @@ class Belief:
         self.stale_after_s = stale_after_s
         self.plant_epoch = plant_epoch
         self.supervised = robot.evidence is not Evidence.STATE and robot.link is not Link.SCREEN
-        self.position_in = _position_under(robot.position_key)  # of a report, or of this
-        self.held_in = _fact_under(robot.held_fact)  # likewise: whether it holds something
+        self.position_in = _position_under(robot.position_key)  # of a report, or of a belief
+        self.held_in = _fact_under(robot.held_fact)  # of the same: True where it holds something
         self.drawn = robot.link is Link.NONE
         tells = robot.goes or robot.fact_names
-        self._comes_apart = bool(tells) and robot.evidence is Evidence.JOINTS  # from its state
+        self._comes_apart = bool(tells) and robot.evidence is Evidence.JOINTS  # its place and its state
         self.heard_at: float | None = None
         self.stale = False
         self.stale_at: float | None = None
@@ -67,7 +86,7 @@ class Belief:
         self.node: int | None = None
         self.position: Position | None = None
         self.reports = 0
-        self.repeats = 0  # of them, since the last that said something else
+        self.repeats = 0  # reports since the last that said something else
         self.rate = ReportRate()
         self.stillness = Stillness(robot, supervised=self.supervised)
         self.piece_at = 0.0
@@ -76,21 +95,21 @@ class Belief:
         self.barred = False
         self.homed: bool | None = None
         self.effector: bool | None = None
-        self.held_boot: int | None = None  # the boot in which it said whether it holds something
+        self.held_boot: int | None = None  # the boot in which it last said if it holds something
         self.piece: bool | None = None
-        self.piece_boot: int | None = None  # the boot in which it said whether a piece is there
+        self.piece_boot: int | None = None  # the boot in which it last said if a piece is there
         self.receipt: Receipt | None = None
         self.tokens: Tokens | None = None  # of the commands in `receipt`
         self.facts: dict[str, Value] = {}
         self.lost: Sentence | None = None  # why there is no link
-        self.facts_no = 0  # the report that changed one of them last
+        self.facts_no = 0  # the number of the last report that changed a fact
         self._last_words: tuple[object, ...] = ()  # the words of the last report
 
     @property
     def numbers_commands(self) -> bool:
         """True where its board numbers the commands that it takes, and has reported its boot.
 
-        A board on MQTT always does; of anything else only the numbers themselves show it.
+        A board on MQTT always numbers them. Any other device has to have reported such numbers.
         """
         if self.robot.evidence is not Evidence.IDS or self.boot_id is None:
             return False
@@ -103,12 +122,12 @@ class Belief:
         return reported or self.robot.piece_on_change
 
     def fact(self, name: str) -> Value | None:
-        """The last word on a fact; None where there was none."""
+        """The last value of a fact; None where it was never reported."""
         value: Value | None = getattr(self, name) if name in BUILT_IN else self.facts.get(name)
         return value
 
     def hear_again(self, report: Report) -> bool:
-        """Take over a report that only repeats what an online robot said last; False: it is to be merged."""
+        """Take over a report that repeats the last one of an online robot; False where it is to be merged."""
         if not self.online or report.at < self.stillness.position_at or report.words != self._last_words:
             return False
         self.repeats += 1
@@ -126,16 +145,16 @@ class Belief:
         return True
 
     def merge(self, report: Report) -> None:
-        """Take over what the report says; what it leaves out stays."""
+        """Take over the values of a report; a value that it leaves out stays."""
         self.repeats = 0
         self._hear(report)
         if report.epoch is not None and report.epoch != self.epoch:
-            self.barred = False  # a bridge that restarted knows of no stop
+            self.barred = False  # a bridge that restarted has forgotten the stop
         for name, value in zip(MERGED, _merged(report), strict=True):
             if value is not None:
                 setattr(self, name, value)
         if report.receipt is not None:
-            self.tokens = report.tokens  # of these very numbers
+            self.tokens = report.tokens  # None too: tokens belong to the numbers of one report
         if report.facts:
             self._merge_facts(report.facts)
         self.position = self.position_in(self)
@@ -155,7 +174,7 @@ class Belief:
             self.facts_no = self.reports
 
     def fall_silent(self) -> None:
-        """Silence has lasted too long."""
+        """Note that it has been silent for too long."""
         self.stale = True
         self.stale_at = None
         self.online = False
@@ -166,7 +185,7 @@ class Belief:
         return self.heard_at is not None or not self.supervised
 
     def _hear(self, report: Report) -> None:
-        """Take over when it spoke; their numbers keep "since" from hanging on two clocks."""
+        """Take over when and where it was heard; reports are numbered, as two may come at one time."""
         self.reports += 1
         if report.number is not None:
             self.number = report.number
@@ -184,12 +203,12 @@ class Belief:
 
     @property
     def moves(self) -> bool:
-        """True while nothing but its moving keeps it from a command."""
+        """True while only its motion keeps it from a command."""
         return self.trouble is MOVING
 
     @property
     def answered(self) -> bool:
-        """True where our bridge reports that it hears this plant; without our bridge nobody reports it."""
+        """True where its bridge reports that it hears this plant, or where it has no bridge of ours."""
         return self.plant == self.plant_epoch or self.epoch is None or self.robot.link is Link.ROS
 
     @property
@@ -230,20 +249,24 @@ class Belief:
         return trouble.failure(self.robot.name, was=was)
 
     def obstacle_besides_stop(self, *, was: bool = False) -> Failure | None:
-        """The same for what a stop does not forbid; being stopped hides that a robot is not homed."""
+        """The reason why it takes no command that a stop allows: not homed, where a stop hides that."""
         trouble = self.trouble
         if trouble is STOPPED:
             trouble = UNHOMED if self.unhomed else None
         return None if trouble is None else trouble.failure(self.robot.name, was=was)
 
-    def _unanswered(self) -> Trouble:
-        """The reason why its bridge takes no command: it has not heard this plant, or obeys a later one."""
+    def _unanswered(self) -> RobotTrouble:
+        """The trouble of a bridge that obeys another start of the plant.
+
+        A bridge obeys the latest start that it has heard, so that an old plant which comes back moves
+        nothing.
+        """
         if self.plant is None or self.plant < self.plant_epoch:
             return UNANSWERED
         return FENCED._replace(more={"obeyed": self.plant, "ours": self.plant_epoch})
 
-    def _unreached(self) -> Trouble:
-        """The reason why the robot is not heard, if anybody has told one."""
+    def _unreached(self) -> RobotTrouble:
+        """The trouble of a robot that is not heard, with the reason where one was reported."""
         if self.lost is not None:
             return LOST._replace(more={"why": self.lost})
         return OFFLINE if self.heard_at is not None else UNHEARD
@@ -263,7 +286,7 @@ class Belief:
         return unhomed or self.is_cleared_by_homing
 
     @property
-    def trouble(self) -> Trouble | None:
+    def trouble(self) -> RobotTrouble | None:
         """The first trouble that keeps it from a command; None where it is ready."""
         if self.drawn:
             return DRAWN
@@ -279,8 +302,8 @@ class Belief:
         return UNHOMED if self.unhomed and (trouble is None or trouble is MOVING) else trouble
 
 
-class Trouble(NamedTuple):
-    """Trouble of a robot: its sentence while it lasts, and another one that stays true afterwards."""
+class RobotTrouble(NamedTuple):
+    """Trouble of a robot: `phrase` while it lasts, and `was`, which stays true afterwards."""
 
     reason: Reason
     phrase: Phrase
@@ -288,12 +311,12 @@ class Trouble(NamedTuple):
     more: Mapping[str, int | Sentence] = {}
 
     def failure(self, robot: str, *, was: bool) -> Failure:
-        """It as a failure of a command; `was`: in words that stay true."""
+        """The trouble as the failure of a command; `was`: in words that stay true."""
         sentence = self.was if was else self.phrase
         return Failure(reason=self.reason, sentence=sentence(robot=robot, **self.more))
 
 
-FENCED = Trouble(
+FENCED = RobotTrouble(
     Reason.LINK_LOST,
     Phrase(
         "robot.fenced",
@@ -306,53 +329,53 @@ FENCED = Trouble(
     ),
 )
 ONLY_DRAWN = Phrase("robot.only_drawn", "{robot} is only drawn (link: none)")
-DRAWN = Trouble(Reason.LINK_LOST, ONLY_DRAWN, ONLY_DRAWN)
-OFFLINE = Trouble(
+DRAWN = RobotTrouble(Reason.LINK_LOST, ONLY_DRAWN, ONLY_DRAWN)
+OFFLINE = RobotTrouble(
     Reason.LINK_LOST,
     Phrase("robot.offline", "{robot} is offline"),
     Phrase("robot.was_lost", "{robot} was lost"),
 )
-LOST = Trouble(
+LOST = RobotTrouble(
     Reason.LINK_LOST,
     Phrase("robot.lost", "{robot} is offline: {why}"),
     Phrase("robot.was_lost_because", "{robot} was offline: {why}"),
 )
-UNHEARD = Trouble(
+UNHEARD = RobotTrouble(
     Reason.LINK_LOST,
     Phrase("robot.unheard", "{robot} was not heard yet"),
     Phrase("robot.was_unheard", "{robot} had not been heard yet"),
 )
-UNANSWERED = Trouble(
+UNANSWERED = RobotTrouble(
     Reason.LINK_LOST,
     Phrase("robot.unanswered", "{robot} has a bridge that does not hear this plant yet"),
     Phrase("robot.was_unanswered", "{robot} had a bridge that did not hear this plant yet"),
 )
-UNHOMED = Trouble(
+UNHOMED = RobotTrouble(
     Reason.NOT_HOMED,
     Phrase("robot.not_homed", "{robot} is not homed"),
     Phrase("robot.was_not_homed", "{robot} was not homed"),
 )
-MOVING = Trouble(
+MOVING = RobotTrouble(
     Reason.REJECTED,
     Phrase("robot.moving", "{robot} is still moving"),
     Phrase("robot.was_moving", "{robot} was still moving"),
 )
-STOPPED = Trouble(
+STOPPED = RobotTrouble(
     Reason.STOPPED,
     Phrase("robot.stopped", "{robot} is stopped (latched)"),
     Phrase("robot.was_stopped", "{robot} was stopped (latched)"),
 )
-FAULTY = Trouble(
+FAULTY = RobotTrouble(
     Reason.DEVICE_FAULT,
     Phrase("robot.in_fault", "{robot} is in fault"),
     Phrase("robot.was_in_fault", "{robot} was in fault"),
 )
-FAULTY_BECAUSE = Trouble(
+FAULTY_BECAUSE = RobotTrouble(
     Reason.DEVICE_FAULT,
     Phrase("robot.in_fault_because", "{robot} is in fault: {why}"),
     Phrase("robot.was_in_fault_because", "{robot} was in fault: {why}"),
 )
-TROUBLES: dict[MotionState | None, Trouble] = {
+TROUBLES: dict[MotionState | None, RobotTrouble] = {
     MotionState.MOVING: MOVING,
     MotionState.FAULT: FAULTY,
     MotionState.STOP_LATCHED: STOPPED,

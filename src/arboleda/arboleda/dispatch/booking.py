@@ -1,4 +1,4 @@
-"""Booking of what ends commands: feeds the ledger, and does what follows for their robots."""
+"""Booking of verdicts on commands: feeds the ledger, and does what follows for their robots."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from arboleda.model.sentence import BOTH, Phrase, Sentence
 
 from .belief import Belief
 from .effectors import Effectors
-from .evidence import Verdict
+from .evidence import CommandVerdict
 from .ledger import Entry, Feed, Ledger, State
 from .outlet import Outlet
 from .time_limits import TimeLimits
@@ -23,15 +23,15 @@ NOT_STOPPED = Phrase(
     "command.not_stopped", "{robot}: did not confirm that it stopped within {seconds:.1f} s while {doing}"
 )
 BROKEN_OFF = frozenset({Reason.LINK_LOST, Reason.REBOOTED, Reason.STOPPED, Reason.CANCELLED, Reason.INTERNAL})
-"""What befell a command that its device might have carried out."""
+"""Reasons from outside, for which a command failed that its device might have carried out."""
 KNOWN_STILL = frozenset({Reason.STOPPED_SHORT, Reason.NOT_REACHED, Reason.STOPPED})
 
 
 class Booking:
-    """Booking of what ends commands.
+    """Booking of verdicts on commands.
 
-    `doubtful` has, by robot, the facts that a command was to set which has failed: what is reported of them
-    may be old. `rejected` says how often a robot refused a command, and the last time why.
+    `doubtful` has, by robot, the facts that a failed command was to set: their next reports may be too old.
+    `rejected` says how often a robot refused a command, and why it did so last.
     """
 
     def __init__(
@@ -57,8 +57,8 @@ class Booking:
         self._whereabouts = whereabouts
         self._limits = limits
 
-    def book(self, entry: Entry, verdict: Verdict, now: float) -> None:
-        """Feed the ledger; a motion that failed and may still be under way is halted."""
+    def book(self, entry: Entry, verdict: CommandVerdict, now: float) -> None:
+        """Feed the ledger with a verdict, and halt a robot whose motion failed and may still be under way."""
         before = entry.state
         entry.answer = verdict.answer
         self._ledger.feed(entry.command.id, verdict.feed, now, _explained(entry, verdict.failure))
@@ -81,29 +81,29 @@ class Booking:
             self._outlet.stop(entry.command.robot, StopMode.HALT)
 
     def end_overdue(self, entry: Entry, now: float) -> None:
-        """Book the end of a command whose time is over: done, where it needs no answer, else failed."""
+        """Book the end of a command whose time is over: done where it needs no report, else failed."""
         verdict = _overdue(entry)
         entry.settled = verdict.feed is Feed.DONE
         self.book(entry, verdict, now)
 
     def give_up(self, cell: str, failure: Failure, now: float) -> None:
-        """Fail every open command of a cell, and halt what moves: nobody can judge them any more."""
+        """Fail every open command of a cell, and halt what moves, since nobody judges them any more."""
         for entry in self._ledger.of_cell(cell):
-            self.book(entry, Verdict(feed=Feed.FAILED, failure=failure), now)
+            self.book(entry, CommandVerdict(feed=Feed.FAILED, failure=failure), now)
 
     def undelivered(self, id: str, robot: str, sentence: Sentence, now: float) -> None:
-        """Fail a command that could not leave this process; one that was being cancelled has ended so."""
+        """Fail a command that could not leave this process; one that was being cancelled is cancelled."""
         failure = Failure(reason=Reason.LINK_LOST, sentence=sentence)
         for entry in self._ledger.of_robot(robot):
             if entry.command.id == id:
                 self._effectors.grips.will_not_open(robot, id)
                 feed = Feed.HALTED if entry.state is State.CANCELLING else Feed.FAILED
-                self.book(entry, Verdict(feed=feed, failure=failure), now)
+                self.book(entry, CommandVerdict(feed=feed, failure=failure), now)
 
-    def _expect_late(self, entry: Entry, verdict: Verdict, now: float) -> None:
-        """Expect a command that is over for the plant, where its device may still carry it out.
+    def _expect_late(self, entry: Entry, verdict: CommandVerdict, now: float) -> None:
+        """Expect that a device may still carry out a command that is over for the plant.
 
-        Reports of before it came show its device at rest. Where it is halted, its halt comes after it.
+        Reports from before the command came show the device at rest, so they prove nothing of it.
         """
         lasts_s = 0.0 if _ended_by_boot(verdict) else _arrives_s(entry, now)
         if entry.state is State.FAILED and _may_go_on(entry, verdict):
@@ -112,7 +112,7 @@ class Booking:
             self._unfinished.expect(entry.command, lasts_s, now)
 
     def _doubt(self, entry: Entry) -> None:
-        """Take what is reported of the facts of a failed command for old, until another of them is done."""
+        """Take reports of the facts of a failed command for too old, until a later command has set them."""
         if entry.sets:
             facts = self.doubtful.setdefault(entry.command.robot, set())
             facts.update(name for name, _ in entry.sets)
@@ -140,26 +140,26 @@ class Booking:
 
 
 def was_broken_off(entry: Entry) -> bool:
-    """True for a command that failed by something from outside, or was halted: not by its device."""
+    """True for a command that was halted, or failed for a reason outside of its device."""
     return entry.failure is None or entry.failure.reason in BROKEN_OFF
 
 
-def _may_go_on(entry: Entry, verdict: Verdict) -> bool:
-    """True where a device may carry out a command to its end that has failed.
+def _may_go_on(entry: Entry, verdict: CommandVerdict) -> bool:
+    """True where a device may carry out a failed command to its end.
 
-    A boot ends all, and work that does not go on to its end is halted; but of a link that was lost nobody
-    knows if the command, or word of its beginning, is still on its way.
+    A boot ends every command, and work that can be halted is halted. But where the link was lost, nobody
+    knows whether the command, or the report of its beginning, is still on its way.
     """
     lost = verdict.failure is not None and verdict.failure.reason is Reason.LINK_LOST
     return lost if entry.halts else not _ended_by_boot(verdict)
 
 
-def _ended_by_boot(verdict: Verdict) -> bool:
+def _ended_by_boot(verdict: CommandVerdict) -> bool:
     return verdict.failure is not None and verdict.failure.reason is Reason.REBOOTED
 
 
 def _arrives_s(entry: Entry, now: float) -> float:
-    """The time in which a command may still come to its device, which has not named it as accepted."""
+    """The time (s) in which a command that its device has not accepted may still get there."""
     return 0.0 if entry.accepted_at is not None else max(0.0, entry.sent_at + FRESH_S - now)
 
 
@@ -168,18 +168,18 @@ def _lets_go(command: Command) -> bool:
 
 
 def _explained(entry: Entry, failure: Failure | None) -> Failure | None:
-    """A failure that a command of somebody else may have caused says so."""
+    """The failure; where a command of somebody else may have caused it, its sentence says so."""
     if failure is None or entry.interference is None:
         return failure
     return replace(failure, sentence=BOTH(first=failure.sentence, second=entry.interference))
 
 
-def _overdue(entry: Entry) -> Verdict:
+def _overdue(entry: Entry) -> CommandVerdict:
     if entry.settles_at is not None and entry.settles_at <= entry.deadline:
-        return Verdict(feed=Feed.DONE)
+        return CommandVerdict(feed=Feed.DONE)
     stopping = entry.state is State.CANCELLING
     what = NOT_STOPPED if stopping else NOT_FINISHED
     waited = entry.deadline - (entry.cancelled_at if entry.cancelled_at is not None else entry.sent_at)
     sentence = what(robot=entry.command.robot, seconds=waited, doing=entry.doing)
     reason = Reason.STOP_UNCONFIRMED if stopping else Reason.DEADLINE
-    return Verdict(feed=Feed.FAILED, failure=Failure(reason=reason, sentence=sentence))
+    return CommandVerdict(feed=Feed.FAILED, failure=Failure(reason=reason, sentence=sentence))

@@ -1,4 +1,4 @@
-"""Commands out, reports in: owns the ledger and the beliefs, judges the one by the other."""
+"""Commands out, reports in: sends commands, and books what each report proves of them."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from . import evidence
 from .belief import Belief
 from .booking import Booking
 from .effectors import Effectors
-from .evidence import Before, Verdict
+from .evidence import Before, CommandVerdict
 from .fact_memory import FactMemory, Memory
 from .interference import MOST, NEVER_GIVEN, Interferences
 from .latches import Latches
 from .ledger import Entry, Feed, Ledger, State
 from .obstacles import Barrier, Make, Obstacles, unbarred
 from .outlet import Outlet
-from .stillness import Moment
+from .stillness import ReportMoment
 from .time_limits import TimeLimits
 from .underway import UnderWay, Unfinished, UnnamedCommands
 from .whereabouts import Whereabouts
 
-Guard = Callable[[str, Callable[[], None]], None]  # runs what belongs to the cell of that name
+Guard = Callable[[str, Callable[[], None]], None]  # runs a function for the cell of that name
 HOMING = Phrase("doing.home", "homing")
 NOT_GIVEN = Phrase("command.not_given", "{why}: no {doing}")
 NO_TELEMETRY = Phrase("command.no_telemetry", "{robot}: no telemetry for {seconds:g} s while {doing}")
@@ -44,9 +44,9 @@ def unguarded(cell: str, act: Callable[[], None]) -> None:
 
 
 class Dispatcher:
-    """Every robot's belief and open commands; `outbox` collects what must leave, in order.
+    """Beliefs and open commands of all robots; `outbox` has the messages to send, in order.
 
-    `not_given` are the last commands of tasks that never left, of `not_given_count` in all.
+    `not_given` are the last commands of tasks that never left, `not_given_count` how many there were.
     """
 
     def __init__(self, model: PlantModel, epoch: int, memory: Memory) -> None:
@@ -81,11 +81,11 @@ class Dispatcher:
         self.not_given: deque[Entry] = deque(maxlen=NOT_GIVEN_KEPT)
         self.not_given_count = 0
         self._cells_of = {name: {cell.name for cell in cells} for name, cells in model.cells_of.items()}
-        self._stale_at: dict[str, float] = {}  # of those beliefs that can get stale
+        self._stale_at: dict[str, float] = {}  # of robots that can fall silent
 
     @property
     def next_deadline(self) -> float:
-        """The time at which a command is due or a silence too long, s of the plant's clock; else inf."""
+        """The time at which a command is due, or a silence too long, s of the plant's clock; inf for none."""
         stale_at = min(self._stale_at.values()) if self._stale_at else math.inf
         return min(self.ledger.next_deadline, stale_at)
 
@@ -100,10 +100,10 @@ class Dispatcher:
         barrier: Barrier = unbarred,
         token: str | None = None,
     ) -> Entry:
-        """Give a command its id and let it go, unless its robot is not ready for one or `barrier` objects.
+        """Give a command its id and send it; the entry has failed where its robot or `barrier` objects.
 
-        By hand, on an operator's word, an effector is opened even while its arm is stopped. A board that
-        numbers its commands echoes `token`.
+        `by_hand`: an operator opens an effector, even while its arm is stopped. A board that numbers its
+        commands echoes `token`.
         """
         command = make(id=self.outlet.new_id())
         deadline = now + self.limits.allowed_s(command, self.limits.timings[cell])
@@ -130,7 +130,10 @@ class Dispatcher:
         return entry
 
     def left_late(self, id: str, late_s: float) -> None:
-        """Count the time in which a command settles from when it left, be it past its deadline."""
+        """Let a command that left late settle later by that, even after its deadline.
+
+        Settling stands for the time in which its device acts, and that begins when the command leaves.
+        """
         entry = self.ledger.entries.get(id)
         if entry is not None and entry.settles_at is not None:
             entry.settles_at += late_s
@@ -138,7 +141,7 @@ class Dispatcher:
             self.ledger.plan(entry)
 
     def cancel(self, entry: Entry, now: float) -> None:
-        """Ask an open command to end, once: work that can be halted is, a query is forgotten."""
+        """Ask an open command to end, once. Work that can be halted is halted, and a query is forgotten."""
         entry.is_abandoned = True
         if entry.state is State.CANCELLING or entry.finishes:
             return
@@ -147,7 +150,7 @@ class Dispatcher:
             self.ledger.feed(entry.command.id, Feed.HALTED, now)
             return
         entry.settles_at = None if entry.halts else entry.settles_at
-        entry.cancelled_after = Moment(self.beliefs[entry.command.robot].reports, now)
+        entry.cancelled_after = ReportMoment(self.beliefs[entry.command.robot].reports, now)
         entry.deadline = now + self.limits.timings[entry.cell].stop_timeout_s
         self.ledger.plan(entry)
         if entry.halts and entry.command.robot not in self.latches.stopped:
@@ -163,7 +166,7 @@ class Dispatcher:
         return self.send(partial(Home, robot=robot), cell, HOMING(), now)
 
     def declare_homed(self, robot: str) -> None:
-        """An operator has put a robot that cannot say so at its reference, wherever it stood before."""
+        """Take a robot that cannot report it for put at its reference, on an operator's word."""
         self.whereabouts.put_at_reference(robot)
         self.wake([robot])
 
@@ -175,14 +178,16 @@ class Dispatcher:
     def report(self, report: Report, now: float) -> None:
         """Merge a report and book what it proves.
 
-        Reports of unknown or only drawn robots are ignored, and those that say what such a robot cannot.
+        It is ignored for an unknown robot, for one that is only drawn, and where the robot's kind objects.
         """
         belief = self.beliefs.get(report.robot)
         if belief is None or belief.drawn:
             return
         was_sure = belief.stillness.is_sure
         if belief.hear_again(report):
-            if belief.stillness.is_sure and not was_sure:  # only now `place` and interlocks go by it
+            if (
+                belief.stillness.is_sure and not was_sure
+            ):  # `place` and interlocks go by its place from here on
                 self.wake([report.robot])
             self._prove(belief, report, now)
             return
@@ -208,7 +213,7 @@ class Dispatcher:
         if belief.boot_id is not None and evidence.tells_boots_only(belief.robot):
             self.memory.remember(Fact.BOOT, report.robot, str(belief.boot_id))
         self._prove(belief, report, now, before)
-        if latched and (new_link or (belief.online and not was_online)):  # it may have forgotten its stop
+        if latched and (new_link or (belief.online and not was_online)):  # its board may have lost the stop
             self.outlet.stop(report.robot, StopMode.LATCH)
         if belief.stillness.is_sure and not was_sure:
             self.wake([report.robot])
@@ -217,20 +222,20 @@ class Dispatcher:
             self.ledger.changed |= self._cells_of[report.robot]
 
     def interfere(self, robot: str, sentence: Sentence, now: float, *, obeyed: bool) -> None:
-        """Somebody else commanded a robot; what it did of that may be why an open command fails."""
+        """Note that somebody else commanded a robot; a command that it obeyed may make open ones fail."""
         self.interference.note(robot, sentence, now, obeyed=obeyed)
         self.ledger.version += 1
         for entry in self.ledger.of_robot(robot) if obeyed else ():
             entry.interference = sentence
 
     def answer(self, robot: str, answer: str, now: float) -> None:
-        """A person has answered what is being asked."""
+        """Book the answer of a person to the open question."""
         entry = self.ledger.question(robot)
         if entry is not None:
             self.report(Report(at=now, robot=robot, answered=entry.command.id, answer=answer), now)
 
     def _hear_of_others(self, report: Report) -> None:
-        """A bridge counts the commands of others; each count that rose is news."""
+        """Note commands of others, which a bridge counts, and forged ones in the plant's name."""
         if report.foreign is not None:
             refused, obeyed = self.interference.rise(report)
             if refused or obeyed:
@@ -240,7 +245,7 @@ class Dispatcher:
             self._halt_forged(report, number)
 
     def _halt_forged(self, report: Report, number: int) -> None:
-        """Somebody commanded a robot in the plant's name: it is halted, and the next numbers are higher."""
+        """Halt a robot that took a forged command; go on with higher numbers, as no number may come twice."""
         sentence = NEVER_GIVEN(robot=report.robot, id=report.accepted or "")
         self.interfere(report.robot, sentence, report.at, obeyed=True)
         if number < MOST:
@@ -248,7 +253,7 @@ class Dispatcher:
         self.outlet.stop(report.robot, StopMode.HALT)
 
     def _prove(self, belief: Belief, report: Report, now: float, before: Before | None = None) -> None:
-        """Book what a report proves; `before` is None where it only repeats what was believed."""
+        """Book what a report proves; `before` is None for a report that repeats the last one."""
         name = report.robot
         if belief.stale_at is not None:
             self._stale_at[name] = belief.stale_at
@@ -271,11 +276,11 @@ class Dispatcher:
             if belief.online:
                 self._say_again(belief, now)
         held = belief.held_in(belief)
-        if held is not None and belief.online:  # what it said before its link was lost may be older
+        if held is not None and belief.online:  # a word from before its link was lost may be too old
             self.effectors.settle(belief.robot.name, Grip.ON if held else Grip.OFF)
 
     def expire(self, limit: float, now: float, guard: Guard = unguarded) -> None:
-        """End what is due up to and including `limit`: settling times, deadlines, silence."""
+        """Book the settling times, deadlines and silences that are due up to and including `limit`."""
         if self.next_deadline > limit:
             return
         for entry in [entry for entry in self.ledger.entries.values() if entry.next_deadline <= limit]:
@@ -285,7 +290,7 @@ class Dispatcher:
                 guard(self.model.cell_of[name].name, partial(self._went_stale, belief, now))
 
     def _say_again(self, belief: Belief, now: float) -> None:
-        """A robot that is heard may have missed a clear, or the last command of all."""
+        """Send again what a robot may have missed: a clear, or a halt that has it name its last command."""
         name = belief.robot.name
         if name in self.latches.unheard:
             self.latches.unheard.discard(name)
@@ -305,11 +310,11 @@ class Dispatcher:
             name, silence_s = belief.robot.name, belief.stale_after_s
             sentence = NO_TELEMETRY(robot=name, seconds=silence_s, doing=entry.doing)
             failure = Failure(reason=Reason.LINK_LOST, sentence=sentence)
-            self.booking.book(entry, Verdict(feed=Feed.FAILED, failure=failure), now)
+            self.booking.book(entry, CommandVerdict(feed=Feed.FAILED, failure=failure), now)
 
 
 def _facts_shown(belief: Belief) -> tuple[object, ...]:
-    """The part of a belief to which trees and screens react: everything but positions."""
+    """The part of a belief to which trees and screens react; positions are no part of it."""
     return (belief.trouble, belief.piece, belief.effector, belief.facts_no)
 
 

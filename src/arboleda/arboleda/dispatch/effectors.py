@@ -1,4 +1,4 @@
-"""Effectors: what each robot may hold, by its commands and by its reports."""
+"""Effectors: what each of them may hold, by commands and by reports."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ AS_REBOOTED = Phrase("effector.as_rebooted", "as its board rebooted")
 EMPTIED = "true"
 
 
-class Handling(Enum):
+class HandlingStep(Enum):
     """Step of a part's way through an effector."""
 
     TOLD_TO_TAKE = "told to take"
@@ -36,49 +36,51 @@ class Handling(Enum):
 
 
 class Effectors:
-    """Books of all effectors of a plant. `version` changes whenever a grip does.
+    """Books of all effectors of a plant. `version` grows whenever a grip changes.
 
-    `unopened` are the robots whose last command to let go failed. `opened` says of each that let go unbidden
-    since the last command to its effector how that went. `cut_off` may still be switching on a command of an
-    earlier start. `watchers` of an effector are told at once of each step of a part's way through it.
+    `unopened` are robots whose last command to let go failed. `opened` has a sentence for each robot whose
+    effector let go unbidden since its last command. `cut_off` are robots that may still switch on a command
+    of an earlier start. `watchers` of an effector are called at each step of a part's way through it.
     """
 
     def __init__(
-        self, model: PlantModel, kept: Memory, memory: FactMemory, ledger: Ledger, others: Interferences
+        self, model: PlantModel, facts: Memory, memory: FactMemory, ledger: Ledger, others: Interferences
     ) -> None:
         holders = [robot.name for robot in model.robots.values() if robot.held_fact is not None]
         spaces = [space for cell in model.cells for space in cell.reach.values()]
         self._tools = {space.robot.name: space.tool.name for space in spaces if space.tool is not None}
-        self.grips = Grips(holders, kept.get(Fact.EFFECTOR, {}), self._tools.values())
+        self.grips = Grips(holders, facts.get(Fact.EFFECTOR, {}), self._tools.values())
         self.unopened: set[str] = set()
         self.opened: dict[str, Sentence] = {}
         self.cut_off: set[str] = set()
         self.version = 0
-        self.watchers: dict[str, list[Callable[[str, Handling], None]]] = {name: [] for name in holders}
+        self.watchers: dict[str, list[Callable[[str, HandlingStep], None]]] = {name: [] for name in holders}
         self._emptied = {name for name in holders if memory.value(Fact.EMPTIED, name) is not None}
         self._memory = memory
         self._ledger = ledger
         self._others = others
 
     def opening_tool(self, robot: str) -> str | None:
-        """The tool of a robot that may still let go of a part on an earlier command: the robot stays."""
+        """The tool of a robot that may still let go on an earlier command, so that the robot has to stay."""
         tool = self._tools.get(robot)
         return tool if tool in self.grips.opening else None
 
     def command(self, command: Switch) -> None:
-        """Book a command to an effector, which leaves now."""
+        """Book a command to an effector that leaves now."""
         self.opened.pop(command.robot, None)
         self._set_emptied(command.robot, emptied=False)
         if not command.grips:
             self.grips.open(command.robot, command.id)
         if not command.grips or self.grips[command.robot] is Grip.OFF:
-            handling = Handling.TOLD_TO_TAKE if command.grips else Handling.TOLD_TO_LET_GO
+            handling = HandlingStep.TOLD_TO_TAKE if command.grips else HandlingStep.TOLD_TO_LET_GO
             self._tell(command.robot, handling)
         self.set(command.robot, Grip.SWITCHING)
 
     def declare_empty(self, belief: Belief) -> None:
-        """Book that a person has taken out what a device held: it holds nothing, even where it goes on
-        reporting so, until it has a command to grip or to let go, or reports itself that it is empty.
+        """Book that a person has taken the part out of a device.
+
+        A device that goes on reporting a part counts as empty until its next command to grip or to let go, or
+        until it reports that it is empty.
         """
         robot = belief.robot.name
         self.cut_off.discard(robot)
@@ -87,20 +89,18 @@ class Effectors:
         self.set(robot, Grip.OFF, taken_out=True)
 
     def set(self, robot: str, grip: Grip, *, taken_out: bool = False) -> None:
-        """Book what an effector is known to be; `taken_out`: what it held is in somebody's hand."""
+        """Book the grip of an effector; `taken_out`: a person has its part."""
         if self.grips.set(robot, grip):
             self.version += 1
             if grip is not Grip.SWITCHING:
-                empty = Handling.TAKEN_OUT if taken_out else Handling.EMPTY
-                self._tell(robot, Handling.HELD if grip is Grip.ON else empty)
+                empty = HandlingStep.TAKEN_OUT if taken_out else HandlingStep.EMPTY
+                self._tell(robot, HandlingStep.HELD if grip is Grip.ON else empty)
             self._memory.remember(Fact.EFFECTOR, robot, grip.value)
         if grip is Grip.OFF:
             self.unopened.discard(robot)
 
     def note_opening(self, belief: Belief, *, rebooted: bool) -> None:
-        """Book that an effector that was on is off; where no command of this plant is open for it, that is
-        news.
-        """
+        """Note an effector that has opened with a part, where no command of this plant is open for it."""
         arm = belief.robot.name
         if self.grips[arm] is not Grip.ON or self._switches(arm):
             return
@@ -111,15 +111,15 @@ class Effectors:
         self.opened[arm] = BOTH(first=sentence, second=others) if others else sentence
 
     def settle_cut_off(self, belief: Belief) -> None:
-        """Believe the report about what an earlier start was switching."""
+        """Believe the report of an effector that an earlier start was switching."""
         self.cut_off.discard(belief.robot.name)
         if (held := belief.held_in(belief)) is not None:
             self.settle(belief.robot.name, Grip.ON if held else Grip.OFF)
 
     def settle(self, robot: str, grip: Grip) -> None:
-        """Believe the report of an effector that nobody is switching, and that does not open late.
+        """Believe the report of an effector that no command is switching, and that will not open late.
 
-        One that a person has emptied stays empty until it reports that itself.
+        An effector that a person has emptied counts as empty until it reports that itself.
         """
         if robot in self._emptied:
             if grip is not Grip.OFF:
@@ -131,13 +131,13 @@ class Effectors:
             self.set(robot, grip)
 
     def settle_opening(self, before: Before, belief: Belief, report: Report) -> None:
-        """Forget commands to let go that a tool has lost by a reboot, or reports as not obeyed."""
+        """Forget commands to let go that a tool lost in a reboot, refused, or failed to do."""
         tool = belief.robot.name
         if evidence.rebooted(before, belief, report):
             self.grips.forget_opening(tool)
         self.grips.will_not_open(tool, report.rejected, report.failed)
 
-    def _tell(self, robot: str, handling: Handling) -> None:
+    def _tell(self, robot: str, handling: HandlingStep) -> None:
         for watcher in self.watchers[robot]:
             watcher(robot, handling)
 
@@ -150,5 +150,5 @@ class Effectors:
 
 
 def _grips(command: Command) -> bool:
-    """True for a command to do with what its robot holds."""
+    """True for a command to grip or to let go."""
     return isinstance(command, Switch) and command.grips is not None

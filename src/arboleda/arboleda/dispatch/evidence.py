@@ -1,7 +1,8 @@
-"""Truth about motion: what a report proves about an open command, by the robot's declared evidence.
+"""Evidence about commands: what a report proves about an open command, by the robot's evidence level.
 
-Each rule looks at one open command, what was believed before the report, and the belief after it,
-and returns the feed it proves, or None.
+A rule looks at one open command, the belief before a report and the belief after it. It returns the feed that
+the report proves, or None. A command ends by such proof: a message that says so may be of another command, of
+another boot, or older than the command.
 """
 
 from __future__ import annotations
@@ -26,9 +27,9 @@ REFUSALS: dict[str, Reason] = {
     "sin_ref": Reason.NOT_HOMED,
     "condicion": Reason.PRECONDITION,
 }
-QUIET_S = 0.3  # what a command takes to a robot, one telemetry period, and APART_S for its answer
+QUIET_S = 0.3  # a telemetry period, in which a command gets to its robot, and APART_S for the answer
 OBJECTIONS = frozenset({MotionState.FAULT, MotionState.NOT_HOMED, MotionState.STOP_LATCHED})
-JITTER_S = APART_S  # two positions may arrive so much closer together than they were made
+JITTER_S = APART_S  # two positions may arrive closer together by this than they were made
 
 NO_TELEMETRY_FOR = Phrase(
     "command.no_telemetry_for", "{robot}: no telemetry for {seconds:.1f} s while {doing}"
@@ -66,8 +67,8 @@ SHORT_OF_TARGET = Phrase("command.short_of_target", "{robot}: stopped before its
 
 
 @dataclass(frozen=True, kw_only=True)
-class Verdict:
-    """Verdict of a report: a feed for the ledger, its cause where it is a failure, the answer to a query."""
+class CommandVerdict:
+    """Verdict on a command: a feed for the ledger, the cause of a failure, the answer to a query."""
 
     feed: Feed
     failure: Failure | None = None
@@ -88,10 +89,10 @@ class Before(NamedTuple):
         return cls(belief.epoch, belief.boot_id, belief.position, belief.stillness.position_at, belief.online)
 
 
-def judge(entry: Entry, before: Before | None, belief: Belief, report: Report) -> Verdict | None:
+def judge(entry: Entry, before: Before | None, belief: Belief, report: Report) -> CommandVerdict | None:
     """The strongest feed that `report` proves about `entry`; None where it proves nothing new.
 
-    `before` is None where the report only repeats what was believed: nothing has broken then.
+    `before` is None for a report that repeats the last one: it shows no broken link and no reboot.
     """
     broken = _refused(entry, report) if before is None else _broken(entry, before, belief, report)
     if broken is not None or report.at < entry.sent_at:
@@ -101,32 +102,32 @@ def judge(entry: Entry, before: Before | None, belief: Belief, report: Report) -
 
 
 def _look(entry: Entry, belief: Belief, report: Report) -> None:
-    """Keep what a report shows about the command since it was sent."""
+    """Note what a report shows of a command."""
     observed = entry.observations
     _look_at_goal(entry, belief, report)
     observed.moving = observed.moving or report.state is MotionState.MOVING
     if report.state is not None:
         observed.stopped_since = (observed.stopped_since or report.at) if _rests(entry, report) else None
     if report.done not in (None, observed.ended, entry.command.id):
-        observed.unhomed = False  # another command's end is reported only now: that was before ours
+        observed.unhomed = False  # the end of an earlier command comes only now: "unhomed" was of that
     observed.unhomed = observed.unhomed or report.homed is False
     observed.ended = report.done or observed.ended
 
 
 def _rests(entry: Entry, report: Report) -> bool:
-    """True where a robot says that it is at rest; one that is stopped says so once its work is finished."""
+    """True where a robot reports rest; latched counts for work that goes on to its end when it is stopped."""
     finished = entry.finishes and report.state is MotionState.STOP_LATCHED
     return finished or report.state is MotionState.STOPPED
 
 
 def _look_at_goal(entry: Entry, belief: Belief, report: Report) -> None:
-    """Keep since when all that is told is the goal, and how far along its way the robot was seen."""
+    """Note since when every report shows the goal, and how far along its positions the robot was seen."""
     observed, place = entry.observations, belief.position_in(report)
     if place is None and not _tells(report, entry.sets):
         return
-    if place is not None and len(entry.way) > 1 and place != observed.place:
+    if place is not None and len(entry.positions) > 1 and place != observed.place:
         observed.place = place
-        ahead = entry.way[observed.passed + 1 :]
+        ahead = entry.positions[observed.passed + 1 :]
         observed.passed += ahead.index(place) + 1 if place in ahead else 0
     observed.on_goal_since = (observed.on_goal_since or report.at) if _at_end(entry, belief) else None
 
@@ -136,22 +137,22 @@ def _tells(report: Report, facts: Facts) -> bool:
 
 
 def _at_end(entry: Entry, belief: Belief) -> bool:
-    """True where its last report shows the goal; a way that passes there before was driven to its end."""
-    driven = len(entry.way) <= 1 or entry.observations.passed == len(entry.way) - 1
+    """True where the last report shows the goal, and all positions of a path that passes there earlier."""
+    driven = len(entry.positions) <= 1 or entry.observations.passed == len(entry.positions) - 1
     return driven and reached(entry, belief)
 
 
 def reached(entry: Entry, belief: Belief) -> bool:
-    """True where the belief is the goal of a command that has one: its position, and what it sets."""
+    """True where the belief shows the goal of a command: its last position, and the facts that it sets."""
     if entry.sets and any(belief.fact(name) != value for name, value in entry.sets):
         return False
-    if not entry.way:
+    if not entry.positions:
         return entry.sets != ()
-    return belief.position is not None and belief.robot.motion.stands_at(belief.position, entry.way[-1])
+    return belief.position is not None and belief.robot.motion.stands_at(belief.position, entry.positions[-1])
 
 
-def _failed(entry: Entry, reason: Reason, what: Phrase, **values: str | float | Sentence) -> Verdict:
-    return Verdict(feed=Feed.FAILED, failure=_failure(entry, reason, what, **values))
+def _failed(entry: Entry, reason: Reason, what: Phrase, **values: str | float | Sentence) -> CommandVerdict:
+    return CommandVerdict(feed=Feed.FAILED, failure=_failure(entry, reason, what, **values))
 
 
 def _failure(entry: Entry, reason: Reason, what: Phrase, **values: str | float | Sentence) -> Failure:
@@ -159,13 +160,13 @@ def _failure(entry: Entry, reason: Reason, what: Phrase, **values: str | float |
     return Failure(reason=reason, sentence=sentence)
 
 
-def _broken(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
+def _broken(entry: Entry, before: Before, belief: Belief, report: Report) -> CommandVerdict | None:
     link = _broken_link(entry, before, belief, report)
     ended = _refused(entry, report) or _gave_up(entry, report)
     return link or ended or _reboot(entry, before, belief, report)
 
 
-def _broken_link(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
+def _broken_link(entry: Entry, before: Before, belief: Belief, report: Report) -> CommandVerdict | None:
     if report.state is MotionState.NO_LINK:
         if report.lost is not None:
             return _failed(entry, Reason.LINK_LOST, LINK_LOST_BECAUSE, why=report.lost)
@@ -179,21 +180,21 @@ def _broken_link(entry: Entry, before: Before, belief: Belief, report: Report) -
     return None
 
 
-def _refused(entry: Entry, report: Report) -> Verdict | None:
+def _refused(entry: Entry, report: Report) -> CommandVerdict | None:
     if report.rejected != entry.command.id:
         return None
     word = report.refusal or "no reason given"
     what, reason = TOO_LATE if word == "tarde" else REFUSED, REFUSALS.get(word, Reason.REJECTED)
-    return Verdict(feed=Feed.REJECTED, failure=_failure(entry, reason, what, word=word))
+    return CommandVerdict(feed=Feed.REJECTED, failure=_failure(entry, reason, what, word=word))
 
 
-def _gave_up(entry: Entry, report: Report) -> Verdict | None:
+def _gave_up(entry: Entry, report: Report) -> CommandVerdict | None:
     if report.failed != entry.command.id:
         return None
     return _failed(entry, Reason.DEVICE_FAULT, GAVE_UP, word=report.failure or "no reason given")
 
 
-def _reboot(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
+def _reboot(entry: Entry, before: Before, belief: Belief, report: Report) -> CommandVerdict | None:
     if rebooted(before, belief, report):
         return _failed(entry, Reason.REBOOTED, BOARD_REBOOTED)
     if belief.robot.evidence is Evidence.JOINTS and _jumped(before, belief, report):
@@ -202,7 +203,7 @@ def _reboot(entry: Entry, before: Before, belief: Belief, report: Report) -> Ver
 
 
 def displaced(before: Before, belief: Belief, report: Report) -> bool:
-    """True where a robot that cannot say so must have lost its position: a new boot, or a jump."""
+    """True where a robot that cannot report it must have lost its position: a new boot, or a jump."""
     if belief.robot.says_homed:
         return False
     jumped = belief.robot.evidence is Evidence.JOINTS and _jumped(before, belief, report)
@@ -210,12 +211,12 @@ def displaced(before: Before, belief: Belief, report: Report) -> bool:
 
 
 def tells_boots_only(robot: Robot) -> bool:
-    """True where nothing but the number of its boot tells that a robot must have lost its position."""
+    """True where only the number of its boot tells that a robot must have lost its position."""
     return robot.evidence is Evidence.IDS and not robot.says_homed
 
 
 def strayed(before: Before, belief: Belief, report: Report, goal: Position) -> bool:
-    """True where a robot that had reached `goal` is elsewhere after a silence, as after a boot unseen."""
+    """True where a robot that had reached `goal` is elsewhere after a silence: it may have booted unseen."""
     robot, place = belief.robot, belief.position_in(report)
     if before.online or place is None or robot.evidence is not Evidence.JOINTS or robot.reference is None:
         return False
@@ -223,7 +224,7 @@ def strayed(before: Before, belief: Belief, report: Report, goal: Position) -> b
 
 
 def rebooted(before: Before, belief: Belief, report: Report) -> bool:
-    """True where the boot id changed; at `joints` it is a count of the bridge, which starts anew with it."""
+    """True where the boot id changed; at `joints` the bridge counts boots, and counts anew when it starts."""
     if before.boot_id == report.boot_id or None in (before.boot_id, report.boot_id):
         return False
     evidence = belief.robot.evidence
@@ -239,12 +240,12 @@ def _jumped(before: Before, belief: Belief, report: Report) -> bool:
     return not belief.robot.motion.can_have_moved(before.position, place, elapsed_s)
 
 
-def _device(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+def _device(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | None:
     if report.state not in OBJECTIONS:
         return None
     if report.state is MotionState.FAULT:
         if isinstance(entry.command, Home) and belief.is_cleared_by_homing:
-            return None  # it is being led out of that fault; its driver tells where it cannot be
+            return None  # homing leads it out of that fault; its driver reports where it cannot
         return _failed(entry, Reason.DEVICE_FAULT, BOARD_FAULT)
     if not entry.is_work:
         return None
@@ -252,134 +253,141 @@ def _device(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
         return _failed(entry, Reason.NOT_HOMED, POSITION_UNKNOWN)
     stopping = entry.state is State.CANCELLING or entry.finishes
     if report.state is MotionState.STOP_LATCHED and not stopping:
-        return Verdict(feed=Feed.HALTED, failure=_failure(entry, Reason.STOPPED, STOPPED))
+        return CommandVerdict(feed=Feed.HALTED, failure=_failure(entry, Reason.STOPPED, STOPPED))
     return None
 
 
-def _stopping(entry: Entry, belief: Belief) -> Verdict | None:
+def _stopping(entry: Entry, belief: Belief) -> CommandVerdict | None:
     if entry.cancelled_at is None or not entry.halts:
         return None
-    return Verdict(feed=Feed.HALTED) if belief.stillness.still_since(entry.cancelled_after) else None
+    return CommandVerdict(feed=Feed.HALTED) if belief.stillness.still_since(entry.cancelled_after) else None
 
 
-def _progress(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+def _progress(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | None:
     if entry.rule is None:
         entry.rule = rule_for(type(entry.command), belief.robot.evidence)
-    verdict: Verdict | None = entry.rule(entry, belief, report)
+    verdict: CommandVerdict | None = entry.rule(entry, belief, report)
     if verdict is not None and verdict.feed is Feed.FAILED and entry.cancelled_at is not None:
-        return None  # it was asked to stop short
+        return None  # it was cancelled, so it stops short of its goal
     return verdict
 
 
-def _work_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+def _work_by_ids(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | None:
     finished = report.done == entry.command.id
     if finished and _rests(entry, report):
-        return _off_target(entry, belief) if _elsewhere(entry, belief) else Verdict(feed=Feed.DONE)
+        return _off_target(entry, belief) if _elsewhere(entry, belief) else CommandVerdict(feed=Feed.DONE)
     if entry.accepted_at is None:
-        return Verdict(feed=Feed.ACCEPTED) if finished or report.accepted == entry.command.id else None
+        return CommandVerdict(feed=Feed.ACCEPTED) if finished or report.accepted == entry.command.id else None
     if _rests(entry, report) and _elsewhere(entry, belief):
         return _short(entry)
     return None
 
 
 def _elsewhere(entry: Entry, belief: Belief) -> bool:
-    """True where a command that has a goal has not led there."""
-    return (entry.way != () or entry.sets != ()) and not reached(entry, belief)
+    """True where a command has a goal, and the robot is not there."""
+    return (entry.positions != () or entry.sets != ()) and not reached(entry, belief)
 
 
-def _move_by_joints(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
-    """State and position come apart, in any order: an old "stopped" may meet a new position, and a new
-    command the late end of the move before it.
+def _move_by_joints(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | None:
+    """Judge a move by a state and a position that are of two instants, and may come in any order.
 
-    Done is a robot on its goal that was seen to move and to stop since, or said nothing of moving for
-    QUIET_S. It has stopped short where it has left its origin, says stopped and stays elsewhere for QUIET_S.
+    An old "stopped" may meet a new position, and a new command may meet the end of the move before it. So a
+    move is done where the robot is on its goal and was seen to move and to stop, or has not said "moving" for
+    QUIET_S. It stopped short where the robot has left its origin, and stands elsewhere for QUIET_S.
     """
     observed = entry.observations
     if belief.state is MotionState.STOPPED:
         if observed.on_goal_since is not None:
             if _stays_on_goal(entry, belief, report.at, since=observed.on_goal_since):
-                return Verdict(feed=Feed.DONE)
+                return CommandVerdict(feed=Feed.DONE)
         elif _stays_short(entry, belief, report.at):
             return _short(entry)
-    return Verdict(feed=Feed.ACCEPTED) if observed.moving and entry.state is State.SENT else None
+    return CommandVerdict(feed=Feed.ACCEPTED) if observed.moving and entry.state is State.SENT else None
 
 
 def _stays_on_goal(entry: Entry, belief: Belief, at: float, *, since: float) -> bool:
-    """True where a robot that says stopped, and its goal `since`, has come to rest there.
+    """True where a robot that says stopped, and is on its goal `since`, has come to rest there.
 
-    Who goes from node to node may have left the last one that it told: where it was not on the node on which
-    its way was thought to begin, it comes by its goal and goes on. So a node counts that was told so long
-    after the stop that it cannot be from before.
+    A robot of a grid that was one node off when it left comes by its goal and goes on to the next node. So of
+    such a robot a node counts only if it is told `APART_S` after the stop: it cannot be from before the stop.
     """
     observed = entry.observations
     if not observed.moving:
         return at >= since + QUIET_S
     if observed.stopped_since is None:
         return False
-    return len(entry.way) <= 1 or belief.stillness.position_at >= observed.stopped_since + APART_S
+    return len(entry.positions) <= 1 or belief.stillness.position_at >= observed.stopped_since + APART_S
 
 
 def _stays_short(entry: Entry, belief: Belief, at: float) -> bool:
     observed = entry.observations
     if not observed.moving or observed.stopped_since is None or at < observed.stopped_since + QUIET_S:
         return False
-    if not entry.way:
+    if not entry.positions:
         return True
     if belief.position == entry.origin:
-        return False  # who never left may have said only the end of an earlier move
+        return False  # a robot that never left may have told the end of an earlier move
     return belief.stillness.rested_since(observed.stopped_since + APART_S)
 
 
-def _process_by_facts(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
-    """Judge a process by facts, which may be older than it: it has to be seen at work and at its end."""
+def _process_by_facts(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | None:
+    """Judge a process by facts. These may be older than the process, so it has to be seen at work before."""
     observed = entry.observations
     if observed.moving and observed.stopped_since is not None:
         if not entry.sets or observed.on_goal_since is not None:
-            return Verdict(feed=Feed.DONE)
+            return CommandVerdict(feed=Feed.DONE)
         if _stays_short(entry, belief, report.at):
             return _short(entry)
-    return Verdict(feed=Feed.ACCEPTED) if observed.moving and entry.state is State.SENT else None
+    return CommandVerdict(feed=Feed.ACCEPTED) if observed.moving and entry.state is State.SENT else None
 
 
-def _work_by_state(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+def _work_by_state(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | None:
     if entry.observations.moving and _rests(entry, report) and entry.cancelled_at is None:
-        return Verdict(feed=Feed.DONE)  # after a halt, the same edge proves no more than the halt
-    return Verdict(feed=Feed.ACCEPTED) if entry.observations.moving and entry.state is State.SENT else None
+        return CommandVerdict(feed=Feed.DONE)  # after a halt, this code would prove the halt alone
+    return (
+        CommandVerdict(feed=Feed.ACCEPTED)
+        if entry.observations.moving and entry.state is State.SENT
+        else None
+    )
 
 
-def _unproven(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
-    """No report proves it: it settles, or its deadline ends it."""
+def _unproven(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | None:
+    """No report proves such a command: it settles, or fails by its deadline."""
     return None
 
 
-def _set_as_reported(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
-    """UInt8 commands carry no id over ROS 2: what the robot reports of it confirms a switch."""
+def _set_as_reported(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | None:
+    """Judge a switch by the facts that it sets, since a UInt8 command of ROS 2 carries no id."""
     if not entry.sets:
-        return Verdict(feed=Feed.DONE) if report.done == entry.command.id else None
+        return CommandVerdict(feed=Feed.DONE) if report.done == entry.command.id else None
     if entry.must_be_named and report.number is not None:
         entry.must_be_named = entry.command.id not in (report.accepted, report.done)
         if entry.must_be_named:
             return None
     is_set = all(report.fact(name) == value for name, value in entry.sets)
-    return Verdict(feed=Feed.DONE) if is_set else None
+    return CommandVerdict(feed=Feed.DONE) if is_set else None
 
 
-def _answered(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
-    """Only an answer that names the query is one: another may be to an earlier question."""
+def _answered(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | None:
+    """Judge a query by an answer that names it: any other may be to an earlier question."""
     if report.answered == entry.command.id and report.answer is not None:
-        return Verdict(feed=Feed.DONE, answer=report.answer)
+        return CommandVerdict(feed=Feed.DONE, answer=report.answer)
     taken = report.accepted == entry.command.id and entry.state is State.SENT
-    return Verdict(feed=Feed.ACCEPTED) if taken else None
+    return CommandVerdict(feed=Feed.ACCEPTED) if taken else None
 
 
-def _homed_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
-    """Homing shows in `homed`: seen false, then true, and still."""
+def _homed_by_ids(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | None:
+    """Judge a homing by `homed`: first False, then True while the robot stands."""
     if entry.observations.unhomed and report.homed and report.state is MotionState.STOPPED:
-        return Verdict(feed=Feed.DONE)
-    return Verdict(feed=Feed.ACCEPTED) if entry.observations.unhomed and entry.state is State.SENT else None
+        return CommandVerdict(feed=Feed.DONE)
+    return (
+        CommandVerdict(feed=Feed.ACCEPTED)
+        if entry.observations.unhomed and entry.state is State.SENT
+        else None
+    )
 
 
-def _off_target(entry: Entry, belief: Belief) -> Verdict:
+def _off_target(entry: Entry, belief: Belief) -> CommandVerdict:
     name = next((name for name, value in entry.sets if belief.fact(name) != value), None)
     if name is None:
         return _failed(entry, Reason.NOT_REACHED, OFF_TARGET)
@@ -389,11 +397,11 @@ def _off_target(entry: Entry, belief: Belief) -> Verdict:
     return _failed(entry, Reason.NOT_REACHED, FACT_OTHER, fact=name, value=shown(reported))
 
 
-def _short(entry: Entry) -> Verdict:
+def _short(entry: Entry) -> CommandVerdict:
     return _failed(entry, Reason.STOPPED_SHORT, SHORT_OF_TARGET)
 
 
-Rule = Callable[[Entry, Belief, Report], "Verdict | None"]
+Rule = Callable[[Entry, Belief, Report], "CommandVerdict | None"]
 RULES: dict[tuple[type[Command], Evidence], Rule] = {
     (Motion, Evidence.IDS): _work_by_ids,
     (Motion, Evidence.JOINTS): _move_by_joints,
@@ -413,9 +421,9 @@ RULES: dict[tuple[type[Command], Evidence], Rule] = {
     (Command, Evidence.JOINTS): _unproven,
     (Command, Evidence.STATE): _unproven,
 }
-"""What proves a command, by what it is and by the evidence of its robot."""
+"""The rule that proves a command, by its class and by the evidence level of its robot."""
 
 
 def rule_for(kind: type[Command], level: Evidence) -> Rule:
-    """The row of RULES for a class of commands: its own, or that of its nearest base."""
+    """The rule for a class of commands: its own, or that of its nearest base."""
     return next(RULES[base, level] for base in kind.__mro__ if (base, level) in RULES)

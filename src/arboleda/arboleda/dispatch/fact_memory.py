@@ -11,26 +11,26 @@ Memory = Mapping[Fact, Mapping[str, str]]
 
 
 class FactMemory:
-    """Memory of a plant: a change goes to the outbox, to be kept before anything sent later leaves."""
+    """Memory of a plant. A change goes to the outbox, so that it is kept before later messages leave."""
 
-    def __init__(self, kept: Memory, outbox: list[Command | Notice]) -> None:
+    def __init__(self, facts: Memory, outbox: list[Command | Notice]) -> None:
         self._facts: dict[tuple[Fact, str], str | None] = {
-            (fact, name): value for fact, values in kept.items() for name, value in values.items()
+            (fact, name): value for fact, values in facts.items() for name, value in values.items()
         }
         self._outbox = outbox
 
     def remember(self, fact: Fact, name: str, value: str | None) -> None:
-        """Have a fact kept before anything sent after it leaves; what is kept already is not told again."""
+        """Have a fact kept, unless it has that value already; None removes it."""
         if self._facts.get((fact, name)) != value:
             self._facts[fact, name] = value
             self._outbox.append(Remember(fact=fact, name=name, value=value))
 
     def value(self, fact: Fact, name: str) -> str | None:
-        """The value that is kept of a fact; None where nothing is."""
+        """The value of a fact; None where it has none."""
         return self._facts.get((fact, name))
 
     def names(self, fact: Fact) -> set[str]:
-        """The names of everybody of whom a fact is kept."""
+        """The names under which a fact has a value."""
         return {name for (kind, name), value in self._facts.items() if kind is fact and value is not None}
 
     def occupy(self, zones: Iterable[str], robot: str) -> None:

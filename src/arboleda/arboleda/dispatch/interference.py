@@ -1,4 +1,4 @@
-"""Commands of others to the plant's robots, as bridges and ports tell of them."""
+"""Commands of others to the plant's robots, as bridges and ports report them."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from dataclasses import dataclass
 from arboleda.model.messages import Report
 from arboleda.model.sentence import Phrase, Sentence
 
-KEPT = 20
+SHOWN = 20
 MOST = 1_000_000_000  # no plant gives so many commands in one start; a bridge reads ids of ten digits
 NEVER_GIVEN = Phrase(
     "foreign.never_given",
     "{robot}: its bridge took command {id}, which this plant never gave; it is halted. The log names other "
     "nodes that publish on /{robot}/command",
 )
-LATELY_S = 5.0  # in which a robot reports what a command has brought about
+LATELY_S = 5.0  # an effect that a robot reports this long after a command may be of that command
 
 
 @dataclass(frozen=True, kw_only=True)
 class NumberedInterference:
-    """One command of somebody else, or several between two reports; `number` grows by one with each."""
+    """Command of somebody else, or several between two reports; `number` grows by one with each."""
 
     number: int
     at: float
@@ -29,10 +29,10 @@ class NumberedInterference:
 
 
 class Interferences:
-    """The last ones of all robots, oldest first."""
+    """The last commands of others to all robots, oldest first."""
 
     def __init__(self) -> None:
-        self.noticed: deque[NumberedInterference] = deque(maxlen=KEPT)
+        self.noticed: deque[NumberedInterference] = deque(maxlen=SHOWN)
         self._counts: dict[str, tuple[int | None, int, int]] = {}  # robot -> bridge's start, refused, obeyed
         self._obeyed: dict[str, tuple[float, Sentence]] = {}
         self._count = 0
@@ -45,12 +45,12 @@ class Interferences:
         self.noticed.append(NumberedInterference(number=self._count, at=at, robot=robot, sentence=sentence))
 
     def lately_obeyed(self, robot: str, now: float) -> Sentence | None:
-        """The last command of somebody else that a robot carried out, if it is not older than LATELY_S."""
+        """The last command of somebody else that a robot carried out, in the last LATELY_S."""
         at, sentence = self._obeyed.get(robot, (0.0, None))
         return sentence if now <= at + LATELY_S else None
 
     def rise(self, report: Report) -> tuple[bool, bool]:
-        """True for newly refused, and for newly obeyed commands, by a report that tells of any."""
+        """True where a report counts newly refused commands, and where it counts newly obeyed ones."""
         counts = (report.epoch, report.foreign_refused or 0, report.foreign_obeyed or 0)
         epoch, refused, obeyed = self._counts.get(report.robot, (report.epoch, 0, 0))
         if epoch != report.epoch:

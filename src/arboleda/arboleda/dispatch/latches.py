@@ -9,18 +9,20 @@ from .belief import Belief
 from .fact_memory import FactMemory, Memory
 from .outlet import Outlet
 
-LATCHED, CLEARED = "on", "cleared"  # a stop as it is kept: until clear, and until reset
+LATCHED, CLEARED = "on", "cleared"  # a stop in the memory: until it is cleared, then until its cell is reset
 
 
 class Latches:
-    """Latches of robots: nothing moves those that are in `stopped`.
+    """Latches of robots: the plant sends no motion to a robot in `stopped`.
 
-    `cleared` are robots that an earlier start had cleared and whose cells it had not reset. `unheard` are
-    robots whose stop was cleared while they were offline.
+    A latch is a fact of the memory and not of a board: so a stop lasts over restarts of plant, bridge and
+    board, and a robot that comes back is latched again. `cleared` are robots that an earlier start had
+    cleared and whose cells it had not reset. `unheard` are robots whose stop was cleared while they were
+    offline.
     """
 
-    def __init__(self, beliefs: dict[str, Belief], kept: Memory, memory: FactMemory, outlet: Outlet) -> None:
-        stopped = kept.get(Fact.LATCH, {})
+    def __init__(self, beliefs: dict[str, Belief], facts: Memory, memory: FactMemory, outlet: Outlet) -> None:
+        stopped = facts.get(Fact.LATCH, {})
         self.stopped = {name for name in beliefs if stopped.get(name) == LATCHED}
         self.cleared = {name for name in beliefs if stopped.get(name) == CLEARED}
         self.unheard: set[str] = set()
@@ -29,14 +31,14 @@ class Latches:
         self._outlet = outlet
 
     def latch(self, robot: str) -> None:
-        """Stop a robot and let nothing move it until `unlatch`, whatever restarts meanwhile."""
+        """Stop a robot, and send it no motion until `unlatch`."""
         self.stopped.add(robot)
         self.unheard.discard(robot)
         self._memory.remember(Fact.LATCH, robot, LATCHED)
         self._outlet.stop(robot, StopMode.LATCH)
 
     def unlatch(self, robot: str) -> None:
-        """Clear a robot's stop; it moves nothing, and the cell still needs its reset."""
+        """Clear a robot's stop. That moves nothing, and the cell still needs its reset."""
         self.stopped.discard(robot)
         self._beliefs[robot].barred = False
         if not self._beliefs[robot].online:
@@ -45,5 +47,5 @@ class Latches:
         self._outlet.stop(robot, StopMode.CLEAR)
 
     def forget(self, robot: str) -> None:
-        """A cleared robot's cell was reset: the stop is over."""
+        """End the stop of a cleared robot whose cell was reset."""
         self._memory.remember(Fact.LATCH, robot, None)

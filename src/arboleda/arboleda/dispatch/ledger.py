@@ -1,4 +1,4 @@
-"""Every command the plant sent: id -> state, by one table, with deadlines."""
+"""Ledger of the commands that were sent: their states by one table, and their deadlines."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, Receipt
 from arboleda.model.sentence import Sentence
 
-from .stillness import Moment
+from .stillness import ReportMoment
 
 
 class State(str, Enum):
@@ -63,20 +63,20 @@ TABLE: dict[tuple[State, Feed], State] = {
 
 
 class Observations:
-    """Observations since a command was sent, from reports."""
+    """Observations in the reports since a command was sent."""
 
     def __init__(self) -> None:
         self.moving = False
-        self.stopped_since: float | None = None  # since when its state code says stopped, without a break
-        self.on_goal_since: float | None = None  # since when all that it reports of its goal is the goal
+        self.stopped_since: float | None = None  # since when every state code says stopped
+        self.on_goal_since: float | None = None  # since when every report of its goal shows the goal
         self.place: Position | None = None
-        self.passed = -1  # up to which position of its way the reported ones show that it has come
+        self.passed = -1  # the index of the last of its positions that reports show
         self.unhomed = False
-        self.ended: str | None = None  # the command that was named last as done
+        self.ended: str | None = None  # the command that the robot last named as done
 
 
 class Entry:
-    """One command's life; times in s of the plant's clock; `doing` is said as "moving home"."""
+    """Life of one command; times in s of the plant's clock; `doing` reads as "moving home"."""
 
     def __init__(
         self, command: Command, *, cell: str, doing: Sentence, sent_at: float, deadline: float
@@ -86,28 +86,28 @@ class Entry:
         self.doing = doing
         self.sent_at = sent_at
         self.deadline = deadline
-        self.origin: Position | None = None  # where its robot was believed to stand then
+        self.origin: Position | None = None  # where its robot was believed to be when it left
         self.settles_at: float | None = None
-        self.settled = False  # it counts as done because its time was over: nothing was reported of it
-        self.must_be_named = False  # a board proves it by its id only: a fact may be from before
-        self.left = True  # False: its robot was not ready for it
-        self.too_early = False  # it never left, because its robot was still moving
+        self.settled = False  # True: it counts as done without a report, as its time was over
+        self.must_be_named = False  # True: only its id proves it, as a fact may be from before
+        self.was_sent = True  # False: its robot was not ready for it
+        self.too_early = False  # True: it was not sent because its robot was still moving
         self.state = State.SENT
         self.accepted_at: float | None = None
-        self.is_abandoned = False  # nobody waits for its end any more
+        self.is_abandoned = False  # True: nobody waits for its end
         self.cancelled_at: float | None = None
-        self.cancelled_after = Moment(0, -math.inf)
+        self.cancelled_after = ReportMoment(0, -math.inf)
         self.failure: Failure | None = None
         self.interference: Sentence | None = None  # the last command of somebody else meanwhile
         self.observations = Observations()
-        self.rule: Callable[..., Any] | None = None  # what proves it, once it was looked up
+        self.rule: Callable[..., Any] | None = None  # the rule that proves it, looked up once
         self.answer: Value | None = None  # to a query
-        self.before: Receipt | None = None  # what its board said of numbers when it left
-        self.number: tuple[int, int] | None = None  # its own, once its board has named it as accepted
+        self.before: Receipt | None = None  # the receipt of its board when it left
+        self.number: tuple[int, int] | None = None  # given by its board, once accepted
         self.is_work = isinstance(command, Work)
         self.halts = isinstance(command, Work) and command.on_stop is OnStop.HALT
-        self.finishes = self.is_work and not self.halts  # whoever stops waiting for it
-        self.way = command.way if isinstance(command, Motion) else ()
+        self.finishes = self.is_work and not self.halts  # it goes on to its end, even when it is cancelled
+        self.positions = command.way if isinstance(command, Motion) else ()
         self.sets = command.sets
 
     @property
@@ -119,23 +119,25 @@ class Entry:
         return self.deadline if self.settles_at is None else min(self.deadline, self.settles_at)
 
     def refuse(self, failure: Failure, *, too_early: bool = False) -> None:
-        """End a command that never left: it must not be opened in a ledger."""
-        self.state, self.failure, self.left, self.too_early = State.FAILED, failure, False, too_early
+        """End a command that is not sent; no ledger may open it."""
+        self.state, self.failure, self.was_sent, self.too_early = State.FAILED, failure, False, too_early
 
 
 class Ledger:
-    """The open commands by id, and which cells must look again.
+    """The open commands by id; `changed` has the cells that have to look at theirs again.
 
-    `version` changes whenever something changed to which screens react: all but positions. `last_sent` and
-    `last_work` have each robot's last command, and its last work; stops and halts are no commands here.
+    `version` grows with each change that screens show, but for positions. `last_sent` and `last_work` have
+    the last command and the last work of each robot, without stops and halts.
     """
 
     def __init__(self) -> None:
         self.entries: dict[str, Entry] = {}
-        self.by_robot: defaultdict[str, list[Entry]] = defaultdict(list)  # new lists: readers feed meanwhile
-        self.by_cell: defaultdict[str, list[Entry]] = defaultdict(list)  # the same
+        self.by_robot: defaultdict[str, list[Entry]] = defaultdict(
+            list
+        )  # lists are replaced: loops over them feed the ledger
+        self.by_cell: defaultdict[str, list[Entry]] = defaultdict(list)
         self._due: dict[str, float] = {}
-        self.next_deadline = math.inf  # when a command is due, s of the plant's clock; inf where none is
+        self.next_deadline = math.inf  # of all open commands, s of the plant's clock
         self.changed: set[str] = set()
         self.version = 0
         self.last_sent: dict[str, Entry] = {}
@@ -166,19 +168,19 @@ class Ledger:
         return self.by_robot[robot]
 
     def work_of(self, robot: str) -> Entry | None:
-        """The work of a robot that has not ended."""
+        """The open work of a robot."""
         for entry in self.by_robot[robot]:
             if entry.is_work:
                 return entry
         return None
 
     def finishes(self, robot: str) -> bool:
-        """True while a robot does work that goes on even when it is stopped, until it is finished."""
+        """True while a robot does work that goes on to its end even when it is stopped."""
         work = self.work_of(robot)
         return work is not None and work.finishes
 
     def question(self, robot: str) -> Entry | None:
-        """The open question to a person; None where there is none, or this is no person."""
+        """The open question to a person; None where nobody asks anything, and for a robot."""
         questions = (e for e in self.by_robot[robot] if isinstance(e.command, Question) and e.open)
         return next(questions, None)
 
@@ -187,7 +189,7 @@ class Ledger:
         return self.by_cell[cell]
 
     def feed(self, id: str, feed: Feed, now: float, failure: Failure | None = None) -> None:
-        """Apply one feed; an unknown or finished id is counted and ignored."""
+        """Apply a feed; the feed of an unknown or ended command is counted and ignored."""
         entry = self.entries.get(id)
         if entry is None:
             self.ignored[feed.value] += 1

@@ -1,4 +1,4 @@
-"""Obstacles to commands: why a robot takes none now, or not this one."""
+"""Obstacles to commands: why a robot takes no command now, or not this command."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ MAY_LET_GO = Phrase(
 
 
 def unbarred(command: Command) -> None:
-    """Nothing is in the way of a command."""
+    """The barrier that lets every command leave."""
 
 
 class Obstacles:
-    """Obstacles to commands, by what is believed of robots, their stops, and what they have not ended.
+    """Obstacles to commands, by beliefs about robots, their stops and their open commands.
 
     `was` asks for words that stay true.
     """
@@ -90,27 +90,25 @@ class Obstacles:
             obstacle = None
         moving = obstacle is not None and obstacle.reason is Reason.REJECTED
         if moving and self._shows_its_own_end(command) and not self._breaks_its_work(command):
-            obstacle = None  # its last code may be older than the end of its last move, which was proven
+            obstacle = None  # "moving" may be older than the end of its last move, which was proven
         elif by_hand and obstacle:
             obstacle = self._beliefs[robot].obstacle_besides_stop(was=was)
         return obstacle or self._unmet(command, was=was)
 
     def may_come_to_rest(self, robot: str) -> bool:
-        """True where a robot takes a command soon: it may have ended its last move, or nobody waits any more
-        for what it does.
-        """
+        """True where a robot may take a command soon: its last move may be over, or was cancelled."""
         abandoned = any(entry.is_abandoned for entry in self._ledger.of_robot(robot))
         return abandoned or self._may_be_the_end_of_its_last_move(robot)
 
     def _busy_with(self, command: Command) -> Entry | None:
-        """The command that keeps a robot from another one: its work; from a query, only another query."""
+        """The open command that keeps a robot from another: its work; a query waits only for a query."""
         if not isinstance(command, Query):
             return self._ledger.work_of(command.robot)
         queries = (e for e in self._ledger.of_robot(command.robot) if isinstance(e.command, Query))
         return next(queries, None)
 
     def _open_switch_of(self, command: Command) -> str | None:
-        """The fact of a switch that another one, which is still open, switches, too."""
+        """The fact of a switch that another open command switches, too."""
         if not isinstance(command, Switch):
             return None
         entries = self._ledger.of_robot(command.robot)
@@ -121,7 +119,7 @@ class Obstacles:
         return next((name for other in others for name, _ in other.sets if name in facts), None)
 
     def _unmet(self, command: Command, *, was: bool) -> Failure | None:
-        """The need of a command that its robot does not report as met."""
+        """The failure for a need of a command that its robot does not report as met."""
         belief = self._beliefs[command.robot]
         for name, value in command.needs:
             reported = belief.fact(name)
@@ -138,20 +136,20 @@ class Obstacles:
     def _may_be_the_end_of_its_last_move(self, robot: str) -> bool:
         """True where "moving" may be a late report of a move that the position has already proved done.
 
-        At `state` nothing but that code proves a move: who says it again after its end is not to be trusted.
+        At `state` only that code proves a move, so a "moving" after its end would prove the next command.
         """
         belief = self._beliefs[robot]
         return belief.moves and belief.robot.evidence is Evidence.JOINTS
 
     def _shows_its_own_end(self, command: Command) -> bool:
-        """True where the end of an earlier move cannot be taken for that of this command."""
+        """True where the end of an earlier move cannot be taken for the end of this command."""
         evidence_level = self._beliefs[command.robot].robot.evidence
         if evidence_level is Evidence.JOINTS:
             return isinstance(command, Switch)
         return evidence_level is Evidence.IDS
 
     def _breaks_its_work(self, command: Command) -> bool:
-        """True for a command that would end a need of its robot's last work, whose end nothing has proven."""
+        """True for a switch that would end a need of its robot's last work, while that is not proven."""
         work, sets = self._ledger.last_work.get(command.robot), dict(command.sets)
         if work is None or work.state is State.DONE:
             return False

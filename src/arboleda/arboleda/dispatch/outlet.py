@@ -1,4 +1,4 @@
-"""Outlet of a plant: numbers its commands, and has commands and stops leave."""
+"""Outlet of a plant: numbers its commands and stops, and puts them into the outbox."""
 
 from __future__ import annotations
 
@@ -38,11 +38,15 @@ class Outlet:
         return f"{self.epoch}-{self.count}"
 
     def stop(self, robot: str, mode: StopMode) -> None:
-        """Have a stop, a halt or a clear leave for a robot."""
+        """Send a stop, a halt or a clear to a robot."""
         self.leave(Stop(id=self.new_id(), robot=robot, mode=mode))
 
     def leave(self, command: Command, token: str | None = None) -> None:
-        """Have a command leave; a board that numbers its commands echoes `token`."""
+        """Send a command; a board that numbers its commands echoes `token`.
+
+        The command names the last telemetry that the plant had heard, so that a board can refuse a late one.
+        A stop names none, since no stop is too late.
+        """
         belief = self._beliefs[command.robot]
         link = belief.robot.link
         if link in UNSENT:
@@ -51,5 +55,5 @@ class Outlet:
         if number is not None or (token is not None and link is Link.DRIVER):
             command = replace(command, heard=number, token=token)
         self._outbox.append(command)
-        self._under_way.left(command)
-        self._unnamed.left(command)
+        self._under_way.leaves(command)
+        self._unnamed.leaves(command)

@@ -1,4 +1,4 @@
-"""Stillness of one robot: how surely it stands still, and how old what it tells of its place may be."""
+"""Stillness of one robot: since when it surely stands, and whether its place may be older than its stop."""
 
 from __future__ import annotations
 
@@ -12,18 +12,17 @@ from arboleda.model.plant_model import APART_S, Evidence, Robot
 STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})
 
 
-class Moment(NamedTuple):
-    """A time as a robot's reports tell it: how many there were, and s of the plant's clock."""
+class ReportMoment(NamedTuple):
+    """Moment in a robot's reports: the number of reports until then, and s of the plant's clock."""
 
     reports: int
     at: float
 
 
 class Stillness:
-    """Standing still of a robot, by its reports. Reports are told apart by their numbers, as two of
-    them may come at one time.
+    """Standing still of a robot, by its reports. Their numbers tell them apart, as two may come at one time.
 
-    `is_sure`: its place is no older than its last stop; of what goes nowhere, its facts.
+    `is_sure`: its place is no older than its last stop. A device that goes nowhere has facts for a place.
     """
 
     def __init__(self, robot: Robot, *, supervised: bool) -> None:
@@ -32,17 +31,17 @@ class Stillness:
         self._robot = robot
         self._supervised = supervised
         self._position_no = 0
-        self._told_at = 0.0  # its place; of what goes nowhere, its facts
+        self._told_at = 0.0  # when its place, or its facts, came last
         self._sure_from = -math.inf
-        self._says_still = False  # its last state
+        self._says_still = False  # by its last state code
         self._state_no = 0
         self._state_at = 0.0
-        self._still_from = 0  # of two still codes in a row the first, by number
-        self._rested_from = 0  # of two equal positions in a row the first, by number and by time
+        self._still_from = 0  # the number of the first of two still codes in a row
+        self._rested_from = 0  # the number of the first of two equal positions in a row
         self._rested_at = 0.0
 
     def hear(self, report: Report, number: int, position: Position | None, before: Position | None) -> None:
-        """Take over a report: its number, the position that it tells, and the one that was told before."""
+        """Take over a report by its number, its position, and the position of the report before."""
         if report.state is not None:
             still = report.state in STILL
             self._still_from = self._state_no if still and self._says_still else 0
@@ -61,20 +60,21 @@ class Stillness:
 
     @property
     def is_still(self) -> bool:
-        """True where its last two reports agree that it stands still."""
-        return self.still_since(Moment(0, -math.inf))
+        """True where its last two reports say that it stands still."""
+        return self.still_since(ReportMoment(0, -math.inf))
 
     def rested_since(self, at: float) -> bool:
-        """True where it reported the same position at least twice from `at` on, and no other one since."""
+        """True where it reported one position at least twice from `at` on, and no other since."""
         return self._rested_from < self._position_no and self._rested_at >= at
 
-    def still_since(self, moment: Moment) -> bool:
-        """True where it surely stands still: a still code and, where it reports its position, the same one in
-        two reports, all of them after that moment. What has no position says so twice; what has no work to do
-        stands still.
+    def still_since(self, moment: ReportMoment) -> bool:
+        """True where it surely stands still: a still code and two equal positions, all after that moment.
 
-        At `joints` a report may be older than the other one that came before it; so old ones do not count,
-        and no positions that may be older than the stop: on an edge a robot tells one node all the time.
+        A device without a position has to say twice that it is still; one without work always stands.
+
+        At `joints`, code and position are of two instants that may come `APART_S` apart. So both have to be
+        younger than the moment by that, and the positions younger than the stop: on an edge between two nodes
+        a robot reports one node all the time, so two equal positions from before the stop prove nothing.
         """
         count, at = moment
         if not self._robot.works:
@@ -93,13 +93,13 @@ class Stillness:
         return rested and self.rested_since(max(at + APART_S, self._sure_from))
 
     def come_to_a_stop(self, at: float) -> None:
-        """Note that it may have stopped just now: what it tells of its place comes a little later."""
+        """Note that it may have stopped just now, so that its place is told a little later."""
         self._sure_from = at + APART_S
 
     def doubt(self, until: float) -> None:
-        """Take what it tells of its place before that time for older than its last move."""
+        """Take its reports of a place before that time for older than its last move."""
         self._sure_from, self.is_sure = until, False
 
     def be_sure(self) -> None:
-        """Take what it has told for no older than its last stop: it has proven a command."""
+        """Take its reports for no older than its last stop, since it has proven a command."""
         self._sure_from, self.is_sure = -math.inf, True

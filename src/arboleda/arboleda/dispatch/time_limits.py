@@ -1,4 +1,4 @@
-"""Time limits of commands: how long each may take, and when one that nothing proves counts as done."""
+"""Time limits of commands: how long each may take, and when a command without proof counts as done."""
 
 from __future__ import annotations
 
@@ -13,10 +13,7 @@ HOMING_S = 30.0  # a slow search for the switch, and back off it
 
 
 class TimeLimits:
-    """Time limits of commands; `timings` has the waiting times by cell.
-
-    Each cell has its own: it takes those of another version when it is at rest.
-    """
+    """Time limits of commands; `timings` by cell, as each cell takes another version once it rests."""
 
     def __init__(self, model: PlantModel, beliefs: dict[str, Belief], whereabouts: Whereabouts) -> None:
         self.timings = {cell.name: model.timing for cell in model.cells}
@@ -24,7 +21,7 @@ class TimeLimits:
         self._whereabouts = whereabouts
 
     def allowed_s(self, command: Command, timing: Timing) -> float:
-        """The time that a command may take: its own, or by its distance, then not below `timeout_s`."""
+        """The time (s) that a command may take: its own limit, else by its distance and `timeout_s`."""
         belief = self._beliefs[command.robot]
         robot = belief.robot
         if command.at_most_s is not None:
@@ -32,16 +29,16 @@ class TimeLimits:
         if not isinstance(command, Work):
             return timing.effector_timeout_s
         here = belief.known_position
-        way = command.way if isinstance(command, Motion) else ()
-        travel_s = robot.motion.travel_s(here, way) / robot.pace if way else HOMING_S
+        positions = command.way if isinstance(command, Motion) else ()
+        travel_s = robot.motion.travel_s(here, positions) / robot.pace if positions else HOMING_S
         return max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)
 
     def settles_at(self, entry: Entry, now: float) -> float | None:
-        """The time at which a command without an answer counts as done; None where the robot must report.
+        """The time at which a command counts as done without a report; None where the robot has to report.
 
-        So does a switch of which nothing is reported, after the time that it takes; and a move, by a robot
-        that tells no position, to where its last move ended: it may have nothing to say, and has
-        `stop_timeout_s` to say that it moves.
+        A switch of which nothing is reported counts as done after the time that it takes. So does a move, by
+        a robot without a position, to where its last move ended: such a robot may report nothing, and has
+        `stop_timeout_s` to report that it moves.
         """
         command, timing = entry.command, self.timings[entry.cell]
         belief = self._beliefs[command.robot]

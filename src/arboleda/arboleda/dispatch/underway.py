@@ -1,4 +1,4 @@
-"""Commands that may still be on their way to a robot."""
+"""Commands that may still be under way to a robot, or be carried out although the plant has given them up."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from arboleda.model.plant_model import Cell, Evidence, PlantModel, Robot
 
 from .evidence import QUIET_S
 
-PATIENCE_S = 1.0  # in which an arm that is heard, and hears us, names our last command
-KEPT = 64  # commands per arm; whatever settles a later one settles those before it
+PATIENCE_S = 1.0  # an arm that is heard, and hears the plant, names the plant's last command within this
+MOST = 64  # commands per arm; whatever settles a later command settles those before it
 
 
 class UnnamedCommands:
-    """Count of commands that left for each board that numbers them, and were not named by it yet.
+    """Commands that left for each board that numbers them, and that the board has not named yet.
 
-    What proves that a command is done need not name it: a switch may already be as it was told. `ids` are
-    theirs by robot, oldest first.
+    A report may prove a command done without naming it: a switch may have been as it was told. `ids` by
+    robot, oldest first.
     """
 
     def __init__(self, model: PlantModel) -> None:
@@ -27,14 +27,14 @@ class UnnamedCommands:
             robot.name: [] for robot in robots if robot.evidence is Evidence.IDS
         }
 
-    def left(self, command: Command) -> None:
-        """A command leaves for its robot."""
+    def leaves(self, command: Command) -> None:
+        """Note a command that leaves for its robot."""
         if (ids := self.ids.get(command.robot)) is not None:
             ids.append(command.id)
-            del ids[:-KEPT]
+            del ids[:-MOST]
 
     def hear(self, report: Report) -> None:
-        """A robot reports, and may name commands."""
+        """Drop the commands that a report names."""
         if ids := self.ids.get(report.robot):
             _settle(ids, report)
 
@@ -43,15 +43,16 @@ class UnnamedCommands:
 
 
 class UnderWay:
-    """The commands to each arm that shares zones, or is shared, that no report has settled.
+    """Commands to each arm that shares zones, or is shared, which no report has settled.
 
-    Until then the arm may carry out something that it has not heard yet, so where it stands does not prove
-    that it stays there. An arm that tells command ids, and can be stopped, settles them by naming them.
-    Commands reach a board in order, so one that it took settles all before it. One that was rejected settles
-    only itself: the bridge may have kept it. Of any other arm only work counts; it is settled by its end, or
-    once the arm was heard for as long as an answer may take. `ids` are theirs by robot, oldest first.
+    Until then the arm may carry out a command that it has not heard yet, so the place where it stands does
+    not prove that it stays there. An arm that names commands, and can be stopped, settles a command by naming
+    it. Commands reach a board in order, so a command that it took settles all before it. A rejected command
+    settles itself alone, since the bridge may have refused it. Of any other arm only work counts: it is
+    settled by its end, or once the arm was heard for as long as an answer may take. `ids` by robot, oldest
+    first.
 
-    Shared devices that hold parts and name commands are followed, too; `movers` are all others.
+    Shared devices that hold parts and name commands are followed, too. `movers` are the others.
     """
 
     def __init__(self, model: PlantModel) -> None:
@@ -64,15 +65,15 @@ class UnderWay:
         self.ids: dict[str, list[str]] = {}
         self._reporting_since: dict[str, float] = {}  # since the last one left
 
-    def left(self, command: Command) -> None:
-        """A command leaves for its robot."""
+    def leaves(self, command: Command) -> None:
+        """Note a command that leaves for its robot."""
         works = command.robot in self._others and isinstance(command, Work)
         if works or command.robot in self._naming:
-            self.ids[command.robot] = [*self.ids.get(command.robot, ())[-KEPT:], command.id]
+            self.ids[command.robot] = [*self.ids.get(command.robot, ())[-MOST:], command.id]
             self._reporting_since.pop(command.robot, None)
 
     def hear(self, report: Report, now: float) -> None:
-        """A robot reports, and may name commands."""
+        """Drop the commands that a report settles."""
         ids = self.ids.get(report.robot)
         if ids is None:
             return
@@ -84,25 +85,25 @@ class UnderWay:
             del self.ids[report.robot]
 
     def ended(self, command: Command) -> None:
-        """A command is done, or its robot was seen to stand since it was cancelled."""
+        """Drop a command that is done, or whose robot was seen to stand since it was cancelled."""
         if command.robot in self._others:
             self.ids.pop(command.robot, None)
 
     def is_overdue(self, robot: str, now: float) -> bool:
-        """True where one of them must have been lost."""
+        """True where a command to a robot must have been lost."""
         waits = robot in self.ids and robot in self._naming
         return waits and now >= self._reporting_since.get(robot, now) + PATIENCE_S
 
 
 class Unfinished:
-    """Commands that are over for the plant, and that may still be done, at devices which zones depend on, and
-    at those that cells hand on to each other without a part in them.
+    """Commands that are over for the plant, and that a device may still carry out.
 
-    A command is no longer one of them once its device names it as ended, has done another one of the same
-    facts, or was heard without a fault for as long as a command like that may take; work no longer, either,
-    once the device has taken it and is at rest. A boot leaves none. What a shared device says may be older
-    than a command of which it has named neither that nor a later one, so the time in which it is heard begins
-    with such a name. `by_device` has the commands, each with the time that it may take.
+    They count at devices on which zones depend, and at those that cells hand on to each other empty. A
+    command is dropped once its device names it as ended, has done another command of the same facts, or was
+    heard without a fault for as long as the command may take. Work is dropped also once the device has taken
+    it and is at rest, and a boot drops all. Reports of a device that has named neither the command nor a
+    later one may be older than the command, so the time begins with such a name. `by_device` has each command
+    with its time (s).
     """
 
     def __init__(self, model: PlantModel) -> None:
@@ -113,30 +114,30 @@ class Unfinished:
         self._well_since: dict[str, float] = {}
 
     def expect(self, command: Command, allowed_s: float, now: float) -> None:
-        """Expect of a device that it may still carry this command out, for so long."""
+        """Note that a device may still carry out this command, for `allowed_s`."""
         if command.robot in self._devices and isinstance(command, (Switch, Work)):
             self.by_device.setdefault(command.robot, []).append((command, allowed_s))
             self._well_since[command.robot] = now
 
     def may_grip(self, device: str) -> bool:
-        """True where one of them has the device hold a part."""
+        """True where a device may still grip a part."""
         return any(
             command.grips for command, _ in self.by_device.get(device, ()) if isinstance(command, Switch)
         )
 
     def may_be_news(self, device: str, unnamed: Collection[str]) -> bool:
-        """True where all that a device has said may be older than one of them, as that is unnamed."""
+        """True where all reports of a device may be older than one of its commands, which is unnamed."""
         return any(command.id in unnamed for command, _ in self.by_device.get(device, ()))
 
     def done(self, command: Command) -> None:
-        """A command is done: it has taken the place of those that set the same."""
+        """Drop the commands that set facts which a command that is done has set again."""
         facts = {name for name, _ in command.sets}
         self._keep(command.robot, lambda other, _: facts.isdisjoint(name for name, _ in other.sets))
 
     def hear(self, report: Report, now: float, *, is_well: bool, unnamed: Collection[str]) -> bool:
-        """A robot reports, well or with a fault; True where less of it is unfinished now.
+        """Drop the commands that a report ends; True where there were any. `is_well`: it reports no fault.
 
-        `unnamed` are the commands of which it has named neither them nor a later one.
+        `unnamed` are the commands that the device has not named, nor any later one.
         """
         before = self.by_device[report.robot]
         if not is_well or self.may_be_news(report.robot, unnamed):
@@ -155,13 +156,13 @@ class Unfinished:
         return len(self.by_device.get(report.robot, ())) < len(before)
 
     def _keep(self, device: str, stays: Callable[[Switch | Work, float], bool]) -> None:
-        left = [each for each in self.by_device.pop(device, ()) if stays(*each)]
-        if left:
-            self.by_device[device] = left
+        remaining = [each for each in self.by_device.pop(device, ()) if stays(*each)]
+        if remaining:
+            self.by_device[device] = remaining
 
 
 def _settle(ids: list[str], report: Report) -> None:
-    """Take out those that a report names, and those that left before one that was taken."""
+    """Take out the commands that a report names, and those that left before one that was taken."""
     for taken in (report.accepted, report.done):
         if taken in ids:
             del ids[: ids.index(taken) + 1]

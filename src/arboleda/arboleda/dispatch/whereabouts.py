@@ -1,4 +1,4 @@
-"""Whereabouts of robots: where their last moves ended, and at which poses they stand for sure."""
+"""Whereabouts of robots: the poses at which they surely stand, and the goals that they have reached."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ DISPLACED = "true"
 
 
 class Whereabouts:
-    """Whereabouts of robots; `reached` has the goal of each robot's last motion, once that is done."""
+    """Whereabouts of robots; `reached` has the goal of a robot's last motion, once that motion is done."""
 
     def __init__(
         self,
         beliefs: dict[str, Belief],
-        kept: Memory,
+        facts: Memory,
         memory: FactMemory,
         ledger: Ledger,
         under_way: UnderWay,
@@ -30,13 +30,14 @@ class Whereabouts:
         self._memory = memory
         self._ledger = ledger
         self._under_way = under_way
-        for name in kept.get(Fact.DISPLACED, {}).keys() & beliefs.keys():
+        for name in facts.get(Fact.DISPLACED, {}).keys() & beliefs.keys():
             beliefs[name].displaced = True
 
     def place(self, workspace: Workspace) -> Pose | None:
-        """The zone-free pose at, or above, which its robot stands, as far as its evidence goes.
+        """The zone-free pose at, or above, which its robot surely stands; None where nothing proves that.
 
-        What it said last may be older than a move that it was just given, or than its last stop.
+        A robot with an open command, or whose place may be older than its last stop, proves nothing: it may
+        be on its way into a zone.
         """
         robot = workspace.robot
         belief = self._beliefs[robot.name]
@@ -50,12 +51,12 @@ class Whereabouts:
         return next((pose for spot, pose in workspace.free_spots if robot.motion.stands_at(here, spot)), None)
 
     def displace(self, belief: Belief, *, displaced: bool) -> None:
-        """Remember if the position of a robot has lost its meaning, which it cannot report itself."""
+        """Remember that the position of a robot has lost its meaning, or has one again."""
         belief.displaced = displaced
         self._memory.remember(Fact.DISPLACED, belief.robot.name, DISPLACED if displaced else None)
 
     def put_at_reference(self, robot: str) -> None:
-        """Take a robot that cannot say so for put at its reference, wherever it stood before."""
+        """Take a robot that cannot report it for put at its reference by a person."""
         belief = self._beliefs[robot]
         self.displace(belief, displaced=False)
         self.reached.pop(robot, None)
@@ -64,7 +65,7 @@ class Whereabouts:
             self.reached[robot] = belief.robot.reference
 
     def moves_again(self, robot: str) -> None:
-        """A robot that tells no position moves, or cannot: it is no longer where its last move ended."""
+        """Note that a robot without a position moves, or cannot: it has left where its last move ended."""
         self.reached.pop(robot, None)
         for entry in self._ledger.of_robot(robot):
             if entry.is_work and entry.settles_at is not None:
@@ -72,5 +73,5 @@ class Whereabouts:
                 self._ledger.plan(entry)
 
     def is_there(self, command: Command) -> bool:
-        """True for a motion that ends where the robot's last one, which was done, has left it."""
+        """True for a motion to where the robot's last motion, which is done, has ended."""
         return isinstance(command, Motion) and command.way == (self.reached.get(command.robot),)

@@ -1,17 +1,17 @@
-"""Queue for shared zones: who waits for which, the first one first."""
+"""Queue for shared zones: the robots that wait, and for which zones, the first first."""
 
 from __future__ import annotations
 
 
 class ZoneQueue:
-    """Requests of the robots that wait, each for all that it asked for, in the order of asking."""
+    """Requests of the robots that wait, in the order of asking; each for all of its zones at once."""
 
     def __init__(self) -> None:
         self._asked: dict[str, frozenset[str]] = {}
 
     @property
     def waiting(self) -> tuple[tuple[str, frozenset[str]], ...]:
-        """Each waiting robot with all it asked for, the first one first."""
+        """Each waiting robot with the zones that it asked for, the first robot first."""
         return tuple(self._asked.items())
 
     def asked_by(self, robot: str) -> frozenset[str] | None:
@@ -19,7 +19,7 @@ class ZoneQueue:
         return self._asked.get(robot)
 
     def join(self, robot: str, zones: frozenset[str]) -> None:
-        """Have a robot wait as the last one; who waits already keeps its place."""
+        """Have a robot wait as the last; a robot that waits already keeps its place."""
         self._asked.setdefault(robot, zones)
 
     def go_first(self, robot: str) -> None:
@@ -31,7 +31,7 @@ class ZoneQueue:
         self._asked.pop(robot, None)
 
     def ahead_of(self, robot: str) -> tuple[str, ...]:
-        """The robots that wait before a waiting one for one of its zones, the first one first."""
+        """The robots that wait before a waiting robot for one of its zones, the first first."""
         names, zones = list(self._asked), self._asked[robot]
         return tuple(name for name in names[: names.index(robot)] if zones & self._asked[name])
 

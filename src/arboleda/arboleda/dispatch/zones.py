@@ -1,6 +1,6 @@
-"""Shared zones: who is in which, who waits for which; first come, first served.
+"""Shared zones: which robot holds which zone, and which robots wait; first come, first served.
 
-A device that cells share is one of them, held by the cell whose task uses it.
+A device that cells share counts as a zone too. Its holder is the cell whose task uses it.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ NONE = Phrase("none", "none")
 class Zones:
     """At most one robot per zone.
 
-    A robot takes all the zones of a way at once, from outside, so nobody who holds a zone waits for another
-    one and there is no deadlock. A quarantined zone may still have its silent robot in it.
-    `names` is in the order of the plant file.
+    A robot takes all the zones of its way at once, from outside. So no robot that holds a zone waits for
+    another zone, and there is no deadlock. A quarantined zone may still have its silent robot in it, so it is
+    given to no other robot. `names` is in the order of the plant file.
     """
 
     def __init__(self, names: Iterable[str], quarantined: Mapping[str, str] | None = None) -> None:
-        """`quarantined`: zone -> robot, kept from an earlier start; what is not in `names` is left out."""
+        """`quarantined`: zone -> robot, of an earlier start; zones that are not in `names` are left out."""
         self.names = tuple(names)
         self._holders = {zone: robot for zone, robot in (quarantined or {}).items() if zone in self.names}
         self._quarantined = set(self._holders)
@@ -50,16 +50,16 @@ class Zones:
         self.queue = ZoneQueue()
 
     def holder(self, zone: str) -> str | None:
-        """The robot that is, or in quarantine may be, in the zone."""
+        """The robot that is in a zone; of a quarantined zone the robot that may be in it."""
         return self._holders.get(zone)
 
     def held_by(self, robot: str) -> frozenset[str]:
-        """The zones of which it is the holder, quarantined ones too."""
+        """The zones that a robot holds, with quarantined zones."""
         return frozenset([zone for zone, holder in self._holders.items() if holder == robot])
 
     @property
     def is_used(self) -> bool:
-        """True while anybody holds one."""
+        """True while anybody holds a zone."""
         return bool(self._holders)
 
     @property
@@ -69,16 +69,16 @@ class Zones:
 
     @property
     def robots(self) -> set[str]:
-        """The holders of any."""
+        """All holders of zones."""
         return set(self._holders.values())
 
     @property
     def robbed(self) -> set[str]:
-        """Robots inside that may lack what an override took; each may look whether it can `regain` that."""
+        """Robots in zones that an override has taken from them; each of them may try to `regain` these."""
         return set(self._robbed)
 
     def awaited(self, robot: str, zones: Iterable[str]) -> dict[str, str]:
-        """Those of the zones that somebody else holds, in order of their names, each with its holder."""
+        """The zones of these that another robot holds, in order of their names, each with its holder."""
         holders = [(zone, self._holders.get(zone)) for zone in sorted(zones)]
         return {zone: other for zone, other in holders if other is not None and other != robot}
 
@@ -86,11 +86,11 @@ class Zones:
         return zone in self._quarantined
 
     def request(self, robot: str, zones: frozenset[str], *, moves_over: bool = False) -> bool:
-        """Ask for all of `zones`: True where it holds them now, else it waits; asking again changes nothing.
+        """Ask for all of `zones`: True where the robot holds them now, else it waits; it may ask again.
 
-        IllegalTransition for a zone there is not, for more than the robot holds, for other zones than it
-        waits for, and while any of its zones is quarantined. `moves_over`: a machine that is in the way of
-        one zone may ask for another one, to get there; it goes first, as others may wait for that it leaves.
+        IllegalTransition for an unknown zone, for more than the robot holds, for other zones than it waits
+        for, and while one of its zones is quarantined. `moves_over`: a machine in the way of one zone may ask
+        for another zone, to get there. It goes first, as others may wait for the zone that it leaves.
         """
         for zone in sorted(zones):
             self._require_known(zone)
@@ -109,10 +109,7 @@ class Zones:
         return robot in self._grant()
 
     def claim(self, robot: str, zones: frozenset[str]) -> None:
-        """Take zones that nobody else holds for a robot that may be in any of them, its quarantined ones too.
-
-        IllegalTransition where another robot holds one.
-        """
+        """Take zones for a robot that may be in them; IllegalTransition where another robot holds one."""
         for zone in sorted(zones):
             if self.holder(zone) not in (None, robot):
                 raise IllegalTransition(TAKEN(zone=zone, holder=self.holder(zone) or "", robot=robot))
@@ -122,58 +119,55 @@ class Zones:
             self.queue.leave(robot)
 
     def regain(self, robot: str, zones: frozenset[str]) -> bool:
-        """True where a robot inside has all it needs to get out, `zones` at the most; it never waits.
+        """True where a robot in a zone has all that it needs to get out, `zones` at most; it never waits.
 
-        What an override took from it, also in an earlier start, it takes again where nobody else has it.
+        It takes again the zones that an override took from it, where no other robot holds one of them.
         """
         if robot in self._robbed and all(self.holder(zone) in (None, robot) for zone in zones):
             self.claim(robot, zones)
         return robot not in self._robbed
 
     def withdraw(self, robot: str) -> tuple[str, ...]:
-        """It gives up waiting; the robots that get their zones by this, the first one first."""
+        """Have a robot wait no more; returns the robots that get their zones by this, the first first."""
         self.queue.leave(robot)
         return self._grant()
 
     def release(self, robot: str) -> tuple[str, ...]:
-        """It is seen outside of all it holds; what is quarantined stays so. Returns as `withdraw`."""
+        """Free the zones of a robot that is seen outside, but for quarantined ones. Returns as `withdraw`."""
         return self._free(self.held_by(robot) - self._quarantined)
 
     def quarantine(self, robot: str) -> None:
-        """It fell silent: what it holds stays occupied until `restore` or `override`."""
+        """Quarantine the zones of a robot that fell silent, until `restore` or `override`."""
         self._quarantined |= self.held_by(robot)
 
     def restore(self, robot: str) -> tuple[str, ...]:
-        """It is back, homed and seen outside: its quarantined zones are free. Returns as `withdraw`."""
+        """Free the quarantined zones of a robot that is back, homed and outside. Returns as `withdraw`."""
         return self._free(self.held_by(robot) & self._quarantined)
 
     def lift_quarantine(self, machine: str) -> None:
-        """A machine says itself which zones it is in the way of: those that it holds are not quarantined."""
+        """End the quarantine of a machine's zones: it is heard, and reports which ones it occupies."""
         self._quarantined -= self.held_by(machine)
 
     def quarantine_device(self, device: str) -> None:
-        """A shared device fell silent: the cell that holds it keeps it until `give_back` or `override`."""
+        """Quarantine a shared device that fell silent: its cell holds it until `give_back` or `override`."""
         if device in self._holders:
             self._quarantined.add(device)
 
     def give_back(self, names: frozenset[str]) -> tuple[str, ...]:
-        """Shared devices are heard and do nothing, or a machine has left zones: nobody holds them any more.
-
-        Returns as `withdraw`.
-        """
+        """Free shared devices that do nothing, or zones that their holder has left. Returns as `withdraw`."""
         return self._free(names & self._holders.keys())
 
     def override(self, zone: str) -> tuple[str, ...]:
-        """An operator answers for one quarantined zone being empty: it is free. Returns as `withdraw`.
+        """Free one quarantined zone, as an operator answers that it is empty. Returns as `withdraw`.
 
-        IllegalTransition where there is nothing to override.
+        IllegalTransition for a zone that is not quarantined.
         """
         self.require_quarantined(zone)
         self._robbed.add(self._holders[zone])
         return self._free(frozenset({zone}))
 
     def require_quarantined(self, zone: str) -> None:
-        """IllegalTransition where there is nothing to override."""
+        """Raise IllegalTransition for a zone that is not quarantined."""
         self._require_known(zone)
         if zone not in self._quarantined:
             holder = self.holder(zone)
@@ -188,7 +182,7 @@ class Zones:
         return self._grant()
 
     def _grant(self) -> tuple[str, ...]:
-        """Serve the waiting in order; nobody gets past an earlier one that wants one of the same zones."""
+        """Give zones to the waiting in order; none gets past an earlier robot that asked for one of them."""
         granted = []
         taken = set(self._holders)
         for robot, zones in self.queue.waiting:
@@ -201,8 +195,8 @@ class Zones:
 
     def _require_known(self, zone: str) -> None:
         if zone not in self.names:
-            known = self.names or NONE()
-            raise IllegalTransition(NO_ZONE(zone=plain(zone, 40), known=known))
+            names = self.names or NONE()
+            raise IllegalTransition(NO_ZONE(zone=plain(zone, 40), known=names))
 
 
 def _named(zones: frozenset[str]) -> tuple[str, ...]:

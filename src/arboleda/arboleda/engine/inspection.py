@@ -9,38 +9,8 @@ from arboleda.core.reasons import HELD, HELD_STRANDED
 from arboleda.core.teaching import HOLD_S
 from arboleda.dispatch.belief import FAULTY, FENCED, MOVING, OFFLINE, STOPPED, UNANSWERED, UNHEARD, UNHOMED
 from arboleda.dispatch.ledger import TABLE, Feed, Ledger
-from arboleda.dispatch.stillness import Moment, Stillness
+from arboleda.dispatch.stillness import ReportMoment, Stillness
 from arboleda.resume.trail import Trail
 from arboleda.resume.walk_back import MORE
 from arboleda.trees.part_places import EMPTY, trouble_in
 from arboleda.trees.tree_run import IN_RECOVERY, path_of
-
-__all__ = [
-    "EMPTY",
-    "FAULTY",
-    "FENCED",
-    "HEARTBEAT_S",
-    "HELD",
-    "HELD_STRANDED",
-    "HOLD_S",
-    "IN_RECOVERY",
-    "LAST",
-    "MORE",
-    "MOVING",
-    "OFFLINE",
-    "SETTLES_IN",
-    "STOPPED",
-    "TABLE",
-    "UNANSWERED",
-    "UNHEARD",
-    "UNHOMED",
-    "UNKNOWN_S",
-    "Feed",
-    "Ledger",
-    "Moment",
-    "News",
-    "Stillness",
-    "Trail",
-    "path_of",
-    "trouble_in",
-]

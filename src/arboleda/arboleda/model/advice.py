@@ -16,18 +16,20 @@ class Hand(str, Enum):
     BRING_BACK = "bring_back"  # a robot that is not heard, or does not hear this plant
     REPAIR = "repair"  # a robot whose board reports a fault
     REFERENCE = "reference"  # a robot that only its own controls can home
-    CHECK = "check"  # a zone: that really nobody is in it
+    CHECK = "check"  # a zone, whether anybody is in it
     FREE = "free"  # a device that is in the way of a zone
-    TAKE_OUT = "take_out"  # what lies at a place; its scope is that of the verb, the cell and the place
-    PUT_IN = "put_in"  # a part that is missing at a place, the same
+    TAKE_OUT = (
+        "take_out"  # the parts at a place; the scope is the cell and the place, as of the verb `unload`
+    )
+    PUT_IN = "put_in"  # a part that is missing at a place; the scope is the same
 
 
 @dataclass(frozen=True, kw_only=True)
 class Advice:
-    """One thing to do: a verb, or an act of a hand, on a robot, a cell or a zone, and what comes of it.
+    """One thing to do: a verb, or an act of a hand, on a robot, a cell or a zone.
 
-    `instead`: it begins another way out than what stands before it. `moves` and `drops`: the robots that it
-    may set in motion, and those whose part falls. `refusal`: why it would be refused now.
+    `instead`: it begins an alternative to the advice before it. `moves` and `drops` are the robots that it
+    may set in motion, and those whose part may fall. `refusal` is why it would be refused now.
     """
 
     do: Verb | Hand
@@ -66,10 +68,10 @@ def in_words(advice: Advice) -> Sentence:
     return (BY_HAND[Verb(advice.do)] if by_hand else DO[advice.do])(scope=advice.scope)
 
 
-def sentence(ways: Iterable[Advice]) -> Sentence:
-    """All of it in one sentence; NOTHING where there is nothing to do."""
+def sentence(advices: Iterable[Advice]) -> Sentence:
+    """All advice in one sentence; NOTHING without any."""
     whole = NOTHING
-    for each in ways:
+    for each in advices:
         joined = OR if each.instead else THEN
         whole = joined(first=whole, second=in_words(each)) if whole else in_words(each)
     return whole

@@ -11,10 +11,7 @@ HOURS = re.compile(r"([01]\d|2[0-3]):([0-5]\d)-([01]\d|2[0-4]):([0-5]\d)", re.AS
 
 
 class Assistants(str, Enum):
-    """Levels of what assistants may do: nothing, look and stop, propose, give tasks that are approved.
-
-    Each includes those before it.
-    """
+    """Levels of rights: nothing, look and stop, propose, give approved tasks; each with those before."""
 
     OFF = "off"
     READ = "read"
@@ -28,9 +25,9 @@ class Assistants(str, Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Hours:
-    """Hours of each day, as `text` has them: from `start_min`, in minutes after midnight, until `end_min`.
+    """Hours of each day, from `start_min` until `end_min` in minutes after midnight, as `text` has them.
 
-    Those that end before they start go on over midnight.
+    Hours that end before they start go on over midnight.
     """
 
     text: str
@@ -46,10 +43,10 @@ class Hours:
 
 def hours(text: str) -> Hours:
     """The hours of a text such as `07:30-18:00`; ValueError where it means none."""
-    found = HOURS.fullmatch(text)
-    if found is None:
+    match = HOURS.fullmatch(text)
+    if match is None:
         raise ValueError(text)
-    start, start_min, end, end_min = map(int, found.groups())
+    start, start_min, end, end_min = map(int, match.groups())
     whole = Hours(text=text, start_min=start * 60 + start_min, end_min=end * 60 + end_min)
     if whole.end_min > DAY_MIN or whole.start_min == whole.end_min:
         raise ValueError(text)

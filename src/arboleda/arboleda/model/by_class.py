@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-Row = TypeVar("Row")
+T = TypeVar("T")
 
 
-def nearest(rows: Mapping[type[Any], Row], kind: type[Any]) -> Row | None:
+def nearest(rows: Mapping[type[Any], T], kind: type[Any]) -> T | None:
     """The row of a class, or of its nearest base that has one; None where none has."""
-    for base in kind.__mro__:  # no generator: most have a row of their own, and commands ask this five times
+    for base in kind.__mro__:  # a loop costs less than a generator, and each command asks five times
         if base in rows:
             return rows[base]
     return None

@@ -1,6 +1,6 @@
-"""The states of a cell and what moves it from one to the next, in the words of PackML.
+"""States of a cell, and the causes that change them, in the words of PackML (ISA-TR88.00.02).
 
-ISA-TR88.00.02; our stop (software) is its abort. It is not a safety function.
+The stop (software) is the abort of PackML. It is not a safety function.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from arboleda.model.sentence import Phrase, Sentence
 
 
 class CellState(str, Enum):
-    """State of a cell; the value is its one word on every screen and in every document."""
+    """State of a cell; the value is its word on every screen and in every document."""
 
     IDLE = "idle"
     EXECUTE = "execute"
@@ -41,8 +41,8 @@ SAID = {
 class Cause(str, Enum):
     """Cause for which a cell changes its state.
 
-    `stuck` is a recovery that failed, a part found in an idle arm's effector, or a defect; `away` is a
-    plant that finds that it did nothing for long, as after a suspend of its machine.
+    `stuck` is a recovery that failed, a part in the effector of an idle arm, or a defect. `away` is an
+    absence of the plant, as after a suspend of its machine.
     """
 
     TASK = "task"
@@ -88,7 +88,7 @@ TABLE: dict[tuple[CellState, Cause], CellState] = {
 
 def after(state: CellState, cause: Cause, cell: str) -> CellState:
     """The next state; IllegalTransition where the table has no row."""
-    found = TABLE.get((state, cause))
-    if found is None:
+    following = TABLE.get((state, cause))
+    if following is None:
         raise IllegalTransition(NO_WAY(cell=cell, state=state.sentence, cause=cause.value))
-    return found
+    return following

@@ -1,4 +1,4 @@
-"""Commands to robots: the bases that the engine goes by, and the commands that every robot knows."""
+"""Commands to robots: the base classes by which the engine treats them, and the commands of every robot."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from .facts import Facts
 
 GO, GRIP, LET_GO = "go", "grip", "let_go"
 """The names of a robot's own commands in a plant file."""
-LABELS = ("id", "heard", "token")  # what a command carries on its way beside what it was made with
+LABELS = ("id", "heard", "token")  # fields for its way, which are no values of the command
 FRESH_S = 2.0
-"""Time after which a board obeys a command no more, s: since it sent the telemetry that the command names."""
+"""A board refuses a command (s) after it sent the telemetry that the command names."""
 Position = tuple[float, ...] | int
 """Where a robot is, as its kind reports it: the joints of an arm, the node of a mobile robot."""
 
@@ -33,29 +33,28 @@ class OnStop(str, Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Command:
-    """Command to a robot; its base says what the engine must know of it, whatever it is in detail."""
+    """Command to a robot; the engine knows it by its base class and the properties here alone."""
 
     id: str
     robot: str
     heard: int | None = None
-    """The number of the last telemetry of the robot's board that the plant had heard when it gave this; None
-    where that has none."""
+    """The number of the board's last telemetry that the plant had heard; None for a board without numbers."""
     token: str | None = None
-    """What its board is to echo: which step of which task it is; None where it is of none."""
+    """The token of its step and task, which its board echoes; None where no task gives it."""
 
     @property
     def word(self) -> str:
-        """The verb by which a plant file speaks of it; empty where it never does."""
+        """The verb by which a plant file names it; empty where none does."""
         return ""
 
     @property
     def given(self) -> dict[str, object]:
-        """The values that it was made with, by name, as screens show them."""
+        """Its values by name, as screens show them."""
         return {each.name: getattr(self, each.name) for each in fields(self) if each.name not in LABELS}
 
     @property
     def sets(self) -> Facts:
-        """The facts that it makes true; where the robot reports facts, they prove it."""
+        """The facts that it sets; where the robot reports them, they prove it."""
         return ()
 
     @property
@@ -65,26 +64,26 @@ class Command:
 
     @property
     def works_on_part(self) -> bool:
-        """True where there has to be a part at its device for it."""
+        """True where it needs a part at its device."""
         return False
 
     @property
     def at_most_s(self) -> float | None:
-        """The longest time that it may take, s; None where the robot and its way say that."""
+        """The longest time that it may take, s; None where that follows from the robot and its way."""
         return None
 
 
 class Work(Command):
-    """Keeps its robot busy: one at a time, refused while the robot is stopped or not homed."""
+    """Work of a robot: one at a time, refused while the robot is stopped or not homed."""
 
     @property
     def on_stop(self) -> OnStop:
-        """Its end when its step is left, or its cell is held or stopped."""
+        """How it ends where its step is left, or its cell is held or stopped."""
         return OnStop.HALT
 
 
 class Motion(Work):
-    """Moves the robot: halted when its step is left, ends when the evidence says so."""
+    """Motion of a robot: halted when its step is left, done when the evidence proves it."""
 
     @property
     def word(self) -> str:
@@ -92,19 +91,16 @@ class Motion(Work):
 
     @property
     def way(self) -> tuple[Position, ...]:
-        """The positions it comes by, of several the first where it begins, the last its goal.
-
-        Empty where it leads to no named position.
-        """
+        """Its positions: the last is the goal, the first of several where it begins. Empty without a goal."""
         return ()
 
 
 class Process(Work):
-    """Work that a machine does by itself; one that finishes goes on whoever stops waiting for it."""
+    """Work that a machine does by itself; with `OnStop.FINISH` it goes on when nobody waits for it."""
 
 
 class Switch(Command):
-    """Sets something that stays as it is set: never halted, ends when it is reported, or has settled."""
+    """Switching of a fact, which stays as it was set: never halted, done when reported or settled."""
 
     @property
     def word(self) -> str:
@@ -114,21 +110,21 @@ class Switch(Command):
 
     @property
     def grips(self) -> bool | None:
-        """True: its robot may hold a part from now on; False: it lets go; None: it has to do with no part."""
+        """True where it grips, False where it lets go, None where it concerns no part."""
         return None
 
     @property
     def takes_s(self) -> float:
-        """The time that it takes by what is declared of it, s."""
+        """The time that it takes by its declaration, s."""
         return 0.0
 
 
 class Query(Command):
-    """Asks for an answer, one at a time; forgotten when its step is left, even while its robot is stopped."""
+    """Query for an answer: one at a time, also of a stopped robot; dropped when its step is left."""
 
 
 class Question(Query):
-    """A query that somebody answers who sees it on the plant's own screens."""
+    """Query that a person answers on the plant's own screens."""
 
     @property
     def text(self) -> str:
@@ -154,5 +150,5 @@ class Home(Motion):
 
 
 def needs_clear(command: Command) -> bool:
-    """True where a stop latch forbids it: all work, and every switch but one that lets go of a part."""
+    """True for a command that a latched stop forbids: work, and every switch but one that lets go."""
     return isinstance(command, Work) or (isinstance(command, Switch) and command.grips is not False)

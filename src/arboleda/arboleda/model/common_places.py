@@ -1,4 +1,4 @@
-"""Places that several cells name: a robot that they share stands at one and the same for each of them."""
+"""Places that several cells name: the same target of a robot that these cells share."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ from .plant_model import Cell
 def with_common_places(
     parts: Mapping[str, Mapping[str, int]], cells: Iterable[Cell]
 ) -> dict[str, dict[str, int]]:
-    """The numbers of parts at places, by cell, and the same for the other cells that name these places."""
+    """The numbers of parts at places, by cell, with those of the other cells that name the same places."""
     by_name = {cell.name: cell for cell in cells}
-    found = {name: dict(numbers) for name, numbers in parts.items()}
+    everywhere = {name: dict(numbers) for name, numbers in parts.items()}
     for name, numbers in parts.items():
         others = [cell for cell in by_name.values() if not set(cell.shared).isdisjoint(by_name[name].shared)]
         for other in others:
             for target, number in numbers.items():
                 for same in _same(by_name[name], target, other):
-                    found.setdefault(other.name, {}).setdefault(same, number)
-    return found
+                    everywhere.setdefault(other.name, {}).setdefault(same, number)
+    return everywhere
 
 
 def _same(cell: Cell, target: str, other: Cell) -> list[str]:
-    """The places of another cell that are this one of a cell."""
+    """The places of another cell that are the same as a place of this cell."""
     if cell.name == other.name:
         return []
     counted = {place.target for place in other.counted}
-    found = []
+    names = []
     for name in set(cell.shared_movers).intersection(other.shared_movers):
         motion, here = cell.reach[name].robot.motion, cell.reach[name].targets.get(target)
         for each, pose in other.reach[name].targets.items():
             if here is not None and each in counted and motion.stands_at(here.q, pose.q):
-                found.append(each)
-    return found
+                names.append(each)
+    return names

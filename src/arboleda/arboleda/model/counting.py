@@ -1,4 +1,4 @@
-"""A number and what it counts, as people write it."""
+"""Numbers with the things that they count, as people write them."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from .sentence import Sentence, as_sentence
 
 
 class ArboledaError(Exception):
-    """Any error Arboleda reports: one sentence an operator can act on, given as such or as its text."""
+    """Error that Arboleda reports: one sentence that an operator can act on, or its text."""
 
     @property
     def sentence(self) -> Sentence:
@@ -28,7 +28,7 @@ class TextError(ArboledaError):
 
 
 class QueueFull(ArboledaError):
-    """The plant takes this task not now, but may later; the sentence says why, e.g. how many wait."""
+    """The plant does not take this task now, but may later; the sentence says why, as how many wait."""
 
 
 class IllegalTransition(ArboledaError):

@@ -1,4 +1,4 @@
-"""Facts: the named values that a device reports beside its state and its position."""
+"""Facts: named values that a device reports beside its state and its position."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ Value = bool | int | float | str
 Facts = tuple[tuple[str, Value], ...]
 """Facts by name."""
 HEALTH = "health"
-"""The fact of a robot whose hardware tells what keeps it from moving, a word; WELL where nothing does."""
+"""The fact, a word, by which a robot's hardware reports what keeps it from moving; WELL for nothing."""
 WELL = "ok"
 
 

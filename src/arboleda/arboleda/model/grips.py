@@ -1,15 +1,15 @@
-"""Grips: the state of each effector, from what was commanded and from what its board reports."""
+"""Grips: the state of each effector, by commands and by reports."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from enum import Enum
 
-OF_EARLIER_START = "?"  # for the id of a command that nobody knows any more
+OF_EARLIER_START = "?"  # stands for the id of a command of an earlier start
 
 
 class Grip(str, Enum):
-    """An effector: off, on, or somewhere between the two because its switching was not confirmed."""
+    """Grip of an effector: off, on, or between the two until its switching is confirmed."""
 
     OFF = "off"
     ON = "on"
@@ -17,14 +17,14 @@ class Grip(str, Enum):
 
 
 class Grips:
-    """The grip of every holder; a plant that starts takes over what was kept, else off.
+    """The grip of every holder; `earlier` has the grips of an earlier start, else a holder is off.
 
-    `tools` are devices of their own at the end of another robot. One that is told to let go of a part opens
-    until it has done so, or it is proven that it never will: it may end late what the plant has given up.
+    `tools` are devices of their own at the end of a robot. A tool that was told to let go counts as `opening`
+    until it has done so, or surely never will: it may still do late what the plant has given up.
     """
 
-    def __init__(self, holders: Collection[str], kept: Mapping[str, str], tools: Collection[str]) -> None:
-        self._grips = {name: Grip(kept.get(name, Grip.OFF)) for name in holders}
+    def __init__(self, holders: Collection[str], earlier: Mapping[str, str], tools: Collection[str]) -> None:
+        self._grips = {name: Grip(earlier.get(name, Grip.OFF)) for name in holders}
         self._tools = frozenset(tools)
         kept_open = [name for name in self._tools if self._grips[name] is Grip.SWITCHING]
         self.opening = {name: {OF_EARLIER_START} for name in kept_open}  # by which commands
@@ -33,7 +33,7 @@ class Grips:
         return self._grips[holder]
 
     @property
-    def known(self) -> dict[str, Grip]:
+    def by_holder(self) -> dict[str, Grip]:
         """The grip of every holder now."""
         return dict(self._grips)
 
@@ -46,16 +46,16 @@ class Grips:
         return changed
 
     def holding(self, holder: str) -> bool:
-        """True where a part may hang there."""
+        """True where a holder may hold a part."""
         return self._grips[holder] is not Grip.OFF
 
     def open(self, holder: str, id: str) -> None:
-        """This command tells it to let go of what it may hold."""
+        """Note a command that tells a holder to let go."""
         if holder in self._tools and self.holding(holder):
             self.opening.setdefault(holder, set()).add(id)
 
     def will_not_open(self, holder: str, *ids: str | None) -> None:
-        """It has not taken these commands, or has given them up."""
+        """Drop commands that a holder has not taken, or has given up."""
         pending = self.opening.get(holder, set())
         if not pending.isdisjoint(ids):
             pending.difference_update(ids)
@@ -63,5 +63,5 @@ class Grips:
                 del self.opening[holder]
 
     def forget_opening(self, holder: str) -> None:
-        """It does nothing any more of what it was told before."""
+        """Drop all commands to a holder: it carries out none of them any more."""
         self.opening.pop(holder, None)

@@ -1,4 +1,4 @@
-"""Messages across the core's border beside commands: notices out, events in."""
+"""Messages across the engine's border beside commands: notices out, events in."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class MotionState(int, Enum):
 
 
 class Reason(str, Enum):
-    """Reason of a failure; one each."""
+    """Reason of a failure."""
 
     LINK_LOST = "link_lost"
     REBOOTED = "rebooted"
@@ -53,7 +53,7 @@ class Reason(str, Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Failure:
-    """One reason and one sentence for the operator."""
+    """Failure of a command or a task: a reason, and a sentence for the operator."""
 
     reason: Reason
     sentence: Sentence
@@ -84,16 +84,18 @@ class TaskAnswer:
 
 @dataclass(frozen=True, kw_only=True)
 class Course:
-    """Course of a task that was done: the s it took, and after how many each of its steps began last, by
-    the step's name and its number among those of that name. While it was held no time passed.
+    """Course of a task that was done: how long it took, and when each step began last, in s without holds.
+
+    The key of a step is its name with its number among the steps of that name.
     """
 
     seconds: float
     begun: Mapping[str, float]
 
-    def left(self, step: str, seconds: float) -> float | None:
-        """Time in s that was left so many s after this step had begun, at least what was left when the next
-        one began; None where it did not come to this step.
+    def remaining_s(self, step: str, seconds: float) -> float | None:
+        """The time (s) that the task needed from `seconds` after a step began; None without that step.
+
+        It is at least the time that it needed from the begin of the next step.
         """
         at = self.begun.get(step)
         if at is None:
@@ -103,7 +105,7 @@ class Course:
 
 
 class Check(str, Enum):
-    """A part of a task's work that no device may have confirmed, though the task is done."""
+    """Part of a task's work that no device may have confirmed although the task is done."""
 
     GRIP = "grip"
     RELEASE = "release"
@@ -113,9 +115,9 @@ class Check(str, Enum):
 class KeptTask:
     """Task of an earlier start, as it was kept; times in s of this start's clock.
 
-    `recipe` is "" where nobody knows; `choice` says why it is done in its cell, where several were allowed.
-    `course` is known of tasks that were done from their beginning in one start of the plant. `is_bound` marks
-    a task that may begin only in the start, and by the version of the plant, for which it was allowed.
+    `recipe` is "" where it was not kept. `choice` says why the task is done in its cell, where several were
+    allowed. Tasks that were done within one start of the plant have a `course`. `is_bound` marks a task that
+    may begin only in the start, and by the version of the plant, for which it was allowed.
     """
 
     id: str
@@ -150,9 +152,12 @@ class SystemStart:
 
 @dataclass(frozen=True, kw_only=True)
 class TaskChanged:
-    """One change of a task; `request` is the token of the request that caused it, if one did. `for_now`
-    says of a refused one that the same text may be taken later. `choice` says why it is done in this cell,
-    where several were allowed; `course` how one went that is done, `unchecked` what nobody confirmed."""
+    """Change of a task; `request` is the token of the request that caused it, if any.
+
+    `for_now`: the text of this refused task may be taken later. `choice` says why the task is done in this
+    cell, where several were allowed. A task that is done has a `course`, and the checks that nobody
+    confirmed.
+    """
 
     task: str
     text: str
@@ -170,18 +175,18 @@ class TaskChanged:
 class Outcome(str, Enum):
     """Outcome of an operator's act."""
 
-    SENT = "sent"  # a stop: whether robots stand shows in what they report
-    UNDER_WAY = "under_way"  # devices were told to do it, and have not ended
+    SENT = "sent"  # a stop: reports show whether robots stand
+    UNDER_WAY = "under_way"  # devices carry it out
     DONE = "done"
-    UNCHECKED = "unchecked"  # devices were told, and report nothing of it
+    UNCHECKED = "unchecked"  # devices were told to do it, and report nothing of it
     FAILED = "failed"
 
 
 @dataclass(frozen=True, kw_only=True)
 class OperatorAnswer:
-    """Answer to an operator's request; `refusal` says why nothing was done, None where it was.
+    """Answer to an operator's request; `refusal` says why nothing was done, None where it was done.
 
-    `act` is the number under which its `outcome`, and why so, is told on where that is still to come.
+    `act` is the number of the act, under which a later `outcome` is told.
     """
 
     verb: Verb
@@ -195,25 +200,23 @@ class OperatorAnswer:
 
 
 class Fact(str, Enum):
-    """Fact that must survive a restart of the plant."""
+    """Fact that has to survive a restart of the plant."""
 
     LATCH = "latch"  # robot -> "on", or "cleared" until its cell is reset
     EFFECTOR = "effector"  # arm -> "on", "off" or "switching"
-    EMPTIED = "emptied"  # device that says that it holds a part -> "true" while a person has taken that out
+    EMPTIED = "emptied"  # device that reports a part -> "true" where a person has taken the part out
     QUARANTINE = "quarantine"  # zone -> the robot that may still be in it
     PARTS = "parts"  # cell -> its places with parts, as `trees/part_places.py` writes them
-    STORED = (
-        "stored"  # by version 0.1: cell -> the numbers of its stations with a part, "0 7"; now in `parts`
-    )
-    DISPLACED = "displaced"  # robot that cannot say so -> "true" while its position means nothing
+    STORED = "stored"  # of version 0.1: cell -> the numbers of its stations with a part, "0 7"
+    DISPLACED = "displaced"  # robot that cannot report it -> "true" while its position means nothing
     BOOT = "boot"  # such a robot -> the boot in which it was heard last
-    MANUAL = "manual"  # cell -> who teaches it, until its end has been told
-    STEP = "step"  # running task -> where its tree stands, as `resume/trail.py` writes it
+    MANUAL = "manual"  # cell -> the person who teaches it
+    STEP = "step"  # running task -> its trail, as `resume/trail.py` writes it
 
 
 @dataclass(frozen=True, kw_only=True)
 class Remember:
-    """A fact to keep before anything sent after it leaves; None forgets it."""
+    """Fact to keep before any later message leaves; None removes it."""
 
     fact: Fact
     name: str
@@ -222,10 +225,10 @@ class Remember:
 
 @dataclass(frozen=True, kw_only=True)
 class Journal:
-    """One act of an operator, kept for good; `cell` is the one it was for, None where it was for more.
+    """Entry of the journal about an act of an operator; `cell` is None where the act was for several cells.
 
-    An act of devices has two of them: `outcome` is in that of its end. A version that is put to work is an
-    act without a verb.
+    An act that devices carry out has two entries, of which the second has the `outcome`. An entry about
+    something else, as a version that is put to work, has no verb.
     """
 
     verb: Verb | None
@@ -239,26 +242,26 @@ class Journal:
 LETS_GO = Grip.OFF.value
 
 
-def outlives_power(kept: Remember | Journal | TaskChanged) -> bool:
-    """True where not even a power cut may undo it; all that was kept survives a process that dies.
+def outlives_power(notice: Remember | Journal | TaskChanged) -> bool:
+    """True for a notice that not even a power cut may undo; every notice that was kept outlives its process.
 
-    What is lost may only make the plant more careful than it need be: that an effector has let go, that a
-    zone is free again, that a robot was put right, the last steps of a task.
+    A loss may only make the next start more careful than it need be. So may be lost: that an effector has let
+    go, that a zone is free, that a robot was put right, and the last steps of a task.
     """
-    if not isinstance(kept, Remember):
+    if not isinstance(notice, Remember):
         return True
-    if kept.fact is Fact.STEP:
+    if notice.fact is Fact.STEP:
         return False
-    if kept.fact is Fact.EFFECTOR:
-        return kept.value != LETS_GO  # what has gripped and counts as switching lets go in a recovery
-    return kept.value is not None or kept.fact not in (Fact.QUARANTINE, Fact.DISPLACED, Fact.MANUAL)
+    if notice.fact is Fact.EFFECTOR:
+        return notice.value != LETS_GO  # without its grip, a recovery would let go of the part
+    return notice.value is not None or notice.fact not in (Fact.QUARANTINE, Fact.DISPLACED, Fact.MANUAL)
 
 
 @dataclass(frozen=True, kw_only=True)
 class InternalError:
-    """A defect: something raised what nobody handles. `cell` is held for it, "" where it belongs to none.
+    """Defect: an exception that nothing handles. `cell` is held for it; "" where it belongs to no cell.
 
-    `error` carries its traceback, for the log.
+    `error` has its traceback, for the log.
     """
 
     cell: str
@@ -267,7 +270,7 @@ class InternalError:
 
 @dataclass(frozen=True, kw_only=True)
 class Absence:
-    """The plant did nothing for so many seconds: its process was stopped, or its machine suspended."""
+    """Absence of the plant: it did nothing for so long, as its process or its machine was suspended."""
 
     seconds: float
 
@@ -282,10 +285,10 @@ class RevisionName:
 
 @dataclass(frozen=True, kw_only=True)
 class RevisionAnswer:
-    """Answer to a request to put a version to work; `refusal` says why nothing was, None where it was.
+    """Answer to a request to put a version to work; `refusal` says why it was not, None where it was.
 
-    `waits` has the cells that take it later, each with the task that has to end before, "" where something
-    else has to; all others have it. `cancelled` are tasks that waited and that it does not offer any more.
+    `waits` has the cells that take it later, each with the task that has to end first, "" for no task. All
+    other cells have taken it. `cancelled` are tasks that waited, and that this version does not take.
     """
 
     version: RevisionName
@@ -297,7 +300,7 @@ class RevisionAnswer:
 
 @dataclass(frozen=True, kw_only=True)
 class CellRevised:
-    """A cell has taken a version: from now on its tasks begin by that."""
+    """A cell has taken a version, by which its tasks begin from now on."""
 
     cell: str
     version: RevisionName
@@ -318,7 +321,7 @@ Notice = (
 
 
 class Receipt(NamedTuple):
-    """The numbers of the last commands that a board accepted and did, whoever gave them, of one epoch."""
+    """The numbers of the last commands, by anybody, that a board accepted and did in one epoch."""
 
     epoch: int
     accepted: int
@@ -326,7 +329,7 @@ class Receipt(NamedTuple):
 
 
 class Tokens(NamedTuple):
-    """The tokens of the last commands that a board accepted and did, as its commands carried them."""
+    """The tokens of the last commands that a board accepted and did."""
 
     accepted: str | None = None
     done: str | None = None
@@ -384,11 +387,11 @@ class Report:
 
     @cached_property
     def words(self) -> tuple[object, ...]:
-        """All that it says, when apart."""
+        """All values of it but the time and the number."""
         return _words(self)
 
     def again(self, at: float, **news: object) -> Report:
-        """The same words, said once more, but for the news."""
+        """The same report at another time, with the values of `news`."""
         fields = vars(self).copy()  # several times as fast as `replace`, and most reports are repeats
         fields["at"] = at
         if news:
@@ -401,18 +404,18 @@ class Report:
 
 
 BUILT_IN = frozenset({"homed", "effector", "piece"})  # facts that have a field of their own
-WORDLESS = frozenset({"at", "number"})  # when and as which message it was said
+WORDLESS = frozenset({"at", "number"})  # fields that are no value of the robot
 _words = attrgetter(*(each.name for each in fields(Report) if each.name not in WORDLESS))
 
 
 @dataclass(frozen=True, kw_only=True)
 class TaskRequest:
-    """Somebody asks for a task; `request` comes back in the TaskChanged that answers it.
+    """Request for a task; `request` comes back in the TaskChanged that answers it.
 
     `trigger` marks a machine's start signal, which may be refused during the arm's own cycle. `kept` is the
-    task of this id, where an earlier start has accepted it: no part of what is asked. `choice` is why it was
-    given to its cell, in the words of who chose between plants. `version` is the digest of the only version
-    of the plant for which it was allowed, "" where any will do.
+    task of this id in the store, where an earlier start has accepted one. `choice` says why the task was
+    given to this plant, where somebody chose between plants. `version` is the digest of the only version of
+    the plant for which it was allowed, "" for any.
     """
 
     at: float
@@ -436,7 +439,7 @@ class Undelivered:
 
 @dataclass(frozen=True, kw_only=True)
 class LateDeparture:
-    """A command left this process so many seconds after the step that gave it: a commit came between."""
+    """A command left this process `late_s` after the step that gave it, as a commit came between."""
 
     at: float
     id: str
@@ -445,7 +448,7 @@ class LateDeparture:
 
 @dataclass(frozen=True, kw_only=True)
 class Interference:
-    """Somebody else commanded a robot that its link lets everybody command."""
+    """Somebody else commanded a robot, whose link lets anybody command it."""
 
     at: float
     robot: str
@@ -454,9 +457,10 @@ class Interference:
 
 @dataclass(frozen=True, kw_only=True)
 class Shutdown:
-    """The plant is asked to end: no new task, whatever moves is halted.
+    """The plant is asked to end: it takes no new task, and halts what moves.
 
-    What waits is left for the next start, unless `drops_waiting`: then what this start accepted is cancelled.
+    Tasks that wait are kept for the next start; `drops_waiting`: those that this start accepted are
+    cancelled.
     """
 
     at: float
@@ -465,12 +469,11 @@ class Shutdown:
 
 @dataclass(frozen=True, kw_only=True)
 class OperatorRequest:
-    """An operator's act; `scope` is "" for the plant, a cell, a robot, a zone (override), a task (cancel) or
-    a person (answer), `arguments` are those of its verb.
+    """Request of an operator; `arguments` are those of its verb.
 
-    `by_hand` declares what a person has done: a robot stands at its reference (home), the part that a device
-    held was taken out (release). `client` (cancel): who asks is no
-    operator but the client of the task itself.
+    `scope` is "" for the plant, else a cell, a robot, a zone (override), a task (cancel) or a person
+    (answer). `by_hand`: a person has done it: put a robot at its reference (home), or taken a part out
+    (release). `client` (cancel): the client of the task asks, and no operator.
     """
 
     at: float
@@ -483,16 +486,16 @@ class OperatorRequest:
 
     def argument(self, name: str) -> int | str | None:
         """The argument of this name; None where there is none."""
-        return next((value for known, value in self.arguments if known == name), None)
+        return next((value for each, value in self.arguments if each == name), None)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Jog:
-    """Press of a button by the person who teaches a cell, or its release: `session` is the number of the act
-    that began the teaching, `number` counts the presses in it.
+    """Press of a button by the person who teaches a cell, or its release.
 
-    Its robot goes towards `goal`, or carries out the verb `word` with its values. A goal may be another one
-    while the button is held. What is held has to be said again and again: see `HOLD_S` in `core/teaching.py`.
+    `session` is the number of the act that began the teaching, `number` counts the presses in it. The robot
+    goes towards `goal`, or carries out the verb `word` with its values. The goal may change while the button
+    is held. A press has to be sent again and again while it lasts: see `HOLD_S` in `core/teaching.py`.
     """
 
     at: float
@@ -508,9 +511,9 @@ class Jog:
 
 @dataclass(frozen=True, kw_only=True)
 class Revision:
-    """Somebody puts another version of the plant to work, which the plant knows by its digest.
+    """Request to put another version of the plant to work, which the plant knows by its digest.
 
-    `by` is who does, `changes` what it changes in words, a line each: they are for people who read of it.
+    `by` is the person who asks, `changes` has what the version changes, a line each; both are for readers.
     """
 
     at: float
@@ -522,9 +525,9 @@ class Revision:
 
 @dataclass(frozen=True, kw_only=True)
 class RestartRequest:
-    """Somebody wants the plant to start anew once its cells rest, or does not want that any more.
+    """Request to restart the plant once its cells rest, or to drop such a request (`wanted` False).
 
-    Until then no further task begins. `by` is who asks, for people who read of it.
+    Until the restart no further task begins. `by` is the person who asks.
     """
 
     at: float
@@ -534,7 +537,7 @@ class RestartRequest:
 
 @dataclass(frozen=True, kw_only=True)
 class FaultByHand:
-    """A person had something go wrong with a virtual device, or that is over: for people who look back."""
+    """A fault that a person provoked at a virtual device began, or is over: for people who look back."""
 
     at: float
     robot: str

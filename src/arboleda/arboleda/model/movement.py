@@ -1,4 +1,4 @@
-"""Movement of a robot from position to position."""
+"""Movement of a robot between positions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ class Movement:
     """Ways of a robot, the time that they take, and which positions count as one."""
 
     def route(self, start: Position | None, goal: Position) -> tuple[Position, ...]:
-        """The positions by which it gets from `start`, where that is known, to `goal`, which is the last."""
+        """The positions from `start`, where that is known, to `goal`, which is the last."""
         return (goal,)
 
     def beyond(self, position: Position) -> str | None:
@@ -19,13 +19,11 @@ class Movement:
         return None
 
     def stride(self, here: Position, goal: Position, *, turn: float, slide: float) -> tuple[Position, ...]:
-        """The way to the next short goal on the way to a goal, at most as fast as `turn` rad/s and `slide`
-        m/s.
-        """
+        """The positions of a short move towards a goal, at most as fast as `turn` rad/s and `slide` m/s."""
         return self.route(here, goal)[:2]
 
     def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
-        """Time of a motion along `way`; from an unknown start the longest possible one."""
+        """The time of a motion along `way`, s; from an unknown start the longest possible time."""
         raise NotImplementedError
 
     def can_have_moved(self, before: Position, after: Position, elapsed_s: float) -> bool:
@@ -37,7 +35,7 @@ class Movement:
         return position == goal
 
     def confuses(self, position: Position, other: Position) -> bool:
-        """True where it may stop at the one and count as standing at the other."""
+        """True where a robot that stops at one position may count as standing at the other."""
         return position == other
 
     def held_at(self, position: Position) -> Position:

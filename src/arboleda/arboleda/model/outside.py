@@ -1,8 +1,8 @@
-"""Text from outside, as log, terminal, page and sentences may show it.
+"""Text from outside, made fit for log, terminal, page and sentences.
 
-Whoever sends a task, names a ROS node or writes a plant file chooses its letters: escape sequences that a
-terminal obeys, line ends that forge a line of the log, letters that turn the writing direction around, or a
-hundred thousand of them. Such text is shown by one of these two functions, wherever it goes.
+A task, the name of a ROS node or a plant file may have any letters: escape sequences that a terminal obeys,
+line ends that forge a line of the log, marks that turn the writing direction around, or a hundred thousand
+letters. Such text is only shown by the functions here.
 """
 
 from __future__ import annotations
@@ -47,13 +47,13 @@ def text_of_error(error: BaseException, most: int = LINE) -> str:
     return plain(str(error).strip(), most) or type(error).__name__
 
 
-def among(word: str, known: Iterable[str]) -> str:
+def among(word: str, allowed: Iterable[str]) -> str:
     """The words that are allowed instead of a wrong one, and the nearest of them.
 
     >>> among("opne", ["open", "close"]), among("opne", [])
     ('there are open, close; did you mean open?', 'there are none')
     """
-    there = list(known)
+    there = list(allowed)
     near = get_close_matches(word.lower(), there, n=1)
     hint = f"; did you mean {near[0]}?" if near else ""
     return f"there are {', '.join(there) or 'none'}{hint}"

@@ -667,8 +667,8 @@ class PlantModel:
     @cached_property
     def recipes(self) -> tuple[Recipe, ...]:
         """Every recipe that a cell of it offers, the default ones first."""
-        found = dict.fromkeys(each for cell in self.cells for each in cell.recipes)
-        return tuple(sorted(found, key=lambda each: not each.is_default))
+        recipes = dict.fromkeys(each for cell in self.cells for each in cell.recipes)
+        return tuple(sorted(recipes, key=lambda each: not each.is_default))
 
     @cached_property
     def has_boards(self) -> bool:
@@ -678,11 +678,11 @@ class PlantModel:
     @cached_property
     def cells_of(self) -> dict[str, tuple[Cell, ...]]:
         """The cells of each robot by its name, in the order of the file; only what is shared has several."""
-        found: dict[str, tuple[Cell, ...]] = {}
+        cells_of: dict[str, tuple[Cell, ...]] = {}
         for cell in self.cells:
             for robot in cell.robots:
-                found[robot.name] = (*found.get(robot.name, ()), cell)
-        return found
+                cells_of[robot.name] = (*cells_of.get(robot.name, ()), cell)
+        return cells_of
 
     @cached_property
     def driven(self) -> tuple[Robot, ...]:

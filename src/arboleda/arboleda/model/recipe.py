@@ -14,16 +14,16 @@ from .sentence import Phrase
 from .task import Order
 
 Build = Callable[[Order, Any], Behaviour]
-"""Makes the tree of an order in the `Context` of its cell, which stands two rooms above this one."""
+"""Makes the tree of an order, in the `Context` of its cell (`trees/context.py`)."""
 Builders = Mapping[str, Build]
-"""By the name of the recipe that they make the tree of."""
+"""Builders by the names of their recipes."""
 FOR_PEOPLE = "for_people"
-"""Key in the metadata of a field that says where something was read, such as a path."""
+"""Key in the metadata of a field that only says where something was read, as a path."""
 Cell = Any
-"""The `Cell` of `plant_model`: a cell has recipes, so that its module imports this one."""
+"""The `Cell` of `plant_model`, which imports this module, as a cell has recipes."""
 
 
-def known(word: str, names: Iterable[str]) -> str | None:
+def matching(word: str, names: Iterable[str]) -> str | None:
     """The name that `word` spells, in any language; None where it spells none.
 
     Letters outside ASCII spell no ASCII name: some have an ASCII letter as their other case.
@@ -44,19 +44,19 @@ def same_word(cell: Cell, word: str) -> object:
 
 
 def no_limits(cell: Cell) -> None:
-    """Of what is no number."""
+    """The limits of a parameter that is no number: none."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """Within which a number lies, both ends included."""
+    """Limits of a number, both ends included."""
 
     lower: float
     upper: float
     whole: bool = False
 
     def reads(self, word: str) -> str | None:
-        """The number that a word spells, as `shown` writes it; None where it is none, or lies outside."""
+        """The number that a word spells, as `shown` writes it; None for no number, and for one outside."""
         try:
             number = int(word) if self.whole else float(word)
         except ValueError:
@@ -83,7 +83,7 @@ class Parameter:
     def reads(self, cell: Cell, word: str) -> str | None:
         """The word as the cell has it, whatever its case; None where it is none of this parameter's."""
         limits = self.limits(cell)
-        return limits.reads(word) if limits else known(word, self.words(cell))
+        return limits.reads(word) if limits else matching(word, self.words(cell))
 
 
 @dataclass(frozen=True, kw_only=True)

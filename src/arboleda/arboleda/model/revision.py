@@ -1,4 +1,4 @@
-"""Another version of a plant: what a cell takes of it between two tasks, and what it cannot take."""
+"""Versions of a plant: what a cell takes of another version between two tasks, and what it cannot take."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ BETWEEN_TASKS = (
 
 
 def revised(cell: Cell, other: Cell) -> Cell:
-    """The cell with all of `other` that it can take between two tasks, and its own devices."""
+    """The cell with its own devices, and all of `other` that it can take between two tasks."""
     spaces = {space.robot.name: space for space in other.spaces}
     taken = {name: getattr(other, name) for name in BETWEEN_TASKS}
     own = tuple(_revised(space, spaces[space.robot.name]) for space in cell.spaces)
@@ -41,13 +41,13 @@ def revised(cell: Cell, other: Cell) -> Cell:
 
 
 def obstacle(plant: PlantModel, other: PlantModel) -> Sentence | None:
-    """The first thing in another version that a plant that runs cannot take; None where it can take all."""
+    """The first thing in another version that a running plant cannot take; None where it can take all."""
     if _of_plant(plant) != _of_plant(other):
         return OTHER_PLANT()
     if [cell.name for cell in plant.cells] != [cell.name for cell in other.cells]:
         return OTHER_CELLS()
     pairs = zip(plant.cells, other.cells, strict=True)
-    return next((found for pair in pairs for found in _obstacles(*pair)), None)
+    return next((obstacle for pair in pairs for obstacle in _obstacles(*pair)), None)
 
 
 def _revised(space: Workspace, other: Workspace) -> Workspace:
@@ -73,7 +73,7 @@ def _obstacles(cell: Cell, other: Cell) -> Iterator[Sentence]:
 
 
 def _devices(cell: Cell) -> tuple[object, ...]:
-    """The devices of a cell as far as they can be told apart: roles, names, kinds, links and tools."""
+    """All of a cell's devices that no version may change: roles, names, kinds, links and tools."""
     devices = [(role, each.name, each.mqtt, each.kind_name, each.link) for role, each in cell.members]
     spaces = [(each.robot.name, each.tool and each.tool.name, each.returns) for each in cell.spaces]
     between = cell.handover and (cell.handover.taker, cell.handover.giver)

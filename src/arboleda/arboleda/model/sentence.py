@@ -1,6 +1,6 @@
-"""Sentence of the plant as data: a key with values, from which each language makes its own text.
+"""Sentences of the plant as data: a key with values, from which each language makes its own text.
 
-Nobody finds out anything by reading a text; who needs to know looks at the key and at the values.
+No code reads the text of a sentence: it looks at the key and at the values.
 """
 
 from __future__ import annotations
@@ -8,15 +8,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Union
 
-FROM_ELSEWHERE = frozenset({"error", "text", "why", "word"})  # slots of words that others made, as a driver
+FROM_ELSEWHERE = frozenset({"error", "text", "why", "word"})  # slots for words of others, as of a driver
 Value = Union[str, int, float, "Sentence", "tuple[Value, ...]"]
 
 
 class Phrase:
-    """One thing that can be said: its key, and its English with a {slot} for each value.
+    """Phrase: its key, and its English with a {slot} for each value.
 
-    `others` has it in further languages, `es="..."`, for a page whose own catalogue does not know the key:
-    so a recipe or a kind brings its sentences along.
+    `others` has the text of further languages, `es="..."`, for pages whose catalogue lacks the key: so a
+    recipe or a kind brings its sentences along.
     """
 
     __slots__ = ("english", "key", "others")
@@ -34,10 +34,9 @@ class Phrase:
 
 
 class Sentence:
-    """A phrase with its values: words as they are, numbers, sentences inside it, tuples that make a list.
+    """Phrase with its values: words, numbers, other sentences, and tuples, which make a list.
 
-    `str()` is its English, made when somebody wants it. Equal ones have the same key and values. False is
-    only the one that says nothing.
+    `str()` makes its English. Equal sentences have the same key and values. Only an empty sentence is False.
     """
 
     __slots__ = ("_text", "phrase", "values")
@@ -52,10 +51,9 @@ class Sentence:
         return self.phrase.key
 
     def text_by(self, template: Callable[[Phrase], str], own: Callable[[str], str] = str) -> str:
-        """It in the language whose text for a phrase, with the same slots, is `template`; `own` says what
-        others worded.
+        """The text in the language of `template`, which has a text with the same slots for each phrase.
 
-        Of a value that says nothing its parentheses say nothing either.
+        `own` translates words of others. The parentheses around an empty value are left out.
         """
         words = {
             slot: own(value)
@@ -69,7 +67,7 @@ class Sentence:
         return text.format(**words)
 
     def parts(self) -> Iterator[Sentence]:
-        """It, and every sentence inside it."""
+        """This sentence, and every sentence inside it."""
         yield self
         for value in self.values.values():
             for each in value if isinstance(value, tuple) else (value,):
@@ -77,7 +75,7 @@ class Sentence:
                     yield from each.parts()
 
     def data(self) -> dict[str, Any]:
-        """Key and values for JSON; a sentence inside it likewise."""
+        """Key and values for JSON, with sentences inside it in the same form."""
         return {"key": self.key, "values": {slot: _data(value) for slot, value in self.values.items()}}
 
     def __str__(self) -> str:
@@ -101,7 +99,7 @@ class Sentence:
 
 
 def as_sentence(value: Sentence | str | BaseException) -> Sentence:
-    """A sentence of somebody's own words; that of an error where it has one."""
+    """The sentence of an error, or a sentence that has only this text."""
     if isinstance(value, BaseException):
         value = value.args[0] if len(value.args) == 1 and isinstance(value.args[0], Sentence) else str(value)
     return value if isinstance(value, Sentence) else OWN(text=value)
@@ -124,8 +122,9 @@ def from_data(data: Any, phrases: Mapping[str, Phrase]) -> Sentence:
 
 
 def retold(english: str, data: Any) -> Sentence:
-    """A sentence of another start, or of another version: its English as it was, and the data of it, with
-    which a catalogue that knows its key says it in another language. ValueError for what is no such data.
+    """The sentence of another start or version, by its English and its data; ValueError for other data.
+
+    A catalogue that has its key says it in another language.
     """
     literal = english.replace("{", "{{").replace("}", "}}")
     try:

@@ -1,4 +1,4 @@
-"""Token of a step's command, which its board echoes: which task, which node of its tree, which attempt."""
+"""Token of a step's command, which its board echoes: the task, the node of its tree, and the attempt."""
 
 from __future__ import annotations
 
@@ -8,13 +8,14 @@ from hashlib import blake2b
 from typing import NamedTuple
 
 MOST_STEPS = 1 << 16
-ATTEMPTS = 1 << 8  # they count on from 0 after that
+ATTEMPTS = 1 << 8  # after so many they count from 0 again
 _FORM = re.compile(r"[0-9a-f]{12}", re.ASCII)
 
 
 class StepToken(NamedTuple):
-    """Token of 12 hexadecimal characters: 6 of `task`, a hash of its id, 4 of `step`, the number of its node,
-    and 2 of `attempt`. `CellCommands.send` writes it.
+    """Token of 12 hexadecimal characters, as `CellCommands.send` writes it.
+
+    It has 6 of `task`, the hash of its id, 4 of `step`, the number of its node, and 2 of `attempt`.
     """
 
     task: str
@@ -23,7 +24,7 @@ class StepToken(NamedTuple):
 
     @classmethod
     def read(cls, text: str) -> StepToken | None:
-        """The token in what a board echoes; None for what this plant never gave."""
+        """The token that a board echoes; None for a text that no plant gives."""
         if not _FORM.fullmatch(text):
             return None
         return cls(text[:6], int(text[6:10], 16), int(text[10:], 16))

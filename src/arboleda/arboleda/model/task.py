@@ -40,9 +40,9 @@ UNCHECKED: dict[tuple[Check, ...], Phrase] = {
 
 
 class Task:
-    """An accepted order on its way through the plant; times in s of the plant's clock.
+    """Accepted order on its way through the plant; times in s of the plant's clock.
 
-    `choice` says why it is done in this cell, of those that were allowed; None where none was to choose.
+    `choice` says why it is done in this cell, where several were allowed; else None.
     """
 
     def __init__(self, id: str, order: Order, choice: Sentence | None = None) -> None:
@@ -58,24 +58,24 @@ class Task:
         self.attempts = 0  # how often its work was begun, or its step given again by a retry
         self.answers: list[TaskAnswer] = []  # in the order in which they came
         self.course: Course | None = None  # how it went, once it is done
-        self.unchecked: tuple[Check, ...] = ()  # what of it nobody confirmed, once it is done
-        self.version = ""  # the digest of the only version of the plant by which it may begin, "": of any
-        self.is_kept = False  # whether an earlier start accepted it
+        self.unchecked: tuple[Check, ...] = ()  # of its work, once it is done
+        self.version = ""  # the digest of the only version of the plant by which it may begin, "" for any
+        self.is_kept = False  # True where an earlier start accepted it
 
     @classmethod
-    def of(cls, kept: KeptTask, order: Order | None = None) -> Task:
-        """The task as it was kept; without an order one that is only looked at."""
-        looked_at = Order(text=kept.text, cell=kept.cell, recipe=kept.recipe)
-        task = cls(kept.id, order or looked_at, kept.choice)
-        task.state, task.failure = kept.state, kept.failure
-        task.started_at, task.ended_at, task.is_kept = kept.started_at, kept.ended_at, True
-        task.attempts, task.answers, task.course = kept.attempts, list(kept.answers), kept.course
-        task.unchecked = kept.unchecked
+    def of(cls, record: KeptTask, order: Order | None = None) -> Task:
+        """The task of a record; without an order it can only be looked at."""
+        looked_at = Order(text=record.text, cell=record.cell, recipe=record.recipe)
+        task = cls(record.id, order or looked_at, record.choice)
+        task.state, task.failure = record.state, record.failure
+        task.started_at, task.ended_at, task.is_kept = record.started_at, record.ended_at, True
+        task.attempts, task.answers, task.course = record.attempts, list(record.answers), record.course
+        task.unchecked = record.unchecked
         return task
 
     @property
     def remark(self) -> Sentence:
-        """Why it failed, or what of one that is done nobody confirmed."""
+        """Why it failed, or the work of a done task that nobody confirmed."""
         if self.failure is not None:
             return self.failure.sentence
         return UNCHECKED[self.unchecked]() if self.unchecked else NOTHING
@@ -92,6 +92,6 @@ class Task:
             self.ended_at = now
 
     def fail(self, failure: Failure, leaf: str | None = None, step: Sentence | None = None) -> None:
-        """Keep the first cause of a failure, and path and name of its leaf; later ones are consequences."""
+        """Keep the first cause of a failure, with path and name of its leaf; later causes follow from it."""
         if self.failure is None:
             self.failure, self.failed_in, self.failed_step = failure, leaf, step

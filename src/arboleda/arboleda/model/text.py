@@ -1,4 +1,4 @@
-"""Task text -> Order, or a TextError that names the wrong word and what is allowed."""
+"""Text of a task, read to an Order; a TextError names the wrong word and what is allowed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from arboleda.model.errors import TextError
 from arboleda.model.facts import Value, shown
 from arboleda.model.outside import LINE, quoted
 from arboleda.model.plant_model import Cell, Link, PlantModel
-from arboleda.model.recipe import Parameter, Recipe, known
+from arboleda.model.recipe import Parameter, Recipe, matching
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.task import Order
 
@@ -82,8 +82,9 @@ def parse(text: str, plant: PlantModel) -> Order:
 
 
 def alternatives(text: str, plant: PlantModel) -> tuple[Order, ...]:
-    """The orders of which the plant carries out one: several where the first word names several cells, as
-    `sis_a,sis_b 0B 7`. TextError where one of them could not do it.
+    """The orders of which the plant carries out one: several for a text such as `sis_a,sis_b 0B 7`.
+
+    TextError where one of the cells could not do it.
     """
     words = text.split()
     if len(text) > LONGEST or not words or BETWEEN_CELLS not in words[0]:
@@ -111,9 +112,9 @@ def _example_words(cell: Cell, recipe: Recipe) -> dict[str, str]:
 def spelled(
     plant: PlantModel, *, cell: str, recipe: str = "", values: Mapping[str, Value] | None = None, id: str = ""
 ) -> str:
-    """The text of a task whose values are named; TextError for what is no task of this plant.
+    """The text of a task whose values are named; TextError where the plant has no such task.
 
-    `cell` may name several, as in a text.
+    `cell` may name several cells, as in a text.
     """
     if BETWEEN_CELLS in cell:
         return _spelled_for_several(plant, _named_cells(cell, plant), recipe, values, id)
@@ -134,7 +135,7 @@ def spelled(
 def _spelled_for_several(
     plant: PlantModel, cells: list[str], recipe: str, values: Mapping[str, Value] | None, id: str
 ) -> str:
-    """The text for the first, with the names of all of them; each has to be able to do it."""
+    """The text for the first cell, with the names of all; each of them has to be able to do it."""
     texts = [spelled(plant, cell=cell, recipe=recipe, values=values, id=id) for cell in cells]
     names = BETWEEN_CELLS.join(text.split()[0] for text in texts)
     text = " ".join([names, *texts[0].split()[1:]])
@@ -166,7 +167,7 @@ def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]
     """The cell that the first word names, and the recipe of the second, or the cell's default."""
     second = words[1] if len(words) > 1 else ""
     by_name = [each for each in plant.recipes if not each.is_default]
-    name = known(second, [each.name for each in by_name])
+    name = matching(second, [each.name for each in by_name])
     meant = [each for each in by_name if each.name == name]
     short = len(words) == 2 and any(each.alone and not each.parameters for each in by_name)
     cell = _cell(words[0], plant, robots=any(each.alone for each in meant) if meant else short)
@@ -183,7 +184,7 @@ def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]
     if default is None or meant:
         raise TextError(_unknown(RECIPE(), second, [each.name for each in cell.recipes], cell.name))
     first = default.parameters[0] if default.parameters else None
-    if short and first is not None and known(second, first.words(cell)) is None:
+    if short and first is not None and matching(second, first.words(cell)) is None:
         others = tuple(f"'{each.name}'" for each in cell.recipes if not each.is_default)
         called = first.called() if first.called else first.name
         neither = NEITHER(word=quoted(second), first=called, cell=cell.name, others=others, form=_form(plant))
@@ -192,8 +193,8 @@ def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]
 
 
 def _is_named(words: list[str], cell: Cell, recipe: Recipe) -> bool:
-    """True where a task has the name of its cell's default recipe, which it need not have."""
-    if len(words) < 2 or known(words[1], [recipe.name]) is None:
+    """True where a text names the default recipe of its cell, which it need not do."""
+    if len(words) < 2 or matching(words[1], [recipe.name]) is None:
         return False
     return all(first.reads(cell, words[1]) is None for first in recipe.parameters[:1])
 
@@ -201,7 +202,7 @@ def _is_named(words: list[str], cell: Cell, recipe: Recipe) -> bool:
 def _by_parameter(
     words: list[str], start: int, cell: Cell, recipe: Recipe, plant: PlantModel
 ) -> dict[str, str]:
-    """Each parameter's word, from `start` on: those named `dose=5` wherever they stand, others in order."""
+    """The word of each parameter, from `start` on: named words such as `dose=5` anywhere, others in order."""
     named: dict[str, str] = {}
     in_order: list[str] = []
     names = [each.name for each in recipe.parameters]
@@ -229,14 +230,14 @@ def _recipe_of(cell: Cell, word: str, plant: PlantModel) -> Recipe:
             raise TextError(NO_RECIPE(cell=cell.name, there=(), form=_form(plant)))
         form, example = _form_of(cell), named_example(cell)
         raise TextError(NO_RECIPE_NAMED(cell=cell.name, there=tuple(names), form=form, example=example))
-    name = known(word, names) if word or default is None else default.name
+    name = matching(word, names) if word or default is None else default.name
     if name is None:
         raise TextError(_unknown(RECIPE(), word, names, cell.name))
     return cell.recipe(name)
 
 
 def _check_names(cell: Cell, recipe: Recipe, given: tuple[str, ...]) -> None:
-    """TextError where a value has a name that no parameter has, or a parameter has no value."""
+    """TextError for a value without a parameter, and for a parameter without a value."""
     names = [each.name for each in recipe.parameters]
     wrong = next((name for name in given if name not in names), None)
     if wrong is not None and not names:
@@ -264,7 +265,7 @@ def _read(cell: Cell, parameter: Parameter, word: str) -> str:
 
 
 def _check_reached(cell: Cell, recipe: Recipe) -> None:
-    """TextError where the task needs a robot that is only drawn: it would never end."""
+    """TextError where the task needs a robot that is only drawn, so that it would never end."""
     robots = cell.robots if recipe.alone is None else (cell.roles[recipe.alone],)
     for robot in robots:
         if robot.link is Link.NONE:
@@ -287,14 +288,14 @@ def _cell(word: str, plant: PlantModel, *, robots: bool) -> Cell:
     roles = dict.fromkeys(each.alone for each in plant.recipes if each.alone) if robots else {}
     for role in roles:
         by_name |= {cell.roles[role].name: cell for cell in plant.cells if role in cell.roles}
-    name = known(word, by_name)
+    name = matching(word, by_name)
     if name is None:
         raise TextError(_unknown(_cell_or_robot(roles, plant), word, [*by_name], THIS_PLANT()))
     return by_name[name]
 
 
 def _form(plant: PlantModel) -> Sentence:
-    """The form of tasks, with an example of the first cell that offers something."""
+    """The form of tasks, with an example of the first cell that has recipes."""
     cell = next(cell for cell in plant.cells if cell.recipes)
     return _form_among(plant.recipes, cell)
 
@@ -339,7 +340,7 @@ def _unknown(kind: Sentence | str, word: str, names: Sequence[str], where: str |
 
 
 def _no_choice(name: str, word: str, choices: Sequence[str], where: str) -> Sentence:
-    """That a word is none of the choices for a parameter, whose name may be any word."""
+    """The sentence that a word is no choice for a parameter, whose name may be any word."""
     there = tuple(choices)
     near = _nearest(word, there)
     if near is None:
@@ -349,4 +350,4 @@ def _no_choice(name: str, word: str, choices: Sequence[str], where: str) -> Sent
 
 def _nearest(word: str, names: Sequence[str]) -> str | None:
     near = get_close_matches(word.lower(), [name.lower() for name in names], n=1)
-    return known(near[0], names) if near else None
+    return matching(near[0], names) if near else None

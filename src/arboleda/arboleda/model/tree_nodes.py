@@ -12,13 +12,13 @@ def nodes_of(tree: Behaviour) -> list[Behaviour]:
 
     RecursionError, as from `iterate`, for a tree without an end.
     """
-    found: list[Behaviour] = []
-    rest = [tree]
-    while rest:
-        node = rest.pop()
-        found.append(node)
-        rest += node.children
-        if len(found) > MOST:
+    nodes: list[Behaviour] = []
+    pending = [tree]
+    while pending:
+        node = pending.pop()
+        nodes.append(node)
+        pending += node.children
+        if len(nodes) > MOST:
             raise RecursionError(f"{tree.name} has more than {MOST} nodes: one is among its own children")
-    found.reverse()
-    return found
+    nodes.reverse()
+    return nodes

@@ -1,4 +1,4 @@
-"""Operators' verbs: a row each, and how a person writes what each is told beside its scope."""
+"""Verbs of operators: a row each, and their arguments as a person writes them."""
 
 from __future__ import annotations
 
@@ -7,18 +7,17 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 Arguments = tuple[tuple[str, int | str], ...]
-"""What a verb is told beside its scope, by name."""
+"""Arguments of a verb, which it has beside its scope, by name."""
 NUMBER = re.compile("0|[1-9][0-9]*")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Argument:
-    """One thing that a verb is told beside its scope.
+    """Argument of a verb.
 
-    Among the words of a person it stands behind the scope, after its `mark`, in the form `pattern`; without
-    one it is all the words that are left. `beside`:
-    it means nothing without that other one. `passing`: it is the id of something that only this start of the
-    plant knows, and no part of what is told of the act. `needed`: there is no act without it.
+    A person writes it behind the scope, after its `mark`, in the form `pattern`; without a pattern it is all
+    remaining words. `beside` is another argument without which it means nothing. `passing`: it is an id of
+    this start of the plant, and no part of the sentence about the act. `needed`: no act does without it.
     """
 
     name: str
@@ -31,7 +30,7 @@ class Argument:
 
 
 class Scope(str, Enum):
-    """Kinds of what a verb is for."""
+    """Kind of scope that a verb can have."""
 
     PLANT = "plant"
     CELL = "cell"
@@ -50,8 +49,11 @@ class Devices(str, Enum):
 
 
 class Role(str, Enum):
-    """Role of whoever asks: a viewer looks and stops, an operator may do everything, an assistant proposes
-    besides, and gives tasks within limits."""
+    """Role of the person or program that asks.
+
+    A viewer looks and stops, an operator may do everything, an assistant looks, stops, proposes, and gives
+    tasks within limits.
+    """
 
     VIEWER = "viewer"
     OPERATOR = "operator"
@@ -69,13 +71,13 @@ TEACHER = Argument(name="teacher", type=str, needed=True)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
-    """Declaration of a verb: for what it is, what it is told, who may ask for it, what it can do.
+class VerbRow:
+    """Declaration of a verb: its scopes, devices and arguments, the role that it needs, and its effects.
 
-    `stops`: it is the stop, which leaves before all else, may be asked for twice and is refused for no known
-    name. `of_all_who_share`: for a device that cells share it is a matter of all of them. `by_hand`: a person
-    may have done it, and only declares that. `moves`: it may set robots in motion; `drops`: parts may fall.
-    `mode`: it begins or ends the manual mode of a cell; whether it would be refused is no part of every view.
+    `stops`: it is the stop, which leaves before all else, may be asked for twice, and is refused only for an
+    unknown name. `of_all_who_share`: for a shared device it is done in all of its cells. `by_hand`: a person
+    may have done it, and declares that. `moves`: robots may move; `drops`: parts may fall. `mode`: it begins
+    or ends the manual mode of a cell, and views do not tell whether it would be refused.
     """
 
     scopes: tuple[Scope, ...]
@@ -90,7 +92,7 @@ class Row:
     mode: bool = False
 
 
-_NO_ROW = Row(scopes=())
+_NO_ROW = VerbRow(scopes=())
 _EVERYWHERE = (Scope.PLANT, Scope.CELL, Scope.ROBOT)
 _CELLS = (Scope.PLANT, Scope.CELL)
 _ONE_CELL = (Scope.CELL,)
@@ -98,30 +100,30 @@ _DEVICES = (Scope.CELL, Scope.ROBOT)
 
 
 class Verb(str, Enum):
-    """Verb of operators: the same words on every screen, each with its row."""
+    """Verb of operators, the same word on every screen, with its row."""
 
-    STOP = "stop", Row(scopes=_EVERYWHERE, role=Role.VIEWER, stops=True, of_all_who_share=True)
-    CLEAR = "clear", Row(scopes=_EVERYWHERE, of_all_who_share=True)
-    RESET = "reset", Row(scopes=_CELLS, of_all_who_share=True)
-    HOLD = "hold", Row(scopes=_CELLS)
-    RESUME = "resume", Row(scopes=_CELLS, moves=True)
-    CANCEL = "cancel", Row(scopes=(Scope.CELL, Scope.TASK), moves=True)
-    RETRY = "retry", Row(scopes=_ONE_CELL, moves=True)
-    ABANDON = "abandon", Row(scopes=_ONE_CELL, moves=True)
-    RELEASE = "release", Row(scopes=_DEVICES, devices=Devices.HOLDERS, by_hand=True, drops=True)
-    HOME = "home", Row(scopes=_DEVICES, devices=Devices.MOVERS, by_hand=True, moves=True)
-    OVERRIDE = "override", Row(scopes=(Scope.ZONE,))
-    UNLOAD = "unload", Row(scopes=_CELLS, arguments=(PLACE, STATION))
-    LOAD = "load", Row(scopes=_ONE_CELL, arguments=(replace(PLACE, needed=True), PARTS))
-    ANSWER = "answer", Row(scopes=(Scope.PERSON,), arguments=(QUESTION, ANSWER))
-    TEACH = "teach", Row(scopes=_ONE_CELL, arguments=(TEACHER,), mode=True)
-    AUTOMATIC = "automatic", Row(scopes=_ONE_CELL, mode=True)
+    STOP = "stop", VerbRow(scopes=_EVERYWHERE, role=Role.VIEWER, stops=True, of_all_who_share=True)
+    CLEAR = "clear", VerbRow(scopes=_EVERYWHERE, of_all_who_share=True)
+    RESET = "reset", VerbRow(scopes=_CELLS, of_all_who_share=True)
+    HOLD = "hold", VerbRow(scopes=_CELLS)
+    RESUME = "resume", VerbRow(scopes=_CELLS, moves=True)
+    CANCEL = "cancel", VerbRow(scopes=(Scope.CELL, Scope.TASK), moves=True)
+    RETRY = "retry", VerbRow(scopes=_ONE_CELL, moves=True)
+    ABANDON = "abandon", VerbRow(scopes=_ONE_CELL, moves=True)
+    RELEASE = "release", VerbRow(scopes=_DEVICES, devices=Devices.HOLDERS, by_hand=True, drops=True)
+    HOME = "home", VerbRow(scopes=_DEVICES, devices=Devices.MOVERS, by_hand=True, moves=True)
+    OVERRIDE = "override", VerbRow(scopes=(Scope.ZONE,))
+    UNLOAD = "unload", VerbRow(scopes=_CELLS, arguments=(PLACE, STATION))
+    LOAD = "load", VerbRow(scopes=_ONE_CELL, arguments=(replace(PLACE, needed=True), PARTS))
+    ANSWER = "answer", VerbRow(scopes=(Scope.PERSON,), arguments=(QUESTION, ANSWER))
+    TEACH = "teach", VerbRow(scopes=_ONE_CELL, arguments=(TEACHER,), mode=True)
+    AUTOMATIC = "automatic", VerbRow(scopes=_ONE_CELL, mode=True)
 
     _value_: str
-    row: Row
+    row: VerbRow
 
-    def __new__(cls, word: str, row: Row = _NO_ROW) -> Verb:
-        """The verb of a word, with its row; `Verb("stop")` finds the one that there is."""
+    def __new__(cls, word: str, row: VerbRow = _NO_ROW) -> Verb:
+        """Make the verb of a word, with its row; `Verb("stop")` finds it."""
         verb = str.__new__(cls, word)
         verb._value_ = word
         verb.row = row
@@ -129,17 +131,17 @@ class Verb(str, Enum):
 
     @property
     def arguments(self) -> tuple[Argument, ...]:
-        """Its arguments beside the scope, in the order of a person's words."""
+        """Its arguments, in the order of a person's words."""
         return self.row.arguments
 
     @property
     def needs_arguments(self) -> bool:
-        """True where it means nothing with a scope alone."""
+        """True where it needs more than a scope."""
         return any(argument.needed for argument in self.row.arguments)
 
 
 def refusable(scope: Scope) -> tuple[Verb, ...]:
-    """The verbs for which a scope of this kind can be a wrong moment, whatever they are told beside it."""
+    """The verbs that can be refused for a scope of this kind, whatever their arguments."""
     alone = (verb for verb in Verb if not verb.needs_arguments and not verb.row.mode)
     return tuple(verb for verb in alone if scope in verb.row.scopes and not verb.row.stops)
 
@@ -163,31 +165,31 @@ def from_text(verb: Verb, text: str) -> tuple[str, Arguments]:
     """
     if not verb.arguments:
         return text, ()
-    scope, _, rest = text.strip().partition(" ")
-    found = []
+    scope, _, remaining = text.strip().partition(" ")
+    arguments = []
     for argument in verb.arguments:
-        word, after = _first(argument, rest.strip())
+        word, after = _first(argument, remaining.strip())
         if word:
-            found.append((argument.name, _value(argument, word)))
-        rest = after
-    return scope, tuple(found)
+            arguments.append((argument.name, _value(argument, word)))
+        remaining = after
+    return scope, tuple(arguments)
 
 
 def _first(argument: Argument, words: str) -> tuple[str, str]:
-    """The words of this argument, and the rest: one word in its form, or all of them."""
+    """The words of this argument, and the remaining ones: one word in its form, or all words."""
     if not argument.pattern:
         return words, ""
-    first, _, rest = words.partition(" ")
+    first, _, remaining = words.partition(" ")
     is_it = re.fullmatch(re.escape(argument.mark) + argument.pattern, first)
-    return (first.removeprefix(argument.mark), rest) if is_it else ("", words)
+    return (first.removeprefix(argument.mark), remaining) if is_it else ("", words)
 
 
 def _value(argument: Argument, word: str) -> int | str:
-    """The word as its type; one that is no number stays a word, which the plant refuses by name."""
+    """The word in the argument's type; a word that is no number stays a word, which the plant refuses."""
     return int(word) if argument.type is int and NUMBER.fullmatch(word) else word
 
 
 def lasting(verb: Verb, arguments: Arguments) -> Arguments:
-    """Those arguments that mean the same in every start of the plant."""
+    """The arguments that mean the same in every start of the plant."""
     passing = {each.name for each in verb.arguments if each.passing}
     return tuple((name, value) for name, value in arguments if name not in passing)

@@ -1,4 +1,4 @@
-"""Cell of a robot as its board sees it: of a robot that cells share, with the places of all of them."""
+"""Cell of a robot as its board sees it: with the places of all cells that share the robot."""
 
 from __future__ import annotations
 
@@ -18,18 +18,22 @@ def whole_cell(model: PlantModel, robot: str) -> Cell:
 
 
 def _joined(robot: str, cells: Sequence[Cell]) -> Workspace:
-    """The workspace in the first cell with the poses of the others, which are named after their cell, too."""
+    """The workspace in the first cell, with the poses of the other cells, each under the name of its cell."""
     first, *others = [cell.reach[robot] for cell in cells]
     named = [(cell.name, space) for cell, space in zip(cells[1:], others, strict=True)]
     poses = [_named(name, space, pose) for name, space in named for pose in space.poses]
-    ways = [
-        Crossing(a=_name(name, space, way.a), b=_name(name, space, way.b), zones=way.zones)
+    crossings = [
+        Crossing(a=_name(name, space, each.a), b=_name(name, space, each.b), zones=each.zones)
         for name, space in named
-        for way in space.crossings
+        for each in space.crossings
     ]
     more = tuple(pose for pose in poses if pose.name != first.home.name)
     return replace(
-        first, poses=(*first.poses, *more), target_names=(), crossings=(*first.crossings, *ways), supplies=()
+        first,
+        poses=(*first.poses, *more),
+        target_names=(),
+        crossings=(*first.crossings, *crossings),
+        supplies=(),
     )
 
 

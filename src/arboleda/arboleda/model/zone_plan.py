@@ -1,6 +1,6 @@
-"""Plan of the shared zones on a robot's way: which it needs, and from where to where it must hold them.
+"""Plan of the shared zones on a robot's way: which zones it needs, and on which legs it has to hold them.
 
-A robot of a grid also comes by the nodes between two poses: each where a pose lies counts, wherever it halts.
+A robot of a grid also comes by the nodes between two poses. The zones of a pose at such a node count.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from arboleda.model.plant_model import Pose, Workspace
 
 @dataclass(frozen=True, kw_only=True)
 class Leg:
-    """From one zone-free pose of a way to the next, by index: `zones` are taken before the first move.
+    """Leg from one zone-free pose of a way to the next, by index: `zones` are taken before the first move.
 
-    They are kept until the work at the end pose is done, for recovery may start there.
+    They are held until the work at the end pose is done, since a recovery may start there.
     """
 
     start: int
@@ -26,49 +26,53 @@ class Leg:
     zones: frozenset[str]
 
 
-def plan(space: Workspace, way: Sequence[Pose], back: Pose | None) -> list[Leg]:
-    """The legs of a way from a zone-free pose to a zone-free pose, in order; ConfigError for another way.
+def plan(space: Workspace, poses: Sequence[Pose], back: Pose | None) -> list[Leg]:
+    """The legs of a way over these poses, in order; ConfigError where it does not begin and end zone-free.
 
-    A recovery would bring the part to `back`, where there is one.
+    A recovery would bring a part to `back`, if any.
     """
-    for pose in (way[0], way[-1]):
+    for pose in (poses[0], poses[-1]):
         if pose.zones:
             raise ConfigError((f"{space.robot.name}: {lying(pose)}, so no way may start or end there",))
-    free = [index for index, pose in enumerate(way) if not pose.zones]
-    left = max((index for index, pose in enumerate(way) if pose.name != space.home.name), default=0)
+    free = [index for index, pose in enumerate(poses) if not pose.zones]
+    last_away = max((index for index, pose in enumerate(poses) if pose.name != space.home.name), default=0)
     return [
-        Leg(start=start, end=end, zones=_zones(space, way[start : end + 1], back if start < left else None))
+        Leg(
+            start=start,
+            end=end,
+            zones=_zones(space, poses[start : end + 1], back if start < last_away else None),
+        )
         for start, end in pairwise(free)
     ]
 
 
-def entered(space: Workspace, start: Pose | None, way: Sequence[Position]) -> frozenset[str]:
-    """The zones that one motion gets into: those that its way comes by and, from a known pose, those crossed.
+def entered(space: Workspace, start: Pose | None, positions: Sequence[Position]) -> frozenset[str]:
+    """The zones that a motion gets into: those on its positions and, from a known pose, those it crosses.
 
-    A way of several positions begins where the robot is.
+    The first of several positions is where the robot is.
     """
-    inside = _lying(space, way[1:] or way)
-    ends = [pose for pose in space.poses if way[-1] in (pose.q, pose.above)]
+    inside = _lying(space, positions[1:] or positions)
+    ends = [pose for pose in space.poses if positions[-1] in (pose.q, pose.above)]
     return inside if start is None else inside | _crossed(space, [(start, end) for end in ends])
 
 
 def passed(space: Workspace, start: Position | None, goal: Position) -> frozenset[str]:
-    """The zones between a position and a goal, by the way that a robot of a grid is given there or back."""
+    """The zones between a position and a goal, on the routes of a robot of a grid there and back."""
     there = space.robot.motion.route(start, goal)
     back = () if start is None else space.robot.motion.route(goal, start)
     return _lying(space, {*there, *back} - {start, goal})
 
 
 def recovery_zones(space: Workspace, start: Pose | None, back: Pose | None) -> frozenset[str]:
-    """The zones on the way from `start` to `back` and home; None: from wherever the robot may be."""
-    way = (back, space.home) if back else (space.home,)
+    """The zones on the way from `start` to `back` and home; without a start from all poses."""
+    goals = (back, space.home) if back else (space.home,)
     starts = space.poses if start is None else (start,)
-    moves = [(pose, goal) for pose in starts for goal in way]
-    return _zones(space, way, back) | _crossed(space, moves)
+    moves = [(pose, goal) for pose in starts for goal in goals]
+    return _zones(space, goals, back) | _crossed(space, moves)
 
 
 def _zones(space: Workspace, poses: Sequence[Pose], back: Pose | None) -> frozenset[str]:
-    """Zones of the poses, of the moves between them and of the moves of a recovery from any of them."""
+    """The zones of poses, of the moves between them, and of a recovery from any of them."""
     recovery = (back, space.home) if back else (space.home,)
     moves = [*pairwise(poses), *combinations(recovery, 2)]
     moves += [(pose, goal) for pose in poses for goal in recovery]

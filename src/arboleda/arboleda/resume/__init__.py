@@ -1,1 +1,1 @@
-"""Restart at the step: where a running task stands, as it is kept, and its way back into the tree; pure."""
+"""Restart at the step: the trail of a running task is kept, and leads the next start back to it; pure."""

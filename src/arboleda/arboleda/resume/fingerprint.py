@@ -1,8 +1,8 @@
-"""Hash of all that a thing is made of, equal over starts of the plant: it tells what was made alike.
+"""Fingerprint of a tree or a cell: a hash of all that it is made of, which is equal over starts of the plant.
 
-Functions count by their names and by what they have taken in, and those of a recipe by its source beside,
-which is the same in each Python; where that is unknown, they count by their code. Objects that are no data
-count by their class alone.
+A function counts by its name, its defaults and its closure. The functions of a recipe count by the recipe's
+source as well, which is equal in each Python, or by their code where the source is unknown. Objects that are
+no data count by their class alone.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from arboleda.model.sentence import Sentence
 from arboleda.model.tree_nodes import nodes_of
 
 Seen = dict[int, tuple[int, object]]
-"""What was met, by its identity: its number, and itself, so that nothing else gets that identity."""
+"""By the identity of each value that was met: its number, and itself, so that its identity stays its own."""
 Parts = Callable[[Any], Iterable[Any]]
-BY_SOURCE = "source:"  # before a hash of this version; one without it was made when all went by code
+BY_SOURCE = "source:"  # begins a hash of this version; a hash without it counts the code of functions
 OURS = "arboleda."  # packages whose functions change with the version of the plant alone
 PLAIN = (str, int, float, bool, bytes, type(None))
 PLAIN_TYPES = frozenset(PLAIN)
-# What py_trees keeps in a node, what only shows how far it came, and what says the same as its name.
+# Attributes of py_trees, attributes that only show how far a node came, and those that repeat its name.
 OF_NODES = frozenset(
     [
         "id",
@@ -49,8 +49,8 @@ OF_NODES = frozenset(
         "feedback_message",
         "current_child",
         "entry",
-        "left",
-        "left_before",
+        "may_have_left",
+        "may_have_left_before",
         "last",
         "proven",
         "number_in_tree",
@@ -72,24 +72,24 @@ def joined(*words: str) -> str:
     return blake2b("\n".join(words).encode(), digest_size=16).hexdigest()
 
 
-def of_cell(cell: Cell, recipe: str, known: Seen, *, by_code: bool = False) -> str:
-    """The hash of what the tasks of a recipe go by: its source, the devices of its cell, where they go.
+def of_cell(cell: Cell, recipe: str, seen: Seen, *, by_code: bool = False) -> str:
+    """The hash of what a recipe's tasks depend on: its source, the devices of its cell, and their poses.
 
-    `by_code` as it was made once, when the code of every function counted.
+    `by_code`: with the code of every function, as earlier versions of Arboleda made it.
     """
-    found = next((each for each in cell.recipes if each.name == recipe), None)
-    spelling = Spelling(known, by_code=by_code, source="" if found is None else found.source)
+    declared = next((each for each in cell.recipes if each.name == recipe), None)
+    spelling = Spelling(seen, by_code=by_code, source="" if declared is None else declared.source)
     spelling.add(cell)
-    spelling.add(None if found is None else found.build)
+    spelling.add(None if declared is None else declared.build)
     return spelling.hash
 
 
-def of_tree(root: Behaviour, known: Seen, *, by_code: bool = False, source: str = "") -> str:
-    """The hash of a tree that nobody has ticked yet: its nodes, with what they were made of.
+def of_tree(root: Behaviour, seen: Seen, *, by_code: bool = False, source: str = "") -> str:
+    """The hash of a tree that was never ticked: its nodes, with their attributes.
 
-    What was `seen` in its cell is only named. `source` is that of its recipe.
+    Values that were `seen` in its cell count by their number. `source` is the source of its recipe.
     """
-    spelling = Spelling(dict(known), by_code=by_code, source=source)
+    spelling = Spelling(dict(seen), by_code=by_code, source=source)
     for node in nodes_of(root):
         spelling.words += (type(node).__qualname__, node.name, str(len(node.children)))
         for key, value in vars(node).items():
@@ -100,11 +100,11 @@ def of_tree(root: Behaviour, known: Seen, *, by_code: bool = False, source: str 
 
 
 class Spelling:
-    """Words of values, one after the other; with `source` they say what names of functions mean."""
+    """Words that stand for values, one after the other; `source` says what names of functions mean."""
 
-    def __init__(self, known: Seen, *, by_code: bool, source: str) -> None:
+    def __init__(self, seen: Seen, *, by_code: bool, source: str) -> None:
         self.words = [source] if source and not by_code else []
-        self._known = known
+        self._seen = seen
         self._by_code = by_code
         self._has_source = bool(source)
 
@@ -123,14 +123,14 @@ class Spelling:
             self.words.append(f"{kind.__qualname__}.{value.name}" if is_enum else repr(value))
         elif kind is tuple and PLAIN_TYPES.issuperset(map(type, value)):
             self.words.append(repr(value))
-        elif id(value) in self._known:
-            self.words.append(f"see {self._known[id(value)][0]}")
+        elif id(value) in self._seen:
+            self.words.append(f"see {self._seen[id(value)][0]}")
         else:
             self._add_parts(value, kind, parts)
 
     def _add_parts(self, value: Any, kind: type, parts: Parts) -> None:
-        """A call for each value that has parts, and none for each word: a tree has thousands."""
-        self._known[id(value)] = len(self._known), value
+        """Append the words of a value with parts, without a call for each word: a tree has thousands."""
+        self._seen[id(value)] = len(self._seen), value
         words = self.words
         words.append(kind.__qualname__)
         if kind is FunctionType and not self._counts_code(value):
@@ -149,7 +149,7 @@ class Spelling:
 
 @cache
 def _parts_of(kind: type) -> Parts | None:
-    """The function that takes a class's values apart; None where a value is a word."""
+    """The function that takes the values of a class apart; None where a value is one word."""
     if issubclass(kind, (Enum, *PLAIN)):
         return None
     if issubclass(kind, Sentence):
@@ -164,10 +164,10 @@ def _of_fields(names: tuple[str, ...], value: Any) -> list[Any]:
 
 
 def _fields(kind: type) -> tuple[str, ...]:
-    """The names of the fields of a dataclass that matter."""
+    """The names of the fields of a dataclass that count."""
     passed_over = NO_MATTER if issubclass(kind, Cell) else frozenset[str]()
-    found = (each for each in fields(kind) if not each.metadata.get(FOR_PEOPLE))
-    return tuple(each.name for each in found if each.name not in passed_over)
+    counted = (each for each in fields(kind) if not each.metadata.get(FOR_PEOPLE))
+    return tuple(each.name for each in counted if each.name not in passed_over)
 
 
 def _of_sentence(value: Sentence) -> tuple[Any, ...]:

@@ -1,4 +1,4 @@
-"""Keeper of a cell's running task: writes down where it stands, and puts that back in the next start."""
+"""Keeper of a cell's running task: writes its trail, and puts that of an earlier start into a tree."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from arboleda.trees.tree_run import TreeRun
 
 from . import fingerprint, trail
 from .trail import Begun, Knowledge, Trail
-from .walk_back import Finding, WalkBack
+from .walk_back import Judgement, WalkBack
 
 CHANGED = Phrase("walk.changed", "its recipe or the plant file has changed since it began")
 UNREADABLE = Phrase("walk.unreadable", "what was kept of it cannot be read")
@@ -32,14 +32,14 @@ NOTHING_KEPT = Trail(
     back={},
     origins=(),
     used=(),
-    known={},
+    knowledge={},
     grips={},
     zones={},
 )
 
 
 class Keeping:
-    """The trail of what runs in a cell; `walk` is that of an earlier start, until a person says more.
+    """Keeper of one cell's task. `walk` has the trail of an earlier start, until a person says more.
 
     `build` makes the tree of an order.
     """
@@ -50,9 +50,8 @@ class Keeping:
         self._run = run
         self._build = build
         self._begun = NOTHING_KEPT.begun
-        # what the cell was made of, as far as a recipe's tasks go by it
-        self._cells: dict[str, tuple[str, fingerprint.Seen, str]] = {}
-        self._kept_of: tuple[object, ...] = ()  # what the trail was made of that was kept last
+        self._cells: dict[str, tuple[str, fingerprint.Seen, str]] = {}  # by recipe, of `_of_cell`
+        self._last_state: tuple[object, ...] = ()  # of which the last trail was made
 
     def revise(self) -> None:
         """Go by another version of the cell from the next task on."""
@@ -60,7 +59,7 @@ class Keeping:
 
     @property
     def envelope(self) -> Sequence[str]:
-        """The effectors that the task may tell to switch before this is durable."""
+        """The effectors that the task may tell to switch before their new grip is durable."""
         return self._begun.envelope
 
     def make(self, order: Order) -> Behaviour:
@@ -68,27 +67,29 @@ class Keeping:
         self.walk = None
         return self._grown(order, self._context.robots.planned(), self._context.parts.witnessed)
 
-    def revive(self, order: Order, kept: str) -> Sentence | None:
-        """Take over a task that was at work; why it cannot go on at its step."""
+    def revive(self, order: Order, text: str) -> Sentence | None:
+        """Take over the task of an earlier start from its trail; returns why it cannot go on at its step."""
         try:
-            self.walk = WalkBack(Trail.read(kept), (), ())
+            self.walk = WalkBack(Trail.read(text), (), ())
         except ValueError:
             self.walk = WalkBack(NOTHING_KEPT, (), ())
             return UNREADABLE()
-        found = self.walk.trail
-        if found.recovers:
-            self._take_over(found)
+        earlier = self.walk.trail
+        if earlier.recovers:
+            self._take_over(earlier)
             return WAS_RECOVERING()
         try:
-            self._context.robots.as_planned = found.begun.planned
-            tree = self._grown(order, found.begun.planned, found.begun.envelope)
+            self._context.robots.as_planned = earlier.begun.planned
+            tree = self._grown(order, earlier.begun.planned, earlier.begun.envelope)
             nodes = nodes_of(tree)
-            begun = trail.put_back(nodes, found) if self._is_alike(order, tree, found.begun.made) else None
+            begun = (
+                trail.put_back(nodes, earlier) if self._is_alike(order, tree, earlier.begun.made) else None
+            )
         except Exception:  # noqa: BLE001 - a recipe may be user code, and another one than it was
             begun = None
         finally:
             self._context.robots.as_planned = None
-        self._take_over(found)
+        self._take_over(earlier)
         if begun is None:
             return CHANGED()
         self._run.grow(tree)
@@ -97,45 +98,45 @@ class Keeping:
                 step.begin_anew()
             if isinstance(step, Act) and step.last is not None and step.last["effect"] == SWITCH:
                 self._context.parts.leave_unsettled(step.last["robot"], sets=dict(step.last["sets"]))
-        self.walk = WalkBack(found, begun, self._run.nodes)
-        return found.stranded
+        self.walk = WalkBack(earlier, begun, self._run.nodes)
+        return earlier.stranded
 
-    def _take_over(self, found: Trail) -> None:
-        """Go back to where the task of an earlier start stands; its time stands still until `time.go_on`."""
+    def _take_over(self, earlier: Trail) -> None:
+        """Take over the books of an earlier start's task; its time stands until `time.go_on`."""
         context = self._context
         context.start_afresh()
         context.time.pause()
-        context.commands.used = set(found.used)
-        context.handling.begin(found.taken, found.unchecked)
-        context.answers[:] = found.answers
-        context.zones.interlocks.reserved = found.zones
-        context.parts.take_over(carrier=found.carrier, origins=found.origins, back=found.back)
+        context.commands.used = set(earlier.used)
+        context.handling.begin(earlier.taken, earlier.unchecked)
+        context.answers[:] = earlier.answers
+        context.zones.interlocks.reserved = earlier.zones
+        context.parts.take_over(carrier=earlier.carrier, origins=earlier.origins, back=earlier.back)
 
-    def judge(self) -> Finding:
-        """Judge by the devices' reports the steps at which an earlier start ended."""
+    def judge(self) -> Judgement:
+        """Judge the steps at which an earlier start ended, by the devices' reports."""
         assert self.walk is not None
         return self.walk.judge(self._context)
 
     def go_on(self) -> None:
-        """Go on at the steps at which an earlier start ended, by what the devices say now."""
+        """Go on at the steps at which an earlier start ended, by the devices' reports until now."""
         assert self.walk is not None
         walk, self.walk = self.walk, None
-        self._kept_of = ()
-        found = walk.judge(self._context)
+        self._last_state = ()
+        judgement = walk.judge(self._context)
         self._context.settle()
-        walk.go_on(found)
-        self._context.zones.forsake()  # its steps have given their commands, and need no more than those
+        walk.go_on(judgement)
+        self._context.zones.forsake()  # machines keep the zones of commands that were given, and no others
 
     def end(self) -> None:
-        """The task has ended, or goes on without its work."""
-        self.walk, self._kept_of = None, ()
+        """End the trail: the task has ended, or only recovers."""
+        self.walk, self._last_state = None, ()
         self._context.settle()
         self._context.zones.forsake()
 
     def news(
         self, *, failure: Failure | None, cancels: bool, holds: bool, stranded: Sentence | None
     ) -> str | None:
-        """The place of the task in its tree, to be kept; None where that is kept already."""
+        """The trail of the task, to be kept; None where it has not changed since it was kept."""
         if self.walk is not None:
             return self._stranded(self.walk, stranded)
         numbers = [
@@ -144,13 +145,13 @@ class Keeping:
             if act.entry is not None and isinstance(act.entry.command, Process)
         ]
         state = (self._run.rested, holds, cancels, stranded, numbers)
-        if state == self._kept_of:
+        if state == self._last_state:
             return None
-        self._kept_of = state
+        self._last_state = state
         return self._trail(failure, cancels=cancels, stranded=stranded).text()
 
     def _stranded(self, walk: WalkBack, stranded: Sentence | None) -> str | None:
-        """Until a person has said more, only that the task can no longer go on from there is news."""
+        """The trail of an earlier start, once its task can only be abandoned; None where that is kept."""
         if stranded is None or walk.trail.stranded is not None or self._run.tree is None:
             return None
         walk.trail = walk.trail._replace(stranded=stranded)
@@ -169,7 +170,7 @@ class Keeping:
             back={robot: pose.name for robot, pose in context.parts.back.items()},
             origins=sorted(context.parts.origins),
             used=sorted(context.commands.used),
-            known={each.robot.name: Knowledge.of(each, more) for each, more in receiving},
+            knowledge={each.robot.name: Knowledge.of(each, more) for each, more in receiving},
             grips={} if recovers else context.parts.grips,
             zones={name: sorted(context.zones.held_by(name)) for name in context.cell.interlocked},
             failure=(failure or context.failures.first) if recovers else None,
@@ -183,31 +184,31 @@ class Keeping:
 
     def _grown(self, order: Order, planned: Planned, envelope: Sequence[str]) -> Behaviour:
         """The tree of an order; what it was made of is noted."""
-        of_cell, known, source = self._of_cell(order.recipe)
+        of_cell, seen, source = self._of_cell(order.recipe)
         tree = self._build(order, self._context)
-        of_tree = fingerprint.of_tree(tree, known, source=source)
+        of_tree = fingerprint.of_tree(tree, seen, source=source)
         made = fingerprint.BY_SOURCE + fingerprint.joined(of_cell, order.text, of_tree)
         self._begun = Begun(made=made, planned=planned, envelope=envelope)
         return tree
 
     def _of_cell(self, recipe: str) -> tuple[str, fingerprint.Seen, str]:
-        """The hash of the cell for a recipe, what was met in it, and the recipe's source; made once."""
+        """The fingerprint of the cell for a recipe, the values seen in it, the recipe's source; made once."""
         if recipe not in self._cells:
             cell = self._context.cell
-            known: fingerprint.Seen = {}
+            seen: fingerprint.Seen = {}
             sources = (each.source for each in cell.recipes if each.name == recipe)
-            made = fingerprint.of_cell(cell, recipe, known)
-            self._cells[recipe] = made, known, next(sources, "")
+            made = fingerprint.of_cell(cell, recipe, seen)
+            self._cells[recipe] = made, seen, next(sources, "")
         return self._cells[recipe]
 
     def _is_alike(self, order: Order, tree: Behaviour, made: str) -> bool:
-        """True where a kept task was made of what the tree was made of.
+        """True where the tree of an earlier start had the fingerprint of this tree.
 
-        A version before this one has hashed the code of functions: it is compared with that, once.
+        A fingerprint of an earlier version has the code of functions, and is compared with one of that form.
         """
         if made.startswith(fingerprint.BY_SOURCE):
             return made == self._begun.made
-        known: fingerprint.Seen = {}
-        of_cell = fingerprint.of_cell(self._context.cell, order.recipe, known, by_code=True)
-        of_tree = fingerprint.of_tree(tree, known, by_code=True)
+        seen: fingerprint.Seen = {}
+        of_cell = fingerprint.of_cell(self._context.cell, order.recipe, seen, by_code=True)
+        of_tree = fingerprint.of_tree(tree, seen, by_code=True)
         return made == fingerprint.joined(of_cell, order.text, of_tree)

@@ -1,4 +1,4 @@
-"""Succession of steps in a tree: where the success of one can only lead to another."""
+"""Succession of steps in a tree: where the success of one step can only lead to another."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from py_trees.composites import Selector, Sequence
 from arboleda.trees.leaves import Announce, Carry, Dwell, Leaf, Note, Piece
 
 PASSED = (Announce, Carry, Dwell, Note, Piece)
-"""Leaves that command nothing and take nothing: what comes after them proves that they have ended well."""
+"""Leaves that command nothing and take nothing. A step after them has begun only if they have succeeded."""
 
 
 def steps_between(before: Behaviour, after: Behaviour) -> list[Leaf] | None:
-    """The leaves that are passed where all goes well, from one step to another; None where another way may
-    lead there, or something else be commanded or taken on it.
+    """The leaves between two steps, where the first leads to the other by success alone; else None.
+
+    None also where a leaf between them commands or takes something.
     """
     passed: list[Leaf] = []
     leaf = _next(before)
@@ -26,7 +27,7 @@ def steps_between(before: Behaviour, after: Behaviour) -> list[Leaf] | None:
 
 
 def _next(node: Behaviour) -> Behaviour | None:
-    """The leaf that begins once a node has ended well."""
+    """The leaf that begins once a node has succeeded."""
     while node.parent is not None:
         parent = node.parent
         if type(parent) is Sequence and parent.memory:
@@ -34,7 +35,7 @@ def _next(node: Behaviour) -> Behaviour | None:
             if at < len(parent.children):
                 return _first(parent.children[at])
         elif type(parent) is not Selector or node is not parent.children[-1]:
-            return None  # what comes after a selector may come after another of its children, too
+            return None  # another child of a selector may lead to the same leaf
         node = parent
     return None
 

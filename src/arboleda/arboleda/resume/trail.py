@@ -1,5 +1,6 @@
-"""Trail of a running task, kept for the next start: the state of its tree, and what its devices had reported
-by then. It is put back into a tree that is made anew, of the same recipe and plant file.
+"""Trail of a running task, kept for the next start: the state of its tree and the last reports of devices.
+
+The next start puts it back into a tree that it makes anew, of the same recipe and plant file.
 """
 
 from __future__ import annotations
@@ -27,8 +28,9 @@ REMEMBERS = composites.Sequence | composites.Selector | composites.Parallel
 
 
 class Knowledge(NamedTuple):
-    """Knowledge of a device; `more` commands may have reached it that it had not told of, by the start
-    of the bridge that had the epoch `bridge`.
+    """Knowledge of a device: its boot, its receipt, and the epoch of its bridge.
+
+    Up to `more` commands may have reached the device that it had not named yet.
     """
 
     boot: int | None
@@ -38,11 +40,11 @@ class Knowledge(NamedTuple):
 
     @classmethod
     def of(cls, belief: Belief, more: int) -> Knowledge:
-        """As it is now."""
+        """The knowledge in a belief."""
         return cls(boot=belief.boot_id, receipt=belief.receipt, more=more, bridge=belief.epoch)
 
     def explains(self, now: Receipt | None, *, others: int = 0) -> bool:
-        """True where the commands that were under way, and so many others at most, can have led there."""
+        """True where the commands that were under way, and at most `others` more, explain a later receipt."""
         before, most = self.receipt, self.more + others
         if now == before:
             return True
@@ -50,16 +52,17 @@ class Knowledge(NamedTuple):
             return False
         if before is not None and now.epoch == before.epoch:
             return 0 <= now.accepted - before.accepted <= most
-        # it counted from 1; a later bridge had commands of a later start, whose steps a power cut has undone
+        # A bridge counts from 1 in each epoch. A later bridge may have had commands of a start that is
+        # forgotten.
         return now.epoch == self.bridge and now.accepted <= most
 
 
 @dataclass(frozen=True, kw_only=True)
 class Begun:
-    """Start of a task, which stays the same while it runs; `made` is the hash of its tree.
+    """Beginning of a task, which does not change while it runs; `made` is the fingerprint of its tree.
 
-    `envelope` are the effectors that it may have told to switch without this being durable: after a power cut
-    nobody knows what they hold before they report it.
+    `envelope` are effectors that the task may tell to switch before their new grip is durable. So after a
+    power cut they count as switching until they report what they hold.
     """
 
     made: str
@@ -68,7 +71,7 @@ class Begun:
 
     @cached_property
     def text(self) -> str:
-        """It as it is kept, written once and not at every step."""
+        """The text in which it is kept, encoded once and not at every step."""
         planned = self.planned
         return ENCODE([VERSION, self.made, planned.standing, planned.positions, self.envelope])
 
@@ -81,7 +84,7 @@ class Begun:
         positions: Mapping[str, Any],
         envelope: Sequence[str] = (),
     ) -> Begun:
-        """It as it was kept."""
+        """The beginning in a text; ValueError for another version."""
         if version != VERSION:
             raise ValueError("it is of another version")
         stood = {name: _position(each) for name, each in positions.items()}
@@ -90,11 +93,11 @@ class Begun:
 
 
 class Trail(NamedTuple):
-    """`statuses` has a letter for each node, the root last, `nodes` what else is kept of some, by number.
-    `used` are the devices that the task has told to do something, `taken` those that hold a part of it, with
-    the boot in which they took that.
+    """Trail of a task. `statuses` has a letter for each node, the root last; `nodes` has further states.
 
-    `failure` is that of the work, where what runs `recovers` from it; `cancels`: it ends as cancelled.
+    `used` are the devices that the task has commanded. `taken` are those that hold a part of it, each with
+    the boot in which it took that. `recovers`: the recovery runs, after the `failure` of the work. `cancels`:
+    the task ends as cancelled.
     """
 
     begun: Begun
@@ -104,9 +107,9 @@ class Trail(NamedTuple):
     back: Mapping[str, str]
     origins: Sequence[str]
     used: Sequence[str]
-    known: Mapping[str, Knowledge]
+    knowledge: Mapping[str, Knowledge]
     grips: Mapping[str, str]
-    zones: Mapping[str, Sequence[str]]  # those that its machines held, by the word of the tree
+    zones: Mapping[str, Sequence[str]]  # that its machines hold for the tree
     failure: Failure | None = None
     recovers: bool = False
     cancels: bool = False
@@ -116,19 +119,19 @@ class Trail(NamedTuple):
     unchecked: Sequence[Check] = ()
 
     def text(self) -> str:
-        """It as it is kept: how the task began, and where it stands."""
+        """The text in which it is kept: the beginning of the task, then its place."""
         return f"[{self.begun.text},{ENCODE(self[1:])}]"
 
     @classmethod
     def read(cls, text: str) -> Trail:
-        """It as it was kept; ValueError for what this version did not write."""
+        """The trail in a text; ValueError for a text of another version."""
         try:
             begun, now = json.loads(text)
             fields = dict(zip(cls._fields[1:], now, strict=True))
             failure, stranded = fields["failure"], fields["stranded"]
             fields |= {
                 "nodes": {int(number): each for number, each in fields["nodes"].items()},
-                "known": {name: _known(*each) for name, each in fields["known"].items()},
+                "knowledge": {name: _knowledge(*each) for name, each in fields["knowledge"].items()},
                 "failure": None if failure is None else read_failure(*failure),
                 "stranded": None if stranded is None else retold(*stranded),
                 "answers": [TaskAnswer(**each) for each in fields["answers"]],
@@ -140,23 +143,23 @@ class Trail(NamedTuple):
 
 
 def statuses(nodes: Iterable[Behaviour]) -> str:
-    """A letter for each node."""
+    """The statuses of nodes, a letter each."""
     return "".join([node.status._value_[0] for node in nodes])  # `value` takes several times as long
 
 
 def kept_of(nodes: Iterable[tuple[int, Keeps]]) -> dict[int, Mapping[str, Any]]:
-    """The state that is kept of nodes beside their status, by number."""
-    kept: dict[int, Mapping[str, Any]] = {}
+    """The states to keep of nodes beside their statuses, by number."""
+    states: dict[int, Mapping[str, Any]] = {}
     for number, node in nodes:
         if (node.status is Status.RUNNING or not node.ends_unkept) and (state := node.kept()):
-            kept[number] = state
-    return kept
+            states[number] = state
+    return states
 
 
 def put_back(nodes: Sequence[Behaviour], trail: Trail) -> list[Keeps]:
-    """Give the nodes of a new tree the state that is kept; those of ours that were under way.
+    """Give the nodes of a new tree the states of a trail; returns the nodes of ours that were under way.
 
-    ValueError where a node was under way of which nobody knows how it goes on.
+    ValueError where a node was under way that cannot go on, as one of a user's own class.
     """
     if len(trail.statuses) != len(nodes):
         raise ValueError("the tree has another number of nodes")
@@ -184,11 +187,11 @@ def _plain(value: Failure | Sentence | TaskAnswer) -> Any:
     return [str(value), value.data()]
 
 
-# Nothing that is kept contains itself, so nobody need look for that.
+# No value of a trail contains itself, so the encoder need not look for that.
 ENCODE = json.JSONEncoder(check_circular=False, separators=(",", ":"), default=_plain).encode
 
 
-def _known(
+def _knowledge(
     boot: int | None, receipt: Sequence[int] | None, more: int, bridge: int | None = None
 ) -> Knowledge:
     last = None if receipt is None else Receipt(*receipt)

@@ -1,10 +1,10 @@
-"""Way back into a task: judges by its devices what became of the step at which the plant stopped.
+"""Walk back into a task: judges by reports what became of the steps at which an earlier start ended.
 
-Only a board that numbers commands can prove it: of the same boot, it has taken none that this plant does not
-know of, so whatever was done before is as it was left. Its last command is done, was never taken, or was a
-move that stopped on its way, which is given anew as after a hold. After a power cut it may have taken one
-more, of which nothing was kept: where it echoes that this is the very next step, the steps before have ended
-well. Anything else is for a person to judge.
+Only a board that numbers commands proves anything. If it is of the same boot and has taken no command that
+the trail cannot explain, then all that it did before is as it was left. Its last command is done, was never
+taken, or was a move that stopped on its way, which is given anew as after a hold. After a power cut the board
+may have taken one command more, which was not kept. Where it echoes that this command is of the very next
+step, the steps before have succeeded. Anything else is for a person to judge.
 """
 
 from __future__ import annotations
@@ -54,9 +54,10 @@ class Fate(Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
-    """Judgement by the devices: what is still awaited, or why a person has to judge; `stranded` where nothing
-    can go on from there. `fates` are those of the steps that were under way, as far as they are known.
+class Judgement:
+    """Judgement by the devices' reports: `waits` for a report, or the `failure` that a person has to judge.
+
+    `stranded` is why the task can only be abandoned. `fates` are those of the steps that were under way.
     """
 
     waits: Sentence | None = None
@@ -67,7 +68,7 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Trouble:
+class Doubt:
     """Why a device keeps a task from going on by itself."""
 
     reason: Reason
@@ -77,8 +78,9 @@ class Trouble:
 
 @dataclass(frozen=True, kw_only=True)
 class Echo:
-    """A command of which nothing was kept, by the token that its board echoes: the step that gave it, at
-    which attempt, its record, and the steps that were `passed` on the way there.
+    """Command that no trail has, by the token that its board echoes: its step, attempt and record.
+
+    `passed` are the leaves between the step of the trail and this step.
     """
 
     step: Act
@@ -88,10 +90,9 @@ class Echo:
 
 
 class WalkBack:
-    """A task between its trail and the word of a person; `begun` are the steps that were under way, `nodes`
-    those of its tree.
+    """Task of an earlier start, until a person says how it goes on. `begun` are the steps under way then.
 
-    `due`: when it has to be judged anew although no device says more, s of the plant's time.
+    `due` is when it has to be judged anew even without a report, s of the plant's time.
     """
 
     def __init__(self, trail: Trail, begun: Sequence[Keeps], nodes: Sequence[Behaviour]) -> None:
@@ -99,13 +100,13 @@ class WalkBack:
         self.begun = begun
         self._nodes = nodes
         self.due: float | None = None
-        self._reporting_since: float | None = None  # since when all of its devices are heard and stand still
+        self._reporting_since: float | None = None  # since when all of its devices are heard and stand
 
-    def judge(self, context: Context) -> Finding:
-        """By what the devices of the task say now."""
-        names = [name for name in self.trail.known if context.devices.has(name)]
+    def judge(self, context: Context) -> Judgement:
+        """Judge the steps that were under way by the reports of the task's devices until now."""
+        names = [name for name in self.trail.knowledge if context.devices.has(name)]
         beliefs = {name: context.robots.belief(name) for name in names}
-        troubles: dict[str, Trouble] = {}
+        troubles: dict[str, Doubt] = {}
         echoes: dict[str, Echo] = {}
         self.due = None
         for name, belief in beliefs.items():
@@ -113,12 +114,12 @@ class WalkBack:
             if obstacle is not None or belief.moves:
                 waits = obstacle.sentence if obstacle else STILL_MOVING(robot=name)
                 self._reporting_since = None
-                return Finding(waits=waits, fates={})
+                return Judgement(waits=waits, fates={})
             if (echo := self._echo(belief, context.commands.task)) is not None:
                 echoes[name] = echo
             if (trouble := self._changed(belief, echo)) is not None:
                 troubles[name] = trouble
-        if len(echoes) > 1:  # of two nobody knows which came first
+        if len(echoes) > 1:  # nobody knows which of two commands came first
             troubles |= {name: _more(name) for name in echoes}
         if self._reporting_since is None:
             self._reporting_since = context.time.plant_now
@@ -134,31 +135,31 @@ class WalkBack:
             fates[step] = Fate.UNPROVEN if name in troubles else fate(last, belief)
             if fates[step] is Fate.UNPROVEN and early and name not in troubles:
                 self.due = settled_at
-                return Finding(waits=NOT_SAID(robot=name), fates={})
+                return Judgement(waits=NOT_SAID(robot=name), fates={})
             if fates[step] is Fate.UNPROVEN:
-                troubles.setdefault(name, Trouble(Reason.INTERRUPTED, UNPROVEN(robot=name)))
+                troubles.setdefault(name, Doubt(Reason.INTERRUPTED, UNPROVEN(robot=name)))
         worst = sorted(troubles.values(), key=lambda each: each.stranded is None)
         if not worst:
-            return Finding(fates=fates, echo=echo)
+            return Judgement(fates=fates, echo=echo)
         failure = Failure(reason=worst[0].reason, sentence=worst[0].sentence)
-        return Finding(failure=failure, stranded=worst[0].stranded, fates=fates, echo=echo)
+        return Judgement(failure=failure, stranded=worst[0].stranded, fates=fates, echo=echo)
 
     def _last_commands(self, echo: Echo | None) -> list[tuple[Act, Mapping[str, Any]]]:
-        """The steps that were under way, with the records of their last commands."""
+        """The steps to judge, with the records of their last commands."""
         if echo is not None:
             return [(echo.step, echo.last)]
         acts = [step for step in self.begun if isinstance(step, Act)]
         return [(act, act.last) for act in acts if act.last is not None]
 
-    def go_on(self, finding: Finding) -> None:
-        """Go on after what is done; all else that was under way begins anew."""
+    def go_on(self, finding: Judgement) -> None:
+        """Go on after the steps that are done, and begin all others anew that were under way."""
         for step in self.begun:
-            known = finding.fates.get(step)
+            outcome = finding.fates.get(step)
             if isinstance(step, Leaf):
-                step.proven = known is Fate.DONE
+                step.proven = outcome is Fate.DONE
             if isinstance(step, Act):
-                step.left = step.left or known not in (None, Fate.UNTAKEN)
-            if known is not Fate.DONE:
+                step.may_have_left = step.may_have_left or outcome not in (None, Fate.UNTAKEN)
+            if outcome is not Fate.DONE:
                 step.begin_anew()
         echo = finding.echo
         if echo is not None and echo.step not in self.begun:
@@ -168,13 +169,13 @@ class WalkBack:
             echo.step.take_up({**echo.last, "done": done}, echo.attempt)
 
     def _echo(self, belief: Belief, task: str | None) -> Echo | None:
-        """The one command that a device has taken beside the known ones, where it is the next step's."""
-        known, now, tokens = self.trail.known[belief.robot.name], belief.receipt, belief.tokens
+        """The one command more that a device has taken than the trail explains, if it is of the next step."""
+        knowledge, now, tokens = self.trail.knowledge[belief.robot.name], belief.receipt, belief.tokens
         if now is None or tokens is None or tokens.accepted is None or len(self.begun) != 1:
             return None
-        if not self._is_numbered(belief) or belief.boot_id != known.boot:
+        if not self._is_numbered(belief) or belief.boot_id != knowledge.boot:
             return None
-        if known.explains(now) or not known.explains(now, others=1):
+        if knowledge.explains(now) or not knowledge.explains(now, others=1):
             return None
         token = StepToken.read(tokens.accepted)
         if token is None or token.task != task or token.step >= len(self._nodes):
@@ -185,81 +186,84 @@ class WalkBack:
         return self._echo_of(step, token, belief.robot.name, now) if isinstance(step, Act) else None
 
     def _echo_of(self, step: Act, token: StepToken, robot: str, now: Receipt) -> Echo | None:
-        """The same, of the step that its token names; None where it is not the one at which the task stands,
-        tried once more, nor the one after that.
+        """The echo of a command of the step that a token names.
+
+        That step has to be the step of the trail, at its next attempt, or the very next step; else None.
         """
         (before,) = self.begun
         given = {"before": None, "number": now[:2], "done": False}
-        kept = before.last if isinstance(before, Act) else {}
-        if kept is None or kept.get("effect") == QUERY or not isinstance(before, (Act, *PASSED)):
-            return None  # it gave nothing yet, its answer was not kept, or it takes something
+        record = before.last if isinstance(before, Act) else {}
+        if record is None or record.get("effect") == QUERY or not isinstance(before, (Act, *PASSED)):
+            return None  # it gave no command yet, its answer was not kept, or it waits for zones or devices
         if before is step:
             attempt = step.given_times + 1
-            if token.attempt != attempt % ATTEMPTS or kept["robot"] != robot:
+            if token.attempt != attempt % ATTEMPTS or record["robot"] != robot:
                 return None
-            return Echo(step=step, attempt=attempt, last={**kept, **given}, passed=())
+            return Echo(step=step, attempt=attempt, last={**record, **given}, passed=())
         passed = steps_between(before, step)
         last = {**_record_of(step), **given}
         if passed is None or last.get("robot") != robot:
             return None
         if last["grips"] and any(type(leaf) is Note for leaf in passed):
-            return None  # where the part comes from is noted by an empty hand
+            return None  # the note of where the part comes from needs an empty hand
         return Echo(step=step, attempt=token.attempt, last=last, passed=passed)
 
-    def _changed(self, belief: Belief, echo: Echo | None) -> Trouble | None:
-        """Why what a device had done by then may be so no more."""
+    def _changed(self, belief: Belief, echo: Echo | None) -> Doubt | None:
+        """The doubt whether a device is still as the trail has it; None where its reports leave none."""
         name = belief.robot.name
         grip, holds = self.trail.grips.get(name), belief.held_in(belief)
         if echo is not None:
             grip = Grip.SWITCHING if echo.last["grips"] is not None else grip
         if grip == Grip.ON and holds is False:
-            return Trouble(Reason.PART_LOST, LOST(robot=name), NO_PART(arm=name))
+            return Doubt(Reason.PART_LOST, LOST(robot=name), NO_PART(arm=name))
         if echo is None and name not in self.trail.used:
             return self._moved(belief) or self._more_commands(belief)
         if not self._is_numbered(belief):
-            return Trouble(Reason.INTERRUPTED, NO_NUMBERS(robot=name))
+            return Doubt(Reason.INTERRUPTED, NO_NUMBERS(robot=name))
         if echo is None and (more := self._more_commands(belief)) is not None:
             return more
-        if grip in (Grip.ON, Grip.SWITCHING) and holds is None:  # one that is off was told nothing since
-            return Trouble(Reason.INTERRUPTED, UNPROVEN(robot=name))
+        if (
+            grip in (Grip.ON, Grip.SWITCHING) and holds is None
+        ):  # an effector that was off got no command since
+            return Doubt(Reason.INTERRUPTED, UNPROVEN(robot=name))
         if grip == Grip.OFF and holds:
-            return Trouble(Reason.INTERRUPTED, HOLDS(robot=name))
+            return Doubt(Reason.INTERRUPTED, HOLDS(robot=name))
         return None
 
     def _is_numbered(self, belief: Belief) -> bool:
-        """True for a device that numbered its commands when this was kept, and does so now."""
-        return belief.numbers_commands and self.trail.known[belief.robot.name].boot is not None
+        """True for a device that numbered its commands when the trail was kept, and does so now."""
+        return belief.numbers_commands and self.trail.knowledge[belief.robot.name].boot is not None
 
-    def _more_commands(self, belief: Belief) -> Trouble | None:
-        """Why one may have been told something of which this plant knows nothing, by its numbers.
+    def _more_commands(self, belief: Belief) -> Doubt | None:
+        """The doubt whether a device has taken commands that the trail does not explain.
 
-        Of one that was not used, too: after a power cut the steps that used it may not have been kept.
+        It is for unused devices, too: after a power cut the trail may lack the steps that used them.
         """
-        name, known = belief.robot.name, self.trail.known[belief.robot.name]
+        name, knowledge = belief.robot.name, self.trail.knowledge[belief.robot.name]
         if not self._is_numbered(belief):
             return None
-        if belief.boot_id != known.boot:
-            return Trouble(Reason.REBOOTED, BOOTED(robot=name))
-        if not known.explains(belief.receipt):
+        if belief.boot_id != knowledge.boot:
+            return Doubt(Reason.REBOOTED, BOOTED(robot=name))
+        if not knowledge.explains(belief.receipt):
             return _more(name)
         return None
 
-    def _moved(self, belief: Belief) -> Trouble | None:
-        """Why one that the task has not used yet may not be where the task was planned from."""
+    def _moved(self, belief: Belief) -> Doubt | None:
+        """The doubt whether a device that the task has not used is still where the task was planned from."""
         begun, here = self.trail.begun.planned.positions.get(belief.robot.name), belief.known_position
         if begun is None:
             return None
         if here is not None and belief.robot.motion.stands_at(here, begun):
             return None
-        return Trouble(Reason.INTERRUPTED, MOVED(robot=belief.robot.name), NOBODY_KNOWS())
+        return Doubt(Reason.INTERRUPTED, MOVED(robot=belief.robot.name), NOBODY_KNOWS())
 
 
-def _more(robot: str) -> Trouble:
-    return Trouble(Reason.INTERRUPTED, MORE(robot=robot), NOBODY_KNOWS())
+def _more(robot: str) -> Doubt:
+    return Doubt(Reason.INTERRUPTED, MORE(robot=robot), NOBODY_KNOWS())
 
 
 def _record_of(step: Act) -> Mapping[str, Any]:
-    """The record of a step's command, as it would be given now; empty where nobody can tell."""
+    """The record of a step's command, as it would be given now; empty where the recipe raises."""
     try:
         command = step.make(id="")
     except Exception:  # noqa: BLE001 - a recipe may be user code, and count on what it has done by then
@@ -268,7 +272,7 @@ def _record_of(step: Act) -> Mapping[str, Any]:
 
 
 def fate(last: Mapping[str, Any], belief: Belief) -> Fate:
-    """The outcome of a command to a robot that stands still, and has taken none but those that are known."""
+    """The fate of a command to a robot that stands, and has taken no command beside those of the trail."""
     if last["effect"] == QUERY:
         return Fate.CUT_SHORT  # to ask once more changes nothing
     if last["done"]:
@@ -289,7 +293,7 @@ def fate(last: Mapping[str, Any], belief: Belief) -> Fate:
 
 
 def _at(goal: Any, belief: Belief) -> bool:
-    """True for a robot that is where its command led; of one that led nowhere its facts say that."""
+    """True for a robot at the goal of its command; for a command without a goal its facts decide."""
     if goal is None:
         return True
     place = tuple(goal) if isinstance(goal, list) else goal

@@ -27,7 +27,7 @@ def keep(state: Path, files: PlantFiles | None, at: str) -> None:
         fresh.rename(folder)
 
 
-def known(state: Path) -> Version | None:
+def version(state: Path) -> Version | None:
     """The version at work in a plant, or the last one; None if none was kept."""
     for folder in (state / FRESH, state / FOLDER):  # of which a kill may have left one half deleted
         with suppress(StartError):

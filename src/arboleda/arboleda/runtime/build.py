@@ -24,6 +24,7 @@ from . import at_work
 from .alarm_options import AlarmOptions
 from .factories import faces, plant, reach
 from .holdings import Holdings
+from .interrupts import until
 from .log_queue import Output
 from .missing import refuse_missing
 from .options import Options
@@ -35,7 +36,6 @@ from .parts.orchestrator import Orchestrator
 from .parts.part import PageAddress, Part
 from .rate import at_rate
 from .registry import Assembly, Factory, Phase
-from .waiting import until
 
 __all__ = ["OF_BOARDS", "PARTS", "App", "Options", "build"]
 

@@ -66,8 +66,8 @@ def named(addresses: Iterable[str]) -> Find:
 
 def of_this_machine() -> list[Place]:
     """The plants that run on this machine on their default state directories."""
-    found = ((path, find_running(path)) for path in running_plants())
-    return [here(path, running) for path, running in found if running is not None and running.port]
+    directories = ((path, find_running(path)) for path in running_plants())
+    return [here(path, running) for path, running in directories if running is not None and running.port]
 
 
 def here(state: Path, running: Running) -> Place:
@@ -86,15 +86,15 @@ def of_database(leaders: Leaders) -> Find:
     ]
 
 
-def with_tokens(find: Find, known: Mapping[str, str]) -> Find:
+def with_tokens(find: Find, tokens_by_name: Mapping[str, str]) -> Find:
     """The places with the tokens of a file, by address or by plant; a plant of this machine without one there
     gets the token that its own commands use."""
 
-    def found() -> list[Place]:
+    def places() -> list[Place]:
         near = {place.url: place for place in _readable()}
-        return [_shown(place, known, near.get(place.url)) for place in find()]
+        return [_shown(place, tokens_by_name, near.get(place.url)) for place in find()]
 
-    return found
+    return places
 
 
 def _readable() -> list[Place]:
@@ -105,8 +105,8 @@ def _readable() -> list[Place]:
         return []
 
 
-def _shown(place: Place, known: Mapping[str, str], near: Place | None) -> Place:
-    token = known.get(place.url) or known.get(place.plant) or place.token
+def _shown(place: Place, tokens_by_name: Mapping[str, str], near: Place | None) -> Place:
+    token = tokens_by_name.get(place.url) or tokens_by_name.get(place.plant) or place.token
     if near is None:
         return replace(place, token=token)
     certificate = place.certificate or near.certificate
@@ -117,7 +117,7 @@ def tokens_of(file: Path) -> dict[str, str]:
     """The tokens of a file, a line for each plant: its address or its name, and its token; ConfigError."""
     if file.exists() and file.stat().st_mode & tokens.OWNER_ONLY:
         raise ConfigError((f"{file}: others can read the tokens in it; chmod 600 {file}",))
-    found: dict[str, str] = {}
+    tokens_by_name: dict[str, str] = {}
     for number, line in enumerate(read_text(file, LARGEST).splitlines(), start=1):
         words = line.partition("#")[0].strip()
         if not words:
@@ -127,5 +127,5 @@ def tokens_of(file: Path) -> dict[str, str]:
             raise ConfigError(
                 (f"{file}: line {number}: write the address or name of a plant, and its token",)
             )
-        found[pair[1].rstrip("/")] = pair[2]
-    return found
+        tokens_by_name[pair[1].rstrip("/")] = pair[2]
+    return tokens_by_name

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
+from arboleda.engine import ACTS_TOLD
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import OWN, Sentence, from_data, retold
+from arboleda.store.plant_memory import JournalEntry, PlantMemory
 
-from . import past_acts
 from .options import Options
 from .parts.memory_pace import MemoryPace
 from .state import StateDir, default_state
@@ -32,7 +35,7 @@ class Holdings:
         """Take both; StartError where another process has them, or they cannot be used."""
         self.state.open()
         self.memory.open()
-        self.past_acts = past_acts.of(self.memory)
+        self.past_acts = _past_acts(self.memory)
 
     def lead(self, now: int) -> int:
         """The number of this start, higher than that of any start before, on any host."""
@@ -44,3 +47,23 @@ class Holdings:
         self.recalled.close()
         self.memory.close()
         self.state.close()
+
+
+def _past_acts(memory: PlantMemory) -> list[dict[str, Any]]:
+    """The acts of operators before this start, oldest first."""
+    return [
+        {"at": each.unix_s, "scope": each.scope, "cell": each.cell, "sentence": _sentence_of(each)}
+        for each in reversed(memory.entries())
+    ]
+
+
+def _sentence_of(entry: JournalEntry) -> Sentence:
+    """The sentence about an act; an act of a package or of an older version is told in the words of then.
+
+    Plain text where the entry cannot be read.
+    """
+    try:
+        data = json.loads(entry.said or "")
+        return from_data(data, ACTS_TOLD) if data["key"] in ACTS_TOLD else retold(entry.sentence, data)
+    except (ValueError, TypeError, KeyError):
+        return OWN(text=entry.sentence)

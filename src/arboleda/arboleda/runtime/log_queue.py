@@ -113,16 +113,18 @@ class LineRate:
 
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock = clock
-        self._room: dict[Place, tuple[float, float]] = {}  # lines that were left, and when
+        self._room: dict[
+            Place, tuple[float, float]
+        ] = {}  # how many lines it may still log, and when that was
 
     def allows(self, place: Place) -> bool:
         """Count a line of this place; False where it is one too many."""
         now = self._clock()
         at_once, per_s = RATES.get(place[2], RATE)
-        left, at = self._room.get(place, (float(at_once), now))
-        left = min(left + (now - at) * per_s, float(at_once))
-        allowed = left >= 1.0
-        self._room[place] = (left - 1.0 if allowed else left, now)
+        room, at = self._room.get(place, (float(at_once), now))
+        room = min(room + (now - at) * per_s, float(at_once))
+        allowed = room >= 1.0
+        self._room[place] = (room - 1.0 if allowed else room, now)
         return allowed
 
 

@@ -41,10 +41,10 @@ def remembered(store: PlantMemory) -> dict[Fact, dict[str, str]]:
 
 
 def begun(
-    store: PlantMemory, memory: dict[Fact, dict[str, str]], kept: Sequence[KeptTask]
+    store: PlantMemory, memory: dict[Fact, dict[str, str]], tasks: Sequence[KeptTask]
 ) -> dict[Fact, dict[str, str]]:
     """The memory with which a start begins: what a power cut may have undone counts as not settled."""
-    changes = [*unsettled(memory, kept)] if store.may_lack_writes else []
+    changes = [*unsettled(memory, tasks)] if store.may_lack_writes else []
     store.begin(*changes)
     store.sync()  # also what a killed process had only written
     for each in changes:

@@ -43,8 +43,8 @@ class PartList:
 
     def make(self, assembly: Assembly, own: Iterable[Factory]) -> None:
         """Make all parts, of the runner's `own` factories and of packages, in the order of their phases."""
-        known = [*(("", each) for each in own), *packaged(self.leave_out)]
-        for package, factory in sorted(known, key=lambda each: each[1].phase):
+        factories = [*(("", each) for each in own), *packaged(self.leave_out)]
+        for package, factory in sorted(factories, key=lambda each: each[1].phase):
             if package not in self._left_out:
                 spared = "" if factory.is_needed else package
                 with self._sparing(spared):

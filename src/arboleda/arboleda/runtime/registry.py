@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import Any
 
 from arboleda.host.packages import package_of, registered
 from arboleda.model.plant_model import PlantModel
 from arboleda.web.offers import Offers
 
 from .holdings import Holdings
-from .links import Links
 from .options import Options
 from .parts.part import Crash, Part
 
@@ -48,6 +48,25 @@ class Factory:
     phase: Phase
     make: Callable[[Assembly], Iterable[Part]]
     is_needed: bool = False
+
+
+class Links:
+    """State of a plant's links, as `PageApi.links` has it, from reports of its parts; for any thread."""
+
+    def __init__(self) -> None:
+        self._sources: list[Callable[[], Mapping[str, Any]]] = []
+
+    def add(self, source: Callable[[], Mapping[str, Any]]) -> None:
+        """Add what a part reports, which is asked for each time; from any thread."""
+        self._sources.append(source)
+
+    def __call__(self) -> dict[str, Any]:
+        """Broker, ROS 2, refused messages, standbys, the memory's pace, and the like."""
+        state: dict[str, Any] = {"broker": None, "ros": None, "refused": {}, "standbys": []}
+        state |= {"demo": False, "memory": None, "faults": []}
+        for each in self._sources:
+            state |= each()
+        return state
 
 
 @dataclass(kw_only=True, eq=False)

@@ -147,9 +147,9 @@ class StateDir:
         self, port: int, *, host: str = "127.0.0.1", guarded: bool = False, certificate: str = ""
     ) -> None:
         """Write down the address of the HTTP API and its login (see `Running`)."""
-        known = replace(self._running, port=port, host=host, guarded=guarded, certificate=certificate)
+        announced = replace(self._running, port=port, host=host, guarded=guarded, certificate=certificate)
         with self._explained():
-            replace_file(self.path / FACTS, json.dumps(asdict(known)))
+            replace_file(self.path / FACTS, json.dumps(asdict(announced)))
 
     def close(self) -> None:
         """Give the directory back; idempotent. The lock file stays: removing it would let two owners in."""

@@ -33,10 +33,10 @@ def renew(state: Path, roles: Collection[Role]) -> None:
     """Give these roles new tokens; the old ones are refused at once."""
     try:
         state.mkdir(mode=0o700, parents=True, exist_ok=True)
-        kept = TokenFile(state)() if (state / TOKENS).exists() and set(roles) != set(Role) else {}
-        fresh = {role: kept.get(role) if role not in roles else None for role in Role}
-        known = {role.value: token or secrets.token_urlsafe(BYTES) for role, token in fresh.items()}
-        replace_file(state / TOKENS, json.dumps(known) + "\n")
+        present = TokenFile(state)() if (state / TOKENS).exists() and set(roles) != set(Role) else {}
+        fresh = {role: present.get(role) if role not in roles else None for role in Role}
+        tokens = {role.value: token or secrets.token_urlsafe(BYTES) for role, token in fresh.items()}
+        replace_file(state / TOKENS, json.dumps(tokens) + "\n")
     except OSError as error:
         raise StartError(f"The tokens cannot be kept in {state}: {error.strerror}.") from error
 

@@ -22,8 +22,8 @@ def moved(body: Body, q: Sequence[float], *, axis: str, frame: str, metres: floa
     """
     here = kinematics.tool(body, q)
     column = AXES[axis]
-    way = [here[row][column] if frame == "tool" else float(row == column) for row in range(3)]
-    wanted = [each * metres for each in way] + ([0.0] * 3 if len(q) >= FREE_JOINTS else [])
+    direction = [here[row][column] if frame == "tool" else float(row == column) for row in range(3)]
+    wanted = [each * metres for each in direction] + ([0.0] * 3 if len(q) >= FREE_JOINTS else [])
     columns = [_change(body, q, joint, here)[: len(wanted)] for joint in range(len(q))]
     return tuple(now + by for now, by in zip(q, _least(columns, wanted), strict=True))
 

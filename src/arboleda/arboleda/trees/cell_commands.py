@@ -18,9 +18,9 @@ from .cell_zones import CellZones
 
 
 class CellCommands:
-    """Sender of one cell. `sent` counts its commands; `used` are the robots that the task has commanded.
+    """Sender of one cell's commands. `sent` counts them; `used` are the robots that the task has commanded.
 
-    `task` is the hash of the task's id, by which boards echo its steps; None where none runs.
+    `task` is the hash of the task's id, by which boards echo its steps; None while no task runs.
     """
 
     def __init__(
@@ -43,9 +43,9 @@ class CellCommands:
         self._guards = guards
 
     def send(self, make: Make, doing: Sentence, *, step: int | None = None, attempt: int = 0) -> Entry:
-        """Send the command that `make(id=...)` returns; an already failed entry where it may not leave.
+        """Send the command that `make(id=...)` returns; its entry has failed where it may not leave.
 
-        `step` is the number of its node, `attempt` how often that has given it.
+        `step` is the number of its node in the tree, `attempt` how often the node has given it.
         """
         self.sent += 1
         now, token = self._time.plant_now, None
@@ -57,7 +57,7 @@ class CellCommands:
         return entry
 
     def objection(self, make: Make) -> Failure | None:
-        """The reason for which a command would not leave now."""
+        """The reason why a command would not leave now."""
         return self._dispatcher.obstacles.objection(make, barrier=self._objection)
 
     def cancel(self, entry: Entry) -> None:
@@ -65,11 +65,11 @@ class CellCommands:
         self._dispatcher.cancel(entry, self._time.plant_now)
 
     def cancel_all(self) -> None:
-        """Ask every command of the cell to end; what moves is halted."""
+        """Ask every command of the cell to end, and halt what moves."""
         self._dispatcher.cancel_all(self._cell, self._time.plant_now)
 
     def cancel_motions(self) -> None:
-        """Halt what can be halted; an effector may finish switching, a machine its work."""
+        """Halt the commands that can be halted; an effector finishes switching, and a machine its work."""
         for entry in self.open():
             if entry.halts and entry.cancelled_at is None:
                 self.cancel(entry)
@@ -79,17 +79,15 @@ class CellCommands:
         return self._dispatcher.ledger.of_cell(self._cell)
 
     def first_of(self, robot: str) -> Entry | None:
-        """The first command that a robot has not ended, of whichever cell."""
+        """The first open command of a robot, of any cell."""
         return next(iter(self._dispatcher.ledger.of_robot(robot)), None)
 
     def may_come_to_rest(self, robot: str) -> bool:
-        """True where a robot takes a command soon: it may have ended its last move, or nobody waits any more
-        for what it does.
-        """
+        """True where a robot may take a command soon: its last move may be over, or was cancelled."""
         return self._dispatcher.obstacles.may_come_to_rest(robot)
 
     def finishes(self, robot: str) -> bool:
-        """True while a robot does work that goes on until it is finished."""
+        """True while a robot does work that goes on to its end."""
         return self._dispatcher.ledger.finishes(robot)
 
     def _objection(self, command: Command) -> Failure | None:

@@ -35,12 +35,12 @@ class CellDevices:
         self.hand_over.revise(cell)
 
     def has(self, robot: str) -> bool:
-        """True for a device that is the cell's now: its own, or a shared one that it holds."""
+        """True for a device of the cell alone, and for a shared device that the cell holds."""
         return robot in self._cell.own or (robot in self._cell.shared and self.holds(robot))
 
     def answers_for(self, robot: str) -> bool:
-        """True for a robot that this cell looks after: its own, a shared one that it holds, or one that no
-        cell holds while this is the first of its cells.
+        """True for a robot of the cell alone, for a shared robot that the cell holds, and for one that none
+        holds while this is the first of its cells.
         """
         if robot not in self._cell.shared:
             return robot in self._cell.own
@@ -52,7 +52,7 @@ class CellDevices:
         return self.holder(device) not in (None, self._cell.name)
 
     def holder(self, device: str) -> str | None:
-        """The cell that holds a shared device; None also where that is not in the plant file any more."""
+        """The cell that holds a shared device; None also where an earlier plant file had that cell."""
         holder = self._zones.holder(device)
         cells = [cell.name for cell in self._dispatcher.model.cells_of[device]]
         return holder if holder in cells else None
@@ -68,7 +68,8 @@ class CellDevices:
     def take(self, devices: frozenset[str]) -> bool:
         """Ask for shared devices, all at once; True once the cell has them.
 
-        What a step that failed has left it goes back before: no cell waits for one while it holds another.
+        The cell gives back others first, which a failed step has left it: no cell waits for a device while it
+        holds another, so none waits for ever.
         """
         name, held = self._cell.name, self.held()
         if devices <= held:
@@ -84,13 +85,13 @@ class CellDevices:
         return True
 
     def claim(self, device: str) -> None:
-        """Take a shared device that no other cell holds, wherever it stands, with what goes with it."""
+        """Take a shared device that no other cell holds, wherever it stands, with its tool or robot."""
         together = self._cell.together({device})
         self._zones.claim(self._cell.name, together)
         self._note_taken(together)
 
     def _note_taken(self, devices: frozenset[str]) -> None:
-        """Keep whose they are for the next start; what they held before was another cell's."""
+        """Remember which cell has devices; effectors that opened before were another cell's matter."""
         memory, name = self._dispatcher.memory, self._cell.name
         for device in devices:
             if memory.value(Fact.QUARANTINE, device) != name:
@@ -98,8 +99,10 @@ class CellDevices:
         memory.occupy(devices, name)
 
     def leave(self, devices: frozenset[str]) -> bool:
-        """Stop waiting for shared devices, and give back those that are heard, do nothing, hold nothing and
-        stand at home; True once the cell holds none of them any more.
+        """Stop waiting for shared devices, and give back those that may change hands; True once all are back.
+
+        A device is handed on heard, idle, empty and at home, since the next cell knows neither whose part it
+        holds nor from where its way begins.
         """
         name = self._cell.name
         granted = self._zones.withdraw(name)
@@ -112,16 +115,14 @@ class CellDevices:
         return held == quiet
 
     def keep(self, device: str, *, ended: bool) -> None:
-        """Quarantine a shared device that the cell holds while it is not heard; `ended`: what used it has
-        come to its end, so it goes back.
-        """
+        """Quarantine a shared device of the cell while it is silent, or give it back: its use has `ended`."""
         if not self._dispatcher.beliefs[device].online:
             self._zones.quarantine_device(device)
         elif ended:
             self.leave(frozenset({device}))
 
     def awaited(self, devices: Iterable[str]) -> dict[str, str]:
-        """Those of the devices that another cell holds, each with that cell."""
+        """The devices of these that another cell holds, each with that cell."""
         return self._zones.awaited(self._cell.name, devices)
 
     def asked_before(self) -> tuple[str, str] | None:
@@ -129,7 +130,7 @@ class CellDevices:
         return self._zones.queue.asked_before(self._cell.name)
 
     def is_stopped(self, device: str) -> bool:
-        """True while a stop is not over: it is not cleared, or a cell of the device is not reset."""
+        """True while a stop of a device is not over: it is not cleared, or one of its cells is not reset."""
         return self._dispatcher.memory.value(Fact.LATCH, device) is not None
 
     def not_reset(self, device: str) -> Failure | None:

@@ -1,4 +1,4 @@
-"""Robots of a cell as its devices report them: where each is, what it says, what keeps it from a command."""
+"""Robots of a cell by their reports: where each is, what it reports, and what keeps it from a command."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.dispatch.stillness import Moment
+from arboleda.dispatch.stillness import ReportMoment
 from arboleda.model.commands import Position
 from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, MotionState
@@ -19,7 +19,7 @@ from .cell_time import CellTime
 
 @dataclass(frozen=True, kw_only=True)
 class Planned:
-    """Places of the robots when the tree was made, by which its recipe may have planned."""
+    """Places of the robots when a tree was made, by which its recipe may have planned."""
 
     standing: Mapping[str, str]  # the zone-free poses of those with shared zones, by name
     positions: Mapping[str, Position]
@@ -28,7 +28,7 @@ class Planned:
 class CellRobots:
     """Beliefs about the robots of one cell, and what follows from them for a plan or a command.
 
-    `as_planned`: the robots count as standing there while the tree of an earlier start is made anew.
+    While the tree of an earlier start is made anew, robots count as standing where `as_planned` has them.
     """
 
     def __init__(self, cell: Cell, dispatcher: Dispatcher, time: CellTime, devices: CellDevices) -> None:
@@ -43,7 +43,7 @@ class CellRobots:
         self._cell = cell
 
     def belief(self, robot: str) -> Belief:
-        """The evidence that a robot has given."""
+        """The belief about a robot."""
         return self._dispatcher.beliefs[robot]
 
     def fact(self, robot: str, name: str) -> Value | None:
@@ -63,8 +63,9 @@ class CellRobots:
         return self.as_planned is None and belief.position is not None and not belief.is_located
 
     def standing(self, robot: str) -> Pose:
-        """The zone-free pose at which a robot's next way begins: where it is seen, else home; the home of a
-        shared one that the cell does not hold.
+        """The zone-free pose at which a robot's next way begins: where it is seen, else its home.
+
+        A shared robot that another cell holds begins at home: there it is handed over.
         """
         space = self._cell.workspaces[robot]
         if robot in self._cell.shared and not self._devices.holds(robot):
@@ -75,18 +76,18 @@ class CellRobots:
         return self._dispatcher.whereabouts.place(space) or space.home
 
     def planned(self) -> Planned:
-        """The places of the robots now, by which a recipe may plan; a shared one may be another cell's."""
+        """The places of the robots now, by which a recipe may plan; no positions of shared robots."""
         standing = {robot: self.standing(robot).name for robot in self._cell.workspaces}
         own = [robot for robot in self._cell.reach if robot not in self._cell.shared]
-        known = {robot: self.position(robot) for robot in own}
+        positions = {robot: self.position(robot) for robot in own}
         return Planned(
-            standing=standing, positions={name: at for name, at in known.items() if at is not None}
+            standing=standing, positions={name: at for name, at in positions.items() if at is not None}
         )
 
     def is_down_elsewhere(self, robot: str, goal: Pose) -> bool:
         """True where a robot is at, or on the way down to, another target with an approach than its goal.
 
-        Who stands at a target without an approach, as home, leaves it as it is, whatever else lies there.
+        A robot at a target without an approach, as its home, counts as up, whatever other targets are there.
         """
         space, here = self._cell.reach[robot], self._stands_at(robot)
         lifted = [(pose, pose.above) for pose in space.poses if pose.above is not None]
@@ -98,22 +99,22 @@ class CellRobots:
         return bool(down) and goal not in down
 
     def _stands_at(self, robot: str) -> Position | None:
-        """The place of a robot that stands: at `state` the end of its last move, which may be told late."""
+        """The place of a robot that stands; at `state` the goal of its last move, as its reports are late."""
         if self.as_planned is not None or self._dispatcher.beliefs[robot].supervised:
             return self.position(robot)
         return self._dispatcher.whereabouts.reached.get(robot) or self.position(robot)
 
     def risen(self, robot: str) -> Position:
-        """The position of a robot, lifted as high as its highest approach; home where it is unknown."""
+        """The position of a robot lifted to its highest approach; home where its position is unknown."""
         space, here = self._cell.reach[robot], self.position(robot)
         heights = [pose.above for pose in space.poses if pose.above]
         return space.robot.motion.lifted(here, heights) if here is not None and heights else space.home.q
 
     def obstacle(self, robot: str, *, was: bool = False) -> Failure | None:
-        """The reason for which a robot takes no command now; `was`: in words that stay true.
+        """The reason why a robot takes no command now; `was`: in words that stay true.
 
-        That a shared device moves is none: another cell may be using it. A robot that the cell holds has to
-        stand still.
+        A shared device that moves is no obstacle: another cell may be using it. A robot that the cell holds
+        has to stand still.
         """
         shares = robot in self._cell.shared and robot not in self._dispatcher.latches.stopped
         if shares and (stop := self._devices.not_reset(robot)) is not None:
@@ -127,39 +128,40 @@ class CellRobots:
         return robot in self._cell.reach and self._devices.holds(robot)
 
     def obstacle_besides_stop(self, robot: str) -> Failure | None:
-        """The reason that would remain, were the robot not stopped."""
+        """The reason why the robot would take no command even without its stop."""
         return self._dispatcher.beliefs[robot].obstacle_besides_stop()
 
     def homes_by_routine(self, robot: str) -> bool:
-        """True for a robot that finds its reference by itself; another one is put there by somebody."""
+        """True for a robot that finds its reference by itself; a person puts any other robot there."""
         belief = self._dispatcher.beliefs[robot]
         return belief.robot.evidence is Evidence.IDS and (belief.robot.says_homed or belief.says_unhomed)
 
     def receiving(self, names: Iterable[str]) -> list[tuple[Belief, int]]:
-        """What is believed of these robots and of those of the cell whose boards number their commands, and
-        have been heard; each with how many commands may have reached it of which it has not told.
+        """The beliefs about these robots, and about those of the cell whose boards number their commands.
+
+        Each comes with the number of commands that may have reached the robot and that it has not named yet.
         """
         beliefs, unnamed = self._dispatcher.beliefs, self._dispatcher.unnamed
-        found = set(names)
+        told = set(names)
         for robot in self._cell.reached:
             if beliefs[robot.name].numbers_commands:
-                found.add(robot.name)
-        return [(beliefs[name], unnamed.of(name)) for name in sorted(found)]
+                told.add(robot.name)
+        return [(beliefs[name], unnamed.of(name)) for name in sorted(told)]
 
-    def moments(self) -> dict[str, Moment]:
-        """Now, as each robot of the cell tells the time, for `moving_since`."""
+    def moments(self) -> dict[str, ReportMoment]:
+        """This moment in the reports of each robot of the cell, for `moving_since`."""
         beliefs, now = self._dispatcher.beliefs, self._time.plant_now
-        return {robot.name: Moment(beliefs[robot.name].reports, now) for robot in self._cell.robots}
+        return {robot.name: ReportMoment(beliefs[robot.name].reports, now) for robot in self._cell.robots}
 
-    def moving_since(self, moments: dict[str, Moment]) -> list[str]:
-        """The online robots of the cell not seen still since then; who finishes its work may move."""
+    def moving_since(self, moments: dict[str, ReportMoment]) -> list[str]:
+        """The online robots that were not seen still since these moments, but for those that finish work."""
         ending = [name for name in moments if not self._dispatcher.ledger.finishes(name)]
         online = {name: belief for name in ending if (belief := self._dispatcher.beliefs[name]).online}
         return [name for name, each in online.items() if not each.stillness.still_since(moments[name])]
 
     def reports_a_latch(self) -> bool:
         """True while an online robot of the cell still reports that it is stopped and latched."""
-        stopped = self._dispatcher.latches.stopped  # by another cell, where a cleared one shares them
+        stopped = self._dispatcher.latches.stopped  # by another cell that shares them
         names = [robot.name for robot in self._cell.robots if robot.name not in stopped]
         beliefs = [self._dispatcher.beliefs[name] for name in names]
         return any(belief.online and belief.state is MotionState.STOP_LATCHED for belief in beliefs)

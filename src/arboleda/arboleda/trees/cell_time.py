@@ -6,21 +6,20 @@ import math
 from collections.abc import Callable
 
 LEAST_S = 0.01
-"""Pause before a further try, or round, of what may have taken no time: a tree is ticked only so often at one
-instant."""
+"""Shortest pause before a further try or round: a tree is ticked only so often at one instant."""
 
 
 class CellTime:
-    """Clock of a cell: what waits in its tree waits on while the cell is held.
+    """Clock of a cell. It stands while the cell is held, so that no wait of its tree runs out meanwhile.
 
-    `wakes` are the instants at which the tree is to be ticked again, s of `now`. `next_deadline` is the first
-    of them, s of the plant's time; None while held.
+    `wakes` are when the tree is to be ticked again, s of `now`. `next_deadline` is the first of them, s of
+    the plant's time; None while the cell is held.
     """
 
     def __init__(self, clock: Callable[[], float]) -> None:
         self.wakes: list[float] = []
         self.next_deadline: float | None = None
-        self.paused_s = 0.0  # for how long the cell was held until it went on last
+        self.paused_s = 0.0  # how long the cell was held in all, but for a hold that lasts
         self._clock = clock
         self._paused_at: float | None = None
 
@@ -36,7 +35,7 @@ class CellTime:
         return self._clock()
 
     def pause(self, at: float | None = None) -> None:
-        """Let the cell's time stand still from now on, or since `at`, s of the plant's time."""
+        """Let the cell's time stand from now on, or from `at`, s of the plant's time."""
         if self._paused_at is None:
             self._paused_at = self._clock() if at is None else at
             self._plan()
@@ -49,7 +48,7 @@ class CellTime:
             self._plan()
 
     def woken(self) -> bool:
-        """Take the wakes that are due; True where there was one. While held none is due."""
+        """Take the wakes that are due; True where there was one. None is due while the cell is held."""
         if self.next_deadline is None or min(self.wakes) > self.now:
             return False
         now = self.now
@@ -63,12 +62,12 @@ class CellTime:
         self._plan()
 
     def forget_wakes(self) -> None:
-        """Drop what the last tree waited for."""
+        """Drop the wakes of the last tree."""
         self.wakes = []
         self._plan()
 
     def _plan(self) -> None:
-        """Work out the next deadline; rounding must not wake the plant an instant before `now` gets there."""
+        """Work out the next deadline, rounded up: a plant that wakes too early would find nothing due."""
         if self._paused_at is not None or not self.wakes:
             self.next_deadline = None
             return

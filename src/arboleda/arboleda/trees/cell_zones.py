@@ -38,7 +38,7 @@ ASTRAY_SHARED_BY_HAND = Phrase(
 
 
 class CellZones:
-    """Zones of the robots and machines of one cell; `at_work(holder)`: its work comes to an end by itself."""
+    """Zones of the robots and machines of one cell; `at_work(holder)`: the holder's work ends by itself."""
 
     def __init__(
         self,
@@ -59,7 +59,7 @@ class CellZones:
         self._robots = robots
         self._parts = parts
         self._at_work = at_work
-        self._occupied: dict[str, frozenset[str]] = {}  # by interlocked device, as it was seen last
+        self._occupied: dict[str, frozenset[str]] = {}  # by interlocked device, as last seen
 
     def revise(self, cell: Cell) -> None:
         """Go by another version of the cell from now on."""
@@ -73,9 +73,9 @@ class CellZones:
     def take(self, robot: str, zones: frozenset[str], *, inside: bool = False) -> bool:
         """Ask for zones, all at once; True once the robot has them.
 
-        `inside`: a robot that stands in a zone may go on with what it holds, to get out, unless an operator
-        has freed a part of that meanwhile. One outside that holds a part of them, from before an operator or
-        another start of the plant, gives that back and asks for all.
+        `inside`: a robot in a zone goes on with the zones that it holds, to get out, unless an override has
+        freed one of them. A robot outside that still holds a part of the zones, after an override or a
+        restart, gives that part back and asks for all.
         """
         held = self._zones.held_by(robot)
         if not held:
@@ -92,25 +92,25 @@ class CellZones:
         return taken
 
     def claim(self, robot: str) -> None:
-        """Take every zone a robot may get into, for a way from an unknown place; all must be free."""
+        """Take every zone that a robot may get into, for a way from an unknown place; all must be free."""
         self._claim(robot, self._cell.workspaces[robot].zones)
 
     def claim_free(self, robot: str) -> None:
-        """Take of the zones that a robot may get into those that nobody holds."""
+        """Take the free zones of those that a robot may get into."""
         zones = self._cell.workspaces[robot].zones
         self._claim(robot, frozenset(zone for zone in zones if self._zones.holder(zone) is None))
 
     def taken_by_others(self, robot: str) -> dict[str, str]:
-        """The zones that a robot may get into and somebody else keeps, each with its holder.
+        """The zones that a robot may get into and another robot occupies, each with that robot.
 
-        A robot of this cell that is seen outside of them keeps none.
+        A robot of this cell that is seen outside of its zones occupies none.
         """
         space = self._cell.workspaces.get(robot)
-        found = {} if space is None else self.awaited(robot, space.zones)
-        return {zone: holder for zone, holder in found.items() if not self._is_outside(holder)}
+        awaited = {} if space is None else self.awaited(robot, space.zones)
+        return {zone: holder for zone, holder in awaited.items() if not self._is_outside(holder)}
 
     def make_room(self, robot: str) -> None:
-        """Have a robot hold every zone that it may get into, also those that others of the cell have left."""
+        """Have a robot hold every zone that it may get into; others of the cell give back what they left."""
         space = self._cell.workspaces.get(robot)
         if space is None or not space.zones:
             return
@@ -119,11 +119,12 @@ class CellZones:
         self._claim(robot, space.zones)
 
     def leave(self, robot: str) -> bool:
-        """Stop waiting for zones, and give back those that the robot is seen outside of; True once it holds
-        none.
+        """Stop waiting for zones, and give back those that a robot is seen outside of; True once it has none.
+
+        A command that is done proves nothing here: the robot's place has to be reported after its last stop.
         """
         granted = self._zones.withdraw(robot)
-        held = self._left(robot, self._zones.held_by(robot))
+        held = self._seen_outside(robot, self._zones.held_by(robot))
         if held:
             granted += self._zones.give_back(held)
             self._dispatcher.memory.vacate(held)
@@ -132,20 +133,20 @@ class CellZones:
         return not self._zones.held_by(robot)
 
     def objection(self, command: Command) -> Failure | None:
-        """Objection to a command, whatever the tree says: it leads into a zone that is not held."""
+        """Objection, whatever the tree does, to a command into a zone that its robot does not hold."""
         needed = self.needs.of(command)
         missing = needed - self._zones.held_by(command.robot)
         if not missing:
-            if needed and command.robot in self._cell.interlocked:  # it may be over before it is looked at
+            if needed and command.robot in self._cell.interlocked:  # it may be over before `follow` looks
                 self._occupied[command.robot] = self._occupied.get(command.robot, frozenset()) | needed
             return None
         sentence = NOT_HELD(robot=command.robot, zones=tuple(sorted(missing)))
         return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
 
     def astray(self) -> tuple[str, Failure] | None:
-        """A robot that shares zones and is not seen outside them, so that no way of it may begin; and why.
+        """A robot that is not seen outside the shared zones, so that it may not set out; and why.
 
-        A shared robot that no other cell holds has to be at home, whether it shares zones or not.
+        A shared robot that no other cell holds has to be at home, even without shared zones.
         """
         for robot in self._cell.shared_movers:
             if not (self._devices.is_lent(robot) or self._devices.hand_over.is_home(robot)):
@@ -164,7 +165,7 @@ class CellZones:
         return None
 
     def awaited(self, robot: str, zones: Iterable[str]) -> dict[str, str]:
-        """Those of the zones that somebody else holds, each with its holder."""
+        """The zones of these that another robot holds, each with its holder."""
         return self._zones.awaited(robot, zones)
 
     def asked_before(self, robot: str) -> tuple[str, str] | None:
@@ -172,7 +173,7 @@ class CellZones:
         return self._zones.queue.asked_before(robot)
 
     def kept_by_machine(self, robot: str, zones: Iterable[str]) -> tuple[str, tuple[str, ...]] | None:
-        """A machine at rest that keeps one of these zones, and the facts that it would have to report."""
+        """A machine at rest that occupies one of these zones, and the facts that it would have to report."""
         zones = frozenset(zones)
         for holder in self.awaited(robot, zones).values():
             if holder in self._cell.interlocked and (facts := self.interlocks.in_the_way(holder, zones)):
@@ -180,7 +181,7 @@ class CellZones:
         return None
 
     def awaited_by_recovery(self) -> dict[str, str]:
-        """The zones that a recovery would wait for, and their holders; inside its zones it needs none."""
+        """The zones that a recovery would wait for, with their holders; a robot in a zone waits for none."""
         awaited: dict[str, str] = {}
         for robot in filter(self._devices.has, self._cell.zone_users):
             if not self._zones.held_by(robot) or robot in self._zones.robbed:
@@ -188,9 +189,9 @@ class CellZones:
         return awaited
 
     def will_come_free(self, robot: str) -> bool:
-        """True where all that a robot waits for comes free without help: everybody before it is at work.
+        """True where all zones that a robot waits for come free without help: everybody before it is at work.
 
-        A holder that waits itself, for another arm of its cell, may wait for this one.
+        A holder whose cell waits for zones counts as no help: it may wait for this robot.
         """
         requests = dict(self._zones.queue.waiting)
         zones = requests.get(robot)
@@ -207,7 +208,7 @@ class CellZones:
         return self._zones.is_quarantined(zone)
 
     def follow(self, device: str) -> None:
-        """Give an interlocked device the free zones that it is in the way of, and take back those it left."""
+        """Give an interlocked device the free zones that it occupies, and take back those that it left."""
         occupied, before = self.interlocks.occupied_by(device), self._occupied.get(device, frozenset())
         self._occupied[device] = occupied
         if self._dispatcher.beliefs[device].online:
@@ -219,18 +220,18 @@ class CellZones:
             self.leave(device)
 
     def is_for_task(self, zone: str) -> bool:
-        """True for a zone held for the task of this cell alone, by a machine that is not in its way."""
+        """True for a zone that a machine holds for the task of this cell, and does not occupy."""
         holder = self._zones.holder(zone)
         return holder in self._cell.interlocked and zone not in self.interlocks.occupied_by(holder)
 
     def forsake(self) -> None:
-        """Give back what machines hold for a task, where neither they nor their commands are in the way."""
+        """Give back the zones that machines hold for a task and do not occupy, now or by their commands."""
         self.interlocks.reserved = {}
         for machine in filterfalse(self._devices.is_lent, self._cell.interlocked):
             self.leave(machine)
 
-    def _left(self, robot: str, held: frozenset[str]) -> frozenset[str]:
-        """Those of the zones that a robot, or a machine, is seen outside of."""
+    def _seen_outside(self, robot: str, held: frozenset[str]) -> frozenset[str]:
+        """The zones of these that a robot, or a machine, is seen outside of."""
         space = self._cell.workspaces.get(robot)
         if space is None:
             return self.interlocks.left_by(robot, held)

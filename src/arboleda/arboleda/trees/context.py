@@ -27,9 +27,9 @@ MOST_ANSWERS = 100  # that are kept of a task
 
 
 class Context:
-    """Facets of one cell, and what concerns several of them at once. A recipe sees `Kit` only.
+    """Facets of one cell, and what concerns several of them. A recipe sees `Kit` alone.
 
-    `answers` are those of the task that runs.
+    `answers` are the answers to the task that runs.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class Context:
         self._dispatcher.limits.timings[cell.name] = timing
 
     def start_afresh(self) -> None:
-        """Forget what the last tree waited for and why it failed."""
+        """Forget the waits and failures of the last tree."""
         self.sensors.awaited = False
         self.commands.used = set()
         self.handling.begin()
@@ -75,11 +75,11 @@ class Context:
         self.time.forget_wakes()
 
     def settle(self) -> None:
-        """Believe the devices again about all that was under way when an earlier start ended."""
+        """Believe the reports of effectors that an earlier start was switching."""
         self.parts.settle()
 
     def note(self, answer: TaskAnswer) -> None:
-        """Keep what was answered with the task that runs; of very many the last ones."""
+        """Keep an answer with the task that runs; only the last MOST_ANSWERS stay."""
         self.answers.append(answer)
         del self.answers[:-MOST_ANSWERS]
 

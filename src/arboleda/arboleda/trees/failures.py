@@ -1,4 +1,4 @@
-"""Failures of the task that runs: their causes, as leaves name them."""
+"""Failures of the task that runs, as its leaves name them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .parts import Parts
 
 
 class Failures:
-    """Causes for which a tree fails: the `first` one counts, named by `leaf`; `last` is the latest one."""
+    """Causes for which a tree fails. The `first` counts, which `leaf` named; `last` is the latest."""
 
     def __init__(self, parts: Parts) -> None:
         self.first: Failure | None = None
@@ -19,18 +19,18 @@ class Failures:
         self._parts = parts
 
     def add(self, failure: Failure, leaf: Behaviour | None = None) -> None:
-        """Name the cause of a failure. What was carried is now for recovery."""
+        """Name the cause of a failure; the part that was carried is a matter of the recovery then."""
         if self.first is None:
             self.first, self.leaf = failure, leaf
         self.last = failure
         self._parts.carrier = None
 
     def forgive(self) -> None:
-        """Forget a failure that the recipe has an answer to: the task goes on."""
+        """Forget a failure that the recipe deals with, so that the task goes on."""
         self.first = self.leaf = None
 
     def bring_back(self, failure: Failure, leaf: Behaviour | None = None) -> None:
-        """Name again the cause of a failure that came before all others, and was put aside for a while."""
+        """Put back the cause of a failure that came first, and was put aside for a while."""
         self.first, self.leaf = failure, leaf
 
     def clear(self) -> None:
@@ -38,7 +38,7 @@ class Failures:
         self.first = self.leaf = self.last = None
 
     def opened_effector(self) -> Failure | None:
-        """The loss of a part by an effector that opened unbidden, where nothing else has failed before."""
+        """The failure for an effector that opened unbidden with a part, where nothing has failed before."""
         robot = self._parts.opened_by
         if robot is None or not self._parts.delivers or self.first is not None:
             return None

@@ -1,4 +1,4 @@
-"""Hand-over of shared devices: whether one does nothing, holds nothing and stands where cells leave it."""
+"""Hand-over of shared devices: whether a device is idle, empty and at home, as cells leave it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from arboleda.model.plant_model import Cell
 
 
 class HandOver:
-    """State of the devices that one cell shares, as far as cells have to leave it to each other."""
+    """State of the devices that one cell shares, as it matters for handing them on."""
 
     def __init__(self, cell: Cell, dispatcher: Dispatcher, zones: Zones) -> None:
         self._cell = cell
@@ -22,7 +22,7 @@ class HandOver:
         self._cell = cell
 
     def unused(self, devices: Iterable[str]) -> list[str]:
-        """Those of the devices that no cell holds and that do nothing, in order of their names."""
+        """The devices of these that no cell holds and that do nothing, in order of their names."""
         free = [each for each in sorted(devices) if self._zones.holder(each) is None]
         return [each for each in free if not self._works(each)]
 
@@ -34,13 +34,13 @@ class HandOver:
     def is_as_left(self, device: str) -> bool:
         """True for a shared device as cells leave it to each other: it holds no part, and is at home.
 
-        That it says so proves nothing while it may still take one, on a command that is over for the plant.
+        A report of that proves nothing while the device may still grip, on a command that the plant gave up.
         """
         may_grip = self._dispatcher.unfinished.may_grip(device)
         return not may_grip and not self.may_hold(device) and self.is_home(device)
 
     def is_home(self, device: str) -> bool:
-        """True for a shared robot that is seen at its home, outside all zones, and for what goes nowhere."""
+        """True for a shared robot that is seen at home, outside all zones; and for a device without poses."""
         space = self._cell.reach.get(device)
         if space is None:
             return True
@@ -48,7 +48,7 @@ class HandOver:
         return place is not None and place.q == space.home.q and not self._zones.held_by(device)
 
     def may_change_hands(self, device: str) -> bool:
-        """True for a shared device that is heard, does nothing and is as left, with all that goes with it."""
+        """True for a shared device that is heard, idle, empty and at home, with its tool or robot."""
         together = self._cell.together({device})
         return all(self._does_nothing(each) and self.is_as_left(each) for each in together)
 

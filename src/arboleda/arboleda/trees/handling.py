@@ -1,4 +1,4 @@
-"""The parts that a task takes hold of and lets go of, and what of that no device has confirmed."""
+"""Parts that a task takes and lets go, and which of these steps no device has confirmed."""
 
 from __future__ import annotations
 
@@ -8,26 +8,26 @@ from arboleda.dispatch.belief import Belief
 from arboleda.model.messages import Check
 from arboleda.model.plant_model import Evidence
 
-UNKNOWN = -1  # the boot of a board that numbers nothing, and may have booted between two starts of the plant
+UNKNOWN = -1  # the boot of a board without numbers, which may have booted between two starts of the plant
 
 
 class Handling:
-    """Books of a task's grips. `taken`: what holds a part of it, by name, with the boot of its board then."""
+    """Books of a task's grips. `taken` has each hand with a part, and the boot of its board at the grip."""
 
     def __init__(self, beliefs: Mapping[str, Belief]) -> None:
         self.taken: dict[str, int | None] = {}
         self._beliefs = beliefs
-        self.unchecked: tuple[Check, ...] = ()  # what no device has confirmed, in the order of the work
+        self.unchecked: tuple[Check, ...] = ()  # in the order of the work
 
     def begin(self, taken: Mapping[str, int | None] | None = None, unchecked: Iterable[Check] = ()) -> None:
-        """A task begins, or goes on with what an earlier start has kept of it."""
+        """Begin a task, or go on with the books of an earlier start."""
         earlier = taken or {}
         numbered = {name for name, each in self._beliefs.items() if each.robot.evidence is Evidence.IDS}
         self.taken = {hand: boot if hand in numbered else UNKNOWN for hand, boot in earlier.items()}
         self.unchecked = _in_order(set(unchecked))
 
     def miss(self, check: Check) -> None:
-        """Nobody can confirm this part of the work."""
+        """Note that no device confirms this part of the work."""
         if check not in self.unchecked:
             self.unchecked = _in_order({*self.unchecked, check})
 
@@ -36,8 +36,10 @@ class Handling:
         return self._beliefs[robot].senses_pieces
 
     def note(self, hand: str, *, grips: bool) -> None:
-        """Book a grip, or that a part was let go, which the board of `hand` has to report. A board that has
-        booted in between may have lost the part. Of an effector that is on, a piece sensor says the rest.
+        """Book a grip or a release, which the board of `hand` has to confirm by a report.
+
+        A board that has booted in between may have lost the part, so its release is not confirmed. Whether an
+        effector that is on has gripped a part is for its piece sensor.
         """
         belief = self._beliefs[hand]
         holds = belief.held_in(belief)

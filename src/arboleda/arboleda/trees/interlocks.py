@@ -1,4 +1,4 @@
-"""Interlocks: the zones that a device without a workspace of its own may be in the way of."""
+"""Interlocks: the zones that a device without a workspace, as a door or a lift, may occupy."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from arboleda.model.plant_model import Cell, Evidence
 
 
 class Interlocks:
-    """Reader of the interlocks of one cell; `reserved` has what a task of an earlier start took for them."""
+    """Reader of the interlocks of one cell; `reserved` has the zones that a task of an earlier start took."""
 
     def __init__(self, cell: Cell, dispatcher: Dispatcher) -> None:
         self.reserved: Mapping[str, Sequence[str]] = {}
@@ -19,12 +19,11 @@ class Interlocks:
         self._dispatcher = dispatcher
 
     def occupied_by(self, device: str) -> frozenset[str]:
-        """The zones that a device may be in the way of: it does not report the contrary, or has a command
-        that leads there, or one that is over and may still be carried out.
+        """The zones that a device may occupy: it reports not the contrary, or a command may lead it there.
 
-        What moves without a command of this plant may be on its way there, and so may what has not taken its
-        new work yet: it may still carry out what it was told before. What it has told may be older than its
-        last stop.
+        That is an open command, or a command that the plant gave up and the device may still carry out. A
+        device that moves without work of this plant, or before it has taken that work, may be on its way into
+        a zone. Reports that may be older than its last stop count for nothing.
         """
         belief = self._dispatcher.beliefs[device]
         may_come = [entry.command for entry in self._dispatcher.ledger.of_robot(device)]
@@ -40,12 +39,13 @@ class Interlocks:
         )
 
     def left_by(self, device: str, held: frozenset[str]) -> frozenset[str]:
-        """Those of the zones that a device is not in the way of, and no task has reserved."""
+        """The zones of these that a device does not occupy, and no task has reserved."""
         return held - self.occupied_by(device) - frozenset(self.reserved.get(device, ()))
 
     def in_the_way(self, device: str, zones: Iterable[str]) -> tuple[str, ...] | None:
-        """The facts that a device at rest does not report, so that it keeps one of the zones; None where it
-        is not heard, works, or keeps none of them.
+        """The facts that a device at rest does not report, so that it occupies one of the zones.
+
+        None where it is not heard, works, or occupies none of them.
         """
         belief = self._dispatcher.beliefs[device]
         wanted = self.occupied_by(device).intersection(zones)
@@ -61,13 +61,13 @@ class Interlocks:
         return tuple(dict.fromkeys(unsaid)) or None
 
     def _is_at_its_work(self, device: str) -> bool:
-        """True while a device has work, and has named it as taken where it names its commands."""
+        """True while a device has work; a device that names its commands must have named it as taken."""
         work = self._dispatcher.ledger.work_of(device)
         names_commands = self._dispatcher.model.robots[device].evidence is Evidence.IDS
         return work is not None and (work.accepted_at is not None or not names_commands)
 
     def led_into(self, device: str, zones: Iterable[str]) -> frozenset[str]:
-        """The zones that a device is in the way of once it is out of these, as a lift between two of them."""
+        """The zones that a device occupies once it has left these, as a lift between two of them."""
         locks = self._cell.interlocks_of(device)
         free = {name: value for each in locks if each.zone in zones for name, value in each.free_while}
         return frozenset(

@@ -1,4 +1,4 @@
-"""The few py_trees leaves that every recipe is made of."""
+"""Leaves of py_trees, of which every recipe is made."""
 
 from __future__ import annotations
 
@@ -69,16 +69,17 @@ def titled(node: Behaviour, title: Sentence | str) -> Behaviour:
 
 
 def title_of(node: Behaviour) -> Sentence:
-    """The name of a node as a sentence; of one that nobody titled its plain name."""
+    """The name of a node as a sentence; its plain name where it has no title."""
     title: Sentence | None = getattr(node, "title", None)
     return OWN(text=node.name) if title is None else title
 
 
 class Leaf(Keeps, Behaviour):
-    """A leaf of ours: `title` is its name as a sentence, `feedback` what it does or waits for, `last_failure`
-    that of its last failure, kept when py_trees has forgotten the status. `began` is when one that takes its
-    time began last in this start of the plant, in s of the cell's time. `uses`: its robot, where cells share
-    that. `proven`: what it waits for is known to have come true.
+    """Leaf of ours. `title` is its name as a sentence, `feedback` what it does or waits for.
+
+    `last_failure` is the sentence of its last failure, which stays when py_trees has forgotten the status.
+    `began` is when a leaf that takes time began last in this start of the plant, s of the cell's time. `uses`
+    is its robot, where cells share that. `proven`: its wait is known to be over.
     """
 
     title: Sentence
@@ -101,7 +102,7 @@ class Leaf(Keeps, Behaviour):
         self.feedback = as_sentence(text) if text else NOTHING
 
     def tick(self) -> Iterator[Behaviour]:
-        """As py_trees ticks a leaf, but without words for a log and without a list of all statuses."""
+        """Tick the leaf as py_trees does, but without words for a log and a list of all statuses."""
         if self.status is not Status.RUNNING:
             self.initialise()
         status = self.update()
@@ -114,7 +115,7 @@ class Leaf(Keeps, Behaviour):
         yield self
 
     def stop(self, new_status: Status) -> None:
-        """As py_trees ends a leaf, but without words for a log."""
+        """End the leaf as py_trees does, but without words for a log."""
         self.terminate(new_status)
         self.status = new_status
         self.iterator = self.tick()
@@ -129,18 +130,17 @@ class Leaf(Keeps, Behaviour):
 
 
 class Act(Leaf):
-    """One command: RUNNING while it is open, SUCCESS when it is done; left early, it is halted.
+    """One command: RUNNING while it is open, SUCCESS when it is done; it is halted if the leaf ends early.
 
     A failure that a retry can help is tried again as the cell's `retry` says, after its back-off. A robot
-    that is still moving is waited for, at most `stop_timeout_s`: what it says may be older than the end of
-    its last move, or it was told to halt, as by a timeout around the step before.
-    `anew`, where given, makes the command once it has left before. `guard`, where given, is called at every
-    tick; what it returns fails the command at once. So does an effector that opened unbidden while it held
-    a part. `then`, where given, is called once the command is done.
-    `last` is the record of the command that left before, given by an earlier start of the plant or by the
-    try before: where the next one does not leave, its device may still prove it. `proven`: it is known to
-    be done.
-    `number_in_tree` is that of its node, `given_times` how often the command was given in this task.
+    that still moves is waited for, at most `stop_timeout_s`: its report may be older than the end of its last
+    move, or the plant has just halted it, as after a timeout around the step before. `anew` makes the command
+    once it may have left before. `guard` is called at every tick, and a failure that it returns fails the
+    command at once. So does an effector that opened unbidden with a part. `then` is called once the command
+    is done. `last` is the record of the command that left before, in an earlier start of the plant or the try
+    before: a device may still prove that command where the next one does not leave. `proven`: it is known to
+    be done. `number_in_tree` is the number of its node, `given_times` how often the command was given in this
+    task.
     """
 
     ends_unkept = True
@@ -166,8 +166,8 @@ class Act(Leaf):
         self.doing = as_sentence(doing)
         self.guard = guard
         self.entry: Entry | None = None
-        self.left = False  # whether its robot may have got the command
-        self.left_before = False  # the same before it was given last
+        self.may_have_left = False  # its robot may have got the command
+        self.may_have_left_before = False  # the same, before it was last given
         self.last: Mapping[str, Any] | None = None
         self.proven = False
         self.number_in_tree: int | None = None
@@ -179,7 +179,7 @@ class Act(Leaf):
 
     def initialise(self) -> None:
         earlier, self.given_earlier = self.given_earlier, None
-        self.tries, self.left, self.last, self.proven = 0, earlier is not None, None, False
+        self.tries, self.may_have_left, self.last, self.proven = 0, earlier is not None, None, False
         self.began = self.time.now
         if earlier is None or not earlier["done"]:
             self.send()
@@ -187,7 +187,7 @@ class Act(Leaf):
             self.entry, self.last, self.proven, self.feedback = None, earlier, True, self.doing
 
     def take_up(self, earlier: Mapping[str, Any], attempt: int) -> None:
-        """Begin, once it is its turn, with the command that an earlier start has given, as its board says."""
+        """Begin, when its turn comes, with the command that its board says an earlier start has given."""
         self.given_earlier, self.given_times = earlier, attempt
         self.context.commands.used.add(earlier["robot"])
 
@@ -195,15 +195,20 @@ class Act(Leaf):
         if self.status is not Status.RUNNING:
             return None
         last = command_kept(self.entry) or self.last
-        return {"tries": self.tries, "left": self.left_before, "last": last, "given": self.given_times}
+        return {
+            "tries": self.tries,
+            "left": self.may_have_left_before,
+            "last": last,
+            "given": self.given_times,
+        }
 
     @property
     def waits(self) -> bool:
-        """True while only its robot, or the time, can bring more from another tick."""
+        """True while another tick brings nothing before its robot reports or a time comes."""
         return self.entry is not None and self.entry.open and self.again_at is None and not self.proven
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        self.tries, self.left, self.last = state["tries"], state["left"], state["last"]
+        self.tries, self.may_have_left, self.last = state["tries"], state["left"], state["last"]
         self.given_times = state.get("given", 0)
         self.feedback = self.doing
 
@@ -218,10 +223,13 @@ class Act(Leaf):
         self._give()
 
     def _give(self) -> None:
-        make, attempt = self.anew if self.left else self.make, self.given_times + 1
+        make, attempt = self.anew if self.may_have_left else self.make, self.given_times + 1
         self.entry = self.context.commands.send(make, self.doing, step=self.number_in_tree, attempt=attempt)
-        self.given_times += self.entry.left
-        self.left_before, self.left = self.left, self.left or self.entry.left
+        self.given_times += self.entry.was_sent
+        self.may_have_left_before, self.may_have_left = (
+            self.may_have_left,
+            self.may_have_left or self.entry.was_sent,
+        )
         if self.entry.too_early:
             self.time.wake_at(self.patient_until)
 
@@ -230,8 +238,8 @@ class Act(Leaf):
             return self._done()
         if self.again_at is not None:
             return self._wait()
-        if (found := self._obstacle()) is not None:
-            return self._failed(found)
+        if (obstacle := self._obstacle()) is not None:
+            return self._failed(obstacle)
         if self.entry is not None and self._waits_for_the_robot(self.entry):
             return Status.RUNNING
         if self.entry is None or self.entry.open:
@@ -251,15 +259,15 @@ class Act(Leaf):
         return self._failed(failure)
 
     def _done(self) -> Status:
-        kept = command_kept(self.entry) or self.last
-        if kept is not None and kept["grips"] is not None:
-            self.context.handling.note(kept["robot"], grips=kept["grips"])
+        record = command_kept(self.entry) or self.last
+        if record is not None and record["grips"] is not None:
+            self.context.handling.note(record["robot"], grips=record["grips"])
         if self.then is not None:
             self.then()
         return Status.SUCCESS
 
     def _obstacle(self) -> Failure | None:
-        """The reason why the command is in vain anyway, unless it failed for a cause of its own."""
+        """The reason why the command is in vain, unless it has failed for a cause of its own."""
         ended = self.entry.failure if self.entry is not None and not self.entry.open else None
         if ended is not None and ended.reason not in RETRYABLE:
             return None
@@ -268,7 +276,7 @@ class Act(Leaf):
     def _waits_for_the_robot(self, entry: Entry) -> bool:
         """True while the robot still moves and there is time; once it rests, it gets its command.
 
-        Work that goes on whoever left it has a deadline of its own, and is waited for until then.
+        Work that goes on to its end has a deadline of its own, and is waited for until then.
         """
         if not entry.too_early:
             return False
@@ -302,20 +310,20 @@ class Act(Leaf):
 
 
 class Approach(Act):
-    """A move to where the next one begins; done without a command where the robot is there already."""
+    """Move to where the next move begins; done without a command where the robot is there already."""
 
     is_there: Callable[[], bool]
 
     def send(self) -> None:
-        """Give the command, unless none has left and the robot is seen there, also after it was silent."""
-        if not self.left and self.is_there():
+        """Give the command, unless the robot is seen there and no command can have left before."""
+        if not self.may_have_left and self.is_there():
             self.proven = True
         else:
             super().send()
 
 
 class Dwell(Leaf):
-    """Waits a fixed time."""
+    """Wait a fixed time."""
 
     def __init__(self, name: Sentence | str, time: CellTime, seconds: float) -> None:
         super().__init__(name)
@@ -334,7 +342,7 @@ class Dwell(Leaf):
 
 
 class Announce(Leaf):
-    """Tell the outside once."""
+    """Send one notice."""
 
     def __init__(self, name: Sentence | str, context: Context, notice: Notice) -> None:
         super().__init__(name)
@@ -347,7 +355,7 @@ class Announce(Leaf):
 
 
 class Require(Leaf):
-    """A condition: SUCCESS where `obstacle()` returns None, else FAILURE with what it returns."""
+    """Condition: SUCCESS where `obstacle()` returns None, else FAILURE with the failure that it returns."""
 
     def __init__(self, name: Sentence | str, failures: Failures, obstacle: Guard) -> None:
         super().__init__(name)
@@ -363,7 +371,7 @@ class Require(Leaf):
 
 
 class Unless(Leaf):
-    """SUCCESS where `holds()`, else FAILURE without a cause: the way past a branch that is not needed."""
+    """SUCCESS where `holds()`, else FAILURE without a cause: in a selector it skips needless steps."""
 
     def __init__(self, name: Sentence | str, holds: Callable[[], bool]) -> None:
         super().__init__(name)
@@ -374,7 +382,7 @@ class Unless(Leaf):
 
 
 class Await(Leaf):
-    """RUNNING until `arrived()`, at most `seconds`; FAILURE then, `otherwise()` its cause if `final`."""
+    """RUNNING until `arrived()`, at most `seconds`; then FAILURE, for the cause `otherwise()` if `final`."""
 
     def __init__(
         self,
@@ -413,9 +421,9 @@ class Await(Leaf):
 
 
 class Piece(Await):
-    """Wait at most `seconds` for a robot's piece sensor's fresh, debounced word that a piece is there.
+    """Wait at most `seconds` until a robot's piece sensor freshly reports, debounced, that a piece is there.
 
-    `needed`: it must be said; else a robot without a sensor goes on, and the task says that nobody checked.
+    A robot without a sensor goes on, unless that is `needed`; the task then says that nobody checked.
     """
 
     def __init__(
@@ -443,7 +451,7 @@ class Piece(Await):
 
 
 class Note(Leaf):
-    """Book something of the task, once."""
+    """Call `note` once, which books something of the task."""
 
     def __init__(self, name: Sentence | str, note: Callable[[], None]) -> None:
         super().__init__(name)
@@ -455,7 +463,7 @@ class Note(Leaf):
 
 
 class Carry(Leaf):
-    """Note which robot carries the checked part now; None: it has arrived."""
+    """Note the robot that carries the checked part from here on; None: the part has arrived."""
 
     def __init__(self, name: Sentence | str, parts: Parts, robot: str | None) -> None:
         super().__init__(name)
@@ -468,8 +476,9 @@ class Carry(Leaf):
 
 
 class Take(Await):
-    """Wait for what others may hold. While it waits, its feedback is made when somebody reads it: who holds
-    what changes without a tick of this leaf.
+    """Wait for zones or devices that others may hold.
+
+    Its feedback is made when somebody reads it, since holders change without a tick of this leaf.
     """
 
     ended_with: Sentence = NOTHING
@@ -483,15 +492,15 @@ class Take(Await):
         self.ended_with = sentence
 
     def _awaited(self) -> Sentence:
-        """The cause of its waiting; NOTHING where it waits no more."""
+        """The cause of its waiting; NOTHING where it waits for nobody."""
         raise NotImplementedError
 
 
 class TakeZones(Take):
-    """Wait until a robot has all the zones that `needed()` names then; left early, it waits no longer.
+    """Wait until a robot has all zones that `needed()` names when the leaf begins.
 
-    `recovers`: a robot that stands in a zone may go on with what it holds, to get out; one outside keeps its
-    place among the waiting as long as those before it are at work, for who asks anew asks as the last.
+    `recovers`: a robot in a zone goes on with the zones that it holds, to get out. One outside waits on after
+    its time while those before it are at work: if it asked anew, it would be the last.
     """
 
     def __init__(
@@ -527,8 +536,8 @@ class TakeZones(Take):
         return self.access.take(self.robot, self.zones, inside=self.recovers)
 
     def _awaited(self) -> Sentence:
-        if (kept := self.access.kept_by_machine(self.robot, self.zones)) is not None:
-            machine, facts = kept
+        if (keeper := self.access.kept_by_machine(self.robot, self.zones)) is not None:
+            machine, facts = keeper
             return WAITS_FOR_MACHINE(device=machine, facts=facts)
         if held := self.access.awaited(self.robot, self.zones):
             zone = min(held)
@@ -544,15 +553,15 @@ class TakeZones(Take):
     def _not_free(self) -> Failure:
         zones = tuple(sorted(self.zones))
         sentence = NOT_FREE(arm=self.robot, zones=zones, seconds=self.seconds)
-        if (kept := self.access.kept_by_machine(self.robot, self.zones)) is not None:
-            machine, facts = kept
+        if (keeper := self.access.kept_by_machine(self.robot, self.zones)) is not None:
+            machine, facts = keeper
             sentence = KEPT_BY_MACHINE(
                 arm=self.robot, zones=zones, seconds=self.seconds, device=machine, facts=facts
             )
         return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
 
     def terminate(self, new_status: Status) -> None:
-        # py_trees also ends what has long succeeded: the zones are in use then
+        # py_trees also ends leaves that have succeeded long ago: their zones are in use
         if new_status is Status.FAILURE or (self.status is Status.RUNNING and new_status is Status.INVALID):
             self.access.leave(self.robot)
 
@@ -562,8 +571,8 @@ class LeaveZones(Await):
 
     def __init__(self, name: Sentence | str, context: Context, robot: str) -> None:
         failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=NOT_OUTSIDE(arm=robot))
-        left = partial(context.zones.leave, robot)
-        super().__init__(name, context, left, context.timing.stop_timeout_s, lambda: failure)
+        given_back = partial(context.zones.leave, robot)
+        super().__init__(name, context, given_back, context.timing.stop_timeout_s, lambda: failure)
         self.holds = partial(context.zones.held_by, robot)
 
     def initialise(self) -> None:
@@ -574,10 +583,10 @@ class LeaveZones(Await):
 
 
 class TakeDevices(Take):
-    """Wait until a cell has the devices that it shares, all at once; left early, it waits no longer.
+    """Wait until a cell has shared devices, all at once.
 
-    It fails at once where one that no cell holds may hold a part, or has lost its reference: only a person
-    helps there.
+    It fails at once where a device that no cell holds may hold a part, or has lost its reference: there only
+    a person helps.
     """
 
     def __init__(self, name: Sentence | str, context: Context, devices: frozenset[str]) -> None:
@@ -618,7 +627,7 @@ class TakeDevices(Take):
         return NOTHING if held else self._not_as_left()
 
     def _not_as_left(self) -> Sentence:
-        """The cause of its waiting for a device that no cell holds, and that it cannot ask for yet."""
+        """The cause of its waiting for a device that no cell holds, and that no cell may take yet."""
         hand_over = self.shared.hand_over
         device = next((each for each in sorted(self.devices) if not hand_over.is_as_left(each)), None)
         if device is None:
@@ -639,16 +648,16 @@ class TakeDevices(Take):
         return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
 
     def terminate(self, new_status: Status) -> None:
-        # as with zones: what has long succeeded is in use
+        # as with zones: the devices of a leaf that has succeeded are in use
         if new_status is Status.FAILURE or (self.status is Status.RUNNING and new_status is Status.INVALID):
             self.shared.leave(frozenset())
 
 
 class LeaveDevices(Await):
-    """Give back the shared devices that a cell holds, once they are heard and do nothing."""
+    """Give back the shared devices that a cell holds, once they may change hands."""
 
     def __init__(self, name: Sentence | str, context: Context, devices: frozenset[str]) -> None:
         sentence = NOT_AT_REST(cell=context.cell.name, devices=tuple(sorted(devices)))
         failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
-        left = partial(context.devices.leave, devices)
-        super().__init__(name, context, left, context.timing.stop_timeout_s, lambda: failure)
+        given_back = partial(context.devices.leave, devices)
+        super().__init__(name, context, given_back, context.timing.stop_timeout_s, lambda: failure)

@@ -1,4 +1,4 @@
-"""Needs across the devices of a cell: what another device has to report before a verb may leave."""
+"""Needs across the devices of a cell: facts that another device has to report before a verb may leave."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class CellNeeds:
             self._needs.setdefault((need.device, need.word), []).append(need)
 
     def objection(self, command: Command) -> Failure | None:
-        """The first need of a command that is not met."""
+        """The failure for the first need of a command that is not met."""
         if not self._needs:
             return None
         unmet = filter(None, map(self._unmet, self._needs.get((command.robot, command.word), ())))

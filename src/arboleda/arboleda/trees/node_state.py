@@ -1,4 +1,4 @@
-"""State of a tree's nodes that is kept for the next start: of our nodes, their last commands, failures."""
+"""State of a tree's nodes that is kept for the next start, with their last commands and failures."""
 
 from __future__ import annotations
 
@@ -18,34 +18,34 @@ EFFECTS = {Motion: MOTION, Work: PROCESS, Switch: SWITCH, Query: QUERY, Command:
 
 
 class Keeps:
-    """A node of ours: what is kept of it for the next start, and how it goes on then.
+    """Node of ours: the state of it that is kept for the next start, and how it goes on then.
 
-    `ends_unkept`: nothing but its status is kept of it unless it is RUNNING.
+    `ends_unkept`: only its status is kept, unless it is RUNNING.
     """
 
     ends_unkept = False
     status: Status
 
     def kept(self) -> Mapping[str, Any] | None:
-        """The state that has to be kept of it beside its status."""
+        """The state to keep of it beside its status."""
         return None
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Take over what was kept."""
+        """Take over the state that was kept."""
 
     def begin_anew(self) -> None:
-        """Begin once more: times count from now."""
+        """Begin once more, with all times from now on."""
 
 
 def command_kept(entry: Entry | None) -> dict[str, Any] | None:
     """The record of the last command of a step; None where none may have left."""
-    if entry is None or not entry.left:
+    if entry is None or not entry.was_sent:
         return None
     command = entry.command
     return {
         "robot": command.robot,
         "effect": nearest(EFFECTS, type(command)),
-        "goal": entry.way[-1] if entry.way else None,
+        "goal": entry.positions[-1] if entry.positions else None,
         "sets": entry.sets,
         "grips": command.grips if isinstance(command, Switch) else None,
         "before": entry.before,

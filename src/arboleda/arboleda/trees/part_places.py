@@ -1,4 +1,4 @@
-"""Places of a cell and the parts that lie there: moved by the evidence of grips, and kept over restarts."""
+"""Places of a cell and the numbers of parts there, which follow grips and outlive restarts."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.dispatch.effectors import Handling
+from arboleda.dispatch.effectors import HandlingStep
 from arboleda.model.commands import Command, Motion, Position, Switch
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Failure, Reason
@@ -29,7 +29,7 @@ NO_PART = Phrase("place.no_part", "{robot} has no part to work on: none is known
 
 
 def trouble_in(sentence: Sentence) -> Sentence | None:
-    """The part of a sentence that tells of a place without a part, or without room."""
+    """The part of a sentence that names a place without a part, or without room."""
     return next((each for each in sentence.parts() if each.key in (EMPTY.key, FULL.key)), None)
 
 
@@ -38,9 +38,9 @@ OF_PLACE, OF_HAND, SURE, LETTING_GO = "=", ":", "+", "-"
 
 @dataclass(frozen=True, kw_only=True)
 class HeldPart:
-    """Part that a hand may hold: the `target` where it took it, None where no part was known to be.
+    """Part that a hand may hold. `target` is where the hand took it; None where no part was known to be.
 
-    `is_sure`: it has held it since; `lets_go`: it was told to let go, at `put_at` as far as that is known.
+    `is_sure`: the hand has reported it. `lets_go`: the hand was told to let go, at `put_at` if that is known.
     """
 
     target: str | None = None
@@ -56,7 +56,7 @@ class HeldPart:
 
     @property
     def written(self) -> str:
-        """The part as one word, which `read` reads."""
+        """The part as one word, for `read`."""
         letting_go = LETTING_GO + (self.put_at or "") if self.lets_go else ""
         return (self.target or "") + SURE * self.is_sure + letting_go
 
@@ -75,9 +75,9 @@ class HeldPart:
 class Places:
     """Books of the parts at the places of one cell.
 
-    A part is moved when a hand is told to take it, and when the hand has let go of it; a part that is lost
-    on the way is nowhere until a person says where. A target that is no place gives and takes any number. The
-    stations of a rack are counted, and nothing is refused there.
+    A part leaves its place when a hand is told to take it, and is at another once the hand has let go. A part
+    that is lost on the way is nowhere until a person says where. A target that is no place gives and takes
+    any number of parts. Stations of a rack are counted, and nothing is refused there.
     """
 
     def __init__(self, cell: Cell, dispatcher: Dispatcher, robots: CellRobots, devices: CellDevices) -> None:
@@ -88,7 +88,7 @@ class Places:
         self._places = {place.target: place for place in cell.places}
         self._by_people = {each.target: each.holds * each.supply for each in cell.places if each.by_people}
         self._rack = frozenset(place.target for place in cell.rack)
-        self._noted = {None, *self._rack}  # what a hand took there is kept, where there is but a rack
+        self._noted = {None, *self._rack}  # in a cell without places only parts from here are kept
         self._hands = {space.hand.name: space for space in cell.spaces if space.hand.held_fact}
         self._carts = _carts(cell)
         self._of_device: dict[str, list[str]] = {}
@@ -97,31 +97,33 @@ class Places:
                 self._of_device.setdefault(place.device, []).append(place.target)
         self._parts = {place.target: 0 for place in cell.counted}
         self._held: dict[str, HeldPart] = {}
-        self._left_there: dict[str, str] = {}  # by hand, the target whose part it was to take, and has not
+        self._left_there: dict[
+            str, str
+        ] = {}  # by hand: the target whose part it was told to take, and did not
         if self._parts:
-            self._take_over(self._kept())
+            self._take_over(self._earlier_words())
             for hand in self._hands:
                 dispatcher.effectors.watchers[hand].append(self._follow)
 
-    def _kept(self) -> list[str]:
-        """The words that an earlier start kept; version 0.1 kept the numbers of full stations."""
-        kept, cell = self._dispatcher.memory.value, self._cell
-        full = (kept(Fact.STORED, cell.name) or "").split()
+    def _earlier_words(self) -> list[str]:
+        """The words of an earlier start; one of version 0.1 kept the numbers of full stations."""
+        value, cell = self._dispatcher.memory.value, self._cell
+        full = (value(Fact.STORED, cell.name) or "").split()
         stations = [name for number, name in enumerate(cell.station_targets) if str(number) in full]
-        return [f"{name}{OF_PLACE}1" for name in stations] + (kept(Fact.PARTS, cell.name) or "").split()
+        return [f"{name}{OF_PLACE}1" for name in stations] + (value(Fact.PARTS, cell.name) or "").split()
 
-    def _take_over(self, kept: list[str]) -> None:
-        numbers = [(target, n) for target, n in _read(kept, OF_PLACE) if n.isdigit()]
+    def _take_over(self, books: list[str]) -> None:
+        numbers = [(target, n) for target, n in _read(books, OF_PLACE) if n.isdigit()]
         self._parts |= {target: int(n) for target, n in numbers if target in self._parts}
-        grips, words = self._dispatcher.effectors.grips, dict(_read(kept, OF_HAND))
+        grips, words = self._dispatcher.effectors.grips, dict(_read(books, OF_HAND))
         for hand in self._hands:
             taken = HeldPart(is_sure=True, lets_go=grips[hand] is Grip.SWITCHING)  # from no place
             held = HeldPart.read(words[hand]) if hand in words else taken
-            # where there are places, each part in a hand is in the books: this one was empty
+            # in a cell with places the books have each part in a hand, so a hand that they lack was empty
             is_empty = bool(self._places) and hand not in words and grips[hand] is Grip.SWITCHING
             if grips.holding(hand) and not is_empty:
                 self._held[hand] = held
-            elif hand in words:  # the plant ended before it told the hand
+            elif hand in words:  # the plant ended before its command left
                 self._move(held.back(None), +1, hand)
 
     def revise(self, cell: Cell) -> None:
@@ -154,28 +156,28 @@ class Places:
 
     @property
     def carriers(self) -> dict[str, bool]:
-        """The robots with a part in the hand, as far as is known; True where it holds it for sure."""
+        """The robots that may have a part in the hand; True where the hand surely holds it."""
         grips = self._dispatcher.effectors.grips
         return {self._hands[hand].robot.name: grips[hand] is Grip.ON for hand in self._held}
 
     def is_so_still(self, trouble: Sentence) -> bool:
-        """True while a place that people neither fill nor empty has no part, or no room, as it was told."""
+        """True while a trouble with a place lasts; people see to places of theirs without being told."""
         place = self._places[str(trouble.values["place"])]
         is_over = self.is_free if trouble.key == FULL.key else self.is_filled
         return not (place.by_people or is_over(place.target))
 
     def begin(self) -> None:
-        """A task begins: people have filled the supplies and emptied the outputs."""
+        """Begin a task: people have filled the supplies and emptied the outputs."""
         if self._by_people:
             self.set(self._by_people)
 
     def set(self, parts: Mapping[str, int]) -> None:
-        """Take the word of a person on how many parts are at places."""
+        """Take a person's word on how many parts are at places."""
         self._parts |= parts
         self._keep()
 
     def objection(self, command: Command) -> Failure | None:
-        """Objection to a command: there is no part, or no room, where it would take or put one."""
+        """Objection to a command that would take a part where none is, or put one where no room is."""
         if not self._places:
             return None
         if isinstance(command, Switch) and command.grips is not None:
@@ -208,7 +210,7 @@ class Places:
         return FULL(robot=hand, place=here, parts=self.parts(here), cell=self._cell.name)
 
     def _to_leave(self, robot: str) -> Sentence | None:
-        """The reason why a robot must not leave with what it holds: a device holds the same part."""
+        """The reason why a robot must not leave with its part: a device holds the same part."""
         space = self._cell.reach[robot]
         here, grips = self._target(space), self._dispatcher.effectors.grips
         place = self._places.get(here or "")
@@ -221,7 +223,7 @@ class Places:
         return self._without_part(command.robot) if command.works_on_part else None
 
     def _without_part(self, device: str) -> Sentence | None:
-        """The reason why a device cannot take or work on a part; parts in a hand or on a cart there count."""
+        """The reason why a device has no part to take or to work on; parts in hands and carts there count."""
         targets = self._of_device.get(device)
         if not targets or any(map(self.parts, targets)):
             return None
@@ -233,9 +235,9 @@ class Places:
         return NO_PART(robot=device, places=tuple(targets))
 
     def _target(self, space: Workspace) -> str | None:
-        """The target at which a robot stands, as far as that is known; of several, one that is a place.
+        """The target at which a robot stands, of several a place; None where that is unknown.
 
-        Of a robot at `state`, which owes no position, it is where its last move has ended.
+        A robot at `state`, which need not report a position, stands where its last move ended.
         """
         reached = self._dispatcher.whereabouts.reached.get(space.robot.name)
         here = self._robots.position(space.robot.name)
@@ -243,36 +245,36 @@ class Places:
             here = reached
         if here is None:
             return None
-        found = [target for target, pose in space.targets.items() if pose.q == reached]
-        if not found or (
-            (self._places or not self._rack.isdisjoint(found)) and not _stands(space, here, reached)
+        targets = [target for target, pose in space.targets.items() if pose.q == reached]
+        if not targets or (
+            (self._places or not self._rack.isdisjoint(targets)) and not _stands(space, here, reached)
         ):
-            found = [target for target, pose in space.targets.items() if _stands(space, here, pose.q)]
-        counted = [target for target in found if target in self._parts]
-        return next(iter(counted or found), None)
+            targets = [target for target, pose in space.targets.items() if _stands(space, here, pose.q)]
+        counted = [target for target in targets if target in self._parts]
+        return next(iter(counted or targets), None)
 
-    def _follow(self, hand: str, handling: Handling) -> None:
+    def _follow(self, hand: str, handling: HandlingStep) -> None:
         """Take in a step of a part's way through a hand."""
         held = self._held.get(hand) or HeldPart()
         here = held.target
-        if handling in (Handling.TOLD_TO_TAKE, Handling.TOLD_TO_LET_GO):
+        if handling in (HandlingStep.TOLD_TO_TAKE, HandlingStep.TOLD_TO_LET_GO):
             self._left_there.pop(hand, None)
-        if handling is Handling.TOLD_TO_TAKE:
+        if handling is HandlingStep.TOLD_TO_TAKE:
             here = self._target(self._hands[hand])
             held = HeldPart(target=None if here in self._rack and not self._parts[here] else here)
             self._held[hand] = held
             self._move(here, -1, hand)
-        elif handling is Handling.HELD:
+        elif handling is HandlingStep.HELD:
             late = self._left_there.pop(hand, None)
             if late is not None and self._target(self._hands[hand]) in (late, None):
                 held = HeldPart(target=late)  # it takes the part after all
                 self._move(late, -1, hand)
             self._held[hand] = replace(held, is_sure=True)
-        elif handling is Handling.TOLD_TO_LET_GO and hand in self._held:
+        elif handling is HandlingStep.TOLD_TO_LET_GO and hand in self._held:
             self._held[hand] = replace(held, lets_go=True, put_at=self._target(self._hands[hand]))
-        elif handling in (Handling.EMPTY, Handling.TAKEN_OUT):
+        elif handling in (HandlingStep.EMPTY, HandlingStep.TAKEN_OUT):
             self._held.pop(hand, None)
-            if handling is Handling.EMPTY:
+            if handling is HandlingStep.EMPTY:
                 here = self._put_down_at(hand, held) if held.lets_go else None
                 back = held.back(here)
                 self._move(back, +1, hand)
@@ -282,7 +284,7 @@ class Places:
             self._keep()
 
     def _put_down_at(self, hand: str, held: HeldPart) -> str | None:
-        """The target at which a hand has let go: that where it was told to, if its robot is not heard."""
+        """The target at which a hand has let go; where it was told to, if its robot is not heard."""
         space = self._hands[hand]
         tells_position = space.robot.evidence is not Evidence.STATE
         if tells_position and self._robots.position(space.robot.name) is None:
@@ -290,7 +292,10 @@ class Places:
         return self._target(space)
 
     def _move(self, target: str | None, parts: int, hand: str) -> None:
-        """Count parts of a hand; those of another cell's tasks not where people see to the place for each."""
+        """Count a hand's parts at a target.
+
+        Another cell's hand counts nothing at a place that people see to for each task of this cell.
+        """
         if target in self._by_people and not self._is_ours(hand):
             return
         if target in self._rack:
@@ -307,7 +312,8 @@ class Places:
     def _keep(self) -> None:
         """Have the books kept: `nest=1` for a place, `jaw:nest+` for a hand and where it took its part.
 
-        Where there is but a rack, the grip of a hand says enough of a part that comes from elsewhere.
+        In a cell with a rack and no places, a part from elsewhere is not kept: the grip of its hand says
+        enough.
         """
         words = [f"{target}{OF_PLACE}{number}" for target, number in sorted(self._parts.items()) if number]
         held = sorted([each for each in self._held.items() if self._places or each[1].target in self._noted])
@@ -317,7 +323,7 @@ class Places:
 
 
 def _carts(cell: Cell) -> list[Workspace]:
-    """Mobile robots without a hand: nobody counts what they carry, and they go to a place to bring it."""
+    """Mobile robots without a hand: nobody counts the parts that they bring to a place."""
     driven = (space for space in cell.spaces if space.robot.position_key == "node")
     return [space for space in driven if not space.hand.held_fact]
 
@@ -326,7 +332,7 @@ def _stands(space: Workspace, here: Position, at: Position | None) -> bool:
     return at is not None and space.robot.motion.stands_at(here, at)
 
 
-def _read(kept: Iterable[str], mark: str) -> list[tuple[str, str]]:
-    """The names and the rest of those of the words that have this mark."""
-    parts = (word.partition(mark) for word in kept)
-    return [(name, rest) for name, found, rest in parts if found]
+def _read(words: Iterable[str], mark: str) -> list[tuple[str, str]]:
+    """The words with this mark, as pairs of the names before it and the values after it."""
+    parts = (word.partition(mark) for word in words)
+    return [(name, value) for name, separator, value in parts if separator]

@@ -22,8 +22,8 @@ class Parts:
     """Books of the parts that the effectors of one cell hold.
 
     `carrier` is the robot on its way with a part that its sensor has seen. `back` has the pose from which
-    each robot's part came, as far as that is known; `origins` are the robots for which that is the place
-    where they last went empty. While `delivers`, work runs; a recovery does the rest without the part, too.
+    each robot's part came, where that is known. `origins` are the robots for which the plant noted that pose,
+    and no recipe gave it. `delivers`: work runs; in a recovery a lost part is no failure.
     """
 
     def __init__(
@@ -46,19 +46,19 @@ class Parts:
         self._sensors = sensors
 
     def revise(self, cell: Cell) -> None:
-        """Go by another version of the cell from now on; what came from a pose goes back to where that is."""
+        """Go by another version of the cell from now on; a part goes back to where its pose is by then."""
         self._cell = cell
         poses = {robot: cell.reach[robot].by_name.get(pose.name) for robot, pose in self.back.items()}
         self.back = {robot: pose for robot, pose in poses.items() if pose is not None}
 
     def begin(self) -> None:
-        """Open the books for another tree."""
+        """Begin the books of another tree."""
         self.carrier, self.delivers = None, True
         for robot in filter(self._devices.answers_for, self._cell.holders):
             self._effectors.opened.pop(robot, None)
 
     def recover(self) -> None:
-        """Go on as a recovery, which delivers nothing."""
+        """Begin a recovery, which delivers nothing."""
         self.carrier, self.delivers = None, False
 
     def take_over(self, *, carrier: str | None, origins: Iterable[str], back: Mapping[str, str]) -> None:
@@ -70,20 +70,20 @@ class Parts:
         self.back = {robot: pose for robot, pose in named.items() if pose is not None}
 
     def forget_origins(self) -> None:
-        """Let a recipe say anew where its parts come from."""
+        """Forget where parts come from, before a recipe says it anew."""
         self.back, self.origins = {}, set()
 
     def note_origin(self, robot: str, pose: Pose) -> None:
-        """Note that a robot that holds nothing takes here what it will hold: a recovery brings that back."""
+        """Note the pose from which an empty robot takes its next part, where a recovery brings that back."""
         given = robot in self.back and robot not in self.origins  # the recipe has set it
         if self._cell.reach[robot].hand.name not in self.holding and not given:
             self.back[robot] = pose
             self.origins.add(robot)
 
     def way_back(self, robot: str) -> Pose | None:
-        """The pose to which a recovery brings what a robot holds: its origin, else as the cell says."""
+        """The pose to which a recovery brings a robot's part: where it was taken, else as the cell says."""
         if robot in self.origins and self._cell.workspaces[robot].hand.name not in self.holding:
-            return None  # it went there, and took nothing
+            return None  # the robot went there, and took nothing
         return self.back.get(robot) or self._cell.back(robot, self._robots.position)
 
     def grip(self, robot: str) -> Grip:
@@ -98,15 +98,13 @@ class Parts:
 
     @property
     def holding(self) -> list[str]:
-        """The robots of the cell in whose effector a part may hang; what a shared one holds is a matter of
-        the cell that holds it.
-        """
-        found = [robot for robot in self._cell.holders if self._effectors.grips.holding(robot)]
-        return [*filter(self._devices.answers_for, found)] if found and self._cell.shared else found
+        """The robots whose effector may hold a part, and for which this cell answers."""
+        holding = [robot for robot in self._cell.holders if self._effectors.grips.holding(robot)]
+        return [*filter(self._devices.answers_for, holding)] if holding and self._cell.shared else holding
 
     @property
     def witnessed(self) -> tuple[str, ...]:
-        """The cell's own robots that report what they hold; no tools, which may still open late."""
+        """The robots of the cell alone that report if they hold a part; no tools, which may open late."""
         tools = {space.tool.name for space in self._cell.spaces if space.tool is not None}
         beliefs = {robot: self._robots.belief(robot) for robot in self._cell.holders}
         reporting = (robot for robot, belief in beliefs.items() if belief.held_in(belief) is not None)
@@ -114,11 +112,11 @@ class Parts:
 
     @property
     def unopened(self) -> list[str]:
-        """Those of them whose last command was to let go, and failed."""
+        """The robots that may hold a part, and whose last command to let go failed."""
         return [robot for robot in self.holding if robot in self._effectors.unopened]
 
     def obstacle_to_opening(self, robot: str) -> Failure | None:
-        """The reason for which a robot cannot let go now."""
+        """The reason why a robot cannot let go now."""
         return self._dispatcher.obstacles.to_opening(robot)
 
     def opening_tool(self, robot: str) -> str | None:
@@ -126,7 +124,7 @@ class Parts:
         return self._effectors.opening_tool(robot)
 
     def lost(self) -> Failure | None:
-        """The loss of the part that is being carried, by the piece sensor."""
+        """The failure for a carried part that the piece sensor does not see any more."""
         robot = self.carrier
         if robot is None or self._sensors.read(robot, 0.0) is not False:
             return None
@@ -137,15 +135,15 @@ class Parts:
         """The robot whose effector opened with a part in it without a command of this plant."""
         if not self._effectors.opened:
             return None
-        found = (robot for robot in self._cell.holders if robot in self._effectors.opened)
-        return next(filter(self._devices.answers_for, found), None)
+        opened = (robot for robot in self._cell.holders if robot in self._effectors.opened)
+        return next(filter(self._devices.answers_for, opened), None)
 
     def opening(self, robot: str) -> Sentence:
-        """The sentence about that."""
+        """The sentence about a robot whose effector opened so."""
         return self._effectors.opened[robot]
 
     def leave_unsettled(self, robot: str, *, sets: Mapping[str, Value]) -> None:
-        """Expect a change of what a robot holds: an earlier start was switching it, to `sets`.
+        """Note that an earlier start was switching the effector of a robot, to `sets`.
 
         A tool that was told to grip does not let go late.
         """
@@ -155,7 +153,7 @@ class Parts:
                 self._effectors.grips.forget_opening(robot)
 
     def settle(self) -> None:
-        """Believe the reports about what was being switched when an earlier start ended."""
+        """Believe the reports of effectors that an earlier start was switching."""
         for robot in filter(
             self._devices.answers_for, self._effectors.cut_off.intersection(self._cell.holders)
         ):

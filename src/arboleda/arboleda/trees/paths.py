@@ -25,9 +25,9 @@ NOT_AT_START = Phrase(
 def follow(context: Context, robot: str, path: Path) -> list[Behaviour]:
     """Drive to the start of a path, where the cell allows that, and over the path.
 
-    A drive that is given anew, after a hold or a failure, leads only over what remains of the path. A robot
-    that stands on none of its nodes by then, as one that reported a wrong node or was carried away, is led
-    to the first one where the cell drives to starts.
+    A drive that is given anew, after a hold or a failure, leads over the remaining nodes alone. A robot that
+    is on none of the nodes by then, as it was carried away, drives to the first one where the cell allows
+    that.
     """
     code, start = path.code, path.nodes[0]
     device = context.cell.reach[robot].robot

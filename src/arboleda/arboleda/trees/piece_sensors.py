@@ -11,7 +11,7 @@ from .cell_time import CellTime
 
 
 class PieceSensors:
-    """Reader of the piece sensors; `awaited`: a tree waits for a report newer than the last one it had."""
+    """Reader of the piece sensors; `awaited`: a tree waits for a newer report of one."""
 
     def __init__(self, beliefs: Mapping[str, Belief], timing: Timing, time: CellTime) -> None:
         self.awaited = False
@@ -24,7 +24,7 @@ class PieceSensors:
         self._debounce_s = timing.piece_debounce_s
 
     def read(self, robot: str, since: float) -> bool | None:
-        """The debounced report of a robot's piece sensor, fresh since then; None while there is none."""
+        """The debounced report of a robot's piece sensor since `since`, s of the cell's time; else None."""
         belief, paused_s = self._beliefs[robot], self._time.paused_s
         fresh = belief.robot.piece_on_change or belief.piece_at - paused_s >= since
         self.awaited = self.awaited or not fresh  # a change of a fresh report wakes the tree anyway

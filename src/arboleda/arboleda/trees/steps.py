@@ -1,7 +1,7 @@
-"""The idioms that recipes are made of: a visit, a switched effector, shared zones, and the recovery.
+"""Steps that recipes are made of: a visit, a switched effector, shared zones, and the recovery.
 
-A task is a Selector with memory over its work and its recovery: once the work has failed, the recovery runs
-to its end. Recovered is not delivered: the task has failed all the same.
+A task is a Selector with memory over its work and its recovery. Once the work has failed, the recovery runs
+to its end, and the task has failed all the same.
 """
 
 from __future__ import annotations
@@ -104,26 +104,27 @@ Visit = tuple[Pose, list[Behaviour]]  # a pose of a robot, and the work to do th
 def task(
     title: Sentence | str, work: list[Behaviour], context: Context, *, notes_origins: bool = False
 ) -> Behaviour:
-    """The work of a task, announced, and the recovery for when it fails.
+    """The announced work of a task, and its recovery.
 
-    `notes_origins`: where a part comes from shows only in the work, so it is looked up when that has failed.
+    `notes_origins`: only the work shows where a part comes from, so the recovery looks that up when it
+    begins.
     """
     back = recovery(context, notes_origins=notes_origins)
     return selector(title, sequence(TITLES[MAIN](), start(context), *work), back)
 
 
 def recovery(context: Context, *, notes_origins: bool = False) -> Behaviour:
-    """Wait until all has come to rest; carry what is held back to where it came from; go home.
+    """Wait until all robots rest, carry held parts back to where they came from, and go home.
 
-    Of several robots each goes by itself: one may wait for a zone that another one is still in.
+    Several robots go independently of each other: one may wait for a zone that another robot is still in.
     """
     robots = tuple(context.cell.workspaces)
     settle = _settle(context, robots)
-    ways = [_way_home_if_ours(context, robot, notes_origins=notes_origins) for robot in robots]
-    if len(ways) < 2:
-        return sequence(TITLES[RECOVERY](), settle, *(step for way in ways for step in way))
+    routes = [_way_home_if_ours(context, robot, notes_origins=notes_origins) for robot in robots]
+    if len(routes) < 2:
+        return sequence(TITLES[RECOVERY](), settle, *(step for route in routes for step in route))
     policy = common.ParallelPolicy.SuccessOnAll(synchronise=True)
-    each = [sequence(HOME_AGAIN(arm=robot), *way) for robot, way in zip(robots, ways, strict=True)]
+    each = [sequence(HOME_AGAIN(arm=robot), *route) for robot, route in zip(robots, routes, strict=True)]
     together = composites.Parallel(str(ALL_HOME()), policy=policy, children=each)
     return sequence(TITLES[RECOVERY](), settle, titled(together, ALL_HOME()))
 
@@ -137,7 +138,7 @@ def selector(title: Sentence | str, *children: Behaviour) -> Behaviour:
 
 
 def framed(node: Behaviour) -> Behaviour:
-    """A node that only says when others run: where it runs, screens name the step in it."""
+    """A node that only says when others run, so that screens name the step in it."""
     node.frame = True  # type: ignore[attr-defined]
     return node
 
@@ -155,7 +156,7 @@ def start(context: Context) -> Behaviour:
 def tour(context: Context, robot: str, visits: Sequence[Visit]) -> list[Behaviour]:
     """Go from pose to pose and work there, holding the shared zones of each leg of the way.
 
-    The way is planned when each leg begins, from where the robot stands then; it ends outside all zones.
+    Each leg is planned when it begins, from where the robot stands; the way ends outside all zones.
     """
     space, poses = context.cell.reach[robot], [pose for pose, _ in visits]
     legs = zone_plan.plan(space, (space.home, *poses), None) if space.zones else []
@@ -174,17 +175,17 @@ def tour(context: Context, robot: str, visits: Sequence[Visit]) -> list[Behaviou
 def _zones_of_leg(context: Context, robot: str, poses: Sequence[Pose], number: int) -> frozenset[str]:
     """The zones of a leg of a tour; the first leg begins where the robot stands."""
     space = context.cell.reach[robot]
-    way = (context.robots.standing(robot) if number == 0 else space.home, *poses)
-    return zone_plan.plan(space, way, context.parts.way_back(robot))[number].zones
+    route = (context.robots.standing(robot) if number == 0 else space.home, *poses)
+    return zone_plan.plan(space, route, context.parts.way_back(robot))[number].zones
 
 
 def visit_from_anywhere(
     context: Context, robot: str, pose: Pose, work: Sequence[Behaviour]
 ) -> list[Behaviour]:
-    """Go to a pose and work there, planned when it begins, from where the robot stands then.
+    """Go to a pose and work there, planned when the visit begins, from where the robot stands.
 
-    It begins and ends outside all zones: from a pose that lies in one the robot goes home. So nobody waits
-    for zones while it holds others, whatever comes before and after.
+    A visit begins and ends outside all zones: from a pose that lies in a zone the robot goes home. So no
+    robot waits for zones while it holds others, whatever steps come before and after.
     """
     space = context.cell.reach[robot]
     origin = Note(NOTE_ORIGIN(), partial(context.parts.note_origin, robot, pose))
@@ -193,8 +194,8 @@ def visit_from_anywhere(
         return steps
 
     def needed() -> frozenset[str]:
-        way = (context.robots.standing(robot), pose, *((space.home,) if pose.zones else ()))
-        legs = zone_plan.plan(space, way, context.parts.way_back(robot))
+        route = (context.robots.standing(robot), pose, *((space.home,) if pose.zones else ()))
+        legs = zone_plan.plan(space, route, context.parts.way_back(robot))
         return context.zones.needs.between(robot, pose).union(*(leg.zones for leg in legs))
 
     out = [_move(context, robot, space.home)] if pose.zones else []
@@ -203,7 +204,7 @@ def visit_from_anywhere(
 
 
 def interlocked(context: Context, command: Command) -> list[Behaviour]:
-    """The steps before a command that makes its device occupy zones: nobody is in them then."""
+    """The steps before a command that makes its device occupy zones, so that no robot is in these."""
     locks = context.cell.interlocks_of(command.robot)
     zones = frozenset(each.zone for each in locks if each.is_ended_by(command))
     return [_take(context, command.robot, zones)] if zones else []
@@ -212,8 +213,8 @@ def interlocked(context: Context, command: Command) -> list[Behaviour]:
 def with_devices(context: Context, devices: frozenset[str], parts: Sequence[Behaviour]) -> list[Behaviour]:
     """The steps, with shared devices held from before the first of them until after the last.
 
-    They are taken before any zone: a cell that waits for one has no robot in a zone that waits for the cell,
-    and who holds zones asks for no device. So nobody waits in a ring.
+    Devices are taken before any zone. So a cell that waits for a device has no robot in a zone, a cell whose
+    robots hold zones asks for no device, and nobody waits in a ring.
     """
     return [take_devices(context, devices), *parts, *leave_devices(context, devices)]
 
@@ -224,7 +225,7 @@ def take_devices(context: Context, devices: frozenset[str]) -> Behaviour:
 
 
 def leave_devices(context: Context, devices: frozenset[str]) -> list[Behaviour]:
-    """Give these shared devices back, those that the cell has: empty, and robots at home."""
+    """Give back the shared devices of these that the cell has: empty, and robots at home."""
     named, access = tuple(sorted(devices)), context.devices
 
     def kept() -> Failure | None:
@@ -235,8 +236,8 @@ def leave_devices(context: Context, devices: frozenset[str]) -> list[Behaviour]:
 
     def home(robot: str) -> Behaviour:
         there = Unless(AT_HOME(), lambda: not access.holds(robot) or access.hand_over.is_home(robot))
-        way = visit_from_anywhere(context, robot, context.cell.reach[robot].home, [])
-        return selector(HOME_AGAIN(arm=robot), there, sequence(GO_HOME(), *way))
+        steps_home = visit_from_anywhere(context, robot, context.cell.reach[robot].home, [])
+        return selector(HOME_AGAIN(arm=robot), there, sequence(GO_HOME(), *steps_home))
 
     homes = [home(robot) for robot in named if robot in context.cell.reach]
     holders = [robot.name for robot in context.cell.robots if robot.held_fact is not None]
@@ -250,7 +251,7 @@ def grip(context: Context, robot: str, pose: Pose, *, check: PieceCheck) -> list
         return [unchecked_grip(context, robot)]
     retry, wait_s = context.cell.retry, context.timing.piece_wait_s
     none = Failure(reason=Reason.NO_PIECE, sentence=NO_PIECE(arm=robot, pose=pose.sentence))
-    patience_s = wait_s + retry.times * (retry.backoff_s + wait_s)  # to try again is to wait again
+    patience_s = wait_s + retry.times * (retry.backoff_s + wait_s)  # each try waits once
     needed = check is True
     attempts = [_attempt(context, robot, pose, number, needed=needed) for number in range(retry.times + 1)]
     return [
@@ -261,14 +262,14 @@ def grip(context: Context, robot: str, pose: Pose, *, check: PieceCheck) -> list
 
 
 def unchecked_grip(context: Context, robot: str) -> Behaviour:
-    """Grip without a look at a piece sensor; a tool of its own says itself whether it holds something."""
+    """Grip without a piece sensor; a separate tool reports itself whether it holds a part."""
     own = context.cell.workspaces[robot].hand.has_effector
     missed = partial(context.handling.miss, Check.GRIP) if own else None
     return effector(context, robot, on=True, then=missed)
 
 
 def let_go(context: Context, robot: str, *, check: PieceCheck) -> list[Behaviour]:
-    """Effector off; what it held stays where it is. `check`: the piece sensor has to see it until then."""
+    """Effector off: the part stays where it is. `check`: the piece sensor has to see the part until then."""
     off = effector(context, robot, on=False)
     if not check:
         return [off]
@@ -279,12 +280,12 @@ def let_go(context: Context, robot: str, *, check: PieceCheck) -> list[Behaviour
 
 
 def _way_home_if_ours(context: Context, robot: str, *, notes_origins: bool) -> list[Behaviour]:
-    """Its way home; of a robot that cells share only while the cell holds it."""
-    way = _way_home(context, robot, notes_origins=notes_origins)
+    """The steps of a recovery that bring a robot home; a shared robot only while the cell holds it."""
+    steps_home = _way_home(context, robot, notes_origins=notes_origins)
     if robot not in context.cell.shared:
-        return way
+        return steps_home
     of_others = Unless(NOT_OURS(robot=robot), lambda: not context.devices.holds(robot))
-    return [selector(HOME_AGAIN(arm=robot), of_others, sequence(HOME_AGAIN(arm=robot), *way))]
+    return [selector(HOME_AGAIN(arm=robot), of_others, sequence(HOME_AGAIN(arm=robot), *steps_home))]
 
 
 def _way_home(context: Context, robot: str, *, notes_origins: bool) -> list[Behaviour]:
@@ -300,7 +301,7 @@ def _way_home(context: Context, robot: str, *, notes_origins: bool) -> list[Beha
 
 
 def _opened(context: Context, robot: str) -> list[Behaviour]:
-    """A tool that was told to let go and may still do it ends that first, where it was told to."""
+    """Let go once more, before a move, with a tool that may still do so on an earlier command."""
     if context.cell.workspaces[robot].tool is None:
         return []
     settled = Unless(LETS_GO_OF_NOTHING(), lambda: context.parts.opening_tool(robot) is None)
@@ -308,7 +309,7 @@ def _opened(context: Context, robot: str) -> list[Behaviour]:
 
 
 def _part_back(context: Context, robot: str, *, notes_origins: bool) -> list[Behaviour]:
-    """Bring what the robot holds where it came from; where that is known only later, it is looked up then."""
+    """Bring the part of a robot back to where it came from, which may be known only when the steps begin."""
     hand = context.cell.workspaces[robot].hand.name
     back = context.parts.back.get(robot) if notes_origins else context.parts.way_back(robot)
     off = effector(context, robot, on=False)
@@ -317,14 +318,14 @@ def _part_back(context: Context, robot: str, *, notes_origins: bool) -> list[Beh
         empty = Unless(HOLDS_NOTHING(), lambda: hand not in context.parts.holding)
         return [selector(PART_BACK(), empty, sequence(CARRY_BACK(), *_at(context, robot, back, off)))]
 
-    found: list[Pose | None] = [None]  # once it lets go, nobody knows any more where that came from
+    from_pose: list[Pose | None] = [None]  # looked up before it lets go: after that the origin is forgotten
 
     def origin() -> Pose | None:
-        return found[0]
+        return from_pose[0]
 
     def kept() -> bool:
-        found[0] = context.parts.way_back(robot)
-        return hand not in context.parts.holding or found[0] is None
+        from_pose[0] = context.parts.way_back(robot)
+        return hand not in context.parts.holding or from_pose[0] is None
 
     def flat() -> bool:
         pose = origin()
@@ -352,15 +353,16 @@ def _go_where(context: Context, robot: str, where: Callable[[], Pose | None], *,
 
 
 def _rise(context: Context, robot: str) -> list[Behaviour]:
-    """The first move, straight up, of a robot that may stand low; none without approach heights."""
+    """The first move of a robot that may stand low: straight up. None without approach heights."""
     if not any(pose.above for pose in context.cell.workspaces[robot].poses):
         return []
     return [Act(RISE(), context, partial(_risen, context, robot), RISING())]
 
 
 def _rise_first(context: Context, robot: str, goal: Pose) -> list[Behaviour]:
-    """The same move before one to a goal, where the robot is down at another target: the work there has
-    failed, and the recipe goes on all the same.
+    """The move straight up before a move to a goal, for a robot that is down at another target.
+
+    It is down there where the work at that target has failed, and the recipe went on all the same.
     """
     if not any(pose != goal for pose in context.cell.reach[robot].poses if pose.above):
         return []
@@ -387,10 +389,10 @@ def _settle(context: Context, robots: Sequence[str]) -> Behaviour:
         return not ending and not any(context.robots.obstacle(robot) for robot in ours())
 
     def unsettled() -> Failure:
-        found = (context.robots.obstacle(robot, was=True) for robot in ours())
+        obstacles = (context.robots.obstacle(robot, was=True) for robot in ours())
         unended = UNENDED(arm=tuple(robots) or context.cell.name)
         ended = Failure(reason=Reason.STOP_UNCONFIRMED, sentence=unended)
-        return next((failure for failure in found if failure), ended)
+        return next((failure for failure in obstacles if failure), ended)
 
     return Await(SETTLE(), context, settled, context.timing.stop_timeout_s + SETTLE_S, unsettled)
 
@@ -431,7 +433,7 @@ def effector(context: Context, robot: str, *, on: bool, then: Callable[[], None]
 
 
 def _attempt(context: Context, robot: str, pose: Pose, number: int, *, needed: bool) -> Behaviour:
-    """Effector on and the piece seen in it; a later attempt opens the effector first."""
+    """Effector on, and the piece seen in it; a later attempt opens the effector first."""
     retry = context.cell.retry
     missed = Failure(reason=Reason.NOT_GRIPPED, sentence=NOT_GRIPPED(arm=robot, pose=pose.sentence))
     final = number == retry.times
@@ -442,7 +444,7 @@ def _attempt(context: Context, robot: str, pose: Pose, number: int, *, needed: b
 
 
 def _again(context: Context, robot: str) -> list[Behaviour]:
-    """The steps that begin a further attempt; there is none after another failure than a missed grip."""
+    """The steps that begin a further attempt; it follows a missed grip, and no other failure."""
     only_missed = Unless(ONLY_MISSED(), lambda: context.failures.first is None)
     back_off = Dwell(BACK_OFF(), context.time, context.cell.retry.backoff_s)
     return [only_missed, effector(context, robot, on=False), back_off]

@@ -1,4 +1,4 @@
-"""The tree that runs in a cell: built, ticked until it rests, dropped."""
+"""Run of a tree in a cell: the tree is built, ticked until it rests, and dropped."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ TICK_BOUND = 20  # ticks in one step; more means a tree that never comes to rest
 
 
 class TreeRun:
-    """At most one tree; whatever is raised in it is a failure of it, and named in the context."""
+    """Run of at most one tree. An exception in the tree is its failure, which the context names."""
 
     def __init__(self, context: Context) -> None:
         self.tree: Behaviour | None = None
         self.nodes: list[Behaviour] = []  # of the tree, its root last
-        self.keepers: list[tuple[int, Keeps]] = []  # those of which more than the status is kept, by number
+        self.keepers: list[tuple[int, Keeps]] = []  # nodes with more than a status to keep, by number
         self._acts: list[Act] = []
         self._recoveries: list[Behaviour] = []
-        self._began: float | None = None  # when it began in this start of the plant, s of the cell's time
-        self.rested: tuple[object, ...] = ()  # as what it came to rest last; another one, another state
+        self._began: float | None = None  # in this start of the plant, s of the cell's time
+        self.rested: tuple[object, ...] = ()  # the signature with which it came to rest last
         self._context = context
 
     @property
@@ -55,7 +55,7 @@ class TreeRun:
         return self.tick()
 
     def grow(self, tree: Behaviour) -> None:
-        """Take a tree, as it is."""
+        """Take a tree in the state in which it is."""
         self.tree, self.nodes = tree, nodes_of(tree)
         keepers = [(number, node) for number, node in enumerate(self.nodes) if isinstance(node, Keeps)]
         self.keepers = [(number, node) for number, node in keepers if type(node).kept is not Keeps.kept]
@@ -66,14 +66,14 @@ class TreeRun:
         self._recoveries = [node for node in self.nodes if node.name == steps.RECOVERY]
 
     def tick(self) -> Status:
-        """Tick until neither a status nor a command changes any more; the status of the tree then."""
+        """Tick until a tick changes no status and sends no command; the status of the tree then."""
         try:
             return self._tick_to_rest()
         except Exception as error:  # noqa: BLE001 - a leaf may be user code: it ends its task, not the plant
             return self._raised(error)
 
     def drop(self) -> None:
-        """End what runs; whatever moves for it is halted."""
+        """End the tree, and halt what moves for it."""
         tree, self.tree = self.tree, None
         self._began = None
         self.nodes, self.keepers, self._acts, self._recoveries = [], [], [], []
@@ -91,7 +91,7 @@ class TreeRun:
 
     @property
     def course(self) -> Course | None:
-        """The course of the tree until now; None where an earlier start of the plant has begun it."""
+        """The course of the tree until now; None where an earlier start of the plant began it."""
         if self._began is None:
             return None
         now = self._context.time.now
@@ -100,8 +100,9 @@ class TreeRun:
 
     @property
     def steps(self) -> list[tuple[str, float]]:
-        """Those that have begun in this start of the plant, as a course names them, and how many s ago, the
-        last first; none in a recovery.
+        """The steps that began in this start of the plant, the last first, and how many s ago.
+
+        They have the names of a course. In a recovery there are none.
         """
         if self.recovering:
             return []
@@ -114,9 +115,7 @@ class TreeRun:
         return [act for act in acts if act.entry and not act.entry.open and act.entry.state is not State.DONE]
 
     def _begun(self) -> Iterator[tuple[str, float]]:
-        """The steps that take their time and have begun in this start of the plant, and when; where several
-        have one name they are counted.
-        """
+        """The leaves that began in this start of the plant, and when; leaves of one name are numbered."""
         number = Counter[str]()
         for node in self.nodes:
             number[node.name] += 1
@@ -142,14 +141,14 @@ class TreeRun:
         raise ArboledaError(f"the tree did not come to rest in {TICK_BOUND} ticks")
 
     def _waits(self) -> bool:
-        """True where one command is under way, and all above it would only pass another tick on to it."""
+        """True where another tick would change nothing: it would only get to a command that waits."""
         node: Any
         for node in self.nodes:
             if node.status is not Status.RUNNING:
                 continue
             kind = type(node)
             if kind is Sequence or (kind is Selector and node.current_child is node.children[0]):
-                if not node.memory:  # it would ask those before once more
+                if not node.memory:  # it would tick the children before once more
                     return False
             elif kind is not Act or not node.waits:
                 return False
@@ -179,7 +178,7 @@ def path_of(node: Behaviour) -> str:
 
 
 def step_of(tree: Behaviour | None) -> Sentence | None:
-    """The name of the step that runs, not of its parts nor of what frames it; a recovery's steps say so."""
+    """The name of the step that runs, without its parts and frames; a step of a recovery says so."""
     running = [node for node in nodes_of(tree) if node.status is Status.RUNNING] if tree else []
     if not running:
         return None

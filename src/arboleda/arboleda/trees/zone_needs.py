@@ -1,4 +1,4 @@
-"""Needs of zones: those that a robot, or a machine, of one cell has to hold for what it is about to do."""
+"""Needs of zones: the zones that a robot, or a machine, has to hold for its next moves."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .parts import Parts
 
 
 class ZoneNeeds:
-    """Needs by where the robots of one cell are, and what they hold."""
+    """Needs of zones by where the robots of one cell are, and where their parts belong."""
 
     def __init__(self, cell: Cell, whereabouts: Whereabouts, robots: CellRobots, parts: Parts) -> None:
         self._cell = cell
@@ -25,7 +25,7 @@ class ZoneNeeds:
         self._cell = cell
 
     def between(self, robot: str, *goals: Pose) -> frozenset[str]:
-        """The zones that a robot comes by to each of these poses from where it is, which may be no pose."""
+        """The zones on the way of a robot to each of these poses, from wherever it is."""
         space, here = self._cell.reach[robot], self._robots.position(robot)
         return frozenset[str]().union(*(zone_plan.passed(space, here, goal.q) for goal in goals))
 

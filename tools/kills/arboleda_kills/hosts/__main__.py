@@ -23,7 +23,7 @@ from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
 
-from arboleda.runtime.waiting import interruptible
+from arboleda.runtime.interrupts import interruptible
 from frame.telling import counts, stopwatch, told
 
 from ..database import NoServer, programs

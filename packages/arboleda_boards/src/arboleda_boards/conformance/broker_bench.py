@@ -12,8 +12,8 @@ from arboleda.adapters.broker_login import Address, Credentials
 from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.model.errors import StartError
 from arboleda.model.plant_model import Robot
+from arboleda.runtime.interrupts import until
 from arboleda.runtime.loop import Loop
-from arboleda.runtime.waiting import until
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Connection, Delivery, Publication
 

@@ -9,7 +9,7 @@ from fastapi import FastAPI
 
 from arboleda.runtime import tokens
 from arboleda.runtime.endpoints import Find
-from arboleda.runtime.waiting import interruptible, until, until_interrupted
+from arboleda.runtime.interrupts import interruptible, until, until_interrupted
 from arboleda.runtime.web_options import WebOptions
 from arboleda.web.access import login
 from arboleda.web.access.auth import Door

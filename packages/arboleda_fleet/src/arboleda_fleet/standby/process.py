@@ -15,10 +15,10 @@ from arboleda.departures.leading import LOOK_S
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.plant_model import PlantModel
 from arboleda.runtime.build import App, Options, build
+from arboleda.runtime.interrupts import heed, interruptible
 from arboleda.runtime.leader import LeaderInfo, of_leader
 from arboleda.runtime.standing_by import ReadAgain
 from arboleda.runtime.state import StateDir, default_state
-from arboleda.runtime.waiting import heed, interruptible
 from arboleda.store.plant_memory import OtherLeader
 from arboleda.web.access.names import other_address
 from arboleda.wire.status import OK, WARN

@@ -219,7 +219,7 @@ def _checked(file: Path, kept: Versions, version: Version) -> _Wanted:
 def _base(plant_name: str, kept: Versions, state: Path | None) -> _Base:
     """The version at work in the plant that runs; where none runs, the one that was kept last."""
     where = state or default_state(plant_name)
-    running, started, last = find_running(where), at_work.known(where), kept.last()
+    running, started, last = find_running(where), at_work.version(where), kept.last()
     if running is not None and started is not None:
         same = next((each for each in reversed(kept.all()) if each.digest == started.digest), None)
         return _Base(version=same or started, running=running)

@@ -38,7 +38,7 @@ class OpenDraft:
     @property
     def started(self) -> Version:
         """The version that the plant was started with."""
-        found = at_work.known(self._state)
+        found = at_work.version(self._state)
         if found is None:
             raise DraftRefused(UNKNOWN)
         return found

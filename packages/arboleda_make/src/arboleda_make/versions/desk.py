@@ -93,7 +93,7 @@ class VersionDesk(VersionsApi):
 
     def at_work(self) -> Version:
         """The files at work; DraftRefused where that is not known."""
-        found = at_work.known(self._state)
+        found = at_work.version(self._state)
         if found is None:
             raise DraftRefused(UNKNOWN)
         return found

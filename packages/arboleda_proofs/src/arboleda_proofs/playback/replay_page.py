@@ -13,8 +13,8 @@ from arboleda.dashboard.past.past import Past
 from arboleda.dashboard.past.side import Start
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.urdf import robot_urdf
+from arboleda.runtime.interrupts import interruptible, until, until_interrupted
 from arboleda.runtime.parts.records import Records
-from arboleda.runtime.waiting import interruptible, until, until_interrupted
 from arboleda.views import view
 from arboleda.web.access.auth import Door
 from arboleda.web.access.guard import Guard

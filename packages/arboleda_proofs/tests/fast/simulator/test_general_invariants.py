@@ -17,7 +17,7 @@ from arboleda.core.plant import Plant
 from arboleda.dispatch import evidence
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.effectors import Effectors
-from arboleda.dispatch.evidence import Verdict
+from arboleda.dispatch.evidence import CommandVerdict
 from arboleda.dispatch.ledger import Feed
 from arboleda.dispatch.obstacles import Obstacles
 from arboleda.dispatch.outlet import Outlet
@@ -303,7 +303,7 @@ def test_no_day_passes_at_once_while_a_switch_is_late() -> None:
 
 def believed_at_once(patch: Patch) -> None:
     """A command counts as done when its robot has only accepted it."""
-    done = Verdict(feed=Feed.DONE)
+    done = CommandVerdict(feed=Feed.DONE)
     patch.setattr("arboleda.dispatch.evidence.judge", lambda *_: done)
 
 
@@ -436,7 +436,7 @@ def gives_up_what_finishes(patch: Patch) -> None:
     def lax(entry: Any, belief: Any, report: Report) -> Any:
         if entry.finishes and report.state is MotionState.STOP_LATCHED:
             stopped = evidence.STOPPED(robot=entry.command.robot, doing=entry.doing)
-            return Verdict(feed=Feed.HALTED, failure=Failure(reason=Reason.STOPPED, sentence=stopped))
+            return CommandVerdict(feed=Feed.HALTED, failure=Failure(reason=Reason.STOPPED, sentence=stopped))
         return device(entry, belief, report)
 
     patch.setattr(evidence, "_device", lax)
@@ -460,8 +460,8 @@ def forgets_its_latch(patch: Patch) -> None:
 def any_answer_counts(patch: Patch) -> None:
     """Whatever a device answered last is taken for the answer to what it was asked now."""
 
-    def answered(entry: Any, belief: Any, report: Any) -> Verdict | None:
-        return None if report.answer is None else Verdict(feed=Feed.DONE, answer=report.answer)
+    def answered(entry: Any, belief: Any, report: Any) -> CommandVerdict | None:
+        return None if report.answer is None else CommandVerdict(feed=Feed.DONE, answer=report.answer)
 
     patch.setitem(evidence.RULES, (Query, Evidence.IDS), answered)
 
@@ -516,7 +516,7 @@ def raises_at_a_verb(patch: Patch) -> None:
 def knows_no_accents(patch: Patch) -> None:
     """A word with an accent is none of the answers."""
     of_ascii = lambda word, names: next((name for name in names if word.isascii() and name == word), None)  # noqa: E731
-    patch.setattr("arboleda.core.verbs.answering.known", of_ascii)
+    patch.setattr("arboleda.core.verbs.answering.matching", of_ascii)
 
 
 def advises_nothing(patch: Patch) -> None:
@@ -715,8 +715,8 @@ def test_a_process_that_nobody_saw_at_work_is_not_done(monkeypatch: Patch) -> No
         """The mill is told twice to shut its door."""
         return work(cell.device("mill").close(), cell.device("mill").close())
 
-    def lax(entry: Any, *_: object) -> Verdict | None:
-        return Verdict(feed=Feed.DONE) if entry.observations.on_goal_since else None
+    def lax(entry: Any, *_: object) -> CommandVerdict | None:
+        return CommandVerdict(feed=Feed.DONE) if entry.observations.on_goal_since else None
 
     closing = replace(MILL.verbs["close"], effect=Effect.PROCESS)
     mill = Device(

@@ -12,7 +12,7 @@ from tests.cells import with_poses
 from tests.lengths import sample
 
 from arboleda.dispatch import evidence
-from arboleda.dispatch.evidence import Verdict
+from arboleda.dispatch.evidence import CommandVerdict
 from arboleda.dispatch.ledger import Feed
 from arboleda.dispatch.whereabouts import Whereabouts
 from arboleda.dispatch.zones import Zones
@@ -255,7 +255,7 @@ def done_when_accepted(command: type) -> Callable[[Patch], Watch]:
     """The plant takes a command for done as soon as it hears anything."""
 
     def break_it(patch: Patch) -> Watch:
-        rule: Any = lambda entry, belief, report: Verdict(feed=Feed.DONE)  # noqa: E731
+        rule: Any = lambda entry, belief, report: CommandVerdict(feed=Feed.DONE)  # noqa: E731
         patch.setitem(evidence.RULES, (command, Evidence.IDS), rule)
         if command is SetEffector:
             patch.setattr(ArmBody, "switch_effector", lambda self, on: None)

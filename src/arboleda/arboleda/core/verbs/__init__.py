@@ -1,1 +1,1 @@
-"""Verbs of the operators: what each of them does, and when it is refused."""
+"""Verbs of operators: what each verb does, and when it is refused."""

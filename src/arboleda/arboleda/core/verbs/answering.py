@@ -11,7 +11,7 @@ from arboleda.model.commands import Question
 from arboleda.model.messages import OperatorRequest
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Link
-from arboleda.model.recipe import known
+from arboleda.model.recipe import matching
 from arboleda.model.sentence import Phrase
 
 from .scopes import VerbRefusal
@@ -35,7 +35,7 @@ class Answering:
         self._clock = clock
 
     def plan(self, request: OperatorRequest, person: str) -> Callable[[], None]:
-        """One of the answers to what is being asked; where it names a question, only to that one."""
+        """Plan an answer to the open question of a person; one that names another question is refused."""
         id, word = request.argument("question"), str(request.argument("answer") or "")
         people = [name for name, robot in self._dispatcher.model.robots.items() if robot.link is Link.SCREEN]
         if person not in people:
@@ -48,7 +48,7 @@ class Answering:
         assert isinstance(entry.command, Question)
         if id not in (None, entry.command.id):
             raise VerbRefusal(OTHER_QUESTION(question=str(id), person=person, text=entry.command.text))
-        answer = known(word, entry.command.answers)
+        answer = matching(word, entry.command.answers)
         if answer is None:
             raise VerbRefusal(NO_ANSWER(word=quoted(word), person=person, known=entry.command.answers))
         return partial(self._answer, person, answer)

@@ -36,7 +36,7 @@ class Cancelling:
         )
 
     def plan(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
-        """Of one task, or of those that run in a scope."""
+        """Plan the end of one task, or of those that run in a scope."""
         if scope.lstrip("#") in self._intake.tasks:
             failure = CANCELLED_BY_CLIENT if request.client else CANCELLED_BY_OPERATOR
             return self._planned_cancel(scope.lstrip("#"), failure)

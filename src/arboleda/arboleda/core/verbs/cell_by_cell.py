@@ -1,4 +1,4 @@
-"""Verbs that are carried out cell by cell, and what is common to all that is done for an operator."""
+"""Verbs that are carried out cell by cell, and the act of an operator that is being done."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ AT_REST = (CellState.IDLE, CellState.HELD)
 Check = Callable[[CellRun, frozenset[str]], "Sentence | None"]
 Do = Callable[[CellRun, frozenset[str]], None]
 Plan = Callable[[OperatorRequest, str], Callable[[], None]]
-"""The function that carries out a request on a scope; VerbRefusal where something speaks against it."""
+"""Makes the function that carries out a request on a scope; VerbRefusal where something speaks against it."""
 
 
 class Doing:
-    """The act that is being done: the commands that have left for it, and what broke in it."""
+    """The act that is being done: commands that were sent for it, and cells that broke down in it."""
 
     def __init__(self, broke: Callable[[str, Exception], None]) -> None:
         self.sent: list[Entry] = []
@@ -38,7 +38,7 @@ class Doing:
         self.sent, self.defects = [], []
 
     def do(self, act: Do, cell: CellRun, robots: frozenset[str]) -> None:
-        """Do it in one cell; what that raises must not keep the others from a stop."""
+        """Do an act in one cell. A cell that breaks down must not keep the others from a stop."""
         try:
             act(cell, robots)
         except (VerbRefusal, IllegalTransition):
@@ -54,10 +54,10 @@ def always(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
 
 
 class CellByCell:
-    """A verb that is carried out cell by cell: in each cell that `check` has nothing against, `do`.
+    """A verb that is carried out cell by cell: `do` in each cell in which `check` finds no refusal.
 
-    `first` is done in all cells before `do` in any: no robot's stop waits for what ends in other cells. A
-    cell in a state of `must_all` that cannot follow keeps the verb from all the scope; others are left out.
+    `first` is done in all cells before `do` in any: so all robots are latched before any cell ends its task.
+    A cell that refuses is left out; if it is in a state of `must_all`, nothing is done in any cell.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class CellByCell:
         self._must_all = must_all
 
     def planned(self, robots: frozenset[str], cells: list[CellRun]) -> Callable[[], None]:
-        """The function that carries it out; VerbRefusal where it can be done nowhere."""
+        """The function that carries the verb out; VerbRefusal where that can be done nowhere."""
         refusals = {}
         for cell in cells:
             if (why := self._check(cell, robots)) is not None:

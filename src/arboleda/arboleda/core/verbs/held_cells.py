@@ -28,12 +28,12 @@ _held = in_states(CellState.HELD)
 
 
 def hold(cell: CellRun, robots: frozenset[str]) -> None:
-    """Halt at once and keep everything for `resume`."""
+    """Halt at once, and keep the task at its step for `resume`."""
     cell.halt(Cause.HOLD)
 
 
 def resume(cell: CellRun, robots: frozenset[str]) -> None:
-    """Go on where `hold` interrupted, each interrupted step given anew; let an idle cell's queue run."""
+    """Go on where the cell was held, with each interrupted step given anew; let the queue run."""
     if cell.state is CellState.HELD:
         cell.go_on(Cause.RESUME)
     cell.queue.resume()
@@ -41,7 +41,7 @@ def resume(cell: CellRun, robots: frozenset[str]) -> None:
 
 
 def retry(cell: CellRun, robots: frozenset[str]) -> None:
-    """Give the step that failed anew; without a task, recover anew."""
+    """Give the failed step anew; without a task, recover anew."""
     if cell.task is not None:
         cell.task.attempts += 1
         cell.go_on(Cause.RETRY)
@@ -85,7 +85,7 @@ def not_resumable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
 
 
 def not_retryable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
-    """The reason why the step of a cell that failed cannot be given anew."""
+    """The reason why the failed step of a cell cannot be given anew."""
     if cell.manual.teaching is not None:
         return cell.manual.teaching.sentence
     refusal = _held(cell, robots)
@@ -107,12 +107,12 @@ def not_abandonable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
 
 
 def _not_yet(cell: CellRun) -> Sentence | None:
-    """That a task of an earlier start cannot be judged yet."""
+    """The sentence that a task of an earlier start cannot be judged yet; None where it can."""
     return None if cell.awaits is None else NOT_YET(cell=cell.cell.name, why=cell.awaits)
 
 
 def _release_first(holding: list[str]) -> Sentence:
-    """That parts are to be released first, by everybody that may hold one."""
+    """The sentence that each device that may hold a part is to be released first."""
     if len(holding) == 1:
         return RELEASE_FIRST(arm=holding[0])
     releases = [DO[Verb.RELEASE](scope=robot) for robot in holding]

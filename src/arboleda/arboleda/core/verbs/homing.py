@@ -1,20 +1,20 @@
-"""Homing on an operator's word: robots run their routine, or somebody has put them at their reference."""
+"""Homing, at the start or for an operator: robots run a routine, or a person puts them at their reference."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
 
-from arboleda.dispatch.belief import ONLY_DRAWN
+from arboleda.dispatch.belief import ONLY_DRAWN, Belief
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.ledger import Entry
 from arboleda.dispatch.zones import Zones
 from arboleda.model.commands import Home
 from arboleda.model.messages import OperatorRequest
-from arboleda.model.plant_model import Evidence
+from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.model.sentence import Phrase, Sentence
 
-from .. import losses
+from ..cell import CellRun
 from ..readiness import STILL_DOING
 from .cell_by_cell import AT_REST, Doing, at_rest
 from .scopes import Scopes, VerbRefusal
@@ -39,10 +39,11 @@ CANNOT_REPORT = Phrase(
     "refusal.cannot_report",
     "{robot} cannot report a homing; put it at its reference and say: home {robot} --by-hand",
 )
+HOMED_MEANWHILE = Phrase("cell.homed_meanwhile", "{arm} was homed meanwhile")
 
 
 class Homing:
-    """Homing of robots; no robot sets out for its reference while another one is where it may get."""
+    """Homing of robots; none sets out for its reference while another robot is where it may come by."""
 
     def __init__(
         self,
@@ -62,7 +63,7 @@ class Homing:
         self._homing = {robot.name for robot in reached if robot.homes}
 
     def plan(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
-        """Robots that are only drawn, or have no homing, are left out; one of them alone is refused."""
+        """Plan the homing of a scope, without robots that have none; one of those alone is refused."""
         robots, by_hand = self._scopes.robots(scope), request.by_hand
         if scope in self._scopes.cells and self._scopes.cells[scope].cell.shared:
             robots = self._here(scope, robots)
@@ -76,10 +77,10 @@ class Homing:
         return partial(self._home, robots, by_hand=by_hand)
 
     def home(self, name: str) -> Entry:
-        """Have a robot run its homing routine; it keeps everybody out of its zones meanwhile."""
+        """Have a robot run its homing routine; no other robot gets into its zones meanwhile."""
         cell = self._scopes.in_charge(name)
         if not self._dispatcher.beliefs[name].is_cleared_by_homing:
-            losses.uproot(cell, name)
+            _uproot(cell, name)
         users = [run for run in self._scopes.of_robots(frozenset([name])) if name in run.cell.zone_users]
         for run in (each for each in users if each.state in AT_REST):
             run.context.zones.forsake()
@@ -96,25 +97,25 @@ class Homing:
             for name, space in cell.cell.workspaces.items():
                 for zone in sorted(space.zones) if name in robots else ():
                     for_task = cell.state in AT_REST and cell.context.zones.is_for_task(zone)
-                    kept = None if for_task else self._zones.holder(zone)
-                    holder = kept or taken.setdefault(zone, name)
+                    holder_now = None if for_task else self._zones.holder(zone)
+                    holder = holder_now or taken.setdefault(zone, name)
                     if holder != name:
                         return MAY_CROSS(arm=name, zone=zone, holder=holder)
         return None
 
     def _here(self, scope: str, robots: frozenset[str]) -> frozenset[str]:
-        """The robots that are homed with a cell: none of those that another one has now."""
+        """The robots that are homed with a cell: not the shared robots that another cell holds."""
         shared, holder = self._scopes.cells[scope].cell.shared, self._zones.holder
-        found = frozenset(name for name in robots if name not in shared or holder(name) in (None, scope))
-        if self._homing.isdisjoint(found) and (others := sorted(self._homing & robots)):
+        here = frozenset(name for name in robots if name not in shared or holder(name) in (None, scope))
+        if self._homing.isdisjoint(here) and (others := sorted(self._homing & robots)):
             raise VerbRefusal(WITH_OTHER(device=others[0], cell=holder(others[0]) or ""))
-        return found
+        return here
 
     def _home(self, robots: frozenset[str], *, by_hand: bool) -> None:
         for name in sorted(robots):
             if by_hand:
                 self._dispatcher.declare_homed(name)
-                losses.uproot(self._scopes.in_charge(name), name)
+                _uproot(self._scopes.in_charge(name), name)
             else:
                 self._doing.sent.append(self.home(name))
 
@@ -144,3 +145,38 @@ class Homing:
             return CANNOT_REPORT(robot=name)
         obstacle = self._dispatcher.obstacles.objection(partial(Home, robot=name))
         return obstacle.sentence if obstacle else None
+
+
+def _uproot(run: CellRun, robot: str) -> None:
+    """Note that a robot with poses is homed, so that it is not where the cell's held task left it."""
+    if robot in run.cell.workspaces and run.context.devices.has(robot):
+        run.lose(HOMED_MEANWHILE(arm=robot))
+
+
+class HomingAtStart:
+    """Homing of robots whose plant file wants it at the start; `robots` are those that wait for it.
+
+    The robots of a cell that holds a task of an earlier start stay where they are.
+    """
+
+    def __init__(self, model: PlantModel, beliefs: dict[str, Belief], scopes: Scopes, homing: Homing) -> None:
+        held = (run for run in scopes.cells.values() if run.task is not None)
+        staying = {robot.name for run in held for robot in run.cell.robots}
+        self.robots = {name for name, robot in model.robots.items() if robot.home_at_start} - staying
+        self._beliefs = beliefs
+        self._scopes = scopes
+        self._homing = homing
+
+    def look(self, robot: str) -> None:
+        """Home a robot that was heard, if its cell lets it."""
+        belief = self._beliefs[robot]
+        if not belief.answered or belief.homed is None:
+            return
+        run = self._scopes.in_charge(robot)
+        if run.state not in AT_REST or run.manual.teaching is not None:
+            return
+        if belief.unhomed and self._homing.not_free(frozenset([robot])):
+            return
+        self.robots.discard(robot)
+        if belief.unhomed:
+            self._homing.home(robot)

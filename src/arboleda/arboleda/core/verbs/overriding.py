@@ -1,4 +1,4 @@
-"""Override of a quarantine: an operator says that nobody is in a zone, or at a shared device, any more."""
+"""Override of a quarantine: an operator answers for an empty zone, or a shared device that nobody uses."""
 
 from __future__ import annotations
 
@@ -37,16 +37,16 @@ class Overriding:
         self._zones = zones
 
     def plan(self, request: OperatorRequest, zone: str) -> Callable[[], None]:
-        """Of one zone or device, on which nobody counts for its work any more."""
+        """Plan the override of a zone or a device that no task needs any more."""
         holder = self._zones.holder(zone)
         cell = self._scopes.cells.get(holder or "")
         if cell is not None and cell.tree is not None and self._zones.is_quarantined(zone):
             raise VerbRefusal(STILL_USES(cell=cell.cell.name, device=zone))
         if cell is not None and zone in cell.cell.shared and not self._is_left_anywhere(zone):
             raise VerbRefusal(GOES_BACK(device=zone, cell=cell.cell.name))
-        known = self._dispatcher.model.cell_of  # without who is no longer in the plant file
-        if holder in known and self._zones.is_quarantined(zone) and self._works(holder):
-            name = self._scopes.in_charge(holder).cell.name  # what it does there counts on the zone
+        cell_of = self._dispatcher.model.cell_of  # a holder of an earlier start may not be in it
+        if holder in cell_of and self._zones.is_quarantined(zone) and self._works(holder):
+            name = self._scopes.in_charge(holder).cell.name
             raise VerbRefusal(STILL_WORKS(robot=holder, zone=zone, cell=name))
         try:
             self._zones.require_quarantined(zone)
@@ -60,12 +60,12 @@ class Overriding:
         self._dispatcher.wake({*granted, *self._zones.robbed})
 
     def _is_left_anywhere(self, device: str) -> bool:
-        """True for a shared device that goes nowhere and holds no part, so that any cell may have it next."""
+        """True for a shared device that neither moves nor holds parts, so that any cell may have it next."""
         robot = self._dispatcher.model.robots[device]
         return not robot.goes and robot.held_fact is None
 
     def _works(self, arm: str) -> bool:
-        """True where a tree counts on what an arm has, or the arm moves without one: homing needs none."""
+        """True where a tree may need the zones of an arm, or the arm moves without a tree, as it homes."""
         cell = self._scopes.in_charge(arm)
         moves = any(entry.is_work for entry in self._dispatcher.ledger.of_robot(arm))
         return moves or cell.tree is not None

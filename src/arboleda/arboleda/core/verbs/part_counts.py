@@ -1,4 +1,4 @@
-"""Counts of parts at places on an operator's word: somebody has taken parts out, or put some there."""
+"""Counts of parts at places on an operator's word: a person has taken parts out, or put some there."""
 
 from __future__ import annotations
 
@@ -31,12 +31,9 @@ class PartCounts:
         self._dispatcher = dispatcher
 
     def plan_unloading(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
-        """Of one place or station; without either, of all places and the whole rack of each cell."""
-        robots, station, place = (
-            self._scopes.robots(scope),
-            request.argument("station"),
-            request.argument("place"),
-        )
+        """Plan to empty one place or station; without either, all places of the cells."""
+        robots, place = self._scopes.robots(scope), request.argument("place")
+        station = request.argument("station")
         cells = [cell for cell in self._with_places(scope) if robots & set(cell.cell.holders)]
         if place is not None:
             name = str(place).lower()
@@ -46,13 +43,13 @@ class PartCounts:
             every = [(cell, [*cell.context.places.counts]) for cell in cells]
             return self._planned_removal(every, RACK_EMPTY(cell=whole(scope)))
         racks = [(cell, dict[Value, str](enumerate(cell.cell.station_targets))) for cell in cells]
-        found = [(cell, [rack[station]]) for cell, rack in racks if station in rack]
-        if not found:
+        targets = [(cell, [rack[station]]) for cell, rack in racks if station in rack]
+        if not targets:
             raise VerbRefusal(NO_STATION(station=quoted(str(station)), cell=whole(scope)))
-        return self._planned_removal(found, STATION_EMPTY(station=station, cell=whole(scope)))
+        return self._planned_removal(targets, STATION_EMPTY(station=station, cell=whole(scope)))
 
     def plan_loading(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
-        """Of one place of a cell: with so many parts, else with all that it holds."""
+        """Plan to fill one place of a cell: with so many parts, else as full as it gets."""
         place, parts = str(request.argument("place") or "").lower(), request.argument("parts")
         cell = _with_place(self._with_places(scope), whole(scope), place)
         most = next(each.holds for each in cell.cell.counted if each.target == place)
@@ -65,14 +62,14 @@ class PartCounts:
     def _planned_removal(
         self, places: list[tuple[CellRun, list[str]]], refusal: Sentence
     ) -> Callable[[], None]:
-        """Of these places; VerbRefusal where all are empty."""
+        """Plan to empty these places; VerbRefusal where all are empty."""
         full = [cell.context.places.full.intersection(names) for cell, names in places]
         if not any(full):
             raise VerbRefusal(refusal)
         return partial(self._set_parts, [(cell, dict.fromkeys(names, 0)) for cell, names in places])
 
     def _with_places(self, scope: str) -> list[CellRun]:
-        """The cells whose places a scope means: of a cell its own alone, whatever it shares with others."""
+        """The cells whose places a scope means: a cell alone, even where it shares devices with others."""
         robots, cells = self._scopes.robots(scope), self._scopes.cells
         return [cells[scope]] if scope in cells else self._scopes.of_robots(robots)
 
@@ -87,9 +84,9 @@ class PartCounts:
 
 def _with_place(cells: list[CellRun], scope: Value, place: str) -> CellRun:
     """The cell with that place; VerbRefusal names the places that there are."""
-    known = tuple(name for cell in cells for name in cell.context.places.counts)
-    if not known:
+    names = tuple(name for cell in cells for name in cell.context.places.counts)
+    if not names:
         raise VerbRefusal(NO_PLACES(cell=scope))
-    if place not in known:
-        raise VerbRefusal(NO_PLACE(place=quoted(place), cell=scope, known=known))
+    if place not in names:
+        raise VerbRefusal(NO_PLACE(place=quoted(place), cell=scope, known=names))
     return next(cell for cell in cells if place in cell.context.places.counts)

@@ -1,4 +1,4 @@
-"""Release of parts on an operator's word: effectors let go, or somebody has taken a part out."""
+"""Release of parts on an operator's word: effectors let go, or a person has taken a part out."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.zones import Zones
 from arboleda.model.advice import sentence
 from arboleda.model.cell_states import CellState
-from arboleda.model.messages import OperatorRequest
+from arboleda.model.messages import Failure, OperatorRequest, Reason
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda.resume.walk_back import NO_PART
 
-from .. import losses
 from ..cell import CellRun
 from ..readiness import STILL_DOING
 from .cell_by_cell import CellByCell, Doing
@@ -28,6 +28,7 @@ HOLDS_NOTHING_ANY_MORE = Phrase(
     "refusal.holds_nothing_any_more",
     "no part is known to be in {devices}, so nothing has to be said of it; go on with {next}",
 )
+LET_GO = Phrase("part.let_go", "{arm} let go of its part on the operator's word")
 AT_WORK = (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING)
 
 
@@ -50,7 +51,7 @@ class Releasing:
         self._in_cells = CellByCell(doing, check=self._not_releasable, do=self._release)
 
     def plan(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
-        """Devices let go cell by cell; by hand, a person has taken out what all of them hold."""
+        """Plan to have devices let go, cell by cell; by hand, a person has taken the parts out of all."""
         robots = self._scopes.robots(scope)
         cells = self._scopes.cells_in(request.verb, scope, robots)
         if request.by_hand:
@@ -58,7 +59,7 @@ class Releasing:
         return self._in_cells.planned(robots, cells)
 
     def _planned_emptying(self, robots: frozenset[str], cells: list[CellRun]) -> Callable[[], None]:
-        """A person has taken out what devices hold; all of them are still, as far as the plant moves them."""
+        """Plan to note that a person took the parts out of devices, none of which the plant is moving."""
         for cell in cells:
             if cell.state in AT_WORK:
                 raise VerbRefusal(HOLD_FIRST(cell=cell.cell.name, state=cell.state.sentence))
@@ -75,7 +76,7 @@ class Releasing:
 
     def _empty(self, holding: list[tuple[CellRun, str]]) -> None:
         for cell, name in holding:
-            losses.let_go(cell, name)
+            _lose_part(cell, name)
             self._dispatcher.effectors.declare_empty(self._dispatcher.beliefs[name])
             self._dispatcher.wake([name])
 
@@ -88,26 +89,26 @@ class Releasing:
         if not able:
             first = next(each.name for each in cell.cell.robots if each.name in robots)
             return self._none_able(robots, first)
-        found = (self._dispatcher.obstacles.to_opening(name) for name in able)
-        obstacle = next((each for each in found if each), None)
+        obstacles = (self._dispatcher.obstacles.to_opening(name) for name in able)
+        obstacle = next((each for each in obstacles if each), None)
         return NOT_OPENED(why=obstacle.sentence) if obstacle else None
 
     def _release(self, cell: CellRun, robots: frozenset[str]) -> None:
         for name in self._holders(cell, robots):
             if name in cell.cell.shared:
                 cell.context.devices.claim(name)
-            losses.let_go(cell, name)
+            _lose_part(cell, name)
             make = self._dispatcher.model.robots[name].let_go
             now, name_of_cell = self._clock(), cell.cell.name
             self._doing.sent.append(self._dispatcher.send(make, name_of_cell, RELEASING(), now, by_hand=True))
 
     def _holders(self, cell: CellRun, robots: frozenset[str]) -> list[str]:
-        """Those of the robots that hold parts for this cell; what it shares may be with another one."""
-        found = [name for name in cell.cell.holders if name in robots]
-        return [*filter(cell.context.devices.answers_for, found)] if cell.cell.shared else found
+        """The robots that may hold parts and that this cell answers for."""
+        holders = [name for name in cell.cell.holders if name in robots]
+        return [*filter(cell.context.devices.answers_for, holders)] if cell.cell.shared else holders
 
     def _none_able(self, robots: frozenset[str], first: str) -> Sentence:
-        """The reason why nothing can be released: nothing holds parts, or what does is with another cell."""
+        """The reason why nothing can be released: no effector, or the device is with another cell."""
         for device in sorted(robots.intersection(self._dispatcher.model.shared)):
             holder = self._zones.holder(device)
             if holder is not None and self._dispatcher.model.robots[device].held_fact is not None:
@@ -115,12 +116,17 @@ class Releasing:
         return NO_EFFECTOR(robot=first)
 
 
+def _lose_part(run: CellRun, robot: str) -> None:
+    """Note that the operator has an effector opened that held a part of the cell's task."""
+    if robot in run.context.parts.holding:
+        lost = Failure(reason=Reason.PART_LOST, sentence=LET_GO(arm=robot))
+        run.lose(NO_PART(arm=robot), run.trouble or lost)
+
+
 def _nothing_held(able: list[tuple[CellRun, str]]) -> Sentence:
-    """That no part is known to be in devices, and what leads on where they keep a cell waiting."""
+    """The sentence that devices hold no part, and what leads on where their cell waits for something else."""
     devices = tuple(dict.fromkeys(name for _, name in able))
-    ways = [each for cell, _ in able[:1] for each in cell.ways_out(cell.cell.name)]
-    return (
-        HOLDS_NOTHING_ANY_MORE(devices=devices, next=sentence(ways))
-        if ways
-        else HOLDS_NOTHING(devices=devices)
-    )
+    next_steps = [each for cell, _ in able[:1] for each in cell.ways_out(cell.cell.name)]
+    if next_steps:
+        return HOLDS_NOTHING_ANY_MORE(devices=devices, next=sentence(next_steps))
+    return HOLDS_NOTHING(devices=devices)

@@ -1,4 +1,4 @@
-"""Scopes of verbs: finds the robots and the cells that an operator means, or refuses a name."""
+"""Scopes of verbs: the robots and cells that an operator's words name, or a refusal of a name."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SHOWN = 10  # tasks that a sentence names
 
 
 class VerbRefusal(ArboledaError):
-    """A verb that changes nothing now; the sentence says why and what is possible."""
+    """A verb that is refused; the sentence says why, and what is possible."""
 
 
 class Scopes:
@@ -40,7 +40,7 @@ class Scopes:
     ) -> None:
         self.cells = cells
         cells_of = dispatcher.model.cells_of.items()
-        self.alone = {name: cells[found[0].name] for name, found in cells_of if len(found) == 1}
+        self.alone = {name: cells[sharing[0].name] for name, sharing in cells_of if len(sharing) == 1}
         self._dispatcher = dispatcher
         self._zones = zones
         self._intake = intake
@@ -54,9 +54,7 @@ class Scopes:
         return robots
 
     def cells_in(self, verb: Verb, scope: str, robots: frozenset[str]) -> list[CellRun]:
-        """The cells of a scope with these robots. Where a verb is no matter of all cells that share a device,
-        the cell that holds the device.
-        """
+        """The cells of a scope with these robots; for most verbs on a shared device its holder."""
         if scope in self.cells:
             return [self.cells[scope]]
         cells = self.of_robots(robots)
@@ -70,10 +68,10 @@ class Scopes:
         return [cell for cell in cells if cell.cell.name == holder]
 
     def of_robots(self, robots: frozenset[str]) -> list[CellRun]:
-        """Their cells in the order of the file; one cell, as screens ask about it, comes without a search."""
+        """The cells of robots, in the order of the plant file."""
         cells_of = self._dispatcher.model.cells_of
         names = {cell.name for robot in robots for cell in cells_of[robot]}
-        if len(names) == 1:
+        if len(names) == 1:  # screens ask about one cell all the time: it needs no search
             return [self.cells[names.pop()]]
         return [cell for name, cell in self.cells.items() if name in names]
 
@@ -99,11 +97,11 @@ class Scopes:
         name = scope.lower()
         if name in self._robots:
             return name
-        known = (*self.cells, *self._dispatcher.beliefs)
-        raise VerbRefusal(NO_TASK(task=quoted(scope), open=self._open_tasks(), known=known))
+        names = (*self.cells, *self._dispatcher.beliefs)
+        raise VerbRefusal(NO_TASK(task=quoted(scope), open=self._open_tasks(), known=names))
 
     def _open_tasks(self) -> Value:
-        """The ids of as many as a sentence can name."""
+        """The ids of open tasks, as many as a sentence can name."""
         ids = tuple(id for id, task in self._intake.tasks.items() if task.ended_at is None)
         if len(ids) > SHOWN:
             return AND_MORE(first=ids[:SHOWN], more=len(ids) - SHOWN)
@@ -111,7 +109,7 @@ class Scopes:
 
 
 def scopes(model: PlantModel) -> dict[str, frozenset[str]]:
-    """Names of the robots of each scope there is: the plant, a cell, one robot."""
+    """The names of the robots of each scope: the plant, a cell, one robot."""
     robots = {name: frozenset([name]) for name in model.robots}
     cells = {cell.name: frozenset(robot.name for robot in cell.robots) for cell in model.cells}
     return robots | cells | dict.fromkeys(("", "plant"), frozenset(model.robots))

@@ -22,14 +22,14 @@ UNTIL_RESET = (*STOPPING, CellState.CLEARING, CellState.STOPPED)
 
 
 class Stops:
-    """Stops of robots in their cells; what cells share stays stopped as long as one of them is."""
+    """Stops of robots in their cells. A shared device stays stopped as long as one of its cells is."""
 
     def __init__(self, cells: dict[str, CellRun], dispatcher: Dispatcher) -> None:
         self._cells = cells
         self._dispatcher = dispatcher
 
     def latch(self, cell: CellRun, robots: frozenset[str]) -> None:
-        """Stop the robots of a cell until they are cleared."""
+        """Latch the robots of a cell: they stand, and take no command, until they are cleared."""
         for robot in cell.cell.robots:
             if robot.name in robots:
                 self._dispatcher.latches.latch(robot.name)
@@ -50,31 +50,32 @@ class Stops:
         return NOT_STILL(robots=moving) if moving else None
 
     def clear(self, cell: CellRun, robots: frozenset[str]) -> None:
-        """Clear robots of a cell, and the cell once none of its robots is stopped any more."""
-        kept = self._kept_stopped(cell, robots.union(cell.cell.shared))
-        was_stopped = cell.context.devices.is_stopped  # also if it was cleared: that may have got lost
+        """Clear robots of a cell; clear the cell once none of its robots is stopped."""
+        stay_stopped = self._kept_stopped(cell, robots.union(cell.cell.shared))
+        was_stopped = cell.context.devices.is_stopped  # also if it was cleared: the clear may have got lost
         unstopped = {name for name in cell.cell.shared if not was_stopped(name)}
         for robot in cell.cell.robots:
-            if robot.name in robots - unstopped and robot.name not in kept:
+            if robot.name in robots - unstopped and robot.name not in stay_stopped:
                 self._dispatcher.latches.unlatch(robot.name)
-        stopped = self._dispatcher.latches.stopped - kept.keys()
+        stopped = self._dispatcher.latches.stopped - stay_stopped.keys()
         if not any(robot.name in stopped for robot in cell.cell.robots):
             cell.become(Cause.CLEAR)
 
     def _kept_stopped(self, cell: CellRun, robots: frozenset[str]) -> dict[str, tuple[str, ...]]:
-        """Those of the robots that stay stopped when they are cleared in a cell, and for which cells: whoever
-        shares them was stopped, too, and is not cleared with them.
+        """The robots that stay stopped when they are cleared in a cell, each with the cells that keep it so.
+
+        Such a cell shares the robot, was stopped too, and is not cleared with it.
         """
-        kept, stopped = {}, self._dispatcher.latches.stopped - robots
+        stay_stopped, stopped = {}, self._dispatcher.latches.stopped - robots
         for name in cell.cell.shared:
             cells = [each for each in self._dispatcher.model.cells_of[name] if stopped & {*each.own}]
             others = tuple(each.name for each in cells if self._cells[each.name].state in STOPPING)
             if name in robots and name in self._dispatcher.latches.stopped and others:
-                kept[name] = others
-        return kept
+                stay_stopped[name] = others
+        return stay_stopped
 
     def reset(self, cell: CellRun, robots: frozenset[str]) -> None:
-        """End the stop of a cell that was cleared."""
+        """End the stop of a cell that was cleared; a shared device waits for the reset of all its cells."""
         for robot in cell.cell.robots:
             others = [each for each in self._dispatcher.model.cells_of[robot.name] if each is not cell.cell]
             if not any(self._cells[other.name].state in UNTIL_RESET for other in others):

@@ -1,4 +1,4 @@
-"""Manual mode of cells on an operator's word: somebody begins to teach a cell, or it goes on by itself."""
+"""Manual mode of cells on an operator's word: a person begins to teach a cell, or ends that."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ LONGEST_NAME = 40
 
 
 class TaughtCells:
-    """Manual mode of cells: who teaches a cell is kept until the end of that has been told."""
+    """Manual mode of cells; the teacher's name is a fact of the memory until the teaching ends."""
 
     def __init__(self, scopes: Scopes, dispatcher: Dispatcher, acts: Acts) -> None:
         self._scopes = scopes
@@ -39,7 +39,7 @@ class TaughtCells:
             cell.manual.when_over = partial(self._over, cell)
 
     def plan(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
-        """Of one cell that rests, by one person, while nobody else is where its robots may get."""
+        """Plan to teach one cell that rests, while no robot of another cell is where its robots may get."""
         cells = self._scopes.cells_in(request.verb, scope, self._scopes.robots(scope))
         teacher = str(request.argument("teacher") or "").strip()
         cell = cells[0]
@@ -75,7 +75,7 @@ class TaughtCells:
         cell.manual.begin(Teaching(cell.context, session=self._acts.next_number, teacher=teacher))
 
     def _over(self, cell: CellRun, teaching: Teaching, why: Sentence) -> None:
-        """Forget who taught a cell; what no operator has asked for is journalled here."""
+        """Forget who taught a cell; journal an end that no operator has asked for."""
         name = cell.cell.name
         self._dispatcher.memory.remember(Fact.MANUAL, name, None)
         if why is not BY_VERB:
@@ -90,7 +90,7 @@ def not_taught(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
 
 
 def _zone_of_other(cell: CellRun) -> Sentence | None:
-    """Refusal where a robot of another cell is, or may be, where robots of this one may get."""
+    """The refusal where a robot of another cell is, or may be, where robots of this cell may get."""
     for robot in filter(cell.context.devices.has, cell.cell.zone_users):
         for zone, holder in cell.context.zones.taken_by_others(robot).items():
             if holder not in cell.cell.own and not cell.context.zones.is_for_task(zone):

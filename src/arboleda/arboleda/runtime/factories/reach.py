@@ -60,12 +60,12 @@ def bridge(assembly: Assembly) -> Iterator[Part]:
         has_lease=assembly.holdings.memory.renew_s is not None,
     )
 
-    def known() -> dict[str, Any]:
+    def broker_state() -> dict[str, Any]:
         connected, refused = part.links()
         return {"broker": {"address": str(broker.address), "connected": connected}, "refused": refused}
 
     assembly.offer(BridgePart, part)
-    assembly.links.add(known)
+    assembly.links.add(broker_state)
     yield part
 
 

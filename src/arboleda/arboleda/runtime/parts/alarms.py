@@ -85,15 +85,18 @@ class AlarmsPart:
             self._look(plant, name)
 
     def _look(self, plant: Plant, name: str) -> None:
-        run, known = plant.cells[name], self._open.get(name)
+        run, open_alarm = plant.cells[name], self._open.get(name)
         need = alarms.need_of(run)
-        if known is None and self._may_pass(plant, name, need):
+        if open_alarm is None and self._may_pass(plant, name, need):
             return
-        if need is not None and (known is None or known[1] != need):
-            self._open[name] = (self._tell(plant, alarms.of_cell(plant, name), known and known[0]), need)
-        elif need is None and known is not None and run.state in alarms.AT_WORK_AGAIN:
+        if need is not None and (open_alarm is None or open_alarm[1] != need):
+            self._open[name] = (
+                self._tell(plant, alarms.of_cell(plant, name), open_alarm and open_alarm[0]),
+                need,
+            )
+        elif need is None and open_alarm is not None and run.state in alarms.AT_WORK_AGAIN:
             del self._open[name]
-            self._tell(plant, alarms.of_cell(plant, name), known[0])
+            self._tell(plant, alarms.of_cell(plant, name), open_alarm[0])
 
     def _may_pass(self, plant: Plant, name: str, need: alarms.Need | None) -> bool:
         """True while a cell has been blocked for less than BLOCKED_S, which may pass without an alarm."""

@@ -25,7 +25,7 @@ class BrokerSurvey:
         self._clear = clear
         self._crash = crash
         self._timer: threading.Timer | None = None
-        self._found: set[str] = set()
+        self._boards_there: set[str] = set()
         self._client = MqttClient(
             f"arboleda_lookout_{uuid4().hex[:8]}",
             broker.address,
@@ -44,7 +44,7 @@ class BrokerSurvey:
 
     def _note(self, event: Delivery | Connection) -> None:
         if isinstance(event, Delivery):
-            self._found.add(event.topic.split("/")[0])
+            self._boards_there.add(event.topic.split("/")[0])
         elif event.up and self._timer is None:
             self._timer = threading.Timer(LOOK_S, self._decide)
             self._timer.daemon = True
@@ -52,9 +52,9 @@ class BrokerSurvey:
 
     def _decide(self) -> None:
         self._client.close()
-        if not self._found:
+        if not self._boards_there:
             self._clear()
             return
-        names = ", ".join(sorted(self._found))
+        names = ", ".join(sorted(self._boards_there))
         sentence = f"{names} already live on this broker, virtual boards of the same names would fight them"
         self._crash("devices", StartError(f"{sentence}; use --boards real"))

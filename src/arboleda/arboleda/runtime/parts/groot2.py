@@ -48,10 +48,10 @@ class Groot2Part(ViewerProcess):
 
     def _notes(self, ports: Mapping[str, int]) -> list[str]:
         rows = ", ".join(f"{cell} {port}/{port + 1}" for cell, port in ports.items())
-        found = [f"Groot2: {rows} on {self._options.host}"]
+        notes = [f"Groot2: {rows} on {self._options.host}"]
         if not is_loopback(self._options.host):
-            found.append("Groot2: everybody on that network sees the trees; its protocol knows no token")
-        return found
+            notes.append("Groot2: everybody on that network sees the trees; its protocol knows no token")
+        return notes
 
     def lines(self, at_us: int, snapshot: Snapshot) -> Iterator[bytes]:
         """The lines for the process, one for each cell with news."""

@@ -28,7 +28,7 @@ class Metrics:
         self._begun: dict[str, float] = {}
         self._boots: dict[str, Any] = {}
         self._online: set[str] = set()
-        self._known = False  # whether its cells and robots have their counts
+        self._has_counts = False  # whether its cells and robots have their counts
         self._registry = registry = CollectorRegistry()
         self._accepted = Counter(
             "arboleda_tasks_accepted", "Tasks that a cell took.", ["cell"], registry=registry
@@ -94,7 +94,7 @@ class Metrics:
 
     def saw(self, snapshot: dict[str, Any]) -> None:
         """Count boots and lost links since the last snapshot."""
-        if not self._known:
+        if not self._has_counts:
             self._begin(snapshot)
         for robot in snapshot["robots"]:
             name, boot = robot["name"], robot["boot_id"]
@@ -109,7 +109,7 @@ class Metrics:
 
     def _begin(self, snapshot: dict[str, Any]) -> None:
         """Set counts to 0 before anything happens, as Prometheus misses the step that begins a series."""
-        self._known = True
+        self._has_counts = True
         for cell in snapshot["cells"]:
             self._accepted.labels(cell["name"])
             self._ended.labels(cell["name"], TaskState.DONE.value, "")

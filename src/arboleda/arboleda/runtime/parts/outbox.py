@@ -79,13 +79,19 @@ class Outbox:
             return
         self._thread.join(END_S)
         with self._news:
-            left = [alarm["id"] for alarm in self._waiting]
+            undelivered = [alarm["id"] for alarm in self._waiting]
             dropped, self._dropped = self._dropped, 0
             self._waiting.clear()
         if dropped:
             LOG.warning("%d alarms for %s were dropped: %s to %s", dropped, self._receiver, *self._gap)
-        if left:
-            LOG.warning("%d alarms did not reach %s: %s to %s", len(left), self._receiver, left[0], left[-1])
+        if undelivered:
+            LOG.warning(
+                "%d alarms did not reach %s: %s to %s",
+                len(undelivered),
+                self._receiver,
+                undelivered[0],
+                undelivered[-1],
+            )
 
     def _work(self) -> None:
         pause_s = FIRST_RETRY_S

@@ -77,8 +77,8 @@ def _own_record(state: Path | None, epoch: int) -> Path:
     """The last file of the record of this start; NoRecord where there is none yet."""
     from arboleda.recorder import files
 
-    found = files.parts_in(state / files.FOLDER) if state else []
-    parts = [part for part in found if part.epoch == epoch]
+    all_parts = files.parts_in(state / files.FOLDER) if state else []
+    parts = [part for part in all_parts if part.epoch == epoch]
     if not parts:
         raise NoRecord(NOT_YET())
     return parts[-1].path

@@ -44,17 +44,17 @@ class Records:
     def past(self, epoch: int | None = None) -> Past:
         """The record of a start, as far as it is written; for None the page's own."""
         with self._one:
-            known = self._open.get(epoch)
-            if known is None:
-                known = time.monotonic(), Past(Views(reader.opened(self._file(epoch))), self._layout)
-            elif time.monotonic() - known[0] > FRESH_S:
-                known[1].grow()
-                known = time.monotonic(), known[1]
-            self._open[epoch] = known
+            opened = self._open.get(epoch)
+            if opened is None:
+                opened = time.monotonic(), Past(Views(reader.opened(self._file(epoch))), self._layout)
+            elif time.monotonic() - opened[0] > FRESH_S:
+                opened[1].grow()
+                opened = time.monotonic(), opened[1]
+            self._open[epoch] = opened
             self._open.move_to_end(epoch)
             while len(self._open) > OPEN:
                 self._open.popitem(last=False)
-            return known[1]
+            return opened[1]
 
     def starts(self) -> list[Start]:
         """The starts of the plant that have a record beside the page's own, the last first."""
@@ -67,13 +67,13 @@ class Records:
             return [start for epoch in epochs if (start := self._start(own, epoch)) is not None]
 
     def _start(self, own: Path, epoch: int) -> Start | None:
-        known = self._beginning(own.parent, epoch)
-        if known is None:
+        beginning = self._beginning(own.parent, epoch)
+        if beginning is None:
             return None
         mine = files.part_at(own)
         is_own = mine is not None and epoch == mine.epoch
         return Start(
-            epoch=epoch, began=known[1] // 1_000_000, is_own=is_own, is_same=self._is_same(own, epoch)
+            epoch=epoch, began=beginning[1] // 1_000_000, is_own=is_own, is_same=self._is_same(own, epoch)
         )
 
     def _is_same(self, own: Path, epoch: int) -> bool:
@@ -100,10 +100,10 @@ class Records:
         if epoch is None:
             return own
         mine = files.part_at(own)
-        found = [part.path for part in files.parts_in(own.parent) if part.epoch == epoch]
-        if mine is None or not found or not self._is_same(own, epoch):
+        paths = [part.path for part in files.parts_in(own.parent) if part.epoch == epoch]
+        if mine is None or not paths or not self._is_same(own, epoch):
             raise NoRecord(NO_START())
-        return found[-1]
+        return paths[-1]
 
 
 def _plant(beginning: Beginning) -> tuple[Any, ...]:

@@ -17,7 +17,7 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 
 from arboleda.engine import Belief, Entry, Plant
-from arboleda.engine.inspection import Ledger, Moment, News
+from arboleda.engine.inspection import Ledger, News, ReportMoment
 from arboleda.kinds.declared import DeviceKind
 from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.model.recipe import Recipe
@@ -128,7 +128,7 @@ def _parts(whole: Any, now: float) -> Iterator[Any]:
     if isinstance(whole, dict):
         for pair in whole.items():
             yield from pair
-    elif isinstance(whole, Moment):
+    elif isinstance(whole, ReportMoment):
         yield from (GrowingNumber(REPORTS, whole.reports), whole.at)
     elif isinstance(whole, list | tuple | deque):
         yield from whole

@@ -81,7 +81,7 @@ class Trails:
 
     def _has_booted(self, trail: Trail, robot: str) -> bool:
         """True for a device that numbers its commands, and has told of another boot than it had then."""
-        known, now = trail.known.get(robot), self._robots[robot]
+        known, now = trail.knowledge.get(robot), self._robots[robot]
         numbers = now.robot.evidence is Evidence.IDS and now.heard_at is not None
         return numbers and known is not None and None not in (known.boot, now.boot) and known.boot != now.boot
 

@@ -261,7 +261,7 @@ class PlacesTruth:
         self._before = self._grips
         effectors = self._world.plant.dispatcher.effectors
         if self._seen != (effectors, effectors.version):
-            self._seen, self._grips = (effectors, effectors.version), effectors.grips.known
+            self._seen, self._grips = (effectors, effectors.version), effectors.grips.by_holder
 
     def follow(self, changed: Iterable[RobotTruth]) -> None:
         """Take in what robots did in this step."""

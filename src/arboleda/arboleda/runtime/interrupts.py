@@ -1,4 +1,4 @@
-"""Waits of a program's main thread for as long as it takes, which Ctrl-C always ends."""
+"""Interrupts of a program: a signal ends each wait of its main thread, and raises once."""
 
 from __future__ import annotations
 

@@ -11,12 +11,12 @@ from queue import SimpleQueue
 
 import pytest
 
-from arboleda.runtime import waiting
+from arboleda.runtime import interrupts
 
 pytestmark = pytest.mark.system
 WAITS: dict[str, Callable[[], object]] = {
-    "for an event": lambda: waiting.until(threading.Event()),
-    "for a queue": lambda: list(waiting.taken_from(SimpleQueue())),
+    "for an event": lambda: interrupts.until(threading.Event()),
+    "for a queue": lambda: list(interrupts.taken_from(SimpleQueue())),
 }
 
 
@@ -48,6 +48,6 @@ def _signal_once_asleep(main: int) -> None:
 def _place(thread: int) -> tuple[str, int] | None:
     """Where the thread is in one of the waits; None before it has come there."""
     frame = innermost = sys._current_frames()[thread]
-    while frame is not None and frame.f_code.co_filename != waiting.__file__:
+    while frame is not None and frame.f_code.co_filename != interrupts.__file__:
         frame = frame.f_back
     return None if frame is None else (innermost.f_code.co_name, innermost.f_lineno)

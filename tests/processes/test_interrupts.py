@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.runtime import waiting
+from arboleda.runtime import interrupts
 
 from ..patience import PATIENCE_S
 
@@ -25,13 +25,13 @@ def test_an_event_that_is_set_ends_the_wait() -> None:
     event = threading.Event()
     setter = threading.Thread(target=event.set)
     setter.start()
-    waiting.until(event)
+    interrupts.until(event)
     setter.join()
 
 
 PROGRAM = """
 from contextlib import suppress
-from arboleda.runtime.waiting import interruptible
+from arboleda.runtime.interrupts import interruptible
 
 with suppress(KeyboardInterrupt), interruptible():
     exec("import signal; signal.raise_signal(signal.{name}); print('not ended')")
@@ -48,10 +48,10 @@ def test_a_signal_while_a_class_is_made_from_a_text_leaves_a_clean_end(tmp_path:
 
 DROPPED = """
 import signal, threading
-from arboleda.runtime import waiting
-from arboleda.runtime.waiting import interruptible, until, until_interrupted
+from arboleda.runtime import interrupts
+from arboleda.runtime.interrupts import interruptible, until, until_interrupted
 
-waiting.LOOK_S = 0.01
+interrupts.LOOK_S = 0.01
 
 class Last:
     def __del__(self):

@@ -6,7 +6,7 @@ from queue import SimpleQueue
 
 import pytest
 
-from arboleda.runtime import waiting
+from arboleda.runtime import interrupts
 
 
 @pytest.fixture(autouse=True)
@@ -20,4 +20,4 @@ def test_what_is_put_is_taken_in_order_up_to_none() -> None:
     queue: SimpleQueue[str | None] = SimpleQueue()
     for word in ("one", "two", None, "three"):
         queue.put(word)
-    assert list(waiting.taken_from(queue)) == ["one", "two"]
+    assert list(interrupts.taken_from(queue)) == ["one", "two"]
