@@ -16,6 +16,8 @@ from .robots import check_homing, names_and_link
 from .settings import settings_of_kind, shape_of_kind
 from .shapes import MovingDeviceShape
 
+CLASH = "{} is a key of every robot; give the field another name"
+
 
 def as_read(kind: KindInPython | MovingKind) -> KindInPython:
     """The kind; one that `@moving_kind` made, as a kind that reads the keys of its robots."""
@@ -26,7 +28,7 @@ def as_read(kind: KindInPython | MovingKind) -> KindInPython:
 def _reader(kind: MovingKind) -> RobotKind:
     @wraps(kind.function)
     def read(document: Document, place: Place) -> Robot | None:
-        shape = document.read(shape_of_kind(kind, MovingDeviceShape, "robot"), place)
+        shape = document.read(shape_of_kind(kind, MovingDeviceShape, CLASH), place)
         check_homing(document, place, shape)
         if shape is None:
             return None

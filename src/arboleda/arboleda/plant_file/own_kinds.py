@@ -27,6 +27,7 @@ from .shared import SECTION
 from .shipped_kinds import COME_WITH_IT, IN_PYTHON, RESERVED
 
 GROUP = "arboleda.kinds"
+CLASH = "{} is a key of every device; give the field another name"
 
 
 def registered() -> dict[str, list[EntryPoint]]:
@@ -84,7 +85,7 @@ def device(
     spot = used.spot(kind)
     used.watch(spot, f"making {kind.name} for {place[-1]}")
     try:
-        shape = document.read(shape_of_kind(kind, DeviceShape, "device"), place)
+        shape = document.read(shape_of_kind(kind, DeviceShape, CLASH), place)
     except PydanticSchemaGenerationError:
         what = f"the settings of {kind.name} have a type that no plant file can give"
         used.keep(document, spot.problem(f"{what}; it can {TYPES}"))

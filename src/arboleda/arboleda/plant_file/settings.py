@@ -95,16 +95,16 @@ def _dataclasses(hint: Any) -> Iterator[type]:
         yield from _dataclasses(each)
 
 
-def shape_of_kind(kind: WrittenKind | MovingKind, base: type[M], what: str) -> type[M]:
-    """The keys of a device of this kind: those of `base`, which every `what` has, and the kind's settings.
+def shape_of_kind(kind: WrittenKind | MovingKind, base: type[M], clash: str) -> type[M]:
+    """The keys of a device of this kind: those of `base`, and the kind's settings.
 
-    KindError if a field of the settings has the name of a key of `base`.
+    KindError with the sentence `clash` if a field of the settings has the name of a key of `base`.
     """
     own = keys(kind.settings)
     taken = next((name for name in own if name in base.model_fields), None)
     if taken is not None:
-        raise KindError(f"{taken} is a key of every {what}; give the field another name")
-    return create_model(f"{what.capitalize()}_{kind.name}", __base__=base, **own)
+        raise KindError(clash.format(taken))
+    return create_model(f"Device_{kind.name}", __base__=base, **own)
 
 
 def settings_of_kind(kind: WrittenKind | MovingKind, shape: Shape) -> Any:
