@@ -11,8 +11,8 @@ from arboleda.bt_xml.running import controls, decorators, leaves, watching
 from arboleda.bt_xml.running.device_steps import DeviceStep, FactStep, QuestionStep, as_variable
 from arboleda.bt_xml.running.memory import Scope
 from arboleda.bt_xml.running.node import FAILURE, SKIPPED, SUCCESS, Node, Result
-from arboleda.bt_xml.running.own import FunctionNode, WrapperNode
 from arboleda.bt_xml.running.ports import NodePorts
+from arboleda.bt_xml.running.python_nodes import FunctionNode, WrapperNode
 from arboleda.bt_xml.running.root import Main
 from arboleda.bt_xml.running.scripts import Script, ScriptError, is_true
 from arboleda.model.by_class import nearest

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from arboleda.bt_xml import checking, reading
-from arboleda.bt_xml.checking import CheckResult
+from arboleda.bt_xml.checking import TreeCheck
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.forest import Forest
 from arboleda.bt_xml.markup import LARGEST
@@ -33,7 +33,7 @@ class TreeFile:
     """A file without mistakes; `warnings` has a line for each."""
 
     forest: Forest
-    checked: CheckResult
+    checked: TreeCheck
     warnings: tuple[str, ...]
 
 
@@ -59,7 +59,7 @@ def report(path: Path, allowed: Mapping[str, Kind] | None = None) -> list[str]:
     return [plain(line, LONGEST) for line in lines]
 
 
-def _unknown(path: Path, checked: CheckResult) -> list[str]:
+def _unknown(path: Path, checked: TreeCheck) -> list[str]:
     if not checked.unknown:
         return []
     names = sorted(checked.unknown)
