@@ -19,7 +19,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from arboleda.host import abilities
-from arboleda.host.processor_alarm import ProcessorAlarm, ended_by_alarm
+from arboleda.host.limits import ProcessorAlarm, ended_by_alarm
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Recipe
 from arboleda.recipes.authoring import WrittenRecipe
