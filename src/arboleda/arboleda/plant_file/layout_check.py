@@ -124,7 +124,7 @@ class Stand:
     def reach_m(self) -> float:
         """The farthest that the tool of the arm can be from the arm's foot, in plan, m."""
         frames = kinematics.place(self.body, self.arm.reference)
-        links = bodies.way(self.body)
+        links = bodies.tool_chain(self.body)
         moving = [link for link in links if link["moves"]]
         turning = [link for link in moving if link["moves"]["type"] == "turn"]
         upright = all(_is_upright(frames, link) for link in turning)

@@ -46,7 +46,7 @@ def lifts(urdf: str, joints: Sequence[Joint]) -> list[int]:
     frames = kinematics.place(body, (0.0,) * len(joints))
     directions = [0] * len(joints)
     level = True  # every joint that turned so far turns about a vertical axis
-    for link in bodies.way(body):
+    for link in bodies.tool_chain(body):
         moves = link["moves"]
         if moves is None:
             continue
