@@ -30,14 +30,14 @@ MOST_NAMED = 3  # commands in one sentence
 def warnings(plant: PlantModel) -> tuple[str, ...]:
     """A sentence for each such node of the plant's trees, with its place."""
     runs = Plant(plant, epoch=0, now=0.0).cells
-    found = [
+    sentences = [
         f"{node.place}: {cell.name}: {recipe.name} {sentence}"
         for cell in plant.cells
         for recipe in cell.recipes
         if isinstance(recipe, TreeRecipe)
         for node, sentence in _of_recipe(cell, recipe, runs[cell.name].context)
     ]
-    return tuple(dict.fromkeys(found))
+    return tuple(dict.fromkeys(sentences))
 
 
 def _of_recipe(cell: Cell, recipe: TreeRecipe, context: Context) -> Iterator[tuple[Node, str]]:
