@@ -10,7 +10,7 @@ from collections import deque
 from pathlib import Path
 
 from arboleda.host.locks import lock
-from arboleda.host.users import own_mark
+from arboleda.host.machine import own_mark
 
 # Below those of outgoing connections (32768 and up on Linux); each worker begins elsewhere.
 PORTS = range(20_000, 32_000)

@@ -7,11 +7,11 @@ import sys
 from pathlib import Path
 
 from arboleda.plant_file import loader
-from arboleda.plant_file.python_uses import Spot
-from arboleda.plant_file.recipe_trial import Verdict
+from arboleda.plant_file.python_uses import SourceSpot
+from arboleda.plant_file.recipe_trial import TrialResult
 
 
-def verdict(name: str, beside: Path | None, content: bytes, **_: bool) -> Verdict:
+def verdict(name: str, beside: Path | None, content: bytes, **_: bool) -> TrialResult:
     """As `recipe_trial.verdict`; this process forgets what the trial has imported of the plant."""
     before = set(sys.modules)
     try:
@@ -20,7 +20,7 @@ def verdict(name: str, beside: Path | None, content: bytes, **_: bool) -> Verdic
         for each in set(sys.modules) - before:
             if _is_of_a_test(each):
                 del sys.modules[each]
-    return Verdict(**json.loads(json.dumps(vars(found))))  # as it comes from another process
+    return TrialResult(**json.loads(json.dumps(vars(found))))  # as it comes from another process
 
 
 def _is_of_a_test(module: str) -> bool:
@@ -28,7 +28,7 @@ def _is_of_a_test(module: str) -> bool:
     return file is not None and not any(file.startswith(each) for each in LASTING)
 
 
-def _watched(spot: Spot, doing: str) -> None:
+def _watched(spot: SourceSpot, doing: str) -> None:
     """A watch that ends nothing; steps that statements make are noted, as wherever somebody watches."""
 
 

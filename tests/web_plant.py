@@ -14,7 +14,7 @@ from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.text import alternatives, spelled
 from arboleda.model.verbs import Arguments
-from arboleda.oee.figures import KeptFigures, Oee, Run, Work, oee
+from arboleda.oee.figures import Oee, PastTask, PastTimes, PlantRun, oee
 from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.web.access.auth import Role
 from arboleda_fleet.oee.api import OeeApi, OeeQuery
@@ -36,9 +36,11 @@ OFFER = {
 }
 OFFERS = [{"cell": "saw", "recipes": [OFFER | {"parameters": [WIDTH]}]}]
 LATE = Phrase("late", "{robot} was late")(robot="ra1")
-FAILED = Work(cell="sis_a", order="sis_a 0B 7", state="failed", accepted_s=0.0, started_s=0.0, ended_s=50.0)
-RAN = Run(since_s=0.0, seen_s=100.0, ended=True)
-FIGURES = KeptFigures(works=[FAILED], runs=[RAN], downs=[], shortest={})
+FAILED = PastTask(
+    cell="sis_a", order="sis_a 0B 7", state="failed", accepted_s=0.0, started_s=0.0, ended_s=50.0
+)
+RAN = PlantRun(since_s=0.0, seen_s=100.0, ended=True)
+FIGURES = PastTimes(works=[FAILED], runs=[RAN], downs=[], shortest={})
 KEPT = [
     TaskRow(
         number=number,

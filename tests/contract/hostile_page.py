@@ -13,7 +13,7 @@ from arboleda.dashboard import page
 from arboleda.model.errors import StartError
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import OWN, Sentence
-from arboleda.oee.figures import KeptFigures, Oee, oee
+from arboleda.oee.figures import Oee, PastTimes, oee
 from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.views import view
 from arboleda.web.access.auth import Door
@@ -91,7 +91,7 @@ class Side:
         return self if kind is OeeApi else None
 
     def oee(self, query: OeeQuery) -> list[Oee]:
-        return [oee(EVIL, KeptFigures(works=[], runs=[], downs=[], shortest={}), 0.0, 1.0)]
+        return [oee(EVIL, PastTimes(works=[], runs=[], downs=[], shortest={}), 0.0, 1.0)]
 
     def submit(self, text: str, _asked_by: str) -> Future[dict[str, Any]]:
         answer: Future[dict[str, Any]] = Future()

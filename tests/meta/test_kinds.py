@@ -15,7 +15,7 @@ import arboleda
 import arboleda.kinds
 import arboleda.recipes
 from arboleda.model.plant_model import Cell, Robot
-from arboleda.plant_file.registry import COME_WITH_IT
+from arboleda.plant_file.shipped_kinds import COME_WITH_IT
 
 ROOT = Path(arboleda.__file__).parent
 ROOTS = (ROOT, *(PACKAGES[f"arboleda_{each}"] for each in ("fleet", "make", "proofs")))
@@ -51,7 +51,7 @@ NAMED_AS_ROLES = {
     "simulator/invariants/screens.py",
 }
 """Where the two robots of a cell of storage are called by their roles, or the model of one by its name."""
-REGISTRY = "plant_file/registry.py"  # where kinds that come with it get their names
+REGISTRY = "plant_file/shipped_kinds.py"  # where kinds that come with it get their names
 FACT = "effector"  # also what an arm says of itself
 KINDS = COME_WITH_IT.keys() - {FACT}
 

@@ -22,7 +22,7 @@ from time import process_time
 
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader, plant_check
-from arboleda.plant_file.answer import check_answer
+from arboleda.plant_file.check_answer import check_answer
 from arboleda.plant_file.mend import Mend, edited
 from arboleda_make.mending.search import mend_of, texts_of
 from arboleda_proofs.campaigns.plants import Plant

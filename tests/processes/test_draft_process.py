@@ -13,7 +13,7 @@ import pytest
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import draft_check
-from arboleda.plant_file.draft_check import CheckResult
+from arboleda.plant_file.draft_check import DraftCheck
 from arboleda_make.drafts import process as draft_process
 from arboleda_make.drafts.process import CheckProcess
 
@@ -33,7 +33,7 @@ def test_it_says_what_check_says_and_what_it_read() -> None:
 
 
 @contextmanager
-def slow_check(process: CheckProcess, gate: Path) -> Iterator[Future[CheckResult]]:
+def slow_check(process: CheckProcess, gate: Path) -> Iterator[Future[DraftCheck]]:
     """A check that is under way until the block ends, and then gives no answer."""
     os.mkfifo(gate)
     with ThreadPoolExecutor(1) as thread, pytest.MonkeyPatch.context() as slow:

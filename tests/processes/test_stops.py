@@ -76,7 +76,7 @@ HANGS = [commit_of_a_task, log, page]
 
 @pytest.mark.parametrize("hang", HANGS)
 def test_every_robot_is_told_to_stop_while_something_hangs(plant, gate, robots, monkeypatch, hang) -> None:
-    monkeypatch.setattr(stop_lane, "KEPT_S", 0.0)
+    monkeypatch.setattr(stop_lane, "ANSWERED_WITHIN_S", 0.0)
     hang(plant, gate, monkeypatch)
     plant.start()
     gate.shut = True
@@ -91,7 +91,7 @@ def test_every_robot_is_told_to_stop_while_something_hangs(plant, gate, robots, 
 
 
 def test_a_stop_leaves_before_the_commit_of_its_own_latch(plant, gate, robots, store, monkeypatch) -> None:
-    monkeypatch.setattr(stop_lane, "KEPT_S", 0.0)
+    monkeypatch.setattr(stop_lane, "ANSWERED_WITHIN_S", 0.0)
     plant.start()
     monkeypatch.setattr(robots, "gate", SimpleNamespace(hangs=True))
     hang_before(gate, store, "keep", monkeypatch)
@@ -107,7 +107,7 @@ def test_a_stop_leaves_before_the_commit_of_its_own_latch(plant, gate, robots, s
 
 
 def test_an_act_that_has_happened_says_so_though_the_disk_hangs(plant, gate, store, monkeypatch) -> None:
-    monkeypatch.setattr(stop_lane, "KEPT_S", 0.0)
+    monkeypatch.setattr(stop_lane, "ANSWERED_WITHIN_S", 0.0)
     plant.start()
     hang_before(gate, store, "sync", monkeypatch)
     gate.shut = True

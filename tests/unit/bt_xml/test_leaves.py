@@ -49,7 +49,7 @@ def test_a_node_about_no_fact_is_a_warning(kinds: dict[str, Kind], node: str) ->
 def test_verbs_questions_facts_and_targets_are_nodes_with_typed_ports(kinds: dict[str, Kind]) -> None:
     program = (kinds["mill_run"].ports or {})["program"]
     assert (program.type, program.words, program.is_needed) == ("int", ("1001", "1002"), True)
-    assert (kinds["camera_look"].ports or {})["answer"].way is PortDirection.OUT
+    assert (kinds["camera_look"].ports or {})["answer"].direction is PortDirection.OUT
     assert kinds["mill_says"].category is Category.CONDITION
     assert kinds["loader_visit"].category is Category.DECORATOR
     assert "vise" in (kinds["loader_go"].ports or {})["target"].words
@@ -101,8 +101,8 @@ def test_the_palette_is_read_again_as_it_was(kinds: dict[str, Kind]) -> None:
     for name, kind in kinds.items():
         found = forest.models[name]
         assert found.category is kind.category
-        there = {port.name: (port.way, port.default) for port in (found.ports or {}).values()}
-        assert there == {port.name: (port.way, port.default) for port in (kind.ports or {}).values()}
+        there = {port.name: (port.direction, port.default) for port in (found.ports or {}).values()}
+        assert there == {port.name: (port.direction, port.default) for port in (kind.ports or {}).values()}
     assert '<input_port name="program" type="int">1001, 1002</input_port>' in printed
 
 

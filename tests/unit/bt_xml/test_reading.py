@@ -92,7 +92,7 @@ def test_models_declare_kinds_with_their_ports() -> None:
     assert forest.models["Around"].category is nodes.Category.DECORATOR
     port = (forest.models["Around"].ports or {})["n"]
     assert (port.type, port.default, port.is_needed) == ("int", "3", False)
-    assert (forest.models["Look"].ports or {})["seen"].way is nodes.PortDirection.OUT
+    assert (forest.models["Look"].ports or {})["seen"].direction is nodes.PortDirection.OUT
 
 
 def test_trees_need_names_and_one_node_and_to_be_there_once() -> None:

@@ -9,7 +9,7 @@ import pytest
 from arboleda.core.plant import Plant
 from arboleda.departures.leaving import STILL_WAITS, StopLeft, Unkept, departure, done_at_once
 from arboleda.departures.stop_lane import (
-    KEPT_S,
+    ANSWERED_WITHIN_S,
     Blocked,
     Closed,
     Departed,
@@ -88,7 +88,7 @@ def test_the_plant_takes_no_number_of_the_lane_for_that_of_a_stranger(lane: Stop
 def test_who_asked_hears_in_time_that_a_stop_has_left_and_is_not_kept(lane: StopLane) -> None:
     lane.step(10.0, [opened("sis_a"), Blocked(token="a")])
     due = lane.next_deadline
-    assert due == 10.0 + KEPT_S
+    assert due == 10.0 + ANSWERED_WITHIN_S
     (answer,) = lane.step(due, [])
     assert isinstance(answer, StopLeft)
     assert (answer.request, answer.scope, answer.refusal) == ("a", "sis_a", None)
@@ -101,8 +101,8 @@ HOLD = OperatorAnswer(verb=Verb.HOLD, scope="sis_a", request="a", act=3, outcome
 
 def test_who_asked_hears_in_time_that_an_act_has_happened_and_is_not_kept(lane: StopLane) -> None:
     lane.step(10.0, [Happened(at=10.0, answer=HOLD)])
-    assert lane.next_deadline == 10.0 + KEPT_S
-    (said,) = lane.step(10.0 + KEPT_S, [])
+    assert lane.next_deadline == 10.0 + ANSWERED_WITHIN_S
+    (said,) = lane.step(10.0 + ANSWERED_WITHIN_S, [])
     assert isinstance(said, Unkept) and (said.request, said.act, said.outcome) == ("a", 3, Outcome.DONE)
     assert str(said.why).startswith("hold sis_a is done, and the plant has not kept it (its disk")
     lane.step(20.0, [Happened(at=20.0, answer=HOLD), Closed(token="a")])
@@ -120,7 +120,7 @@ def test_an_act_with_commands_of_its_own_has_not_happened_before_these_leave() -
 def test_a_stop_that_the_plant_has_sent_itself_is_told_to_have_left(lane: StopLane) -> None:
     lane.step(10.0, [opened("")])
     lane.step(10.1, [Departed(token="a")])
-    (answer,) = lane.step(10.0 + KEPT_S, [])
+    (answer,) = lane.step(10.0 + ANSWERED_WITHIN_S, [])
     assert "left for the whole plant" in str(answer.why)
 
 

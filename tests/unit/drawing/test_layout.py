@@ -5,7 +5,7 @@ from itertools import combinations
 
 import pytest
 
-from arboleda.drawing.layout import HEIGHT, Layout, Place, columns, outline, wide
+from arboleda.drawing.layout import HEIGHT, Layout, NodePlace, columns, outline, wide
 
 TREE = (
     ("root", "? storage"),
@@ -26,7 +26,7 @@ def test_no_two_nodes_overlap_and_all_are_inside(way: Way) -> None:
     assert not [pair for pair in combinations(plan.places.values(), 2) if overlap(*pair)]
 
 
-def overlap(one: Place, other: Place) -> bool:
+def overlap(one: NodePlace, other: NodePlace) -> bool:
     apart = one[0] + one[2] <= other[0] or other[0] + other[2] <= one[0]
     return not apart and abs(one[1] - other[1]) < HEIGHT
 

@@ -110,4 +110,4 @@ def test_an_axis_has_length_one() -> None:
 
 def test_the_tip_is_tool0_even_on_a_short_way() -> None:
     assert bodies.tip(bodies.read(MESHES)) == "tool0"
-    assert [link["link"] for link in bodies.way(bodies.read(MESHES))] == ["a", "tool0"]
+    assert [link["link"] for link in bodies.tool_chain(bodies.read(MESHES))] == ["a", "tool0"]

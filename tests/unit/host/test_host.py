@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from arboleda.host import addresses, boot, files, limits, locks, processor_alarm, users
+from arboleda.host import files, limits, locks, machine
 from arboleda_make.versions import hang_up
 
 
@@ -70,16 +70,16 @@ def test_without_limits_there_are_none(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_name_leads_to_its_addresses_once() -> None:
-    assert addresses.by_name("localhost") == ["127.0.0.1"]
-    assert addresses.by_name("127.0.0.1") == ["127.0.0.1"]
+    assert machine.by_name("localhost") == ["127.0.0.1"]
+    assert machine.by_name("127.0.0.1") == ["127.0.0.1"]
 
 
 def test_a_name_that_leads_nowhere_has_no_address(monkeypatch: pytest.MonkeyPatch) -> None:
     def unknown(*_: object) -> None:
         raise OSError("unknown")
 
-    monkeypatch.setattr(addresses.socket, "getaddrinfo", unknown)
-    assert addresses.by_name("mill.lab") == []
+    monkeypatch.setattr(machine.socket, "getaddrinfo", unknown)
+    assert machine.by_name("mill.lab") == []
 
 
 def test_an_open_file_gets_other_content(tmp_path: Path) -> None:
@@ -100,8 +100,8 @@ def test_a_folder_that_cannot_be_opened_is_not(tmp_path: Path, monkeypatch: pyte
 def test_a_boot_that_nobody_tells_is_another_each_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(boot, "LINUX", tmp_path / "absent")
-    assert boot.this_boot() != boot.this_boot()
+    monkeypatch.setattr(machine, "BOOT_ID", tmp_path / "absent")
+    assert machine.this_boot() != machine.this_boot()
 
 
 def test_without_the_signal_the_plant_leaves_signals_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -114,26 +114,26 @@ def test_without_the_signal_the_plant_leaves_signals_as_they_are(monkeypatch: py
 
 
 def test_without_an_alarm_no_process_ends_by_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert processor_alarm.ended_by_alarm(-signal.SIGPROF) and not processor_alarm.ended_by_alarm(None)
-    monkeypatch.setattr(processor_alarm, "NUMBER", None)
-    alarm = processor_alarm.ProcessorAlarm(sys.stderr)
+    assert limits.ended_by_alarm(-signal.SIGPROF) and not limits.ended_by_alarm(None)
+    monkeypatch.setattr(limits, "ALARM", None)
+    alarm = limits.ProcessorAlarm(sys.stderr)
     alarm.set(1.0)
     alarm.close()
-    assert not processor_alarm.ended_by_alarm(-signal.SIGPROF)
+    assert not limits.ended_by_alarm(-signal.SIGPROF)
 
 
 def test_a_user_has_a_home_and_nobody_else_has(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert users.home_of("root") == Path("/root")
-    assert users.home_of("") is None and users.home_of("root/x") is None
-    monkeypatch.setattr(users, "pwd", None)
-    assert users.home_of("root") is None
+    assert machine.home_of("root") == Path("/root")
+    assert machine.home_of("") is None and machine.home_of("root/x") is None
+    monkeypatch.setattr(machine, "pwd", None)
+    assert machine.home_of("root") is None
 
 
 def test_a_mark_is_that_of_the_user(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert users.own_mark() == str(os.getuid())
+    assert machine.own_mark() == str(os.getuid())
     monkeypatch.setenv("LOGNAME", "ana")
     monkeypatch.delattr(os, "getuid")
-    assert users.own_mark() == "ana"
+    assert machine.own_mark() == "ana"
 
 
 def test_a_limit_that_the_system_refuses_is_done_without(monkeypatch: pytest.MonkeyPatch) -> None:

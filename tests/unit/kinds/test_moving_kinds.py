@@ -65,7 +65,7 @@ def test_it_has_no_effector_and_says_nothing_of_one() -> None:
     assert moved.objection(said) is None and not moved.has_effector
     for more in ({"effector": True}, {"piece": False}, {"node": 1}, {"q": (0.0,)}):
         assert moved.objection(replace(said, **more)) is not None
-    assert Channel.EFFECTOR not in {way.channel for way in form_of(moved).ways.values()}
+    assert Channel.EFFECTOR not in {way.channel for way in form_of(moved).command_forms.values()}
 
 
 @pytest.mark.parametrize(

@@ -13,11 +13,11 @@ from arboleda.oee.figures import (
     NO_PLAN,
     NOTHING_ENDED,
     Downtime,
-    KeptFigures,
     Oee,
-    Run,
+    PastTask,
+    PastTimes,
+    PlantRun,
     Shortest,
-    Work,
     common,
     joined,
     length,
@@ -26,23 +26,23 @@ from arboleda.oee.figures import (
 )
 
 NOW = 1000.0
-ALL_DAY = Run(since_s=0.0, seen_s=NOW, ended=False)
+ALL_DAY = PlantRun(since_s=0.0, seen_s=NOW, ended=False)
 
 
-def work(accepted: float, started: float | None, ended: float | None, state: str = "done") -> Work:
-    return Work(cell="a", order="a 1", state=state, accepted_s=accepted, started_s=started, ended_s=ended)
+def work(accepted: float, started: float | None, ended: float | None, state: str = "done") -> PastTask:
+    return PastTask(cell="a", order="a 1", state=state, accepted_s=accepted, started_s=started, ended_s=ended)
 
 
 def figures(
-    *works: Work,
-    runs: tuple[Run, ...] = (ALL_DAY,),
+    *works: PastTask,
+    runs: tuple[PlantRun, ...] = (ALL_DAY,),
     downs: tuple[tuple[float, float | None], ...] = (),
     best: float | None = 50.0,
     since: float = 0.0,
 ) -> Oee:
     stood = [Downtime(cell="a", since_s=begin, until_s=end) for begin, end in downs]
     shortest = {} if best is None else {("a", "a 1"): Shortest(times=3, seconds=best)}
-    return oee("a", KeptFigures(works=works, runs=runs, downs=stood, shortest=shortest), since, NOW)
+    return oee("a", PastTimes(works=works, runs=runs, downs=stood, shortest=shortest), since, NOW)
 
 
 def test_a_cell_that_does_its_best_all_the_time_has_all_of_it() -> None:
@@ -80,25 +80,25 @@ def test_a_cell_that_is_held_still_is_down_until_now() -> None:
 
 
 def test_a_plant_that_was_ended_in_peace_is_not_down_though_tasks_wait() -> None:
-    ran = (Run(since_s=0.0, seen_s=200.0, ended=True), Run(since_s=900.0, seen_s=NOW, ended=False))
+    ran = (PlantRun(since_s=0.0, seen_s=200.0, ended=True), PlantRun(since_s=900.0, seen_s=NOW, ended=False))
     found = figures(work(0, 0, 200), work(100, 900, 950), runs=ran)
     assert found.planned_s == 250.0 and found.worked_s == 250.0
 
 
 def test_a_plant_that_was_killed_is_down_while_a_task_waits_or_was_at_work() -> None:
-    ran = (Run(since_s=0.0, seen_s=200.0, ended=False), Run(since_s=900.0, seen_s=NOW, ended=False))
+    ran = (PlantRun(since_s=0.0, seen_s=200.0, ended=False), PlantRun(since_s=900.0, seen_s=NOW, ended=False))
     found = figures(work(100, 100, 950), runs=ran)
     assert found.planned_s == 850.0 and found.worked_s == 150.0
 
 
 @pytest.mark.parametrize(("late_s", "worked_s"), [(LATE_S, NOW), (LATE_S + 1, NOW - LATE_S - 1)])
 def test_a_plant_that_has_not_been_seen_for_long_does_not_run(late_s: float, worked_s: float) -> None:
-    ran = (Run(since_s=0.0, seen_s=NOW - late_s, ended=False),)
+    ran = (PlantRun(since_s=0.0, seen_s=NOW - late_s, ended=False),)
     assert figures(work(0, 0, None, "running"), runs=ran).worked_s == worked_s
 
 
 def test_of_a_time_before_anything_was_kept_nothing_is_said() -> None:
-    ran = (Run(since_s=600.0, seen_s=NOW, ended=False),)
+    ran = (PlantRun(since_s=600.0, seen_s=NOW, ended=False),)
     found = figures(work(500, 500, 560), work(590, 590, 700), runs=ran)
     assert (found.since_s, found.planned_s, found.done) == (600.0, 100.0, 1)
 
@@ -139,18 +139,18 @@ def test_what_nobody_can_say_says_why(found: Oee, missing: object) -> None:
 
 def test_an_order_that_was_seldom_done_has_no_shortest_time() -> None:
     twice = {("a", "a 1"): Shortest(times=2, seconds=50.0)}
-    found = oee("a", KeptFigures(works=[work(0, 0, 50)], runs=[ALL_DAY], downs=[], shortest=twice), 0.0, NOW)
+    found = oee("a", PastTimes(works=[work(0, 0, 50)], runs=[ALL_DAY], downs=[], shortest=twice), 0.0, NOW)
     assert (found.performance, found.timed, found.quality) == (None, 0, 1.0)
 
 
 def test_performance_is_of_those_that_can_be_compared_if_they_are_half_of_all() -> None:
-    other = Work(cell="a", order="a 2", state="done", accepted_s=0, started_s=100, ended_s=300)
+    other = PastTask(cell="a", order="a 2", state="done", accepted_s=0, started_s=100, ended_s=300)
     assert figures(work(0, 0, 100), other).performance == 0.5
     assert figures(work(0, 0, 100), other, other).performance is None
 
 
 def test_another_cell_has_no_part_in_it() -> None:
-    other = Work(cell="b", order="a 1", state="failed", accepted_s=0, started_s=0, ended_s=300)
+    other = PastTask(cell="b", order="a 1", state="failed", accepted_s=0, started_s=0, ended_s=300)
     assert figures(work(0, 0, 50), other) == figures(work(0, 0, 50))
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.errors import ConfigError
-from arboleda.plant_file import loader
+from arboleda.plant_file import user_file
 
 
 def write(tmp_path: Path, raw: bytes) -> Path:
@@ -18,7 +18,7 @@ def write(tmp_path: Path, raw: bytes) -> Path:
 
 def test_lines_are_names_and_passwords(tmp_path: Path) -> None:
     file = write(tmp_path, b"# boards\nra_1:a:b #c\r\n\n rm_sis_a :x\n")
-    assert loader.broker_users(file) == {"ra_1": "a:b #c", "rm_sis_a": "x"}
+    assert user_file.broker_users(file) == {"ra_1": "a:b #c", "rm_sis_a": "x"}
 
 
 @pytest.mark.parametrize(
@@ -36,7 +36,7 @@ def test_a_bad_file_is_refused_without_showing_a_password(
 ) -> None:
     file = write(tmp_path, raw)
     with pytest.raises(ConfigError) as refusal:
-        loader.broker_users(file)
+        user_file.broker_users(file)
     for problem, sentence in zip(refusal.value.problems, sentences, strict=True):
         assert problem.startswith(f"{file}:{sentence}")
     assert "secret" not in str(refusal.value)

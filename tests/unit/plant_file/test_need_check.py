@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.plant_file import need_check
+from arboleda.plant_file import plant_check
 from arboleda.plant_file.loader import load
 
 PLANT = """
@@ -48,4 +48,4 @@ def test_it_names_verbs_that_need_what_a_device_never_reports(
 ) -> None:
     (tmp_path / "turn.xml").write_text(TREE, "utf-8")
     (tmp_path / "plant.yaml").write_text(PLANT.format(own=own, evidence=evidence), "utf-8")
-    assert list(need_check.warnings(load(tmp_path / "plant.yaml"))) == said
+    assert list(plant_check.unmet_needs(load(tmp_path / "plant.yaml"))) == said

@@ -289,11 +289,11 @@ def test_an_installed_package_brings_a_driver(
     monkeypatch.setattr(drivers, "entry_points", lambda group: points.select(group=group))
     document = drivers.Document("plant.yaml", PLANT.replace(USE, "driver: bought").encode())
     try:
-        uses = drivers.found(document, drivers.PythonUses())
+        uses = drivers.driver_uses(document, drivers.PythonUses())
         assert type(uses["oven"].make()).__name__ == "Plain"
         for name, told in (("wrong", "is installed as a driver and is none"), ("gone", "cannot be imported")):
             document = drivers.Document("plant.yaml", PLANT.replace(USE, f"driver: {name}").encode())
-            assert drivers.found(document, drivers.PythonUses()) == {}
+            assert drivers.driver_uses(document, drivers.PythonUses()) == {}
             with pytest.raises(ConfigError, match=told):
                 document.finish()
     finally:

@@ -194,7 +194,7 @@ def test_links_of_the_file_that_have_our_names_keep_their_places(tmp_path: Path)
     urdf = robot(link("base_link"), link("tool0"), link("cup"), joint("swing", "base_link tool0"))
     urdf = urdf.replace("</robot>", joint("on", "tool0 cup", "fixed", limit="") + "</robot>")
     plant = swing(tmp_path, urdf, "{file: one.urdf, tip_link: cup, mount: {xyz_mm: [0, 0, 50]}}")
-    chain = [each["link"] for each in bodies.way(body(plant))]
+    chain = [each["link"] for each in bodies.tool_chain(body(plant))]
     assert chain == ["ra_base_link", "ra_base_link_of_model", "ra_tool0_of_model", "ra_cup", "ra_tool0"]
 
 

@@ -13,7 +13,7 @@ from arboleda.model.errors import ConfigError, TextError
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.text import parse
 from arboleda.plant_file import loader, recipe_trial
-from arboleda.plant_file.python_uses import Spot
+from arboleda.plant_file.python_uses import SourceSpot
 
 PLANT = """\
 name: lab
@@ -306,10 +306,10 @@ def test_who_is_ended_while_it_writes_what_it_begins_is_told_by_what_it_began_be
         raise KeyboardInterrupt
 
     with recipe_trial.watching(tmp_path, 1000.0, 4000.0) as watch:
-        watch(Spot(file="recipes.py", line=3), "importing this")
+        watch(SourceSpot(file="recipes.py", line=3), "importing this")
         monkeypatch.setattr(Path, "write_text", ended)
         with pytest.raises(KeyboardInterrupt):
-            watch(Spot(file="recipes.py", line=9), "building heat")
+            watch(SourceSpot(file="recipes.py", line=9), "building heat")
     assert (
         recipe_trial.broken_off(tmp_path, -9) == "recipes.py:3:1: importing this ends Python, with status -9"
     )
@@ -322,7 +322,7 @@ def test_recipes_that_were_given_up_did_not_end_python(
     told = recipe_trial.broken_off(tmp_path, None)
     assert told.startswith("the recipes could not be tried: nothing came of it for 60 s; try again")
     with recipe_trial.watching(tmp_path, 1000.0, 4000.0) as watch:
-        watch(Spot(file="recipes.py", line=9), "building heat")
+        watch(SourceSpot(file="recipes.py", line=9), "building heat")
     assert recipe_trial.broken_off(tmp_path, None) == "recipes.py:9:1: building heat takes more than 60 s"
 
 

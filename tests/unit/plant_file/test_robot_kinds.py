@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
-from arboleda.plant_file.registry import COME_WITH_IT
+from arboleda.plant_file.shipped_kinds import COME_WITH_IT
 from arboleda_proofs.testing import Sim
 
 CART = """\

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.viewers.groot2 import KEPT, WatchedTree
+from arboleda.viewers.groot2 import MOST_TRANSITIONS, WatchedTree
 
 IDLE, RUNNING, SUCCESS, FAILURE = range(4)
 STATUSES = {IDLE: "INVALID", RUNNING: "RUNNING", SUCCESS: "SUCCESS", FAILURE: "FAILURE"}
@@ -150,9 +150,9 @@ def test_changes_are_recorded_from_start_to_stop_and_told_once() -> None:
 def test_a_recording_that_nobody_fetches_is_bounded() -> None:
     client = Client(*tree(RUNNING, RUNNING))
     client.ask("r", "start")
-    for at in range(2 * KEPT):
+    for at in range(2 * MOST_TRANSITIONS):
         client.cell.saw(tree(RUNNING, SUCCESS if at % 2 else RUNNING), {}, at)
-    assert len(client.transitions) == KEPT
+    assert len(client.transitions) == MOST_TRANSITIONS
 
 
 @pytest.mark.parametrize("type", ["I", "R", "U"])

@@ -12,7 +12,7 @@ from arboleda.model.errors import PayloadError
 from arboleda.model.messages import MotionState
 from arboleda.model.plant_model import Evidence
 from arboleda.wire.payloads import Telemetry, decode, read_angles
-from arboleda.wire.repeats import Words
+from arboleda.wire.repeats import SplitTelemetry
 from arboleda.wire.strict import LIMIT_BYTES
 from arboleda.wire.topics import Channel
 
@@ -58,7 +58,7 @@ def messages(draw: st.DrawFn) -> tuple[bytes, bytes]:
 def test_what_is_known_again_reads_the_same_but_for_its_number(two: tuple[bytes, bytes]) -> None:
     first, second = two
     said = read(first)
-    words = Words.of(first, said) if said else None
+    words = SplitTelemetry.of(first, said) if said else None
     number = words.number(second) if words else None
     if said and number is not None:
         assert read(second) == replace(said, seq=number if said.seq is not None else None)
@@ -68,7 +68,7 @@ def test_what_is_known_again_reads_the_same_but_for_its_number(two: tuple[bytes,
 def test_a_plain_repeat_is_known_again(seq: int) -> None:
     said = read(PLAIN)
     assert said is not None
-    words = Words.of(PLAIN, said)
+    words = SplitTelemetry.of(PLAIN, said)
     assert words is not None and words.number(PLAIN.replace(b"9", b"%d" % seq)) == seq
 
 
@@ -88,7 +88,7 @@ def test_a_plain_repeat_is_known_again(seq: int) -> None:
 def test_another_message_is_not(other: bytes) -> None:
     said = read(PLAIN)
     assert said is not None
-    words = Words.of(PLAIN, said)
+    words = SplitTelemetry.of(PLAIN, said)
     assert words is not None and words.number(other) is None
 
 
@@ -96,7 +96,7 @@ def test_a_message_without_a_number_is_known_by_all_its_bytes() -> None:
     raw = b'{"nodo":4,"estado":0}'
     said = read(raw)
     assert said is not None
-    words = Words.of(raw, said)
+    words = SplitTelemetry.of(raw, said)
     assert words is not None and (words.number(raw), words.number(raw + b" ")) == (0, None)
 
 
@@ -120,7 +120,7 @@ def test_what_is_known_but_for_its_joints_reads_the_same_but_for_them(angles: tu
     second = ("{" + ",".join(keys) + ',"estado":1,"seq":' + number + "}").encode()
     said, begin = read_arm(TURNING), read_angles(second, 3)
     assert said is not None
-    words = Words.of(TURNING, said)
+    words = SplitTelemetry.of(TURNING, said)
     seq = words.turned(second, begin[1]).number(second) if words and begin else None
     if begin and seq is not None:
         assert read_arm(second) == replace(said, seq=seq, q=begin[0])
@@ -136,7 +136,7 @@ def test_an_arm_that_moves_on_is_known_but_for_its_joints() -> None:
     second = b'{"q1_mov":11.5,"q2_mov":2.25,"q3_mov":0.0,"estado":1,"seq":10}'
     said = read_arm(TURNING)
     assert said is not None
-    words, begin = Words.of(TURNING, said), read_angles(second, 3)
+    words, begin = SplitTelemetry.of(TURNING, said), read_angles(second, 3)
     assert words is not None and begin is not None
     assert begin[0] == (11.5, 2.25, 0.0)
     assert words.turned(second, begin[1]).number(second) == 10
@@ -148,7 +148,7 @@ def test_joints_that_make_a_message_too_long_have_to_be_read(raw: bytes) -> None
     long = raw.replace(b"2.25", b"2.25" + b"0" * LIMIT_BYTES)
     said, begin = read_arm(raw), read_angles(long, 3)
     assert said is not None and begin is not None
-    words = Words.of(raw, said)
+    words = SplitTelemetry.of(raw, said)
     assert words is not None and words.turned(long, begin[1]).number(long) is None
 
 
@@ -157,7 +157,7 @@ def test_joints_are_looked_at_alone_only_while_an_arm_moves(state: MotionState) 
     raw = b'{"q1_mov":1.5,"q2_mov":2.25,"q3_mov":-3.0,"estado":%d}' % state.value
     said = read_arm(raw)
     assert said is not None
-    words = Words.of(raw, said)
+    words = SplitTelemetry.of(raw, said)
     assert words is not None and (words.joints > 0) == (state is MotionState.MOVING)
 
 

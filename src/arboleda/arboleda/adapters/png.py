@@ -9,7 +9,7 @@ from typing import Any
 
 from PIL import Image, ImageDraw, ImageFont
 
-from arboleda.drawing.picture import FONT, PAPER, Box, Line, Picture, Word
+from arboleda.drawing.picture import FONT, PAPER, Box, Picture, Polyline, Word
 
 SCALE = 2  # dots per px, for screens and projectors alike
 SMOOTH = 2  # drawn so many times larger, then reduced: Pillow draws lines without smoothing them
@@ -36,9 +36,13 @@ class _Pen:
         self._draw = draw
         self._scale = scale
         self._font = ImageFont.load_default(size=FONT * scale)
-        self._ways: dict[type, Callable[[Any], None]] = {Box: self._box, Line: self._line, Word: self._word}
+        self._ways: dict[type, Callable[[Any], None]] = {
+            Box: self._box,
+            Polyline: self._line,
+            Word: self._word,
+        }
 
-    def draw(self, shape: Box | Line | Word) -> None:
+    def draw(self, shape: Box | Polyline | Word) -> None:
         self._ways[type(shape)](shape)
 
     def _dots(self, *values: float) -> list[float]:
@@ -51,7 +55,7 @@ class _Pen:
             corners, radius=5 * self._scale, fill=box.fill, outline=box.edge, width=width
         )
 
-    def _line(self, line: Line) -> None:
+    def _line(self, line: Polyline) -> None:
         points = [tuple(self._dots(*point)) for point in line.points]
         self._draw.line(points, fill=line.colour, width=round(line.width * self._scale), joint="curve")
 

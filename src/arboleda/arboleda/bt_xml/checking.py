@@ -9,22 +9,32 @@ from graphlib import CycleError, TopologicalSorter
 
 from arboleda.model.outside import among, quoted
 
-from . import choices, endings, ends, names, nodes, script, target_groups, values, variable_types, variables
+from . import (
+    ends,
+    listed_values,
+    names,
+    node_results,
+    nodes,
+    script,
+    target_groups,
+    values,
+    variable_types,
+    variables,
+)
 from .findings import Findings, Place
-from .forest import Forest, Node
+from .forest import SHARING, Forest, Node
 from .markup import Attribute
 from .nodes import OF_LIBRARY, Category, Kind, Port, PortDirection
 from .values import Variable
 
 MOST_LOOPS = 20
-SHARING = ("_autoremap", "__autoremap", "__shared_blackboard")
 OLD_PARALLEL = ("success_threshold", "failure_threshold", "threshold")
 THRESHOLDS = ("success_count", "failure_count", "max_failures", *OLD_PARALLEL)
 PARALLELS = ("Parallel", "ParallelAll")
 
 
 @dataclass(frozen=True, kw_only=True)
-class CheckResult:
+class TreeCheck:
     """Result of a check: the number of nodes, and leaves of unknown kinds with the first place of each."""
 
     nodes: int
@@ -34,26 +44,28 @@ class CheckResult:
 def check(
     forest: Forest,
     findings: Findings,
-    known: Mapping[str, Kind] | None = None,
+    allowed: Mapping[str, Kind] | None = None,
     *,
     leaves_are_checked_later: bool = False,
-) -> CheckResult:
+) -> TreeCheck:
     """Check a forest and keep all findings. `known`: the only kinds of a user's own nodes that there are.
 
     None: there may be any kinds; those that the files declare count, unless they are checked later, in a
     cell.
     """
-    checker = _Checker(forest, findings, {} if leaves_are_checked_later else known, leaves_are_checked_later)
+    checker = _Checker(
+        forest, findings, {} if leaves_are_checked_later else allowed, leaves_are_checked_later
+    )
     for tree in forest.trees.values():
         for node in tree.root.iterate():
             checker.look_at(node)
-        for node in endings.unreached(tree.root):
+        for node in node_results.unreached(tree.root):
             sentence = f"{_named(node)} can never be reached, by what stands before it"
             findings.warning(node.place, sentence, kind="never-reached")
     _check_loops(forest, findings)
     ends.check(forest, findings)
     target_groups.check(forest, findings)
-    choices.check(forest, findings)
+    listed_values.check(forest, findings)
     for place, name in variables.unwritten(forest, checker.kind):
         sentence = f"the variable {quoted(name)} is read, and nothing in these files writes it"
         findings.warning(place, sentence, kind="variable-that-nothing-writes")
@@ -62,7 +74,7 @@ def check(
             findings.mistake(clash.other.place, str(clash))
         else:
             findings.warning(clash.other.place, str(clash), kind="types-of-a-variable")
-    return CheckResult(nodes=checker.number, unknown=checker.unknown)
+    return TreeCheck(nodes=checker.number, unknown=checker.unknown)
 
 
 def _named(node: Node) -> str:
@@ -73,34 +85,37 @@ def _named(node: Node) -> str:
 class _Checker:
     forest: Forest
     findings: Findings
-    known: Mapping[str, Kind] | None = None
+    allowed: Mapping[str, Kind] | None = None
     is_open: bool = False
     number: int = 0
     unknown: dict[str, Place] = field(default_factory=dict)
-    around: set[str] = field(default_factory=set)  # kinds with children that nobody knows
+    around: set[str] = field(default_factory=set)  # unknown kinds with children that were reported
 
     def kind(self, node: Node) -> Kind | None:
-        """The known kind of a node, for a subtree from its model; None if unknown."""
+        """The kind of a node, for a subtree that of its model; None if it is unknown."""
         if node.is_subtree:
             return self._model_of(node)
-        declared = self.forest.models if self.known is None else self.known
-        known = self._built_in(node) or declared.get(node.kind)
-        if known is None and self.known is None and node.tag is not None:
+        declared = self.forest.models if self.allowed is None else self.allowed
+        allowed = self._built_in(node) or declared.get(node.kind)
+        if allowed is None and self.allowed is None and node.tag is not None:
             fewest, most = nodes.children(node.tag)
-            known = Kind(name=node.kind, category=node.tag, ports=None, fewest=fewest, most=most)
-        return known
+            allowed = Kind(name=node.kind, category=node.tag, ports=None, fewest=fewest, most=most)
+        return allowed
 
     def knows(self, node: Node) -> bool:
-        """True if the kind of a node is known by more than the file's own word."""
-        return self.known is not None or self._built_in(node) is not None
+        """True if the kind of a node is known from elsewhere than the model of its file."""
+        return self.allowed is not None or self._built_in(node) is not None
 
     def _built_in(self, node: Node) -> Kind | None:
-        """The built-in kind of a node. In a plant its name means nothing else."""
-        is_own = self.known is None and node.kind in self.forest.own
+        """The built-in kind of a node; None where its file declares another kind of this name.
+
+        In a plant, the name of a built-in kind always means that kind.
+        """
+        is_own = self.allowed is None and node.kind in self.forest.own
         return None if is_own else nodes.built_in(node.kind)
 
     def _model_of(self, node: Node) -> Kind | None:
-        model = self.forest.models.get(node.own["ID"].value)
+        model = self.forest.models.get(node.subtree)
         return model if model is not None and model.category is Category.SUBTREE else None
 
     def look_at(self, node: Node) -> None:
@@ -111,7 +126,7 @@ class _Checker:
                 self._check_script(node, node.own[name])
         for name in SHARING:
             if name in node.own and node.own[name].value not in values.BOOLS:
-                place = Place(node.place.file, node.own[name].mark)
+                place = node.place_of(node.own[name])
                 self.findings.mistake(
                     place, f"{name} must be true or false, is {quoted(node.own[name].value)}"
                 )
@@ -139,17 +154,17 @@ class _Checker:
             self.findings.warning(node.place, sentence, kind="name-of-a-node")
         for name, attribute in node.ports.items():
             if (why := names.of_port(name)) is not None:
-                place = Place(node.place.file, attribute.mark)
+                place = node.place_of(attribute)
                 sentence = f"newer editors refuse {quoted(name)} as the name of a port: {why}"
                 self.findings.warning(place, sentence, kind="name-of-a-port")
 
     def _check_unknown(self, node: Node) -> None:
-        """Check a compact-form node that no file declares; a leaf may be one of a plant or a program."""
-        near = get_close_matches(node.kind, (*(self.known or ()), *OF_LIBRARY), n=1, cutoff=0.8)
+        """Check a node of a kind that no file declares; a leaf may be of a plant or of a program."""
+        near = get_close_matches(node.kind, (*(self.allowed or ()), *OF_LIBRARY), n=1, cutoff=0.8)
         hint = f"; did you mean {near[0]}?" if near else ""
         if node.kind in self.forest.trees:
             self._mistake(node, f'{node.kind} is a tree; write <SubTree ID="{node.kind}"/>')
-        elif self.known is not None:
+        elif self.allowed is not None:
             how = "; `arboleda nodes` lists what this plant has"
             self._mistake(node, f"no device of this plant makes a node {node.kind}{hint or how}")
         elif node.children:
@@ -161,7 +176,7 @@ class _Checker:
             self.unknown.setdefault(node.kind, node.place)
 
     def _warn_of_unknown(self, node: Node, hint: str) -> None:
-        """Warn once of each unknown kind with children: such a node can be read and drawn by anybody."""
+        """Warn once of each unknown kind with children; such a node can still be read and drawn."""
         if node.kind in self.around:
             return
         self.around.add(node.kind)
@@ -199,7 +214,7 @@ class _Checker:
                 sentence = f"{_named(node)} needs {port.name}{_what(port)}"
                 if self.knows(node):
                     self._mistake(node, sentence)
-                elif port.way is not PortDirection.OUT:
+                elif port.direction is not PortDirection.OUT:
                     self.findings.warning(node.place, sentence, kind="needed-port")
 
     def _check_thresholds(self, node: Node) -> None:
@@ -208,13 +223,13 @@ class _Checker:
         for name in THRESHOLDS:
             text = node.port(name) or ""
             if values.INT.fullmatch(text) and values.number(text) > many > 0:
-                place = Place(node.place.file, node.ports[name].mark)
+                place = node.place_of(node.ports[name])
                 children = f"it has {many} {'child' if many == 1 else 'children'}"
                 self.findings.mistake(place, f"{name} of {node.kind} is {text}, and {children}")
 
     def _unknown_port(self, node: Node, name: str, attribute: Attribute, ports: Collection[str]) -> None:
         shown = [each for each in ports if node.kind != "Parallel" or each not in OLD_PARALLEL]
-        place = Place(node.place.file, attribute.mark)
+        place = node.place_of(attribute)
         sentence = f"{node.kind} has no port {quoted(name)}; {among(name, shown)}"
         if self.knows(node):
             self.findings.mistake(place, sentence)
@@ -228,10 +243,10 @@ class _Checker:
                 self._check_script(node, attribute)
             return
         value = values.read(port.name, attribute.value)
-        place = Place(node.place.file, attribute.mark)
+        place = node.place_of(attribute)
         if isinstance(value, Variable):
             return
-        if port.way is PortDirection.OUT:
+        if port.direction is PortDirection.OUT:
             how = f'version 4 wants {port.name}="{{...}}"'
             sentence = f"{port.name} of {node.kind} names a variable; {how}"
             self.findings.warning(place, sentence, kind="output-that-names-a-variable")
@@ -249,16 +264,14 @@ class _Checker:
         try:
             script.parse(attribute.value)
         except script.ScriptFault as fault:
-            self.findings.mistake(
-                Place(node.place.file, attribute.mark), f"{quoted(attribute.value)}: {fault}"
-            )
+            self.findings.mistake(node.place_of(attribute), f"{quoted(attribute.value)}: {fault}")
 
     def _check_subtree(self, node: Node) -> None:
-        name = node.own["ID"].value
+        name = node.subtree
         if node.children:
             self._mistake(node, f"the SubTree {quoted(name)} has children; they stand in its own tree")
         if name not in self.forest.trees and self.forest.is_whole:
-            place = Place(node.place.file, node.own["ID"].mark)
+            place = node.place_of(node.own["ID"])
             sentence = f"the tree {quoted(name)} is in none of these files; {among(name, self.forest.trees)}"
             self.findings.warning(place, sentence, kind="tree-that-is-missing")
         model = self._model_of(node)
@@ -273,11 +286,11 @@ class _Checker:
 
 
 def _what(port: Port) -> str:
-    """The type of a port, as the rest of a sentence."""
+    """The type of a port, as the end of a sentence."""
     if port.type == "script":
         return ", a script"
-    known = values.TYPES.get(port.type)
-    return f": {known[0]}, or a variable" if known else ""
+    described = values.TYPES.get(port.type)
+    return f": {described[0]}, or a variable" if described else ""
 
 
 def _check_loops(forest: Forest, findings: Findings) -> None:
@@ -288,13 +301,13 @@ def _check_loops(forest: Forest, findings: Findings) -> None:
             TopologicalSorter({name: list(used) for name, used in uses.items()}).prepare()
         except CycleError as error:
             loop = list(reversed(error.args[1]))
-            way = " > ".join(loop)
-            findings.mistake(uses[loop[-2]].pop(loop[-1]), f"the tree {loop[-1]} contains itself: {way}")
+            ring = " > ".join(loop)
+            findings.mistake(uses[loop[-2]].pop(loop[-1]), f"the tree {loop[-1]} contains itself: {ring}")
         else:
             return
 
 
 def _subtrees(forest: Forest, name: str) -> Iterator[tuple[str, Place]]:
     for node in forest.trees[name].root.iterate():
-        if node.is_subtree and node.own["ID"].value in forest.trees:
-            yield node.own["ID"].value, node.place
+        if node.is_subtree and node.subtree in forest.trees:
+            yield node.subtree, node.place

@@ -1,4 +1,4 @@
-"""Ends of trees: what is so once a task of a tree is done, as the metadata of its model say it."""
+"""Ends of trees: facts and numbers of parts once a task is done, by the metadata of the tree's model."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from arboleda.model.plant_model import Cell
 from arboleda.recipes.authoring import check_end
 from arboleda.recipes.errors import RecipeError
 
-from . import choices, target_groups
+from . import listed_values, target_groups
 from .findings import Findings, Place
 from .forest import Forest, Metadata
 from .values import number, objection
 
 KEY = "ends_with"
-KEYS = (KEY, target_groups.KEY, choices.KEY)  # of all metadata that mean something here
+KEYS = (KEY, target_groups.KEY, listed_values.KEY)  # of all metadata with a meaning
 HOW = "a place or a fact with its value, `nest: 1; reader.lid: open`"
 PAIR = re.compile(r"\s*([^\s:][^:]*?)\s*:\s*('[^']*'|[^\s':][^':]*?)\s*")
 BOOLS = {"true": True, "false": False}
@@ -28,7 +28,7 @@ BOOLS = {"true": True, "false": False}
 
 @dataclass(frozen=True, kw_only=True)
 class End:
-    """Value that a fact or the number of parts at a place has at the end; `place`: where that is written."""
+    """Value of a fact, or number of parts at a place, at the end of a task; `place` is in the file."""
 
     what: str
     value: Value
@@ -36,32 +36,32 @@ class End:
 
 
 def of_tree(forest: Forest, tree: str) -> tuple[End, ...]:
-    """The end that a tree says it has; what cannot be read is left out, `check` finds it."""
-    return tuple(end for each in _metadata(forest, tree) for end in _read(each) if isinstance(end, End))
+    """The end that a tree states; a part that cannot be read is left out, `check` reports it."""
+    return tuple(end for each in forest.metadata_of(tree, KEY) for end in _read(each) if isinstance(end, End))
 
 
 def check(forest: Forest, findings: Findings) -> None:
-    """Keep a finding for each part of an end that cannot be read, or is there twice."""
+    """Keep a finding for each part of an end that cannot be read, or that is there twice."""
     for tree, metadata in forest.metadata.items():
         for each in metadata:
             near = get_close_matches(each.key, KEYS, n=1, cutoff=0.8)
             if each.key not in KEYS and near:
                 sentence = f"nobody here knows {quoted(each.key)} of {tree}; did you mean {near[0]}?"
                 findings.warning(each.place, sentence, kind="key-of-metadata")
-        known: set[str] = set()
-        for end in (end for each in _metadata(forest, tree) for end in _read(each)):
+        stated: set[str] = set()
+        for end in (end for each in forest.metadata_of(tree, KEY) for end in _read(each)):
             if isinstance(end, _Unread):
                 findings.mistake(end.place, f"{KEY} of {tree}: {quoted(end.text)} is not read; write {HOW}")
-            elif end.what in known:
+            elif end.what in stated:
                 findings.mistake(end.place, f"{KEY} of {tree} has {quoted(end.what)} twice")
             else:
-                known.add(end.what)
+                stated.add(end.what)
 
 
 def check_in_cell(
     name: str, ends: tuple[End, ...], values: Mapping[str, object], cell: Cell, findings: Findings
 ) -> None:
-    """Keep a finding for each end of a recipe of which a cell never says whether it is so."""
+    """Keep a finding for each part of a recipe's end that no device and no place of a cell can report."""
     for end in ends:
         try:
             check_end(name, {str(values.get(end.what, end.what)): end.value}, cell)
@@ -75,10 +75,6 @@ class _Unread:
     place: Place
 
 
-def _metadata(forest: Forest, tree: str) -> Iterator[Metadata]:
-    return (each for each in forest.metadata.get(tree, ()) if each.key == KEY)
-
-
 def _read(metadata: Metadata) -> Iterator[End | _Unread]:
     for text in metadata.text.split(";"):
         pair = PAIR.fullmatch(text)
@@ -89,7 +85,7 @@ def _read(metadata: Metadata) -> Iterator[End | _Unread]:
 
 
 def _value(text: str) -> Value:
-    """The value that a text means: true and false, a number, or a word, which may stand in quotes."""
+    """The value of a text: true or false, a number, or a word, which may stand in quotes."""
     if text.startswith("'"):
         return text[1:-1]
     if text in BOOLS:

@@ -1,7 +1,7 @@
 """A tree of the plant as XML that viewers of BehaviorTree.CPP show: the rows of a tree -> text.
 
-Free viewers show 20 nodes of a tree, so what is larger becomes subtrees. A node with more children than that
-has them in several subtrees of the same kind; those that only split it up are marked with `_part`.
+Free viewers show 20 nodes of a tree, so a larger tree is divided into subtrees. Where one node has too many
+children, groups of them become subtrees of the node's kind, which are marked with `_part`.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ TAKEN = frozenset([*BUILT_IN, *(each.value for each in Category)])
 class LiveNode:
     """Numbered node of a tree that is watched.
 
-    `paths`: the rows that tell its status, several for a node that only splits up a row of them; `tree`: the
-    path of the tree that it is in.
+    `paths` are the rows whose status it shows: one row, or several for a node that stands for a group.
+    `tree` is the path of its tree.
     """
 
     kind: str
@@ -51,12 +51,12 @@ def export(rows: Sequence[Mapping[str, Any]]) -> str:
     """The XML of a tree of these rows (path, name, kind, parameters), as `views/tree_view.py` makes them."""
     writer = _Writer()
     main = writer.tree(_tree_of(rows))
-    found = [kind for kind in writer.kinds.values() if kind.name not in BUILT_IN]
-    return writing.document([*writer.trees, writing.models(found)], main_tree_to_execute=main)
+    own_kinds = [kind for kind in writer.kinds.values() if kind.name not in BUILT_IN]
+    return writing.document([*writer.trees, writing.models(own_kinds)], main_tree_to_execute=main)
 
 
 def live(rows: Sequence[Mapping[str, Any]]) -> LiveTree:
-    """The same tree, with the numbers and paths that BehaviorTree.CPP gives to viewers that watch one."""
+    """The tree of these rows, with the numbers and paths that BehaviorTree.CPP gives to viewers."""
     writer = _LiveWriter()
     main = writer.tree(_tree_of(rows))
     writer.trees[0] = replace(writer.trees[0], attributes={"ID": main, "_fullpath": ""})
@@ -75,7 +75,7 @@ def _tree_of(rows: Sequence[Mapping[str, Any]]) -> _Node:
 
 @dataclass
 class _Node:
-    """Row with the nodes below it; `size` counts those in its own tree."""
+    """Row with the nodes below it."""
 
     row: Mapping[str, Any]
     children: list[_Node] = field(default_factory=list)
@@ -88,7 +88,7 @@ class _Node:
 
     @property
     def paths(self) -> tuple[str, ...]:
-        """The rows that tell its status."""
+        """The paths of the rows whose status the node shows."""
         if not self.is_part:
             return (str(self.row["path"]),)
         return tuple(path for child in self.children for path in child.paths)
@@ -101,7 +101,7 @@ class _Writer:
     _names: set[str] = field(default_factory=set)
 
     def tree(self, node: _Node) -> str:
-        """Write a node as a tree of its own, after the trees that it needs; returns the name of that tree."""
+        """Write a node as a tree of its own, before the trees inside it; returns the name of the tree."""
         _divide(node)
         name = self._free_name(node.title)
         position = len(self.trees)
@@ -127,14 +127,14 @@ class _Writer:
         return self._subtree(node) if node.is_apart else self._tag(node)
 
     def _kind(self, row: Mapping[str, Any], *, around: int) -> Kind:
-        """The kind of a node for a viewer; its ports are those of all nodes of this name."""
+        """The kind of a node for a viewer; it has the ports of all nodes of its name."""
         category = Category.CONDITION if row["kind"] in CONDITIONS else Category.ACTION
         if around:
             category = Category.DECORATOR if around == 1 else Category.CONTROL
         name = _name(f"{row['kind']}_{category.value}" if around else row["kind"])
-        known = self.kinds.get(name)
+        before = self.kinds.get(name)
         new = [Port(name=each) for each in row.get("parameters", {}) if names.of_port(str(each)) is None]
-        ports = {**(known.ports or {} if known is not None else {}), **by_name(new)}
+        ports = {**(before.ports or {} if before is not None else {}), **by_name(new)}
         fewest, most = children(category)
         self.kinds[name] = Kind(name=name, category=category, ports=ports, fewest=fewest, most=most)
         return self.kinds[name]
@@ -154,10 +154,10 @@ class _Writer:
 
 @dataclass
 class _LiveWriter(_Writer):
-    """Writer that numbers the nodes, each before those below it."""
+    """Writer that numbers the nodes, each before the nodes below it."""
 
     nodes: list[LiveNode] = field(default_factory=list)
-    _tree: str = ""  # the path of the one that is being written
+    _tree: str = ""  # the path of the tree that is being written
 
     def _tag(self, node: _Node) -> Tag:
         number = self._number(node)
@@ -182,7 +182,7 @@ class _LiveWriter(_Writer):
 
 
 def _divide(root: _Node) -> None:
-    """Split parts off a tree, the largest that fit first, until it is small enough."""
+    """Divide a tree until it is small enough; of the parts that fit, the largest becomes a tree first."""
     while len(own := list(_own(root))) > LARGEST:
         open_ones = [node for node in own if node is root or not node.is_apart]
         sizes = [(len(list(_own(node))), node) for node in open_ones if node.children and node is not root]
@@ -204,7 +204,7 @@ def _group(node: _Node) -> None:
 
 
 def _own(root: _Node) -> Iterator[_Node]:
-    """The nodes of a tree without those of trees within; such a tree itself is one node."""
+    """The nodes of a tree; a tree inside it counts as one node."""
     waiting = [root]
     while waiting:
         node = waiting.pop()
@@ -215,9 +215,9 @@ def _own(root: _Node) -> Iterator[_Node]:
 
 def _name(text: str) -> str:
     """A name that editors accept: each word with a capital."""
-    kept = "".join(each if each.isalnum() and each.isascii() else " " for each in text)
-    found = "".join(word[:1].upper() + word[1:] for word in kept.split()) or "Node"
-    return f"A{found}" if found[0].isdigit() or names.of_node(found) or found in TAKEN else found
+    letters = "".join(each if each.isalnum() and each.isascii() else " " for each in text)
+    name = "".join(word[:1].upper() + word[1:] for word in letters.split()) or "Node"
+    return f"A{name}" if name[0].isdigit() or names.of_node(name) or name in TAKEN else name
 
 
 def _numbered(name: str) -> Iterator[str]:

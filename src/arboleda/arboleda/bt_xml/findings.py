@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from arboleda.model.recipe import FOR_PEOPLE
 
 MOST_LINES = 10  # of warnings of one kind that are named
-MOST = 200  # mistakes that are shown; a file with more is no file of trees
+MOST = 200  # mistakes that are shown
 
 
 @dataclass(frozen=True, order=True)
@@ -40,7 +40,7 @@ class XmlFault(Exception):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
+class TreeFinding:
     """Mistake or warning with its place."""
 
     place: Place
@@ -50,9 +50,9 @@ class Finding:
 
 @dataclass
 class Findings:
-    """Mistakes, which keep a tree from being used, and warnings, which do not. Each is kept once.
+    """Mistakes, with which no tree can be used, and warnings. Each is kept once.
 
-    Warnings of one kind are told together; `kind` "": those with the same sentence.
+    Warnings of one `kind` are told together; without a kind, warnings of one sentence are.
     """
 
     _mistakes: dict[tuple[Place, str], None] = field(default_factory=dict)
@@ -65,32 +65,34 @@ class Findings:
         self._warnings[(place, sentence)] = kind or sentence
 
     @property
-    def entries(self) -> Iterator[Finding]:
+    def entries(self) -> Iterator[TreeFinding]:
         """All findings, in the order of the files; mistakes first."""
-        for kept, is_mistake in ((self._mistakes, True), (self._warnings, False)):
-            for place, sentence in sorted(kept):
-                yield Finding(place=place, sentence=sentence, is_mistake=is_mistake)
+        for rows, is_mistake in ((self._mistakes, True), (self._warnings, False)):
+            for place, sentence in sorted(rows):
+                yield TreeFinding(place=place, sentence=sentence, is_mistake=is_mistake)
 
     @property
     def mistakes(self) -> tuple[str, ...]:
-        """The mistakes as lines, in the order of the files; of too many the first, and how many more."""
+        """The mistakes as lines, in the order of the files; at most MOST, then how many more there are."""
         lines = [f"{place}: {sentence}" for place, sentence in sorted(self._mistakes)]
-        rest = len(lines) - MOST
-        return tuple(lines) if rest <= 0 else (*lines[:MOST], f"and {rest} mistakes more")
+        more = len(lines) - MOST
+        return tuple(lines) if more <= 0 else (*lines[:MOST], f"and {more} mistakes more")
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """The warnings as lines, in the order of the files: those of one kind in a file are one line."""
+        """The warnings as lines, in the order of the files; warnings of one kind in a file are one line."""
         alike: dict[tuple[str, str], list[tuple[Place, str]]] = {}
         for place, sentence in sorted(self._warnings):
             alike.setdefault((place.file, self._warnings[(place, sentence)]), []).append((place, sentence))
-        lines = [f"{first}: warning: {sentence}{_more(rest)}" for (first, sentence), *rest in alike.values()]
-        rest = len(lines) - MOST
-        return tuple(lines) if rest <= 0 else (*lines[:MOST], f"and {rest} warnings more")
+        lines = [
+            f"{first}: warning: {sentence}{_more(others)}" for (first, sentence), *others in alike.values()
+        ]
+        others = len(lines) - MOST
+        return tuple(lines) if others <= 0 else (*lines[:MOST], f"and {others} warnings more")
 
 
-def _more(rest: Sequence[tuple[Place, str]]) -> str:
+def _more(others: Sequence[tuple[Place, str]]) -> str:
     """The number of further warnings of this kind in the file, and their lines."""
-    lines = list(dict.fromkeys(str(place.mark.line) for place, _ in rest))
+    lines = list(dict.fromkeys(str(place.mark.line) for place, _ in others))
     shown = ", ".join([*lines[:MOST_LINES], *(["..."] if len(lines) > MOST_LINES else [])])
-    return f"; {len(rest)} more like it: line {shown}" if rest else ""
+    return f"; {len(others)} more like it: line {shown}" if others else ""

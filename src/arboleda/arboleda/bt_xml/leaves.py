@@ -1,4 +1,4 @@
-"""Nodes of a cell: for its devices an action for each verb, and conditions on their facts; for its places.
+"""Kinds of nodes of a cell: for each device its verbs and its facts, for its places the parts there.
 
 A node of a device is named by its role and the verb: `mill_run`, `loader_visit`, `mill_says`.
 """
@@ -32,21 +32,21 @@ WITHIN = Port(name="at_most_s", type="double", is_needed=True, about="how long i
 
 
 def of_cell(cell: Cell, own: Iterable[WrittenNode] = ()) -> dict[str, Kind]:
-    """The kinds of nodes of a cell by name, with those in Python; ConfigError if two have the same name."""
-    found: dict[str, Kind] = {}
+    """The kinds of nodes of a cell by name, with nodes in Python; ConfigError if two have one name."""
+    kinds: dict[str, Kind] = {}
     for role, kind in _of_devices(cell):
-        if kind.name in found:
+        if kind.name in kinds:
             raise ConfigError((_twice(cell, kind.name, role),))
-        found[kind.name] = kind
+        kinds[kind.name] = kind
     for name, kind in of_places(cell).items():
-        if name in found:
+        if name in kinds:
             raise ConfigError((f"{cell.name}: its devices and its places make a node {name}; rename a role",))
-        found[name] = kind
+        kinds[name] = kind
     for node in own:
-        if node.name in found:
+        if node.name in kinds:
             raise ConfigError((f"{cell.name}: it makes a node {node.name} itself; rename that in Python",))
-        found[node.name] = _of_python(cell, node)
-    return found
+        kinds[node.name] = _of_python(cell, node)
+    return kinds
 
 
 def roles(cell: Cell) -> dict[str, str]:
@@ -60,7 +60,7 @@ def _of_devices(cell: Cell) -> Iterator[tuple[str, Kind]]:
 
 
 def _twice(cell: Cell, node: str, role: str) -> str:
-    """The sentence for a node that two devices would make, or one of them twice."""
+    """The sentence that two devices make a node of one name, or that one device makes it twice."""
     others = [other for other, kind in _of_devices(cell) if kind.name == node and other != role]
     if not others:
         return f"{cell.name}: {role} makes a node {node} twice; rename a verb of its kind"
@@ -69,26 +69,26 @@ def _twice(cell: Cell, node: str, role: str) -> str:
 
 def of_cells(cells: Sequence[Cell], own: Iterable[WrittenNode] = ()) -> dict[str, Kind]:
     """The kinds of several cells together; NotTheSame if a name means different kinds in two cells."""
-    found: dict[str, Kind] = {}
-    first: dict[str, str] = {}  # the cell whose kind that is
+    kinds_by_name: dict[str, Kind] = {}
+    first: dict[str, str] = {}  # by kind: the first cell that has it
     written = tuple(own)
     with_places = [cell.name for cell in cells if cell.places]
     for cell in cells:
         places = of_places(cell)
         for name, kind in of_cell(cell, written).items():
             if name in places and first.get(name) in with_places:
-                found[name] = _at_either(found[name], kind)
-            elif found.setdefault(name, kind) != kind:
+                kinds_by_name[name] = _at_either(kinds_by_name[name], kind)
+            elif kinds_by_name.setdefault(name, kind) != kind:
                 one, other = first[name], cell.name
                 raise NotTheSame(
                     (f"{name} is not the same in {one} and {other}; choose --cell {one} or --cell {other}",)
                 )
             first.setdefault(name, cell.name)
-    return found
+    return kinds_by_name
 
 
 def of_places(cell: Cell) -> dict[str, Kind]:
-    """The nodes that ask for the parts at a place of a cell, or wait for them; none without places."""
+    """The kinds of nodes that ask for parts at a place of a cell, or wait for them; none without places."""
     targets = tuple(place.target for place in cell.places)
     place = Port(name="place", type="string", is_needed=True, words=targets, about="at which place")
     kinds = (
@@ -139,13 +139,13 @@ def _of_verb(role: str, verb: DeviceVerb) -> Kind:
     ports = [_port(name, type, is_needed=True) for name, type in verb.parameters]
     if verb.effect is Effect.QUERY:
         answers = ", ".join(map(shown, verb.answers))
-        ports.append(Port(name=ANSWER, type="string", way=PortDirection.OUT, about=f"one of {answers}"))
+        ports.append(Port(name=ANSWER, type="string", direction=PortDirection.OUT, about=f"one of {answers}"))
     return _kind(Category.ACTION, f"{role}_{verb.name}", *ports)
 
 
 def _of_facts(role: str, facts: Mapping[str, FactType]) -> Iterator[Kind]:
     ports = [_port(name, type, is_needed=False) for name, type in facts.items()]
-    outputs = [replace(each, way=PortDirection.OUT) for each in ports]
+    outputs = [replace(each, direction=PortDirection.OUT) for each in ports]
     for kind in (
         _kind(Category.CONDITION, f"{role}_says", *ports),
         _kind(Category.ACTION, f"{role}_{TELLS}", *outputs),
@@ -190,13 +190,13 @@ def _taken(cell: Cell, taken: Taken) -> Port:
 
 
 def _output(row: tuple[str, type]) -> Port:
-    return Port(name=row[0], type=TYPES[row[1]], way=PortDirection.OUT, about=_type_words(row[1]))
+    return Port(name=row[0], type=TYPES[row[1]], direction=PortDirection.OUT, about=_type_words(row[1]))
 
 
 def _type_words(type: type) -> str:
-    """A value of Python in words."""
-    known = values.TYPES.get(TYPES[type])
-    return "text" if known is None else known[0]
+    """A type of Python in words."""
+    described = values.TYPES.get(TYPES[type])
+    return "text" if described is None else described[0]
 
 
 def _ask(role: str) -> Kind:
@@ -211,7 +211,7 @@ def _ask(role: str) -> Kind:
             default=f"{PATIENCE_S:g}",
             about="how long it is waited for, in s",
         ),
-        Port(name=ANSWER, type="string", way=PortDirection.OUT, about="what was answered"),
+        Port(name=ANSWER, type="string", direction=PortDirection.OUT, about="what was answered"),
     )
 
 

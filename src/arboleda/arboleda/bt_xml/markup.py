@@ -1,8 +1,8 @@
 """XML as people write it for BehaviorTree.CPP: bytes -> elements and attributes that know their places.
 
-Whether it is XML, expat says. BehaviorTree.CPP takes more than that: a raw & or < in an attribute, two
-hyphens in a comment, lines before the declaration. So expat gets a copy in which these are written over,
-byte for byte, which leaves every place as it is; the values of attributes are read from the file itself.
+expat decides whether a file is XML. BehaviorTree.CPP accepts more: a raw & or < in an attribute, two hyphens
+in a comment, lines before the declaration. So expat gets a copy in which these bytes are written over, which
+leaves every place as it is. The values of attributes are read from the file itself.
 """
 
 from __future__ import annotations
@@ -64,8 +64,8 @@ class Element:
 
     def value(self, name: str) -> str | None:
         """The value of an attribute; None if there is none."""
-        found = self.attributes.get(name)
-        return None if found is None else found.value
+        attribute = self.attributes.get(name)
+        return None if attribute is None else attribute.value
 
     def all(self, name: str) -> list[Element]:
         """The children of that name."""
@@ -74,7 +74,7 @@ class Element:
 
 @dataclass(frozen=True)
 class Markup:
-    """File that was read; `raw` are the places of letters that XML forbids and BehaviorTree.CPP takes."""
+    """File that was read; `raw` are the places of letters that only BehaviorTree.CPP accepts."""
 
     root: Element
     raw: Sequence[tuple[Mark, str]]
@@ -89,7 +89,7 @@ def parse(content: bytes) -> Markup:
     except UnicodeDecodeError as error:
         raise XmlFault(lines.mark(error.start), "is not UTF-8 text; save it as UTF-8") from None
     tamed, ends, raw = _tamed(content, lines)
-    reader = _Reader(content, lines, ends)
+    reader = _ElementReader(content, lines, ends)
     try:
         reader.parser.Parse(bytes(tamed), True)
     except expat.ExpatError as error:
@@ -105,8 +105,8 @@ def _no_xml(error: expat.ExpatError, content: bytes) -> str:
 class _Lines:
     """Line index of a file, which turns the number of a byte into line and column.
 
-    Places are mostly asked for in their order, so columns are counted on from the last one: all of a file
-    may stand on one line.
+    Places are mostly asked for in their order, so columns are counted from the last place. Else the time
+    for a long file on one line would grow by the square of its length.
     """
 
     def __init__(self, content: bytes) -> None:
@@ -157,13 +157,13 @@ def _end_of(content: bytes, start: int, hidden: tuple[bytes, bytes, str], lines:
 
 
 def _write_over(tamed: bytearray, pattern: re.Pattern[bytes], start: int, end: int) -> list[tuple[int, str]]:
-    found = [(match.start(), chr(match[0][0])) for match in pattern.finditer(bytes(tamed[start:end]))]
-    for index, _ in found:
+    letters = [(match.start(), chr(match[0][0])) for match in pattern.finditer(bytes(tamed[start:end]))]
+    for index, _ in letters:
         tamed[start + index] = ord("_")
-    return [(start + index, letter) for index, letter in found]
+    return [(start + index, letter) for index, letter in letters]
 
 
-class _Reader:
+class _ElementReader:
     def __init__(self, content: bytes, lines: _Lines, ends: dict[int, int]) -> None:
         self.top = Element("", {}, Mark(1, 1), Span(0, 0, len(content), len(content)))
         self._content = content
@@ -179,7 +179,7 @@ class _Reader:
         mark = self._lines.mark(start)
         if len(self._open) > DEEPEST:
             raise XmlFault(mark, f"nested deeper than {DEEPEST} levels; make a tree of its own of a part")
-        head = self._ends[start]  # and its end, until that is known
+        head = self._ends[start]  # stands for the end, too, until the last tag comes
         attributes = dict(self._attributes(start, len(name.encode())))
         self._open.append(Element(name, attributes, mark, Span(start, head, head, head)))
 

@@ -1,4 +1,4 @@
-"""The kinds of nodes that BehaviorTree.CPP and Nav2 bring along: their ports, how many children they have.
+"""Built-in kinds of nodes, of BehaviorTree.CPP, Nav2 and MoveIt Pro: their ports and numbers of children.
 
 The names, ports and defaults are those of BehaviorTree.CPP 4.10 and 3.8, of Nav2 for ROS 2 Jazzy, and of the
 decorator ForEach of MoveIt Pro, as their headers and documentation give them.
@@ -33,14 +33,14 @@ class PortDirection(str, Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Port:
-    """Value that a node takes or gives; `is_needed`: the node cannot work without it.
+    """Value that a node takes or gives; `is_needed`: the node cannot work without the value.
 
-    `words`: all its possible values, `limits`: those of a number, if known.
+    `words` are all possible values, if they are known. `limits` are those of a number, None where none are.
     """
 
     name: str
     type: str = ""
-    way: PortDirection = PortDirection.IN
+    direction: PortDirection = PortDirection.IN
     default: str | None = None
     is_needed: bool = False
     words: tuple[str, ...] = ()
@@ -50,7 +50,7 @@ class Port:
 
 @dataclass(frozen=True, kw_only=True)
 class Kind:
-    """Kind of node; `ports` None: unknown. At least one port of `some_of` is needed."""
+    """Kind of node; `ports` is None where they are unknown. A node needs at least one port of `some_of`."""
 
     name: str
     category: Category
@@ -71,9 +71,8 @@ def children(category: Category) -> tuple[int, int]:
 
 
 def _port(text: str) -> Port:
-    """The port written as `name:type`, with `=value` for a default, and before it `>` (output) or `<>`
-    (both)."""
-    way = (
+    """The port of a text `name:type=default`; it begins with `>` for an output, `<>` for both directions."""
+    direction = (
         PortDirection.BOTH
         if text.startswith("<>")
         else PortDirection.OUT
@@ -83,7 +82,13 @@ def _port(text: str) -> Port:
     declared, _, default = text.lstrip("<>").partition("=")
     name, _, type = declared.partition(":")
     is_needed = "=" not in text and not name.endswith("?")
-    return Port(name=name.removesuffix("?"), type=type, way=way, default=default or None, is_needed=is_needed)
+    return Port(
+        name=name.removesuffix("?"),
+        type=type,
+        direction=direction,
+        default=default or None,
+        is_needed=is_needed,
+    )
 
 
 def _kind(
@@ -194,7 +199,7 @@ OTHER_SPELLINGS: Mapping[str, str] = {
     "SubTreePlus": "SubTree",
     "Subtree": "SubTree",
 }
-"""Their names in version 3."""
+"""The kinds by their names in version 3."""
 
 
 SINCE_VERSION_4 = frozenset(
@@ -205,21 +210,21 @@ SINCE_VERSION_4 = frozenset(
         *("ScriptCondition", "WasEntryUpdated"),
     }
 )
-"""Those of the library that version 3 does not have."""
+"""The kinds of the library that version 3 does not have."""
 
 
 def is_own(declared: Kind, *, is_old: bool) -> bool:
-    """True if a file declares a kind of its own by the name of a built-in one that its author need not know.
+    """True if a file declares a kind of its own under a built-in name that its author need not know.
 
-    Those are the kinds of Nav2 and MoveIt, and in a file of version 3 (`is_old`) those of version 4. A
-    declaration that agrees with the built-in kind means that one.
+    These names are those of Nav2 and MoveIt, and in a file of version 3 (`is_old`) those of version 4. A
+    declaration that agrees with the built-in kind means the built-in kind.
     """
     built = BUILT_IN.get(declared.name)
     if built is None or (declared.name in OF_LIBRARY and not (is_old and declared.name in SINCE_VERSION_4)):
         return False
-    there, known = declared.ports or {}, built.ports or {}
-    needed = {port.name for port in known.values() if port.is_needed}
-    return declared.category is not built.category or not needed <= there.keys() <= known.keys()
+    declared_ports, ports = declared.ports or {}, built.ports or {}
+    needed = {port.name for port in ports.values() if port.is_needed}
+    return declared.category is not built.category or not needed <= declared_ports.keys() <= ports.keys()
 
 
 def built_in(name: str) -> Kind | None:

@@ -1,4 +1,4 @@
-"""Values that the parameters of a tree can have in a cell: those that every node accepts that gets them."""
+"""Values of the parameters of a tree in a cell: those that all nodes accept to which a parameter is given."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ KindsOf = Callable[[Cell], Mapping[str, Kind]]
 
 @dataclass(frozen=True)
 class _ValueSet:
-    """Values of a parameter; `words` are all of them, or examples within the limits of a number."""
+    """Values of a parameter; `words` are all values, or examples within the limits of a number."""
 
     words: Sequence[str]
     limits: Limits | None = None
@@ -41,9 +41,8 @@ class _ParameterUse:
 
 def of_tree(forest: Forest, main: str) -> list[Port]:
     """The ports of a tree that are its parameters."""
-    model = forest.models.get(main)
-    ports = (model.ports or {}).values() if model is not None else ()
-    return [each for each in ports if each.way is PortDirection.IN]
+    ports = forest.declared_ports(main).values()
+    return [each for each in ports if each.direction is PortDirection.IN]
 
 
 def parameter(
@@ -56,26 +55,28 @@ def parameter(
     listed: Sequence[str] | None = None,
     names_place: bool = False,
 ) -> Parameter:
-    """The recipe's parameter for a port of its main tree; `kinds`: the leaves that a cell has.
+    """The recipe's parameter for a port of its main tree; `kinds` are the leaves of a cell.
 
-    `group`: the targets of which it is one, `listed`: all that it can be, if it says so. `names_place`: the
-    end of the tree says how many parts are there, so that it can only be a place.
+    `group` is the group of targets that its values come from, `listed` are its values, where the tree has a
+    list. `names_place`: the end of the tree states the parts there, so that the value must be a place.
     """
 
     def allowed(cell: Cell) -> _ValueSet:
         uses = [use.port for use in _uses(forest, kinds(cell), main, port.name, 0)]
-        found = _allowed(port, uses)
+        values_here = _allowed(port, uses)
         if listed is not None:
-            found = _ValueSet(
+            values_here = _ValueSet(
                 [each for each in listed if all(_takes(taking, each) for taking in (port, *uses))]
             )
         if group is not None:
             targets = target_groups.words(cell, group)
-            found = _ValueSet([each for each in targets if each in found.words or not found.words])
+            values_here = _ValueSet(
+                [each for each in targets if each in values_here.words or not values_here.words]
+            )
         if not names_place:
-            return found
+            return values_here
         places = {place.target for place in cell.places}
-        return _ValueSet([word for word in found.words if word in places])
+        return _ValueSet([word for word in values_here.words if word in places])
 
     def value(cell: Cell, word: str) -> object:
         limits = allowed(cell).limits
@@ -94,7 +95,7 @@ def parameter(
 
 
 def check(forest: Forest, main: str, kinds: Mapping[str, Kind], findings: Findings) -> None:
-    """Keep a finding for each parameter that is given to a port of another type."""
+    """Keep a finding for each parameter of the tree that is given to a port of another type."""
     for port in of_tree(forest, main):
         for use in _uses(forest, kinds, main, port.name, 0):
             if not values.fits(port.type, use.port.type):
@@ -104,7 +105,7 @@ def check(forest: Forest, main: str, kinds: Mapping[str, Kind], findings: Findin
 
 
 def _as(type: str, word: str) -> object:
-    """The value of that type that a word means."""
+    """The value of this type that a word means."""
     if type == "bool":
         return word == "true"
     return values.number(word) if type == "double" else int(values.number(word)) if type in WHOLE else word
@@ -113,7 +114,7 @@ def _as(type: str, word: str) -> object:
 def _allowed(port: Port, uses: Sequence[Port]) -> _ValueSet:
     """The values of a parameter that all of these ports accept."""
     is_one_type = all(values.fits(port.type, each.type) for each in uses)
-    all_of_it = [port, *uses] if is_one_type else uses  # else the tree is refused where they are given
+    all_of_it = [port, *uses] if is_one_type else uses  # else `check` refuses the tree
     listed = [each.words or BOOLS for each in all_of_it if each.words or each.type == "bool"]
     if listed:
         return _ValueSet([each for each in listed[0] if all(_takes(taking, each) for taking in all_of_it)])
@@ -122,8 +123,8 @@ def _allowed(port: Port, uses: Sequence[Port]) -> _ValueSet:
     limits = _limits(all_of_it)
     if limits.lower > limits.upper:
         return _ValueSet([])
-    known = any(each.limits is not None for each in uses)
-    examples = (limits.lower, limits.upper) if known else (1, 2)
+    has_limits = any(each.limits is not None for each in uses)
+    examples = (limits.lower, limits.upper) if has_limits else (1, 2)
     read = int if limits.whole else float
     return _ValueSet([shown(read(each)) for each in examples], limits)
 
@@ -156,12 +157,12 @@ def _uses(
     for node in forest.trees[tree].root.iterate():
         for port_name in _ports_with(node, name):
             if node.is_subtree:
-                yield from _uses(forest, kinds, node.own["ID"].value, port_name, level + 1)
+                yield from _uses(forest, kinds, node.subtree, port_name, level + 1)
                 continue
             kind = nodes.built_in(node.kind) or kinds.get(node.kind)
             port = (kind.ports or {}).get(port_name) if kind is not None else None
-            if port is not None and port.way is not PortDirection.OUT:
-                yield _ParameterUse(node, port, Place(node.place.file, node.ports[port_name].mark))
+            if port is not None and port.direction is not PortDirection.OUT:
+                yield _ParameterUse(node, port, node.place_of(node.ports[port_name]))
 
 
 def _ports_with(node: Node, variable: str) -> Iterator[str]:

@@ -38,8 +38,8 @@ def nothing_beside(file: str, path: str, package: str) -> tuple[str, bytes]:
 
 
 def read(file: str, content: bytes, findings: Findings, fetch: Fetch = nothing_beside) -> Forest:
-    """The trees of a file and of all that it includes; faults are kept in the findings."""
-    reader = _Reader(findings, fetch)
+    """The trees of a file and of all files that it includes; faults are kept in the findings."""
+    reader = _ForestReader(findings, fetch)
     reader.read(file, content)
     main = reader.main
     if main is None and len(reader.trees) == 1:
@@ -55,7 +55,7 @@ def read(file: str, content: bytes, findings: Findings, fetch: Fetch = nothing_b
 
 
 @dataclass
-class _Reader:
+class _ForestReader:
     findings: Findings
     fetch: Fetch
     trees: dict[str, Tree] = field(default_factory=dict)
@@ -98,8 +98,8 @@ class _Reader:
     def _choose_main(self, page: _Page, root: Element) -> None:
         named = root.attributes.get("main_tree_to_execute")
         if named is not None and named.value not in self.trees and self.is_whole:
-            known = ", ".join(self.trees) or "none"
-            page.mistake(named.mark, f"there is no tree {quoted(named.value)}; there are {known}")
+            trees = ", ".join(self.trees) or "none"
+            page.mistake(named.mark, f"there is no tree {quoted(named.value)}; there are {trees}")
         elif named is not None:
             self.main = named.value
 
@@ -123,7 +123,7 @@ class _Reader:
             self.trees[name] = Tree(name=name, root=root, own=own, place=page.place(element.mark))
 
     def _refuse_name(self, page: _Page, element: Element, name: str) -> None:
-        """Keep what is wrong with a tree that has the name of a built-in kind of node."""
+        """Keep a finding for a tree that has the name of a built-in kind of node."""
         if name in nodes.OF_LIBRARY and not (page.is_old and name in nodes.SINCE_VERSION_4):
             page.mistake(element.mark, f"a tree cannot be called {name}: a kind of node has this name")
         elif name in nodes.BUILT_IN:
@@ -155,7 +155,7 @@ class _Reader:
 
 @dataclass(frozen=True)
 class _Page:
-    """File being read; `is_old`: it does not declare the format of version 4."""
+    """File that is being read; `is_old`: the file does not declare the format of version 4."""
 
     file: str
     findings: Findings
@@ -171,7 +171,7 @@ class _Page:
         self.findings.warning(self.place(mark), sentence, kind)
 
     def look_at(self, markup: Markup) -> None:
-        """Note the faults of the file as a whole: its root, format, and unknown tags."""
+        """Keep the findings of the file as a whole: its root, its format, and unknown tags."""
         root, format = markup.root, markup.root.attributes.get("BTCPP_format")
         for mark, letter in markup.raw:
             entity = {"&": "&amp;", "<": "&lt;"}[letter]
@@ -227,7 +227,7 @@ class _Page:
 
     def models(self, element: Element) -> dict[str, Kind]:
         """The kinds that a file declares, by name."""
-        found: dict[str, Kind] = {}
+        kinds: dict[str, Kind] = {}
         for child in element.children:
             name = child.value("ID")
             if child.name not in TAGS:
@@ -239,8 +239,8 @@ class _Page:
                 if (why := names.of_node(name)) is not None:
                     sentence = f"newer editors refuse {quoted(name)} as the name of a node: {why}"
                     self.warning(child.mark, sentence, kind="name-of-a-node")
-                found[name] = self._kind(child, name, TAGS[child.name])
-        return found
+                kinds[name] = self._kind(child, name, TAGS[child.name])
+        return kinds
 
     def metadata(self, element: Element) -> dict[str, tuple[Metadata, ...]]:
         """The metadata of the models of trees, by tree."""
@@ -256,16 +256,16 @@ class _Page:
         fewest, most = nodes.children(category)
         ports = [
             port
-            for way in PortDirection
-            for each in element.all(way.value)
-            if (port := self._port(each, way))
+            for direction in PortDirection
+            for each in element.all(direction.value)
+            if (port := self._port(each, direction))
         ]
         return Kind(name=name, category=category, ports=nodes.by_name(ports), fewest=fewest, most=most)
 
-    def _port(self, element: Element, way: PortDirection) -> Port | None:
+    def _port(self, element: Element, direction: PortDirection) -> Port | None:
         name = element.value("name")
         if name is None:
-            self.mistake(element.mark, f'which? <{way.value} name="...">')
+            self.mistake(element.mark, f'which? <{direction.value} name="...">')
             return None
         if not name.startswith("_") and (why := names.of_port(name)) is not None:
             sentence = f"newer editors refuse {quoted(name)} as the name of a port: {why}"
@@ -274,7 +274,7 @@ class _Page:
         return Port(
             name=name,
             type=plain_type(element.value("type")),
-            way=way,
+            direction=direction,
             default=default or None,
             is_needed=not default,
         )

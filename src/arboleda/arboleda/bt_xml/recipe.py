@@ -16,7 +16,7 @@ from arboleda.model.task import Order
 from arboleda.recipes.holding import held
 from arboleda.recipes.nodes import WrittenNode
 
-from . import choices, ends, leaves, parameters, runnable, target_groups
+from . import ends, leaves, listed_values, parameters, runnable, target_groups
 from .findings import Findings, Place
 from .forest import Forest
 from .nodes import Kind
@@ -29,11 +29,10 @@ from .running.root import Main, Rescue
 
 @dataclass(frozen=True, kw_only=True)
 class TreeRecipe(Recipe):
-    """Recipe of a file; `file` is its name for people, `content` what it was read from, `place` that of its
-    main tree.
+    """Recipe of a file of trees; `file` is its name for people, `place` that of its main tree.
 
-    `own`: the nodes in Python that it may use. `groups`: the group of targets of which a parameter is one.
-    `check_devices` raises NoDeviceError if a cell has no device for a node.
+    `own` are the nodes in Python that the recipe may use. `groups` has by parameter the group of targets that
+    its values come from. `check_devices` raises NoDeviceError if a cell has no device for a node.
     """
 
     file: str
@@ -47,9 +46,9 @@ class TreeRecipe(Recipe):
 def tree_recipe(
     name: str, file: str, content: bytes, forest: Forest, own: Mapping[str, WrittenNode]
 ) -> TreeRecipe:
-    """The recipe of the main tree of a forest that can be run; in a cell it is checked with each build.
+    """The recipe of the main tree of a forest that can be run; each build checks it in the cell.
 
-    `own`: the nodes in Python, of which more may come until it is first built.
+    `own` are the nodes in Python; more of them may be added until the first build.
     """
     main = forest.main
     assert main is not None
@@ -68,8 +67,8 @@ def tree_recipe(
         return _built(name, forest, main, order, Devices(context, [], own))
 
     ending, groups = {each.what for each in end}, target_groups.of_tree(forest, main)
-    listed = choices.of_tree(forest, main)
-    known = tuple(
+    listed = listed_values.of_tree(forest, main)
+    parameter_list = tuple(
         parameters.parameter(
             forest,
             main,
@@ -84,7 +83,7 @@ def tree_recipe(
     return TreeRecipe(
         name=name,
         build=build,
-        parameters=known,
+        parameters=parameter_list,
         about=_about(forest, main),
         ends_with=tuple((each.what, each.value) for each in end),
         file=file,

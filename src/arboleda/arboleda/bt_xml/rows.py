@@ -11,24 +11,24 @@ CONTROLS = {"Sequence": "sequence", "Fallback": "selector", "Parallel": "paralle
 
 
 def rows(forest: Forest, tree: str) -> list[dict[str, Any]]:
-    """A row for each node, in depth-first order; a subtree within itself is not drawn again."""
-    found: list[dict[str, Any]] = []
+    """A row for each node, in depth-first order; a tree inside itself is drawn once."""
+    drawn: list[dict[str, Any]] = []
     waiting: list[tuple[Node, str, tuple[str, ...]]] = [(forest.trees[tree].root, "", (tree,))]
-    while waiting and len(found) < MOST:
+    while waiting and len(drawn) < MOST:
         node, path, around = waiting.pop()
-        found.append(
+        drawn.append(
             {"path": path or "root", "name": title(node), "kind": _sign(node.kind), "status": "INVALID"}
         )
-        found[-1]["feedback"] = ""
+        drawn[-1]["feedback"] = ""
         below, within = _below(forest, node, around)
         for number in reversed(range(len(below))):
             waiting.append((below[number], f"{path}.{number}" if path else str(number), within))
-    return found
+    return drawn
 
 
 def title(node: Node) -> str:
     """The title of a node for people: its own name, or its kind with its values."""
-    kind = node.own["ID"].value if node.is_subtree else node.kind
+    kind = node.subtree if node.is_subtree else node.kind
     if node.name and node.name != kind:
         return f"{node.name} ({kind})"
     ports = " ".join(f"{name}={attribute.value}" for name, attribute in node.ports.items())
@@ -38,7 +38,7 @@ def title(node: Node) -> str:
 def _below(forest: Forest, node: Node, around: tuple[str, ...]) -> tuple[tuple[Node, ...], tuple[str, ...]]:
     if not node.is_subtree:
         return node.children, around
-    name = node.own["ID"].value
+    name = node.subtree
     if name in around or name not in forest.trees:
         return (), around
     return (forest.trees[name].root,), (*around, name)

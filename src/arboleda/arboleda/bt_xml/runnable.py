@@ -10,7 +10,7 @@ from functools import cache
 from arboleda.model.outside import among, quoted
 
 from . import checking, nodes, parameters, values, variables
-from .findings import Findings, Place
+from .findings import Findings
 from .forest import Forest, Node
 from .nodes import Kind, PortDirection
 from .running.errors import NoDeviceError, TreeMistakes
@@ -26,29 +26,28 @@ INSTEAD: Mapping[str, str] = {
     "GoalUpdater": NO_ROBOT_OF_NAV2,
     "PauseResumeController": "an operator holds and resumes a cell",
 }
-"""The known nodes that are not run, and what to take."""
+"""By kind of a known node that is not run: what to use instead."""
 
 
 def part_of(forest: Forest, main: str) -> Forest:
     """The trees that the main tree consists of."""
-    found, waiting = {main: forest.trees[main]}, [main]
+    trees, waiting = {main: forest.trees[main]}, [main]
     while waiting:
         for name in forest.inside(waiting.pop()):
-            if name not in found:
-                found[name] = forest.trees[name]
+            if name not in trees:
+                trees[name] = forest.trees[name]
                 waiting.append(name)
-    return replace(forest, trees=found, main=main)
+    return replace(forest, trees=trees, main=main)
 
 
 def check(forest: Forest, findings: Findings) -> None:
-    """Keep a finding for each part of the trees that can be run in no cell. No tree may contain itself."""
+    """Keep a finding for each part of the trees that no cell can run. No tree may contain itself."""
     for tree in forest.trees.values():
         for node in tree.root.iterate():
             _check_node(forest, node, findings)
     main = forest.trees[forest.main or ""]
-    model = forest.models.get(main.name)
-    for port in (model.ports or {}).values() if model is not None else ():
-        if port.way is not PortDirection.IN:
+    for port in forest.declared_ports(main.name).values():
+        if port.direction is not PortDirection.IN:
             sentence = f"the port {quoted(port.name)} gives a value; a recipe takes values: input_port"
             findings.mistake(main.place, sentence)
     many, levels = _size(forest, main.name)
@@ -72,7 +71,7 @@ def check_in_cell(forest: Forest, cell: str, kinds: Mapping[str, Kind]) -> None:
 
     def kind(node: Node) -> Kind | None:
         if node.is_subtree:
-            return forest.models.get(node.own["ID"].value)
+            return forest.models.get(node.subtree)
         return nodes.built_in(node.kind) or kinds[node.kind]
 
     for place, name in variables.unwritten(forest, kind):
@@ -98,9 +97,9 @@ def _nobody(node: Node, cell: str, kinds: Mapping[str, Kind]) -> str:
 
 def _check_node(forest: Forest, node: Node, findings: Findings) -> None:
     if node.is_subtree:
-        name = node.own["ID"].value
+        name = node.subtree
         if name not in forest.trees:
-            place = Place(node.place.file, node.own["ID"].mark)
+            place = node.place_of(node.own["ID"])
             why = "" if forest.is_whole else "; one that they include is not here: `arboleda check` names it"
             findings.mistake(place, f"the tree {quoted(name)} is in none of these files{why}")
         return
@@ -111,7 +110,7 @@ def _check_node(forest: Forest, node: Node, findings: Findings) -> None:
         findings.mistake(node.place, f"{node.kind} can be drawn and not be run; {INSTEAD[node.kind]}")
     for name, attribute in node.ports.items():
         port = (kind.ports or {}).get(name)
-        place = Place(node.place.file, attribute.mark)
+        place = node.place_of(attribute)
         value = values.read(name, attribute.value)
         if port is not None and port.type == "script" and isinstance(value, Variable):
             sentence = f"{name} of {node.kind} is a variable; write the script itself"
@@ -136,7 +135,7 @@ def _size(forest: Forest, main: str) -> tuple[int, int]:
     def of_node(node: Node) -> tuple[int, int]:
         below = [of_node(child) for child in node.children]
         if node.is_subtree:
-            below.append(of_tree(node.own["ID"].value))
+            below.append(of_tree(node.subtree))
         return 1 + sum(many for many, _ in below), 1 + max((levels for _, levels in below), default=0)
 
     return of_tree(main)

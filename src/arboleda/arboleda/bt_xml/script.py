@@ -1,7 +1,7 @@
-"""The script language of BehaviorTree.CPP 4: text -> statements that can be looked at and evaluated.
+"""The script language of BehaviorTree.CPP 4: text -> statements that can be checked and evaluated.
 
-Statements are separated by semicolons. Texts stand in quotes, single ones or, as some dialects have it,
-double ones. From weak to strong: assignments, `? :`, `||`, `&&`, comparisons,
+Semicolons stand between statements. Texts stand in single quotes, or, in some dialects, in double quotes.
+Operators from weak to strong: assignments, `? :`, `||`, `&&`, comparisons,
 `|` and `^`, `&`, `+ - ..`, `* /`, and the prefixes `- ! ~`.
 """
 
@@ -41,7 +41,7 @@ STRENGTHS = {
 
 
 class ScriptFault(Exception):
-    """Error: a script cannot be read; the number of the character, from 1, and the reason."""
+    """Error: a script cannot be read, with the number of a character, from 1, and the reason."""
 
     def __init__(self, at: int, sentence: str) -> None:
         super().__init__(f"{sentence}, at character {at} of the script")
@@ -56,7 +56,7 @@ class Value:
 
 @dataclass(frozen=True)
 class Name:
-    """Variable, `@x` for one of the outermost tree; or a word of an enumeration."""
+    """Variable, `@x` for a variable of the outermost tree; or a word of an enumeration."""
 
     name: str
 
@@ -91,7 +91,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Assignment:
-    """Assignment; `:=` also makes a variable, the others change an existing one."""
+    """Assignment; `:=` may make a variable, other signs change an existing one."""
 
     name: str
     sign: str
@@ -117,15 +117,15 @@ def parse(text: str) -> tuple[Expression, ...]:
 
 
 def reads(statements: Sequence[Expression]) -> set[str]:
-    """The names that a script reads, without those that an earlier statement has made."""
+    """The names that a script reads and that no earlier statement of it makes."""
     made: set[str] = set()
-    found: set[str] = set()
+    names: set[str] = set()
     for statement in statements:
-        found |= {each.name for each in _names(statement)} - made
+        names |= {each.name for each in _names(statement)} - made
         made |= {
             each.name for each in _parts(statement) if isinstance(each, Assignment) and each.sign == ":="
         }
-    return found
+    return names
 
 
 def writes(statements: Sequence[Expression]) -> set[str]:
@@ -172,13 +172,13 @@ def _tokens(text: str) -> Iterator[_Token]:
     while at < end:
         match = TOKEN.match(text, at)
         if match is None or match.lastgroup is None:
-            rest = text[at:].lstrip()
+            text_from_here = text[at:].lstrip()
             why = (
                 "a text without its closing quote"
-                if rest[:1] in ("'", '"')
-                else f"{rest[:12]!r} is nothing here"
+                if text_from_here[:1] in ("'", '"')
+                else f"{text_from_here[:12]!r} is nothing here"
             )
-            raise ScriptFault(len(text) - len(rest) + 1, why)
+            raise ScriptFault(len(text) - len(text_from_here) + 1, why)
         yield _Token(match.lastgroup, match[match.lastgroup], match.start(match.lastgroup) + 1)
         at = match.end()
 
@@ -202,9 +202,9 @@ class _Parser:
 
     def take(self, sign: str) -> bool:
         """Skip the next token if it is this sign; True if it was."""
-        found = self._token.kind == "sign" and self._token.text == sign
-        self._next += found
-        return found
+        is_there = self._token.kind == "sign" and self._token.text == sign
+        self._next += is_there
+        return is_there
 
     def expression(self, weakest: int) -> Expression:
         left = self._prefix()
@@ -256,16 +256,16 @@ class _Parser:
             if not self.take(")"):
                 raise ScriptFault(self._token.at, "a ) is missing")
             return inner
-        found = f"not {token.text!r}" if token.text else "and the script ends"
-        raise ScriptFault(token.at, f"a value or a variable is expected, {found}")
+        instead = f"not {token.text!r}" if token.text else "and the script ends"
+        raise ScriptFault(token.at, f"a value or a variable is expected, {instead}")
 
     def _deeper(self, weakest: int) -> Expression:
         self._depth += 1
         if self._depth > DEEPEST:
             raise ScriptFault(self._token.at, f"nested deeper than {DEEPEST} levels")
-        found = self.expression(weakest)
+        expression = self.expression(weakest)
         self._depth -= 1
-        return found
+        return expression
 
 
 def _word(token: _Token) -> Expression:

@@ -10,7 +10,7 @@ INT = re.compile(r"[+-]?[0-9]{1,18}|0[xX][0-9a-fA-F]{1,15}")
 BOOLS = ("true", "false", "True", "False", "TRUE", "FALSE", "0", "1")
 STATUSES = ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED", "IDLE")
 OUTER = "@"  # begins the name of a variable of the outermost tree
-PRIVATE = "_"  # begins the name of one that no other tree shares
+PRIVATE = "_"  # begins the name of a variable that no other tree shares
 
 
 @dataclass(frozen=True)
@@ -37,14 +37,14 @@ def read(attribute: str, text: str) -> AttributeValue:
 
 def objection(type: str, text: str) -> str | None:
     """The reason why a text is no value of a type; None if it is one, or the type is unknown here."""
-    known = TYPES.get(type)
-    if known is None or known[1](text.strip()):
+    described = TYPES.get(type)
+    if described is None or described[1](text.strip()):
         return None
-    return known[0]
+    return described[0]
 
 
 def fits(given: str, taken: str) -> bool:
-    """True if every value of type `given` is one of type `taken`, or if either type is unknown here."""
+    """True if every value of type `given` is a value of type `taken`, or if either type is unknown."""
     if given not in TYPES or taken not in TYPES or given == taken:
         return True
     return given in WHOLE and taken in NUMBERS
@@ -57,8 +57,8 @@ def number(text: str) -> float:
 
 def plain_type(type: str | None) -> str:
     """The name of a type in this table, however a model spells it; "" for any other."""
-    found = SPELLINGS.get((type or "").strip(), (type or "").strip())
-    return found if found in TYPES else ""
+    name = SPELLINGS.get((type or "").strip(), (type or "").strip())
+    return name if name in TYPES else ""
 
 
 def _is_float(text: str) -> bool:

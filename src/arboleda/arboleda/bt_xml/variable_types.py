@@ -1,4 +1,4 @@
-"""Variables that are given to ports of two types, which BehaviorTree.CPP refuses when it makes a tree."""
+"""Variables that are given to ports of two types: BehaviorTree.CPP refuses such a tree when it makes it."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from .values import OUTER, Variable
 KindOf = Callable[[Node], "Kind | None"]
 SAME: Mapping[str, str] = {"msec": "unsigned", "script": "string", "status": "NodeStatus"}
 TEXT = "string"
-MOST_PASSED = 100_000  # variables of trees that trees around them are held against
+MOST_PASSED = 100_000  # variables of inner trees that are compared with those of outer trees
 
 
 @dataclass(frozen=True, kw_only=True)
 class VariableUse:
-    """Port that is given a variable; `type` is "" if it is unknown here, or takes any."""
+    """Port that is given a variable; `type` is "" if it is unknown, or if the port takes any value."""
 
     node: Node
     port: str
@@ -27,7 +27,7 @@ class VariableUse:
 
     @property
     def place(self) -> Place:
-        return Place(self.node.place.file, self.node.ports[self.port].mark)
+        return self.node.place_of(self.node.ports[self.port])
 
     def __str__(self) -> str:
         return f"{self.port} of {self.node.kind} ({self.type})"
@@ -49,7 +49,7 @@ class Clash:
 
 @dataclass
 class _Uses:
-    """First use of a variable, which decides its type, and the first of each type."""
+    """First use of a variable, which decides its type, and the first use of each type."""
 
     first: VariableUse
     typed: dict[str, VariableUse] = field(default_factory=dict)
@@ -63,30 +63,33 @@ class _Uses:
             self.typed.setdefault(use.type, use)
 
     def clashes(self, use: VariableUse) -> bool:
-        """True if a use is of another type than the first; anything may follow a text, or any type."""
+        """True if a use is of another type than the first use. After a text, or any value, all types fit."""
         return bool(self.first.type and use.type) and self.first.type not in (TEXT, use.type)
 
 
 def clashes(forest: Forest, kind: KindOf) -> list[Clash]:
-    """The clashes in all trees; a variable of a tree also has the types of trees around it."""
-    found: list[Clash] = []
-    known: dict[str, Mapping[str, _Uses]] = {}
+    """The clashes in all trees; an outer tree and its subtrees may share a variable."""
+    conflicts: list[Clash] = []
+    inner_uses: dict[str, Mapping[str, _Uses]] = {}
     passed = 0
     for name in _inner_first(forest):
         there: dict[str, _Uses] = {}
-        for variable, use in _in_order(forest.trees[name], forest, kind, known):
+        for variable, use in _in_order(forest.trees[name], forest, kind, inner_uses):
             uses = there.setdefault(variable, _Uses(use))
             if uses.clashes(use):
-                found.append(Clash(variable=variable, first=uses.first, other=use))
+                conflicts.append(Clash(variable=variable, first=uses.first, other=use))
             uses.add(use)
         passed += len(there)
-        known[name] = there if passed <= MOST_PASSED else {}
-    return found
+        inner_uses[name] = there if passed <= MOST_PASSED else {}
+    return conflicts
 
 
 def _inner_first(forest: Forest) -> list[str]:
-    """The trees, each after those that it contains; in a ring, reported elsewhere, one comes too early."""
-    found: dict[str, None] = {}
+    """The trees, each after the trees that it contains.
+
+    In a ring of trees, which `checking` reports, one comes too early.
+    """
+    ordered: dict[str, None] = {}
     begun: set[str] = set()
     waiting = list(forest.trees)
     while waiting:
@@ -96,19 +99,19 @@ def _inner_first(forest: Forest) -> list[str]:
         if more := [each for each in inner if each not in begun]:
             waiting += more
         else:
-            found.setdefault(waiting.pop())
-    return list(found)
+            ordered.setdefault(waiting.pop())
+    return list(ordered)
 
 
 def _in_order(
-    tree: Tree, forest: Forest, kind: KindOf, known: Mapping[str, Mapping[str, _Uses]]
+    tree: Tree, forest: Forest, kind: KindOf, inner_uses: Mapping[str, Mapping[str, _Uses]]
 ) -> Iterator[tuple[str, VariableUse]]:
     """The uses of a tree's variables in the order in which BehaviorTree.CPP makes the nodes."""
     for node in tree.root.iterate():
         if not node.is_subtree:
             yield from sorted(_of_node(node, kind(node)), key=lambda row: row[1].type != TEXT)
             continue
-        for inner, uses in known.get(node.own["ID"].value, {}).items():
+        for inner, uses in inner_uses.get(node.subtree, {}).items():
             outer = _outside(node, inner, forest)
             if outer is not None:
                 yield from ((outer, use) for use in uses.all())
@@ -124,12 +127,12 @@ def _of_node(node: Node, kind: Kind | None) -> Iterator[tuple[str, VariableUse]]
 
 
 def _outside(node: Node, inner: str, forest: Forest) -> str | None:
-    """The name of a subtree's variable in the tree around it; None if it has none there."""
+    """The name of a subtree's variable in the tree around it; None where it is not passed on."""
     if inner.startswith(OUTER) or node.shares(inner):
         return inner
     written = node.port(inner)
-    model = None if node.shares_names else forest.models.get(node.own["ID"].value)
-    if written is None and model is not None and inner in (model.ports or {}):
-        written = (model.ports or {})[inner].default
+    ports = {} if node.shares_names else forest.declared_ports(node.subtree)
+    if written is None and inner in ports:
+        written = ports[inner].default
     value = None if written is None else values.read(inner, written)
     return value.name if isinstance(value, Variable) else None

@@ -17,16 +17,16 @@ KindOf = Callable[[Node], "Kind | None"]
 
 @dataclass
 class _TreeVariables:
-    """Variables of one tree; `passed`: those that it hands to subtrees, with their names there."""
+    """Variables of one tree; `passed` are those that the tree hands to subtrees."""
 
     read: dict[str, Place] = field(default_factory=dict)
     written: set[str] = field(default_factory=set)
     passed: list[tuple[str, str, str]] = field(default_factory=list)  # own name, tree, name there
-    is_open: bool = False  # it shares all names with the tree around it, or with one in it
+    is_open: bool = False  # shares all names with the tree around it, or with a subtree
 
 
 def unwritten(forest: Forest, kind: KindOf) -> Iterator[tuple[Place, str]]:
-    """Each variable that is read and never written, with the place of its first reading."""
+    """Each variable that is read and never written, with the place where it is first read."""
     uses = {name: _use(tree, kind) for name, tree in forest.trees.items()}
     inputs = _inputs(forest, uses)
     outer = {name[1:] for use in uses.values() for name in use.written if name.startswith(OUTER)}
@@ -35,12 +35,12 @@ def unwritten(forest: Forest, kind: KindOf) -> Iterator[tuple[Place, str]]:
     for name, use in uses.items():
         if use.is_open:
             continue
-        known = use.written | inputs[name] | _written_below(use, forest, uses)
+        given = use.written | inputs[name] | _written_below(use, forest, uses)
         if name == forest.main:
-            known |= outer
+            given |= outer
         for variable, place in use.read.items():
-            found = variable[1:] in outer if variable.startswith(OUTER) else variable in known
-            if not found and not (variable.startswith(OUTER) and main is None):
+            is_given = variable[1:] in outer if variable.startswith(OUTER) else variable in given
+            if not is_given and not (variable.startswith(OUTER) and main is None):
                 yield place, variable
 
 
@@ -51,7 +51,7 @@ def _inputs(forest: Forest, uses: Mapping[str, _TreeVariables]) -> dict[str, set
         for node in tree.root.iterate():
             if not node.is_subtree:
                 continue
-            name = node.own["ID"].value
+            name = node.subtree
             inputs[name] |= set(node.ports)
             if node.shares_names and name in uses:
                 uses[name].is_open = uses[tree.name].is_open = True
@@ -62,21 +62,20 @@ def _inputs(forest: Forest, uses: Mapping[str, _TreeVariables]) -> dict[str, set
 
 
 def _written_below(use: _TreeVariables, forest: Forest, uses: Mapping[str, _TreeVariables]) -> set[str]:
-    """The variables that a subtree may set: it writes them, or hands them further in."""
-    found = set()
+    """The variables of a tree that its subtrees may set."""
+    set_inside = set()
     for own, tree, there in use.passed:
         below = uses.get(tree)
-        model = forest.models.get(tree)
-        port = (model.ports or {}).get(there) if model is not None else None
-        is_output = port is not None and port.way is not PortDirection.IN
+        port = forest.declared_ports(tree).get(there)
+        is_output = port is not None and port.direction is not PortDirection.IN
         if (
             below is None
             or is_output
             or there in below.written
             or any(there == each[0] for each in below.passed)
         ):
-            found.add(own)
-    return found
+            set_inside.add(own)
+    return set_inside
 
 
 def _use(tree: Tree, kind: KindOf) -> _TreeVariables:
@@ -84,16 +83,16 @@ def _use(tree: Tree, kind: KindOf) -> _TreeVariables:
     for node in tree.root.iterate():
         for name in names.SCRIPTS:
             if name in node.own:
-                _add_script(use, node.own[name].value, Place(node.place.file, node.own[name].mark))
+                _add_script(use, node.own[name].value, node.place_of(node.own[name]))
         _add_ports(use, node, kind(node))
     return use
 
 
 def _add_ports(use: _TreeVariables, node: Node, kind: Kind | None) -> None:
-    known = {} if kind is None or kind.ports is None else kind.ports
+    ports = {} if kind is None or kind.ports is None else kind.ports
     for name, attribute in node.ports.items():
-        place = Place(node.place.file, attribute.mark)
-        port = known.get(name)
+        place = node.place_of(attribute)
+        port = ports.get(name)
         if port is not None and port.type == "script":
             _add_script(use, attribute.value, place)
             continue
@@ -101,13 +100,13 @@ def _add_ports(use: _TreeVariables, node: Node, kind: Kind | None) -> None:
         if node.kind == "SetBlackboard" and name == "output_key":
             use.written.add(value.name if isinstance(value, Variable) else value)
         elif node.is_subtree and isinstance(value, Variable):
-            use.passed.append((value.name, node.own["ID"].value, name))
+            use.passed.append((value.name, node.subtree, name))
             use.read.setdefault(value.name, place)
-        elif isinstance(value, Variable) and (port is None or port.way is not PortDirection.IN):
+        elif isinstance(value, Variable) and (port is None or port.direction is not PortDirection.IN):
             use.written.add(value.name)  # an unknown leaf may do so, too
         elif isinstance(value, Variable):
             use.read.setdefault(value.name, place)
-        elif port is not None and port.way is PortDirection.OUT:
+        elif port is not None and port.direction is PortDirection.OUT:
             use.written.add(value)
 
 

@@ -50,7 +50,7 @@ def _port(port: Port) -> Tag:
     if port.default is not None:
         attributes["default"] = port.default
     words = f": {', '.join(port.words)}" if port.words and port.words != tuple(port.about.split(", ")) else ""
-    return Tag(port.way.value, attributes, text=f"{port.about}{words}")
+    return Tag(port.direction.value, attributes, text=f"{port.about}{words}")
 
 
 def _lines(tag: Tag, depth: int) -> list[str]:
@@ -67,5 +67,5 @@ def _lines(tag: Tag, depth: int) -> list[str]:
 
 
 def attribute_value(text: str) -> str:
-    """A value as an attribute: line ends are written as references, as readers turn others into blanks."""
+    """A value as an attribute. Line ends become references: a reader turns raw ones into blanks."""
     return escape(text).replace("&#x27;", "'").replace("\n", "&#10;").replace("\t", "&#9;")

@@ -16,7 +16,7 @@ from arboleda.model.packages import MAKE
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file import advance_check, loader, plant_check, tree_file, unstated
-from arboleda.plant_file.answer import check_answer
+from arboleda.plant_file.check_answer import check_answer
 from arboleda.plant_file.findings import Source
 from arboleda.plant_file.user_file import check_writable
 

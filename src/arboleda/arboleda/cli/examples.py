@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from arboleda.model.sentence import Phrase
-from arboleda.plant_file.examples import about, found
+from arboleda.plant_file.examples import about, folders
 from arboleda.runtime import invocation
 
 from .language import say
@@ -32,7 +32,7 @@ def examples(
 ) -> None:
     """List the examples that come with Arboleda, or write one to a folder, to be changed."""
     if not name:
-        for each, source in found().items():
+        for each, source in folders().items():
             typer.echo(f"{each:17}{about(source)}")
         typer.echo(f"\n{say(HAVE_ONE(command=invocation.command()))}")
         return

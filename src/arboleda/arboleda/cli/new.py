@@ -13,7 +13,7 @@ import typer
 from arboleda.model.errors import ConfigError, StartError
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase
-from arboleda.plant_file.examples import PLANT, found
+from arboleda.plant_file.examples import PLANT, folders
 from arboleda.plant_file.examples import texts as texts_of
 from arboleda.plant_file.shapes import PLANT_NAME_RULE, is_plant_name
 from arboleda.runtime import invocation
@@ -77,7 +77,7 @@ def new(
 
 def copy_example(name: str, folder: Path) -> None:
     """Write an example to a folder, and say how to start it; ConfigError where there is no such example."""
-    known = found()
+    known = folders()
     if name not in known:
         raise ConfigError((say(NO_EXAMPLE(name=quoted(name), others=allowed(name, known))),))
     written = write_files(folder, texts_of(known[name]))

@@ -57,8 +57,8 @@ def of_plant(model: PlantModel, cell: str | None) -> Mapping[str, Kind]:
 def _line(kind: Kind) -> str:
     ports = (kind.ports or {}).values()
     facts = [
-        f"{'gives ' if each.way is PortDirection.OUT else ''}{each.name} ({_what(each.words, each.about)})"
-        for each in ports
+        f"{'gives ' * (port.direction is PortDirection.OUT)}{port.name} ({_what(port.words, port.about)})"
+        for port in ports
     ]
     about = [f"  {kind.about}"] if kind.about else []
     return "\n".join([f"{kind.category.value} {kind.name}{': ' if facts else ''}{'; '.join(facts)}", *about])

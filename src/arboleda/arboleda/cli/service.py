@@ -13,7 +13,7 @@ from typing import Annotated
 
 import typer
 
-from arboleda.host.users import home_of
+from arboleda.host.machine import home_of
 from arboleda.model.errors import StartError
 from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase

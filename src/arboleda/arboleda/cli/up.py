@@ -18,7 +18,7 @@ from arboleda.model.errors import ConfigError, StartError, TextError
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.model.recording import Recording
 from arboleda.model.sentence import Phrase
-from arboleda.plant_file import loader
+from arboleda.plant_file import loader, user_file
 from arboleda.plant_file.versions import Versions
 from arboleda.runtime import invocation
 from arboleda.runtime.alarm_options import alarm_options
@@ -267,7 +267,7 @@ def _options(
     return Options(
         broker=broker,
         broker_host=host or "127.0.0.1",
-        broker_users=loader.broker_users(users) if users else None,
+        broker_users=user_file.broker_users(users) if users else None,
         broker_tls=shown.by_broker,
         notes=shown.notes,
         credentials=login(),

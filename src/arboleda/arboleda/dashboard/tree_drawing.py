@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any
 
-from arboleda.drawing.layout import Layout, Line, Node, columns, outline, wide
+from arboleda.drawing.layout import Layout, Node, Route, columns, outline, wide
 from arboleda.model.sentence import Sentence
 
 from .wording import LANGUAGES, Words, words
@@ -51,6 +51,6 @@ def _plain(layout: Layout) -> Drawing:
     }
 
 
-def _d(line: Line) -> str:
+def _d(line: Route) -> str:
     """The `d` of an SVG path for a line."""
     return "M" + "L".join(f"{x:g} {y:g}" for x, y in line)

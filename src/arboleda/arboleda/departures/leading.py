@@ -1,5 +1,6 @@
-"""Leadership of a plant that several hosts reach: rules for a process by its own clock and by what the common
-store tells it. Adapters, the app and the simulator decide by these and by no others.
+"""Leadership of a plant that several hosts reach: rules for a process, by its clock and by the common store.
+
+Adapters, the runtime and the simulator decide by these rules alone.
 """
 
 from __future__ import annotations
@@ -14,49 +15,51 @@ from arboleda.model.messages import Notice
 
 from .leaving import leaves_unkept
 
-LEASE_S = 2.5  # by the clock of who waits: who did not say for so long that he leads may be superseded
-# By his own clock a leader is sure for less. Clocks of two machines do not run equally fast: where his is
-# slower by up to a twenty-fifth, and that of who waits faster by as much, his lease is still over first.
+LEASE_S = 2.5  # by the clock of a waiting process; after so long a silence the leader may be superseded
+# By its own clock a leader is sure for less. Clocks of two machines do not run equally fast: where the
+# leader's is slower by up to a twenty-fifth, and that of the waiting process faster by as much, the lease
+# still ends first.
 SURE_S = 2.3
-RENEW_S = 0.5  # how often a leader says that he leads
-AGAIN_S = 1.0  # for how long what finds no store is tried again, as while a database restarts
-LOOK_S = 0.2  # how often who waits looks whether anybody leads
-WANTED_S = 30.0  # who asked for another leader waits no longer
+RENEW_S = 0.5  # period in which a leader renews its lease
+AGAIN_S = 1.0  # for so long a call that finds no store is repeated, as while a database restarts
+LOOK_S = 0.2  # period in which a waiting process looks whether there is a leader
+WANTED_S = 30.0  # a request for another leader is given up after so long
 
 
 class Standing(Enum):
     """Standing of a process that led, as far as it knows."""
 
     LEADS = "leads"
-    UNSURE = "unsure"  # it cannot find out, or can keep nothing: it stops what moves, and ends
-    SUPERSEDED = "superseded"  # another one leads: the robots are his, and it tells them nothing
+    UNSURE = "unsure"  # the process cannot find out, or can keep nothing: it stops all motion, and ends
+    SUPERSEDED = "superseded"  # another process leads and commands the robots; this one sends nothing
 
 
 class Lease:
-    """Until when a leader needs to ask nobody, by its own clock."""
+    """Lease of a leader by its own clock: until it ends, no other process can lead."""
 
     def __init__(self) -> None:
         self._until = -math.inf
 
     def renewed(self, sent_at: float) -> None:
-        """The store took it; the time counts from before it was asked, since the answer may come late."""
+        """Note that the store renewed the lease. It counts from the request, as the answer may be late."""
         self._until = sent_at + SURE_S
 
     def lasts(self, now: float) -> bool:
-        """True while nobody else can lead."""
+        """True while no other process can lead."""
         return now < self._until
 
 
 class Silence:
-    """For how long a leader has said nothing, by the clock of who waits for that: the store's may be set."""
+    """Silence of a leader, by the clock of a waiting process: somebody may set the clock of the store."""
 
     def __init__(self) -> None:
         self._last_state: object = None
         self._since = math.inf
 
     def ends_lease(self, now: float, state: object) -> bool:
-        """True once it has lasted as long as a lease; `state` is what the store last heard of him, another
-        thing whenever he says anything.
+        """True once the silence has lasted as long as a lease.
+
+        `state` is the leader's row in the store, which changes with every message of the leader.
         """
         if state != self._last_state:
             self._last_state, self._since = state, now
@@ -71,10 +74,10 @@ def may_leave(message: Command | Notice, standing: Standing) -> bool:
 
 
 def at_work(states: Mapping[str, str]) -> list[str]:
-    """The cells that a leader holds before a planned change, and that the next one resumes."""
+    """The cells that a leader holds before a planned change of leaders, and that the next leader resumes."""
     return [name for name, state in states.items() if state == CellState.EXECUTE]
 
 
 def all_stand(states: Mapping[str, str], held: Iterable[str]) -> bool:
-    """True once all that was held for a planned change stands still."""
+    """True once all cells that were held for a planned change stand still."""
     return not any(states[name] == CellState.HOLDING for name in held)

@@ -24,16 +24,16 @@ DONE_UNKEPT = Phrase(
 )
 WORTH_TELLING_S = 0.02  # a commit takes a few ms
 EVERYTHING = Phrase("stop.everything", "the whole plant")
-SYNCED_WITHIN_S = 0.01  # from a write to its sync where nobody waits: one for what all cells write meanwhile
-MOST_UNSYNCED_S = 0.1  # only stops leave a plant of which a write has not been durable for so long
+SYNCED_WITHIN_S = 0.01  # from a write to its sync where nobody waits, so that writes of all cells share one
+MOST_UNSYNCED_S = 0.1  # a plant with a write that has not been durable for so long sends only stops
 
 
 class Unkept(OperatorAnswer):
-    """Answer to an act that has happened and is not kept; its `why` says so."""
+    """Answer to an act that has happened and is not kept, as `why` says."""
 
 
 class StopLeft(Unkept):
-    """Answer to a stop that has left for its robots and is not kept; its `why` says so."""
+    """Answer to a stop that has left for its robots and is not kept, as `why` says."""
 
 
 class Departure(NamedTuple):
@@ -74,23 +74,23 @@ def stop_left(request: OperatorRequest | OperatorAnswer, why: Sentence) -> StopL
 
 def done_unkept(answer: OperatorAnswer, why: Sentence) -> Unkept:
     """Answer to an act that has happened in the plant and is not kept because of `why`."""
-    known = {each.name: getattr(answer, each.name) for each in fields(answer)}
+    values = {each.name: getattr(answer, each.name) for each in fields(answer)}
     scope = answer.scope.strip() or EVERYTHING()
-    return Unkept(**{**known, "why": DONE_UNKEPT(verb=answer.verb.value, scope=scope, why=why)})
+    return Unkept(**{**values, "why": DONE_UNKEPT(verb=answer.verb.value, scope=scope, why=why)})
 
 
 def done_at_once(messages: Sequence[Command | Notice]) -> list[OperatorAnswer]:
-    """Answers of a step to acts that have happened once its stops have left: no other command is theirs.
+    """Answers of a step to acts that have happened once the stops of the step have left.
 
-    The commands of an act come before its answer.
+    These are the answers before the first command that is no stop: the commands of an act precede its answer.
     """
-    found = list[OperatorAnswer]()
+    answers = list[OperatorAnswer]()
     for message in messages:
         if isinstance(message, Command) and not ends_motion(message):
             break
         if isinstance(message, OperatorAnswer) and _has_happened(message):
-            found.append(message)
-    return found
+            answers.append(message)
+    return answers
 
 
 def _has_happened(answer: OperatorAnswer) -> bool:
@@ -104,13 +104,13 @@ def ends_motion(message: Command | Notice) -> bool:
 
 
 def is_too_late(message: Command | Notice, plant: Plant, now: float) -> bool:
-    """True where the plant was away between its step and now: what was right then is not sent any more."""
+    """True for a command of a step that was long ago, as the plant was away since: it may be wrong now."""
     stale = now - plant.now > plant.away_after_s
     return stale and isinstance(message, Command) and not ends_motion(message)
 
 
 def late_departure(message: Command | Notice, plant: Plant, now: float) -> LateDeparture | None:
-    """The event for a command that leaves now and counts as done by its time alone, well after its step."""
+    """The event for a late command that counts as done by its time alone; None for any other message."""
     entry = plant.dispatcher.ledger.entries.get(message.id) if isinstance(message, Command) else None
     late_s = now - plant.now
     if entry is None or entry.settles_at is None or late_s < WORTH_TELLING_S:
@@ -119,5 +119,5 @@ def late_departure(message: Command | Notice, plant: Plant, now: float) -> LateD
 
 
 def leaves_unkept(message: Command | Notice) -> bool:
-    """True for what leaves a plant that can keep nothing more: stops, and the beat with which they count."""
+    """True for messages that leave a plant which can keep nothing: stops, and the heartbeat they need."""
     return isinstance(message, Heartbeat) or ends_motion(message)

@@ -1,9 +1,8 @@
-"""Stop lane: a pure machine that has stops leave while the plant is kept waiting, and answers who asked.
+"""Stop lane: a pure machine that lets stops leave while the plant is kept waiting, and answers requests.
 
-It answers who asked for another act, too, that has happened and that the plant cannot keep in time.
-
-The plant's thread may hang at a disk, a database or a log when somebody asks for a stop. The lane is driven
-by a thread of its own, and needs nothing but the plant's model.
+The plant's thread may hang at a disk, a database or a log when somebody asks for a stop. The lane has a
+thread of its own, and needs nothing but the plant's model. It also answers a request for another act that has
+happened and that the plant does not keep in time.
 """
 
 from __future__ import annotations
@@ -18,7 +17,9 @@ from arboleda.model.plant_model import PlantModel
 
 from .leaving import STILL_WAITS, Unkept, done_unkept, stop_left
 
-KEPT_S = 0.8  # within it a stop is kept, or whoever asked hears that it is not; a service of ROS 2 waits 1 s
+ANSWERED_WITHIN_S = (
+    0.8  # within it a stop is kept, or whoever asked hears that it is not; a service of ROS 2 waits 1 s
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +45,7 @@ class Departed:
 
 @dataclass(frozen=True, kw_only=True)
 class Happened:
-    """The plant has done what somebody asked for, which is to be kept before it is answered."""
+    """The plant has done an act, which is to be kept before the request is answered."""
 
     at: float
     answer: OperatorAnswer
@@ -69,7 +70,7 @@ Event = Opened | Blocked | Departed | Happened | Closed | Overrun
 
 @dataclass(kw_only=True)
 class OpenAct:
-    """A request that is not answered yet, and its answer if it has happened and is not kept in time."""
+    """A request that is not answered yet, with the answer for an act that is not kept at `due`."""
 
     request: OperatorRequest | OperatorAnswer
     unkept: Unkept
@@ -78,10 +79,10 @@ class OpenAct:
 
 
 class StopLane:
-    """Stops that leave beside the steps of the plant, under numbers that no step gives.
+    """Stops that leave beside the steps of the plant, under ids that no step gives.
 
-    Such an id has ten digits, of a value that the plant has given already, so it is never taken for a number
-    that somebody else made up.
+    The number of such an id has ten digits, and a value that the plant has given already, so that no receiver
+    takes the id for a foreign one.
     """
 
     def __init__(self, model: PlantModel, *, epoch: int) -> None:
@@ -93,7 +94,7 @@ class StopLane:
 
     @property
     def next_deadline(self) -> float | None:
-        """The time at which somebody is to be answered whose act is not kept yet; None: never."""
+        """The time at which the next request for an act that is not kept is to be answered; None: never."""
         return min((each.due for each in self._open.values() if each.has_left), default=None)
 
     def reached(self, request: OperatorRequest | OperatorAnswer) -> frozenset[str]:
@@ -108,20 +109,20 @@ class StopLane:
 
     def _take(self, event: Event) -> list[Stop | Unkept]:
         if isinstance(event, Opened):
-            token, due = event.request.request or "", event.request.at + KEPT_S
-            left = stop_left(event.request, STILL_WAITS())
-            self._open[token] = OpenAct(request=event.request, unkept=left, due=due)
+            token, due = event.request.request or "", event.request.at + ANSWERED_WITHIN_S
+            answer = stop_left(event.request, STILL_WAITS())
+            self._open[token] = OpenAct(request=event.request, unkept=answer, due=due)
         elif isinstance(event, Happened):
-            token, due = event.answer.request or "", event.at + KEPT_S
+            token, due = event.answer.request or "", event.at + ANSWERED_WITHIN_S
             unkept = done_unkept(event.answer, STILL_WAITS())
             self._open[token] = OpenAct(request=event.answer, unkept=unkept, due=due, has_left=True)
         elif isinstance(event, Overrun):
             return self._stops(frozenset([event.robot]))
         elif isinstance(event, Closed):
             self._open.pop(event.token, None)
-        elif (known := self._open.get(event.token)) is not None:
-            reached = self.reached(known.request)
-            known.has_left = bool(reached)
+        elif (act := self._open.get(event.token)) is not None:
+            reached = self.reached(act.request)
+            act.has_left = bool(reached)
             return self._stops(reached) if isinstance(event, Blocked) else []
         return []
 

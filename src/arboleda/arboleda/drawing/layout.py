@@ -11,9 +11,9 @@ GAP, INDENT = 26, 20  # px: between two columns, and of an outline's level
 MARGIN, BREATH = 4, 6
 
 Node = tuple[str, str]  # path (`root`, `0`, `0.1`, ...), name
-Place = tuple[float, float, float]  # x, y, width in px; every node is HEIGHT high
+NodePlace = tuple[float, float, float]  # x, y, width in px; every node is HEIGHT high
 Point = tuple[float, float]
-Line = tuple[Point, ...]
+Route = tuple[Point, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,8 +22,8 @@ class Layout:
 
     width: float
     height: float
-    places: dict[str, Place]
-    lines: dict[str, Line]
+    places: dict[str, NodePlace]
+    lines: dict[str, Route]
 
 
 def wide(nodes: Sequence[Node]) -> Layout:
@@ -33,7 +33,7 @@ def wide(nodes: Sequence[Node]) -> Layout:
         widths[depth(path)] = max(widths.get(depth(path), 0), _width(name))
     lefts = {level: MARGIN + sum(widths[above] + GAP for above in range(level)) for level in widths}
     inner = {parent(path) for path, _ in nodes}
-    places: dict[str, Place] = {}
+    places: dict[str, NodePlace] = {}
     line = 0
     for path, _ in nodes:
         places[path] = (lefts[depth(path)], MARGIN + line * ROW, widths[depth(path)])
@@ -44,13 +44,13 @@ def wide(nodes: Sequence[Node]) -> Layout:
 def columns(nodes: Sequence[Node]) -> Layout:
     """The layout with the root on top and below it an outline for each of its branches, side by side."""
     places = {path: (float(MARGIN), float(MARGIN), _width(name)) for path, name in nodes if path == "root"}
-    left = float(MARGIN)
+    x_of_branch = float(MARGIN)
     for branch in [path for path, _ in nodes if parent(path) == "root"]:
         below = [node for node in nodes if node[0] == branch or node[0].startswith(f"{branch}.")]
         for line, (path, name) in enumerate(below, start=1):
-            x = left + (depth(path) - 1) * INDENT
+            x = x_of_branch + (depth(path) - 1) * INDENT
             places[path] = (x, MARGIN + line * TIGHT_ROW + BREATH, _width(name))
-        left = max(places[path][0] + places[path][2] for path, _ in below) + GAP
+        x_of_branch = max(places[path][0] + places[path][2] for path, _ in below) + GAP
     return _layout(places, _branch)
 
 
@@ -75,7 +75,7 @@ def depth(path: str) -> int:
     return 0 if path == "root" else path.count(".") + 1
 
 
-def _layout(places: dict[str, Place], line: Callable[[Place, Place], Line]) -> Layout:
+def _layout(places: dict[str, NodePlace], line: Callable[[NodePlace, NodePlace], Route]) -> Layout:
     return Layout(
         width=max((x + w for x, _, w in places.values()), default=0) + MARGIN,
         height=max((y for _, y, _ in places.values()), default=0) + HEIGHT + MARGIN,
@@ -84,14 +84,14 @@ def _layout(places: dict[str, Place], line: Callable[[Place, Place], Line]) -> L
     )
 
 
-def _elbow(above: Place, place: Place) -> Line:
+def _elbow(above: NodePlace, place: NodePlace) -> Route:
     """The line from the right side of a node to the left side of its child."""
     x, y = above[0] + above[2], above[1] + HEIGHT / 2
     to_x, to_y = place[0], place[1] + HEIGHT / 2
     return ((x, y), (x + GAP / 2, y), (x + GAP / 2, to_y), (to_x, to_y))
 
 
-def _branch(above: Place, place: Place) -> Line:
+def _branch(above: NodePlace, place: NodePlace) -> Route:
     """The line down from the root and along to the top of a branch; within a branch as `_bracket`."""
     if above[1] > MARGIN:
         return _bracket(above, place)
@@ -99,7 +99,7 @@ def _branch(above: Place, place: Place) -> Line:
     return ((x, y), (x, y + BREATH), (to_x, y + BREATH), (to_x, place[1]))
 
 
-def _bracket(above: Place, place: Place) -> Line:
+def _bracket(above: NodePlace, place: NodePlace) -> Route:
     """The line down from a node's left end and right to its child."""
     x, y = above[0] + INDENT / 2, above[1] + HEIGHT
     return ((x, y), (x, place[1] + HEIGHT / 2), (place[0], place[1] + HEIGHT / 2))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import layout
-from .layout import HEIGHT, Place, Point
+from .layout import HEIGHT, NodePlace, Point
 
 FONT = 13  # px
 INK, LINE, PAPER = "#1b2420", "#8b968f", "#ffffff"
@@ -28,7 +28,7 @@ class Box:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Line:
+class Polyline:
     """A line through points."""
 
     points: tuple[Point, ...]
@@ -52,11 +52,11 @@ class Picture:
 
     width: float
     height: float
-    shapes: tuple[Box | Line | Word, ...]
+    shapes: tuple[Box | Polyline | Word, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Look:
+class StatusStyle:
     """The look of a status: the box, and the strokes of its mark in a square of 10 px."""
 
     fill: str
@@ -65,10 +65,10 @@ class Look:
 
 
 LOOKS = {
-    "INVALID": Look(fill=PAPER, edge="#66706b"),
-    "RUNNING": Look(fill="#e6effc", edge="#1558c0", mark=(((2, 1), (9, 5), (2, 9), (2, 1)),)),
-    "SUCCESS": Look(fill="#e5f3e9", edge="#17713a", mark=(((1, 5), (4, 8), (9, 2)),)),
-    "FAILURE": Look(fill="#fbe9e7", edge="#b3241c", mark=(((2, 2), (8, 8)), ((8, 2), (2, 8)))),
+    "INVALID": StatusStyle(fill=PAPER, edge="#66706b"),
+    "RUNNING": StatusStyle(fill="#e6effc", edge="#1558c0", mark=(((2, 1), (9, 5), (2, 9), (2, 1)),)),
+    "SUCCESS": StatusStyle(fill="#e5f3e9", edge="#17713a", mark=(((1, 5), (4, 8), (9, 2)),)),
+    "FAILURE": StatusStyle(fill="#fbe9e7", edge="#b3241c", mark=(((2, 2), (8, 8)), ((8, 2), (2, 8)))),
 }
 ARROW = (((0, 5), (10, 5)), ((6, 1), (10, 5), (6, 9)))
 PARALLEL = (((0, 3), (10, 3)), ((6, 0), (10, 3)), ((0, 7), (10, 7)), ((6, 10), (10, 7)))
@@ -78,12 +78,12 @@ SIGNS = {"sequence": ARROW, "parallel": PARALLEL}
 def picture(rows: Sequence[dict[str, Any]]) -> Picture:
     """The tree of these rows (path, name, kind, status), each node coloured and marked by its status."""
     plan = layout.wide([(row["path"], f"{_room(row['kind'])}{row['name']}") for row in rows])
-    lines = [Line(points=points, colour=LINE) for points in plan.lines.values()]
+    lines = [Polyline(points=points, colour=LINE) for points in plan.lines.values()]
     nodes = [shape for row in rows for shape in _node(row, plan.places[row["path"]])]
     return Picture(width=plan.width, height=plan.height, shapes=(*lines, *nodes))
 
 
-def _node(row: dict[str, Any], place: Place) -> list[Box | Line | Word]:
+def _node(row: dict[str, Any], place: NodePlace) -> list[Box | Polyline | Word]:
     x, y, width = place
     look, middle = LOOKS[row["status"]], y + HEIGHT / 2
     box = Box(x=x, y=y, width=width, height=HEIGHT, fill=look.fill, edge=look.edge)
@@ -92,7 +92,7 @@ def _node(row: dict[str, Any], place: Place) -> list[Box | Line | Word]:
     return [box, *sign, Word(x=x + 7 + indent, y=middle, text=str(row["name"])), *mark]
 
 
-def _sign(kind: str, x: float, middle: float) -> tuple[list[Line | Word], float]:
+def _sign(kind: str, x: float, middle: float) -> tuple[list[Polyline | Word], float]:
     """The sign before a name, and the room it takes: an arrow for a sequence, `?` for a selector."""
     if kind == "selector":
         return [Word(x=x + 2, y=middle, text="?")], SIGN - 2
@@ -106,4 +106,4 @@ def _room(kind: str) -> str:
 
 def _strokes(strokes: Sequence[Sequence[Point]], x: float, y: float, colour: str) -> list[Any]:
     moved = [tuple((x + dx, y + dy) for dx, dy in stroke) for stroke in strokes]
-    return [Line(points=points, colour=colour, width=1.8) for points in moved]
+    return [Polyline(points=points, colour=colour, width=1.8) for points in moved]

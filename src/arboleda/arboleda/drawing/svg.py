@@ -6,7 +6,7 @@ from collections.abc import Callable
 from html import escape
 from typing import Any
 
-from .picture import FONT, PAPER, Box, Line, Picture, Word
+from .picture import FONT, PAPER, Box, Picture, Polyline, Word
 
 FAMILY = "system-ui, 'DejaVu Sans', Arial, sans-serif"
 
@@ -26,7 +26,7 @@ def _box(box: Box) -> str:
     return f'<rect {at} rx="5" fill="{box.fill}" stroke="{box.edge}" stroke-width="1.2"/>'
 
 
-def _line(line: Line) -> str:
+def _line(line: Polyline) -> str:
     points = " ".join(f"{x:g},{y:g}" for x, y in line.points)
     stroke = f'stroke="{line.colour}" stroke-width="{line.width:g}" stroke-linejoin="round"'
     return f'<polyline points="{points}" fill="none" {stroke}/>'
@@ -38,4 +38,4 @@ def _word(word: Word) -> str:
     return f'<text {at} fill="{word.colour}">{escape(word.text, quote=False)}</text>'
 
 
-WRITERS: dict[type, Callable[[Any], str]] = {Box: _box, Line: _line, Word: _word}
+WRITERS: dict[type, Callable[[Any], str]] = {Box: _box, Polyline: _line, Word: _word}

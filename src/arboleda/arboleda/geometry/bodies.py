@@ -1,6 +1,6 @@
-"""A URDF reduced to what is drawn: nested links, their joints and primitive shapes, as plain data.
+"""A URDF reduced to its drawing: nested links, their joints and primitive shapes, as plain data.
 
-A link with a mesh has stand-ins: the primitive shapes that it hits with, else tubes between its joints.
+A link with a mesh has stand-ins: its primitive shapes for collisions, else tubes between its joints.
 
 A link is {link, xyz, rpy, moves, shapes, children}: `xyz` (m) and `rpy` (rad) lead from the parent to its
 joint, `moves` is None or {type, axis, index}: which of the robot's joints, counted from the root outwards,
@@ -24,16 +24,16 @@ GREY = [0.6, 0.6, 0.6]
 ORIGIN = {"xyz": [0.0, 0.0, 0.0], "rpy": [0.0, 0.0, 0.0]}
 MOVING = ("revolute", "continuous", "prismatic")
 SIZES: dict[str, Callable[[Element], list[float]]] = {
-    "box": lambda found: _numbers(found.get("size", "")),
-    "cylinder": lambda found: [float(found.get(key, "")) for key in ("radius", "length")],
-    "sphere": lambda found: [float(found.get("radius", ""))],
+    "box": lambda tag: _numbers(tag.get("size", "")),
+    "cylinder": lambda tag: [float(tag.get(key, "")) for key in ("radius", "length")],
+    "sphere": lambda tag: [float(tag.get("radius", ""))],
 }
 
 
 def read(text: str) -> Body:
-    """The root link of a URDF; ValueError for what is not one tree of links with primitive shapes."""
+    """The root link of a URDF; ValueError if the URDF is not one tree of links with primitive shapes."""
     try:
-        return _Reader(ElementTree.fromstring(text)).body()
+        return _BodyReader(ElementTree.fromstring(text)).body()
     except ElementTree.ParseError as error:
         raise ValueError(f"not XML: {error}") from error
 
@@ -51,16 +51,16 @@ def tip(body: Body) -> str:
     return min(tools, key=len) if tools else max(_chains(body, 0))[1]
 
 
-def way(body: Body) -> list[Body]:
+def tool_chain(body: Body) -> list[Body]:
     """The links from the root to the tool."""
-    return _way(body, tip(body))
+    return _chain_to(body, tip(body))
 
 
-def _way(body: Body, end: str) -> list[Body]:
+def _chain_to(body: Body, end: str) -> list[Body]:
     if body["link"] == end:
         return [body]
-    ways = (_way(child, end) for child in body["children"])
-    return next(([body, *way] for way in ways if way), [])
+    chains = (_chain_to(child, end) for child in body["children"])
+    return next(([body, *chain] for chain in chains if chain), [])
 
 
 def _chains(body: Body, depth: int) -> Iterator[tuple[int, str]]:
@@ -69,7 +69,7 @@ def _chains(body: Body, depth: int) -> Iterator[tuple[int, str]]:
         yield from _chains(child, depth + 1)
 
 
-class _Reader:
+class _BodyReader:
     def __init__(self, robot: Element) -> None:
         self._links = {link.get("name", ""): link for link in robot.findall("link")}
         self._joints = robot.findall("joint")
@@ -109,7 +109,7 @@ class _Reader:
         if len(plain) == len(visuals):
             return shapes
         hits = [self._shape(each) for each in link.findall("collision") if not _is_mesh(each)]
-        rails = [found for joint in joints if (found := self._rail(joint)) is not None]
+        rails = [rail for joint in joints if (rail := self._rail(joint)) is not None]
         tubes = stand_in.shapes((_origin(joint)["xyz"] for joint in joints), rails)
         return shapes + (hits or [{**tube, "color": GREY} for tube in tubes])
 
@@ -123,13 +123,13 @@ class _Reader:
         return stand_in.rail(origin["xyz"], origin["rpy"], _unit(_numbers(axis.get("xyz", ""))), lower, upper)
 
     def _shape(self, visual: Element) -> dict[str, Any]:
-        found = _geometry(visual)
-        if found is None or found.tag not in SIZES:
-            what = found.tag if found is not None else "nothing"
+        primitive = _geometry(visual)
+        if primitive is None or primitive.tag not in SIZES:
+            what = primitive.tag if primitive is not None else "nothing"
             raise ValueError(f"a shape is one of {', '.join(SIZES)}, not {what}")
         return {
-            "kind": found.tag,
-            "size": SIZES[found.tag](found),
+            "kind": primitive.tag,
+            "size": SIZES[primitive.tag](primitive),
             **_origin(visual),
             "color": self._color_of(visual),
         }
@@ -148,8 +148,8 @@ def _geometry(visual: Element) -> Element | None:
 
 
 def _is_mesh(visual: Element) -> bool:
-    found = _geometry(visual)
-    return found is not None and found.tag == "mesh"
+    primitive = _geometry(visual)
+    return primitive is not None and primitive.tag == "mesh"
 
 
 def _unit(axis: list[float]) -> list[float]:
@@ -160,20 +160,20 @@ def _unit(axis: list[float]) -> list[float]:
 
 
 def _end(joint: Element, which: str) -> str:
-    found = joint.find(which)
-    return found.get("link", "") if found is not None else ""
+    tag = joint.find(which)
+    return tag.get("link", "") if tag is not None else ""
 
 
 def _origin(element: Element) -> dict[str, Any]:
-    found = element.find("origin")
-    if found is None:
+    tag = element.find("origin")
+    if tag is None:
         return ORIGIN
-    return {key: _numbers(found.get(key, "0 0 0")) for key in ("xyz", "rpy")}
+    return {key: _numbers(tag.get(key, "0 0 0")) for key in ("xyz", "rpy")}
 
 
 def _color(material: Element) -> list[float] | None:
-    found = material.find("color")
-    return _numbers(found.get("rgba", ""))[:3] if found is not None else None
+    tag = material.find("color")
+    return _numbers(tag.get("rgba", ""))[:3] if tag is not None else None
 
 
 def _numbers(text: str) -> list[float]:

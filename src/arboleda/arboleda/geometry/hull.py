@@ -23,14 +23,14 @@ def hull(points: Sequence[Spot], margin: float) -> list[list[float]]:
 
 
 def _half(points: list[Spot]) -> list[Spot]:
-    kept: list[Spot] = []
+    corners: list[Spot] = []
     for point in points:
-        while len(kept) > 1 and _turns_right(kept[-2], kept[-1], point):
-            kept.pop()
-        kept.append(point)
-    return kept
+        while len(corners) > 1 and _turns_right(corners[-2], corners[-1], point):
+            corners.pop()
+        corners.append(point)
+    return corners
 
 
 def _turns_right(a: Spot, b: Spot, c: Spot) -> bool:
-    """True if the way a, b, c does not turn left at b."""
+    """True if the line a, b, c does not turn left at b."""
     return (b[0] - a[0]) * (c[1] - a[1]) <= (b[1] - a[1]) * (c[0] - a[0])

@@ -12,10 +12,10 @@ Point = tuple[float, float, float]
 
 
 def place(body: Body, q: Sequence[float], base: Matrix | None = None) -> dict[str, Matrix]:
-    """The frame of every link, seen from where `base` is seen; `q` in rad and m, in the order of joints."""
-    found: dict[str, Matrix] = {}
-    _place(body, q, base or shift(0, 0, 0), found)
-    return found
+    """The frame of every link, in the frame in which `base` is; `q` in rad and m, in the order of joints."""
+    frames: dict[str, Matrix] = {}
+    _place(body, q, base or shift(0, 0, 0), frames)
+    return frames
 
 
 def tool(body: Body, q: Sequence[float], base: Matrix | None = None) -> Matrix:
@@ -48,11 +48,12 @@ def shift(x: float, y: float, z: float) -> Matrix:
 def turn(axis: Sequence[float], angle: float) -> Matrix:
     """A turn by `angle` rad about an axis of length 1."""
     x, y, z = axis
-    c, s, rest = math.cos(angle), math.sin(angle), 1 - math.cos(angle)
+    c, s = math.cos(angle), math.sin(angle)
+    d = 1 - c
     return (
-        (c + x * x * rest, x * y * rest - z * s, x * z * rest + y * s, 0),
-        (y * x * rest + z * s, c + y * y * rest, y * z * rest - x * s, 0),
-        (z * x * rest - y * s, z * y * rest + x * s, c + z * z * rest, 0),
+        (c + x * x * d, x * y * d - z * s, x * z * d + y * s, 0),
+        (y * x * d + z * s, c + y * y * d, y * z * d - x * s, 0),
+        (z * x * d - y * s, z * y * d + x * s, c + z * z * d, 0),
         (0, 0, 0, 1),
     )
 
@@ -65,13 +66,13 @@ def pose(xyz: Sequence[float], rpy: Sequence[float]) -> Matrix:
 
 
 def times(a: Matrix, b: Matrix) -> Matrix:
-    """The frame `b`, seen from where `a` is seen; written out, as drawings and checks do it often."""
+    """The frame `b` inside `a`, in the frame in which `a` is. Written out, as this is called often."""
     columns = tuple(zip(*b, strict=True))
     return tuple(tuple([x * i + y * j + z * k + w * m for i, j, k, m in columns]) for x, y, z, w in a)
 
 
 def at(matrix: Matrix, point: Point = (0, 0, 0)) -> Point:
-    """A point of a frame, as seen from outside."""
+    """A point of a frame, in the frame around it."""
     x, y, z = (sum(a * b for a, b in zip(row, (*point, 1), strict=True)) for row in matrix[:3])
     return (x, y, z)
 
@@ -86,14 +87,14 @@ def flat(matrix: Matrix) -> list[float]:
     return [value for row in matrix for value in row]
 
 
-def _place(body: Body, q: Sequence[float], above: Matrix, found: dict[str, Matrix]) -> None:
+def _place(body: Body, q: Sequence[float], above: Matrix, frames: dict[str, Matrix]) -> None:
     here = times(above, pose(body["xyz"], body["rpy"]))
     moves = body["moves"]
     if moves is not None:
         here = times(here, _moved(moves["type"], moves["axis"], q[moves["index"]]))
-    found[body["link"]] = here
+    frames[body["link"]] = here
     for child in body["children"]:
-        _place(child, q, here, found)
+        _place(child, q, here, frames)
 
 
 def _moved(kind: str, axis: Sequence[float], value: float) -> Matrix:

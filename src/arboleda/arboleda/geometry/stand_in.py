@@ -1,5 +1,6 @@
-"""Plain shapes for a link whose own cannot be drawn: a ball, a tube to each joint that it carries, and a rail
-along which a sliding one slides.
+"""Stand-in for a link whose shapes cannot be drawn: a ball, a tube to each of its joints, and rails.
+
+A sliding joint slides along a rail.
 """
 
 from __future__ import annotations
@@ -8,7 +9,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-THICK, LEAST_M, MOST_M = 0.12, 0.015, 0.05  # a tube's radius: a share of its length, and its bounds
+THICK, LEAST_M, MOST_M = 0.12, 0.015, 0.05  # radius of a tube: share of its length, least and most
 NOWHERE = (0.0, 0.0, 0.0)
 SHORT_M = 1e-3  # no tube is drawn for less
 
@@ -18,7 +19,7 @@ def shapes(
 ) -> list[dict[str, Any]]:
     """The stand-in for a link whose joints are at `ends`, m: {kind, size, xyz, rpy} as in `bodies`.
 
-    `rails`: from where to where its sliding joints bring what they carry.
+    `rails` are the two ends of the path of each sliding joint.
     """
     tubes = [_tube(NOWHERE, end) for end in ends if math.hypot(*end) > SHORT_M]
     radius = max((tube["size"][0] for tube in tubes), default=LEAST_M)

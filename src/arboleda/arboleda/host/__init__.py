@@ -1,4 +1,4 @@
-"""Host: what operating systems have differently, and whatever stands in where one lacks it.
+"""Host: differences of operating systems, and substitutes for abilities that one lacks.
 
-Nothing else asks which system this is; `tests/meta/test_other_systems.py` holds that.
+No other room asks which system this is; `tests/meta/test_other_systems.py` holds that.
 """

@@ -1,4 +1,4 @@
-"""Abilities of the operating system: constants by which others choose their way."""
+"""Abilities of the operating system, as constants."""
 
 from __future__ import annotations
 
@@ -6,6 +6,6 @@ import os
 import sys
 
 ABSTRACT_SOCKETS = sys.platform == "linux"  # names of sockets without a file
-PROCESSES = sys.platform != "emscripten"  # in a tab of a browser there is this one alone
-FORKS = PROCESSES and hasattr(os, "fork")  # a browser has the name alone
-WAITS_FOR_PIPES = sys.platform != "win32"  # there poll and select take sockets only
+PROCESSES = sys.platform != "emscripten"  # a tab of a browser has one process
+FORKS = PROCESSES and hasattr(os, "fork")  # in a browser the function exists, and fails
+WAITS_FOR_PIPES = sys.platform != "win32"  # Windows can only wait for sockets

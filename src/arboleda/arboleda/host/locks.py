@@ -10,13 +10,13 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-FAR = 1 << 30  # byte that is locked where a lock keeps others from reading what it covers
+FAR = 1 << 30  # byte that is locked on Windows, where nobody can read a locked byte
 
 
 def lock(file: int, *, shared: bool = False) -> bool:
-    """Lock an open file if nobody else has it; False if somebody has. `shared` suffers others that share.
+    """Lock an open file; False if another process has locked it. Several processes can have a `shared` lock.
 
-    Windows has no shared lock: there a second one who only looks finds the file locked for that moment.
+    Windows has no shared lock: there a second reader finds the file locked for a moment.
     """
     if fcntl is None:
         return _lock_byte(file)

@@ -1,4 +1,4 @@
-"""Installed packages: what they register for others, read again only where something was installed since."""
+"""Entry points of installed packages, which are read again once a package was installed or removed."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ Folders = tuple[tuple[str, int], ...]  # each with the time of its last change
 
 
 def entry_points(group: str) -> metadata.EntryPoints:
-    """The entry points of a group; who installs or removes a package changes the folder that it is in."""
-    found: metadata.EntryPoints = _all(tuple((each, _changed_at(each)) for each in sys.path)).select(
+    """The entry points of a group; an installation or removal changes the time of a folder of packages."""
+    points: metadata.EntryPoints = _all(tuple((each, _changed_at(each)) for each in sys.path)).select(
         group=group
     )
-    return found
+    return points
 
 
 def registered(group: str) -> list[metadata.EntryPoint]:
-    """The entry points of a group, by name. Nothing of them is loaded."""
+    """The entry points of a group in the order of their names; none is loaded."""
     return sorted(entry_points(group), key=lambda each: each.name)
 
 
@@ -39,18 +39,18 @@ def extra(name: str, package: str, what: str) -> Any:
 
 
 def package_of(point: metadata.EntryPoint) -> str:
-    """The package that registers this, under its own name or as PACKAGE.WHAT."""
+    """The package that registers an entry point, which is named PACKAGE or PACKAGE.NAME."""
     return point.name.partition(".")[0]
 
 
 @lru_cache(maxsize=1)
 def _all(_: Folders) -> Any:
-    """Every entry point: reading those of one group reads the files of all packages as well."""
+    """Every entry point: to read one group takes as long, as all packages are read."""
     return metadata.entry_points()
 
 
 def _changed_at(folder: str) -> int:
-    """In nanoseconds; 0 if there is no such folder."""
+    """The time of a folder's last change, ns; 0 if there is no such folder."""
     try:
         return os.stat(folder or os.curdir).st_mtime_ns
     except OSError:

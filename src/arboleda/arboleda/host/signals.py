@@ -1,4 +1,4 @@
-"""Signals that not every system has, and the terminal that one of them is about."""
+"""Signals that not every system has, and the terminal of this process."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def has_terminal() -> bool:
 def kill_group(process: int) -> None:
     """Kill a process that began a session of its own, with all that it started; nothing if it has ended.
 
-    Where there are no groups of processes, that one alone ends.
+    Where the system has no groups of processes, only this process ends.
     """
     if hasattr(os, "killpg"):
         with suppress(ProcessLookupError):

@@ -1,6 +1,6 @@
 """Share of its planned time in which a cell did good work: OEE by the formula of ISO 22400-2. Pure.
 
-OEE = availability x performance x quality. What each of them counts is in docs/how-to/oee.md.
+OEE = availability x performance x quality; docs/how-to/oee.md defines the three factors.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from arboleda.model.messages import TaskState
 from arboleda.model.sentence import Phrase, Sentence
 
 Span = tuple[float, float]  # from, until; Unix times
-SEEN_S = 60.0  # a running plant notes so with this period
-LATE_S = 3 * SEEN_S  # without a note for so long it does not run
+SEEN_S = 60.0  # period in which a running plant notes that it runs
+LATE_S = 3 * SEEN_S  # a plant without a note for so long does not run
 TIMES = 3  # an order has a shortest time after so many successes at the first attempt
-ENOUGH = 0.5  # the share of the tasks that must have one
+ENOUGH = 0.5  # share of the tasks that must have a shortest time
 
 NEVER_RAN = Phrase("oee.never_ran", "nothing was kept of that time")
 NO_PLAN = Phrase("oee.no_plan", "no task waited or was at work")
@@ -28,7 +28,7 @@ FEW_TIMES = Phrase(
 
 
 @dataclass(frozen=True, kw_only=True)
-class Work:
+class PastTask:
     """Task from the history; an open one has no end."""
 
     cell: str
@@ -40,8 +40,8 @@ class Work:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Run:
-    """Start of the plant: the last time that it is known to have run, and whether it was ended properly."""
+class PlantRun:
+    """Run of the plant: its start, the last time at which it ran for certain, and whether it was ended."""
 
     since_s: float
     seen_s: float
@@ -59,18 +59,18 @@ class Downtime:
 
 @dataclass(frozen=True, kw_only=True)
 class Shortest:
-    """Number of times that an order was done at the first attempt, and the shortest of them, s."""
+    """Number of times that an order was done at the first attempt, and the shortest time, s."""
 
     times: int
     seconds: float
 
 
 @dataclass(frozen=True, kw_only=True)
-class KeptFigures:
+class PastTimes:
     """Rows of a plant's memory for a span of time; `shortest` is by cell and order, over all time."""
 
-    works: Sequence[Work]
-    runs: Sequence[Run]
+    works: Sequence[PastTask]
+    runs: Sequence[PlantRun]
     downs: Sequence[Downtime]
     shortest: Mapping[tuple[str, str], Shortest]
 
@@ -79,7 +79,7 @@ class KeptFigures:
 class Oee:
     """OEE figures of one cell, shares from 0 to 1; None if they are unknown, for the reason `missing`.
 
-    `since_s` is the begin of the time that is recorded. `timed` are the tasks whose shortest time is known.
+    `since_s` is the begin of the recorded time. `timed` counts the tasks whose shortest time is known.
     """
 
     cell: str
@@ -101,14 +101,14 @@ class Oee:
         return {**vars(self), "missing": None if self.missing is None else str(self.missing)}
 
 
-def oee(cell: str, kept: KeptFigures, since_s: float, until_s: float) -> Oee:
+def oee(cell: str, times: PastTimes, since_s: float, until_s: float) -> Oee:
     """The OEE of a cell from `since_s` to `until_s`, which is not later than now."""
-    known = min((run.since_s for run in kept.runs), default=until_s)
-    begin = min(max(since_s, known), until_s)
+    first_s = min((run.since_s for run in times.runs), default=until_s)
+    begin = min(max(since_s, first_s), until_s)
     window = [(begin, until_s)]
-    ran, broke = _runs(kept.runs, until_s)
-    works = [work for work in kept.works if work.cell == cell]
-    down = [(each.since_s, _end(each.until_s, until_s)) for each in kept.downs if each.cell == cell]
+    ran, broke = _runs(times.runs, until_s)
+    works = [work for work in times.works if work.cell == cell]
+    down = [(each.since_s, _end(each.until_s, until_s)) for each in times.downs if each.cell == cell]
     work_spans = joined((work.accepted_s, _end(work.ended_s, until_s)) for work in works)
     planned = common(common(work_spans, joined([*ran, *broke])), window)
     working = without(ran, joined(down))
@@ -119,7 +119,7 @@ def oee(cell: str, kept: KeptFigures, since_s: float, until_s: float) -> Oee:
     timed = [
         (short.seconds, length(common([_at_work(work, until_s)], working)))
         for work in produced
-        if (short := kept.shortest.get((cell, work.order))) is not None and short.times >= TIMES
+        if (short := times.shortest.get((cell, work.order))) is not None and short.times >= TIMES
     ]
     planned_s = length(planned)
     needed_s, took_s = sum(best for best, _ in timed), sum(took for _, took in timed)
@@ -157,8 +157,8 @@ def _missing(begin: float, until_s: float, planned_s: float, produced: int, time
     return FEW_TIMES(known=timed, all=produced, times=TIMES)
 
 
-def _runs(runs: Sequence[Run], now_s: float) -> tuple[list[Span], list[Span]]:
-    """The spans in which the plant ran, and those from its being killed until the next start or now."""
+def _runs(runs: Sequence[PlantRun], now_s: float) -> tuple[list[Span], list[Span]]:
+    """The spans in which the plant ran, and those from a crash until the next start or now."""
     ran: list[Span] = []
     broke: list[Span] = []
     in_order = sorted(runs, key=lambda run: run.since_s)
@@ -173,13 +173,13 @@ def _runs(runs: Sequence[Run], now_s: float) -> tuple[list[Span], list[Span]]:
     return joined(ran), joined(broke)
 
 
-def _produced(work: Work, since_s: float, until_s: float) -> bool:
+def _produced(work: PastTask, since_s: float, until_s: float) -> bool:
     """True if a task was begun, and was done or failed in that time."""
     over = work.started_s is not None and work.state in (TaskState.DONE, TaskState.FAILED)
     return over and work.ended_s is not None and since_s <= work.ended_s < until_s
 
 
-def _at_work(work: Work, now_s: float) -> Span:
+def _at_work(work: PastTask, now_s: float) -> Span:
     return (now_s if work.started_s is None else work.started_s, _end(work.ended_s, now_s))
 
 
@@ -188,27 +188,27 @@ def _end(end_s: float | None, now_s: float) -> float:
 
 
 def joined(spans: Iterable[Span]) -> list[Span]:
-    """The same times in order, with overlaps merged; one that ends before it begins is dropped."""
-    found: list[Span] = []
+    """The spans in order, with overlaps merged; a span that ends before it begins is dropped."""
+    merged: list[Span] = []
     for since, until in sorted(span for span in spans if span[1] > span[0]):
-        if found and since <= found[-1][1]:
-            found[-1] = (found[-1][0], max(found[-1][1], until))
+        if merged and since <= merged[-1][1]:
+            merged[-1] = (merged[-1][0], max(merged[-1][1], until))
         else:
-            found.append((since, until))
-    return found
+            merged.append((since, until))
+    return merged
 
 
 def common(one: Iterable[Span], other: Iterable[Span]) -> list[Span]:
     """The times that are in both; each list is `joined`."""
-    ours, theirs, found = list(one), list(other), []
+    ours, theirs, shared = list(one), list(other), []
     here = there = 0
     while here < len(ours) and there < len(theirs):
         (our_since, our_until), (their_since, their_until) = ours[here], theirs[there]
         since, until = max(our_since, their_since), min(our_until, their_until)
         if until > since:
-            found.append((since, until))
+            shared.append((since, until))
         here, there = (here + 1, there) if our_until <= their_until else (here, there + 1)
-    return found
+    return shared
 
 
 def without(spans: Iterable[Span], gaps: Sequence[Span]) -> list[Span]:

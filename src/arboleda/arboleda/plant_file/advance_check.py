@@ -1,4 +1,4 @@
-"""Check of recipes in advance: each way through a recipe, and what it leaves, without running it."""
+"""Check of recipes in advance: each path through a recipe, and how it leaves the cell, without running it."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from .node_rules import RULES as NODE_RULES
 from .recipe_check import orders
 from .recipe_ends import certain_ends, of_ends
 from .scene_variables import first_values
-from .spots import START
 from .step_rules import RULES as STEP_RULES
+from .target_pose import START
 from .walkthrough import Rule, Walkthrough
 
 MOST_TRIES, LONGEST_S = 100, 3600.0  # of a retry, and the time of its pauses
@@ -37,12 +37,12 @@ RULES: Mapping[type[Behaviour], Rule] = {**STEP_RULES, **NODE_RULES}
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
-    """Warnings of what recipes do in vain, and of what they forget, each with the place of its recipe."""
+    """Warnings of steps that recipes do in vain or forget, each with the place of its recipe."""
     return tuple(sentence for check in _checks(plant) for sentence in check.warnings())
 
 
 def ends(plant: PlantModel) -> tuple[str, ...]:
-    """Ends of recipes: all that is so for certain once a task is done, with any parameters."""
+    """Ends of recipes: a sentence each with the facts that are certain once a task is done."""
     return tuple(sentence for check in _checks(plant) for sentence in check.ends())
 
 
@@ -53,12 +53,12 @@ def _checks(plant: PlantModel) -> list[CellCheck]:
 
 @dataclass(kw_only=True)
 class CellCheck:
-    """Check of the recipes of one cell: of each way through each of them, with all its parameters."""
+    """Follows each path through each recipe of one cell, with all parameters."""
 
     cell: Cell
     context: Context
-    found: dict[str, None] = field(default_factory=dict)
-    waits: dict[str, dict[str, str]] = field(default_factory=dict)  # by robot and recipe: where it ends
+    sentences: dict[str, None] = field(default_factory=dict)
+    waits: dict[str, dict[str, str]] = field(default_factory=dict)  # by robot and recipe: its last target
 
     def warnings(self) -> Iterable[str]:
         written = [each for each in self.cell.recipes if _is_own(each)]
@@ -67,7 +67,7 @@ class CellCheck:
                 self._check(recipe, order)
         for recipe in written:
             self._say(recipe, self._elsewhere(recipe))
-        return self.found
+        return self.sentences
 
     def ends(self) -> Iterator[str]:
         for recipe in (each for each in self.cell.recipes if _place(each) is not None):
@@ -85,13 +85,13 @@ class CellCheck:
             yield f"{self.cell.name}: {recipe.name} ends with {sure}"
 
     def _followed(self, tree: Behaviour) -> tuple[Walkthrough, tuple[Scene, ...]]:
-        """All ways through a recipe's tree, and the scenes at their ends."""
+        """The walkthrough of a recipe's tree, and the scenes at the ends of all paths."""
         walk = Walkthrough(foresight=Foresight(self.cell, self._back()), rules=RULES)
         begin = walk.foresight.begin().put(first_values(tree))
         return walk, walk.follow(tree.children[0], [begin]).passed
 
     def _back(self) -> dict[str, str]:
-        """By robot, the target to which the recipe has a recovery bring a part."""
+        """By robot, the target to which a recovery of this recipe brings the robot's part back."""
         poses = self.context.parts.back
         targets = {robot: self.cell.reach[robot].targets.items() for robot in poses}
         return {
@@ -113,7 +113,10 @@ class CellCheck:
                 self.waits.setdefault(space.robot.name, {}).update({recipe.name: str(over.pop())})
 
     def _elsewhere(self, recipe: Recipe) -> Iterator[str]:
-        """The arms that others leave at home, and this one does not; what drives may wait anywhere."""
+        """A sentence for each arm that this recipe leaves elsewhere, while another recipe leaves it at home.
+
+        A robot that drives may wait anywhere.
+        """
         for robot, waits in self.waits.items():
             others = [name for name, target in waits.items() if target == START]
             here = waits.get(recipe.name, START)
@@ -122,11 +125,11 @@ class CellCheck:
 
     def _say(self, recipe: Recipe, sentences: Iterable[str], place: str | None = None) -> None:
         where = f"{place or _place(recipe)}: {self.cell.name}: {recipe.name}"
-        self.found |= dict.fromkeys(f"{where} {sentence}" for sentence in sentences)
+        self.sentences |= dict.fromkeys(f"{where} {sentence}" for sentence in sentences)
 
 
 def _place(recipe: Recipe) -> str | None:
-    """The place of a recipe in its file; None of one that is in no file of a plant."""
+    """The place of a recipe in its file; None for a recipe that no file of the plant has."""
     if isinstance(recipe, TreeRecipe):
         return str(recipe.place)
     if not isinstance(recipe, WrittenRecipe):
@@ -136,13 +139,14 @@ def _place(recipe: Recipe) -> str | None:
 
 
 def _is_own(recipe: Recipe) -> bool:
-    """True for a recipe of the plant; nobody who checks a plant can change those that come with Arboleda."""
+    """True for a recipe of the plant. Nobody who checks a plant can change a recipe of Arboleda's own."""
     return _place(recipe) is not None and not recipe.is_shipped
 
 
 def _endless(tree: Behaviour) -> Iterator[tuple[str | None, str]]:
-    """The retries that go on for longer than people wait, and that nothing ends before; of a tree as XML with
-    their places.
+    """The retries that go on for longer than people wait, and that nothing ends earlier.
+
+    Each is a sentence with its place in a file of XML; None for a tree of Python.
     """
     for node in tree.iterate():
         if isinstance(node, Again) and not _is_limited(node):
@@ -157,7 +161,7 @@ def _endless(tree: Behaviour) -> Iterator[tuple[str | None, str]]:
 
 
 def _written_rounds(loop: Loop) -> int | None:
-    """The rounds of a loop that stand in its file; None where a variable says them."""
+    """The number of rounds that the file of a loop has; None where the number is a variable."""
     try:
         return loop.most(Scope())
     except ScriptError:
@@ -165,6 +169,6 @@ def _written_rounds(loop: Loop) -> int | None:
 
 
 def _is_limited(node: Behaviour) -> bool:
-    """True for a step in one that ends it after some time, or once something is so."""
+    """True for a step inside a step that ends it after some time, or by a condition."""
     around = node.parent
     return around is not None and (isinstance(around, LIMITS) or _is_limited(around))

@@ -1,8 +1,8 @@
-"""Arrays of targets: a group that says how many there are and where its corners are.
+"""Arrays of targets: a group of rows and columns whose corners the plant file has.
 
-Between the corners the joints of an arm are interpolated, which is exact only for sliding joints:
-`layout_check` measures the distance from an even grid in space. A mobile robot stands on nodes, so its array
-must meet them.
+Between the corners the joints of an arm are interpolated. That is exact only for sliding joints:
+`layout_check` measures the distance from an even grid in space. A mobile robot stands on nodes, so each
+target of its array must be a node.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from arboleda.model.commands import Position
 from arboleda.model.plant_model import Pose, Robot
 from arboleda.model.sentence import OWN
 
-from .document import Document, Place, choice, nearest, shown
+from .document import Document, Place, misnamed
 from .shapes import ArrayShape
-from .spots import spot
+from .target_pose import target_pose
 
 CORNER = "corner"
 ROUNDING = 1e-9
@@ -48,13 +48,13 @@ class Array:
         """The share of each of the `corners` in a target's position."""
         row, column = divmod(index, self.columns)
         down, along = row / max(self.rows - 1, 1), column / max(self.columns - 1, 1)
-        found: dict[int, float] = {}
+        by_corner: dict[int, float] = {}
         last = self.rows * self.columns - 1
         four = (0, self.columns - 1, last - self.columns + 1, last)
         shares = ((1 - down) * (1 - along), (1 - down) * along, down * (1 - along), down * along)
         for corner, share in zip(four, shares, strict=True):
-            found[corner] = found.get(corner, 0.0) + share
-        return tuple(found.values())
+            by_corner[corner] = by_corner.get(corner, 0.0) + share
+        return tuple(by_corner.values())
 
     def even(self, index: int, corners: Sequence[Sequence[float]]) -> tuple[float, ...]:
         """The position of a target between the corners if rows and columns were even in space."""
@@ -62,14 +62,14 @@ class Array:
 
 
 def is_array(document: Document, place: Place) -> bool:
-    """True if a group is an array, which a mapping is; a list is one of names."""
+    """True if a group is an array: a mapping. A group that is a list has the names of targets."""
     return isinstance(document.value(place), dict)
 
 
 def arrays(document: Document, cell: Place) -> tuple[Array, ...]:
-    """The arrays of a cell; what is wrong with the others is kept."""
+    """The arrays of a cell; problems of the others are kept."""
     here = (*cell, "groups")
-    found = []
+    whole = []
     for name in document.keys(here):
         place = (*here, name)
         shape = document.read(ArrayShape, place) if is_array(document, place) else None
@@ -80,35 +80,34 @@ def arrays(document: Document, cell: Place) -> tuple[Array, ...]:
             number = f"is {rows} x {columns}"
             document.problem((*place, "grid"), f"an array has 2 to {MOST} targets; this one {number}")
             continue
-        found.append(Array(group=name, rows=rows, columns=columns))
-    return tuple(found)
+        whole.append(Array(group=name, rows=rows, columns=columns))
+    return tuple(whole)
 
 
 def poses(
     document: Document, cell: Place, array: Array, robots: Mapping[str, Robot]
 ) -> dict[str, list[Pose | None]]:
-    """The poses at each target of each robot that has corners; None for what is wrong, which is kept."""
+    """By role, the poses of each robot that has corners; None for a wrong pose, whose problem is kept."""
     here = (*cell, "groups", array.group, "corners")
-    found: dict[str, list[Pose | None]] = {}
+    by_role: dict[str, list[Pose | None]] = {}
     for role in document.keys(here):
         place = (*here, role)
         if role not in robots:
-            there = f"must be {choice(robots)}" if robots else "no device of this cell goes anywhere"
-            document.problem(place, f"{there}, is {shown(role)}{nearest(role, robots)}", at=place)
+            document.problem(place, misnamed(role, robots, "no device of this cell goes anywhere"), at=place)
             continue
         rows = document.value(place)
         if not isinstance(rows, list) or len(rows) != len(array.corners):
             which = ORDER if len(array.corners) > 2 else "the first and the last"
             document.problem(place, f"must be a list of {len(array.corners)} corners: {which}", at=place)
-            found[role] = [None]
+            by_role[role] = [None]
             continue
-        corners = [spot(document, (*place, index), robots[role], CORNER) for index in range(len(rows))]
+        corners = [target_pose(document, (*place, index), robots[role], CORNER) for index in range(len(rows))]
         whole = [pose for pose in corners if pose is not None]
         if len(whole) < len(corners):
-            found[role] = [None]
+            by_role[role] = [None]
         else:
-            found[role] = _between(document, place, array, whole, robots[role])
-    return found
+            by_role[role] = _between(document, place, array, whole, robots[role])
+    return by_role
 
 
 def _between(
@@ -132,7 +131,7 @@ def _between(
 
 
 def _mixed(corners: Sequence[Position], weights: Sequence[float], robot: Robot) -> Position | None:
-    """The position with these shares of the corners; None if that is no node."""
+    """The position with these shares of the corners; None where a mobile robot would be between nodes."""
     if robot.floor_grid:
         columns = robot.floor_grid.columns
         rows = _sums([divmod(node, columns) for node in corners if isinstance(node, int)], weights)

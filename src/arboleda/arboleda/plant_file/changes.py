@@ -22,7 +22,7 @@ CELLS, TARGETS = "cells", "targets"
 
 @dataclass(frozen=True, kw_only=True)
 class Missing:
-    """The value of what is not there, which is not the empty value."""
+    """The value of a key that a file does not have, other than an empty value."""
 
 
 MISSING = Missing()
@@ -30,9 +30,10 @@ MISSING = Missing()
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """One difference: of a value of the plant file at `place`, of a tree in `file`, or of a whole file.
+    """One difference: in the plant file's value at `place`, in a tree of `file`, or in a whole file.
 
-    `before` and `after` are plain values, MISSING where there is none; those of a tree or a file are None.
+    `before` and `after` are plain values, MISSING where there is none. For a tree or a whole file that is
+    there, they are None.
     """
 
     file: str
@@ -69,13 +70,13 @@ class Change:
 def changes(before: PlantFiles, after: PlantFiles) -> tuple[Change, ...]:
     """The changes in `after`: values of the plant file in its order, then trees, then other files.
 
-    A plant file of which layout or comments alone differ is as it was.
+    Another layout of a plant file, or other comments, are no change.
     """
-    found = [*_of_plant(before, after)]
+    differences = [*_of_plant(before, after)]
     names = sorted(before.contents.keys() | after.contents.keys())
     for name in [each for each in names if each not in (before.plant, after.plant)]:
-        found += _of_file(name, before.contents.get(name), after.contents.get(name))
-    return tuple(found)
+        differences += _of_file(name, before.contents.get(name), after.contents.get(name))
+    return tuple(differences)
 
 
 def _of_plant(before: PlantFiles, after: PlantFiles) -> Iterator[Change]:
@@ -90,7 +91,7 @@ def _of_plant(before: PlantFiles, after: PlantFiles) -> Iterator[Change]:
 
 
 def _of_values(file: str, place: Place, before: Any, after: Any) -> Iterator[Change]:
-    """The changes of a value and all that is in it; mappings are compared key by key, down to a pose."""
+    """The changes inside a value: mappings are compared key by key, down to a pose, which is one value."""
     is_pose = len(place) == 5 and (place[0], place[2]) == (CELLS, TARGETS)
     if isinstance(before, dict) and isinstance(after, dict) and not is_pose:
         for key in [*before, *(key for key in after if key not in before)]:
@@ -121,15 +122,17 @@ def _of_file(name: str, before: bytes | None, after: bytes | None) -> Iterator[C
 
 
 def _of_trees(name: str, before: bytes, after: bytes) -> Iterator[Change]:
-    """The trees of a file that are new, gone or changed; the file itself where it is none of its trees."""
+    """The trees of a file that are new, gone or changed; the file itself where no tree differs."""
     old, new = _trees(name, before), _trees(name, after)
-    found = [
+    differences = [
         Change(file=name, tree=tree, before=None if tree in old else MISSING, after=None)
         for tree in new
         if old.get(tree) != new[tree]
     ]
-    found += [Change(file=name, tree=tree, before=None, after=MISSING) for tree in old if tree not in new]
-    yield from found or [Change(file=name, before=None, after=None)]
+    differences += [
+        Change(file=name, tree=tree, before=None, after=MISSING) for tree in old if tree not in new
+    ]
+    yield from differences or [Change(file=name, before=None, after=None)]
 
 
 def _trees(name: str, content: bytes) -> dict[str, str]:

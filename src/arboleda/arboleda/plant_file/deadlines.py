@@ -10,19 +10,20 @@ from arboleda.model.plant_model import APART_S, Cell, Evidence, Robot, Timing
 from .document import Document, Place
 
 PERIOD_S = APART_S / 2  # of telemetry
-# by the reports of an arrival: its own; one of moving and one of the end; two with QUIET_S between them
+# The reports that show an arrival. With ids it is one report. With state it is a report that the robot moves,
+# and one that it stands. With joints it is two reports of one position, QUIET_S apart.
 SHOWN_S = {
     Evidence.IDS: PERIOD_S,
     Evidence.STATE: APART_S + PERIOD_S,
     Evidence.JOINTS: QUIET_S + 2 * PERIOD_S,
 }
-# at `joints`, a drive over nodes: its stop, and its last node, told APART_S or more after that
+# A drive over nodes, with joints: the robot stops, and tells its last node APART_S or more after that.
 DRIVE_SHOWN_S = 3 * APART_S + 2 * PERIOD_S
 ROUNDING_S = 1e-6
 
 
 def check_arrivals_show(document: Document, cells: Iterable[Cell], timing: Timing) -> None:
-    """Keep a problem for each robot whose moves may be given up, or taken for done, before they show."""
+    """Keep a problem for each robot whose move may be given up, or count as done, before reports show it."""
     for cell in cells:
         for role, robot in cell.roles.items():
             if not robot.goes:
@@ -49,9 +50,12 @@ def _check_patience(document: Document, robot: Robot, timing: Timing) -> None:
 
 
 def _spare_s(robot: Robot, longest_s: float, timing: Timing) -> float:
-    """The least time beyond its computed one that a move has, of all that take up to `longest_s`."""
+    """The least time that a deadline leaves a move beyond its computed time.
+
+    The moves are all that take up to `longest_s`.
+    """
     factor, floor_s = timing.deadline_factor, timing.deadline_floor_s
-    # moves of up to this length have `timeout_s`, however short they are; longer ones have more than that
+    # A move of up to `even_s` has `timeout_s`, however short it is. A longer move has more time than that.
     even_s = min(max((robot.timeout_s - floor_s) / factor, 0.0), longest_s)
     return max(robot.timeout_s, even_s * factor + floor_s) - even_s
 
@@ -61,12 +65,14 @@ def _longest_s(cell: Cell, robot: Robot) -> float:
         return robot.motion.travel_s(None, [robot.reference])
     space, grid = cell.reach[robot.name], robot.floor_grid
     nodes = range(grid.size)
-    ways = [path.nodes for path in space.paths]
-    if ways and cell.drive_to_start:  # a drive that is given anew leads to the start of its path and over it
-        ways = [(*grid.route(node, way[0]), *way[1:]) for way in ways for node in nodes]
+    routes = [path.nodes for path in space.paths]
+    if (
+        routes and cell.drive_to_start
+    ):  # a drive that is given anew leads to the start of its path and over it
+        routes = [(*grid.route(node, route[0]), *route[1:]) for route in routes for node in nodes]
     goals = [pose.q for pose in space.poses if isinstance(pose.q, int)]
-    ways += [grid.route(node, goal) for goal in goals for node in nodes]
-    return max(robot.motion.travel_s(None, way) for way in ways)
+    routes += [grid.route(node, goal) for goal in goals for node in nodes]
+    return max(robot.motion.travel_s(None, route) for route in routes)
 
 
 def _sentence(robot: Robot, timing: Timing, spare_s: float, needed_s: float) -> str:

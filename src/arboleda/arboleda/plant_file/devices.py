@@ -1,4 +1,4 @@
-"""Cells that are made of devices by role: robots, and devices of kinds that the plant file declares."""
+"""Cells that are made of devices by role: robots, and devices of declared kinds or of kinds in Python."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from dataclasses import dataclass
 
 from arboleda.kinds import WrittenKind
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect
-from arboleda.model.plant_model import Cell, Evidence, Retry, Robot
+from arboleda.model.plant_model import Cell, Evidence, Robot
 
 from . import handovers, needs, own_kinds, part_places, shared, targets
+from .any_cell import check_absence, common_keys
 from .arrays import arrays
 from .deadlines import ROUNDING_S, SHOWN_S
-from .document import Document, Place, choice, nearest, shown
+from .document import Document, Place, choice, misnamed, nearest, shown
 from .drivers import OF_DEVICES, link
 from .python_uses import KindInPython, PythonUses
-from .registry import COME_WITH_IT, RESERVED
 from .robot_kind import RobotKind
-from .robots import check_absence
-from .shapes import NAME_RULE, ROBOT_KEYS, DeviceCellShape, DeviceShape, RetryShape, TeachShape, is_name
+from .shapes import NAME_RULE, ROBOT_KEYS, DeviceCellShape, DeviceShape, is_name
+from .shipped_kinds import COME_WITH_IT, RESERVED
 
 CELLS: Place = ("cells",)
-EVIDENCE = {"facts": Evidence.JOINTS}  # what joints are to an arm
+EVIDENCE = {"facts": Evidence.JOINTS}  # a device reports its facts as an arm reports its joints
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +29,7 @@ class Kinds:
     """The kinds of a plant's devices: those that its file declares, and those in Python."""
 
     declared: Mapping[str, DeviceKind]
-    names: Collection[str]  # of those that it declares, be they right or wrong
+    names: Collection[str]  # of all kinds that the file declares, right or wrong
     used: PythonUses
 
     def in_python(self, name: object) -> KindInPython | None:
@@ -54,7 +54,7 @@ class Kinds:
         return kind if isinstance(kind, RobotKind) else None
 
     @property
-    def known(self) -> list[str]:
+    def all_names(self) -> list[str]:
         """The names of all kinds."""
         used = self.used
         return list(dict.fromkeys([*self.names, *used.kinds, *COME_WITH_IT, *used.installed]))
@@ -72,15 +72,15 @@ def shared_devices(document: Document, kinds: Kinds) -> dict[str, Robot]:
     def read(place: Place) -> Robot | None:
         return _device(document, place, kinds)
 
-    found = shared.shared_devices(document, read)
+    devices = shared.shared_devices(document, read)
     shared.check_use(document)
-    return found
+    return devices
 
 
 def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[str, Robot]) -> Cell | None:
     """The cell, still without recipes; None, with its problems kept, if something is wrong with it.
 
-    `common` are the devices that it may share with others, by name.
+    `common` are the devices that cells share, by name.
     """
     both = [key for key in ROBOT_KEYS if document.has((*place, key))]
     for key in both:
@@ -88,19 +88,18 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
         what = f'{rule}; as one of its devices, it is "{key}: {{kind: {key}, ...}}"'
         document.problem((*place, key), what, at=(*place, key))
     shape = None if both else document.read(DeviceCellShape, place)
-    retry = document.read(RetryShape, (*place, "retry")) if document.has((*place, "retry")) else RetryShape()
-    teach = document.read(TeachShape, (*place, "teach")) if document.has((*place, "teach")) else TeachShape()
+    keys = common_keys(document, place, shape)
     names = document.keys((*place, "devices"))
     sharing = shared.named(document, place)
-    found = {
+    devices = {
         role: shared.in_role(document, (*place, "devices", role), common)
         if role in sharing
         else _device(document, (*place, "devices", role), kinds)
         for role in names
     }
-    members = {role: device for role, device in found.items() if device is not None}
+    members = {role: device for role, device in devices.items() if device is not None}
     tools = _tools(document, (*place, "devices"), members, sharing)
-    if shape is None or retry is None or teach is None or len(members) < len(found):
+    if shape is None or keys is None or len(members) < len(devices):
         return None
     spaces = targets.workspaces(document, place, members, tools)
     if spaces is None or (spaces := handovers.with_paths(document, place, members, spaces)) is None:
@@ -109,7 +108,7 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
     groups = targets.groups(document, place, spaces)
     handover = handovers.handover(document, place, members, spaces)
     return Cell(
-        name=str(place[-1]),
+        **keys,
         members=tuple(members.items()),
         spaces=spaces,
         handover=handover,
@@ -119,14 +118,6 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
         arrays=groups,
         grids=tuple((each.group, each.rows, each.columns) for each in arrays(document, place)),
         shared=tuple(sharing.values()),
-        queue_limit=shape.queue_limit,
-        goes_on=shape.on_restart == "go_on",
-        goes_on_after_absence=shape.on_absence == "go_on",
-        drive_to_start=shape.drive_to_start,
-        piece_check=shape.piece_check,
-        zone_wait_s=shape.zone_wait_s,
-        retry=Retry(**retry.model_dump()),
-        teach=teach.teach,
     )
 
 
@@ -152,10 +143,9 @@ def _tools(
             document.problem(here, f"{carrier} is shared, and so is what it carries; {how}")
             continue
         if carrier in document.keys(place) and carrier not in members:
-            continue  # its mistakes are reported there, and what else keeps its kind from being known
+            continue  # the problems of that device are reported at the device
         if carrier not in robots:
-            there = f"must be {choice(robots)}" if robots else "no device of this cell is a robot"
-            document.problem(here, f"{there}, is {shown(carrier)}{nearest(str(carrier), robots)}")
+            document.problem(here, misnamed(carrier, robots, "no device of this cell is a robot"))
         elif device.held_fact is None:
             document.problem(here, f"{role} holds no part: none of its verbs has holds: part")
         elif carrier in tools:
@@ -178,12 +168,14 @@ def _device(document: Document, place: Place, kinds: Kinds) -> Robot | None:
 def _machine(document: Document, place: Place, kinds: Kinds) -> Device | None:
     written = kinds.in_python(document.value((*place, "kind")))
     if isinstance(written, WrittenKind):
-        found = own_kinds.device(document, place, written, kinds.used)
-        shape, kind = found or (None, None)
+        described = own_kinds.device(document, place, written, kinds.used)
+        shape, kind = described or (None, None)
     else:
         kind = _kind(document, (*place, "kind"), kinds)
         name = document.value((*place, "kind"))
-        is_unknown = isinstance(name, str) and name not in kinds.names  # then nobody knows its keys
+        is_unknown = (
+            isinstance(name, str) and name not in kinds.names
+        )  # its keys may be those of a kind in Python
         shape = None if is_unknown else document.read(DeviceShape, place)
     if shape is None or kind is None:
         return None
@@ -208,19 +200,19 @@ def _kind(document: Document, place: Place, kinds: Kinds) -> DeviceKind | None:
     name = document.value(place)
     if not isinstance(name, str) or name in kinds.names:
         return kinds.declared.get(name) if isinstance(name, str) else None
-    hint = nearest(name, kinds.known)
+    hint = nearest(name, kinds.all_names)
     if name in kinds.used.broken or not kinds.used.may_import:
         return None
-    if hint or kinds.used.is_whole:  # else what could not be imported may have had it
+    if hint or kinds.used.is_whole:  # else a file that could not be imported may have the kind
         own = "" if hint else '; one of your own is declared under "kinds" at the top of the file'
-        document.problem(place, f"must be {choice(kinds.known)}, is {shown(name)}{hint or own}")
+        document.problem(place, f"must be {choice(kinds.all_names)}, is {shown(name)}{hint or own}")
     return None
 
 
 def _is_proven(
     document: Document, place: Place, kind: DeviceKind, verb: DeviceVerb, evidence: Evidence
 ) -> bool:
-    """True if a device's reports, with this evidence, can show in the verb's time that it is done."""
+    """True if a device's reports, with this evidence, can show in the verb's time that the verb is done."""
     here = (*place, "evidence")
     spare_s, needed_s = verb.at_most_s - verb.takes_s, SHOWN_S[evidence]
     if verb.effect is Effect.QUERY and evidence is not Evidence.IDS:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, TypeVar
@@ -14,7 +14,7 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from arboleda.model.errors import ConfigError
 
 from .problems import Problems
-from .yaml_marks import Mark, Node, YamlFault, clipped, parse
+from .yaml_marks import Mark, YamlFault, YamlNode, clipped, parse
 
 T = TypeVar("T")
 M = TypeVar("M", bound=BaseModel)
@@ -40,17 +40,17 @@ BOUNDS = {
 
 
 class Document(Problems):
-    """Document: a file by the name people know it by; ConfigError at once if nothing in it can be read.
+    """Reads one YAML file by sections; ConfigError at once if nothing in the file can be read.
 
-    `folder` has the files that it names; None for a content that lies in no folder. With `runs` a plant of
-    this process runs by it: Python that was imported is not run again.
+    `name` is the file's name for people. `folder` has the files that this one names; None for a content that
+    lies in no folder. With `runs` a plant of this process runs by the file: its Python is not run again.
     """
 
     def __init__(self, name: str, raw: bytes, folder: Path | None = None, *, runs: bool = False) -> None:
         super().__init__(name)
         self.folder = folder
         self.runs = runs
-        self.files: dict[Path, bytes] = {}  # those of them that were read
+        self.files: dict[Path, bytes] = {}  # all files that were read, this one included
         try:
             self._root, faults = parse(raw)
         except YamlFault as fault:
@@ -59,15 +59,15 @@ class Document(Problems):
             self.keep(lesser.mark, lesser.sentence)
 
     def problem(self, place: Place, sentence: str, *, at: Place | None = None) -> None:
-        """Keep one problem; its line is that of the deepest known part of `place`, or of the key `at`."""
+        """Keep one problem at the line of `place`, or of what is there of it; with `at`, of that key."""
         where = dotted(place)
         mark = self._mark(place) if at is None else self._key_mark(at)
         self.keep(mark, f"{where}: {sentence}" if where else sentence)
 
-    def unknown(self, place: Place, known: Iterable[str]) -> None:
+    def unknown(self, place: Place, allowed: Iterable[str]) -> None:
         """Keep the problem that the last key of `place` is not one of `known`."""
-        word, known = str(place[-1]), sorted(known)
-        sentence = f"the key {shown(word)} is not known{nearest(word, known)}; known: {', '.join(known)}"
+        word, allowed = str(place[-1]), sorted(allowed)
+        sentence = f"the key {shown(word)} is not known{nearest(word, allowed)}; known: {', '.join(allowed)}"
         self.problem(place[:-1], sentence, at=place)
 
     def has(self, place: Place) -> bool:
@@ -89,28 +89,32 @@ class Document(Problems):
         return tuple(value) if isinstance(value, dict) else ()
 
     def read(self, shape: type[M], place: Place = ()) -> M | None:
-        """The mapping there in this shape; None, with its problems kept, if it does not fit or is absent."""
+        """The mapping there in this shape; None where it is absent, or, with its problems kept, unfit."""
         keys = tuple(field.alias or name for name, field in shape.model_fields.items())
         return self._read(shape.model_validate, place, keys)
 
+    def section(self, shape: type[M], place: Place) -> M | None:
+        """The mapping there in this shape, with all defaults where it is absent; None as in `read`."""
+        return self.read(shape, place) if self.has(place) else shape()
+
     def read_plain(self, shape: TypeAdapter[T], place: Place) -> T | None:
-        """The same for a value that is not a mapping of known keys."""
+        """The value there in this shape, for a value whose keys, if any, are free; None as in `read`."""
         return self._read(shape.validate_python, place, ())
 
-    def _read(self, validate: Callable[[Any], T], place: Place, known: tuple[str, ...]) -> T | None:
+    def _read(self, validate: Callable[[Any], T], place: Place, allowed: tuple[str, ...]) -> T | None:
         if not self.has(place):
             return None
         try:
             return validate(self.value(place))
         except ValidationError as error:
             for fault in error.errors(include_url=False):
-                self._fault((*place, *fault["loc"]), fault, known)
+                self._fault((*place, *fault["loc"]), fault, allowed)
             return None
 
-    def _fault(self, place: Place, fault: Any, known: tuple[str, ...]) -> None:
+    def _fault(self, place: Place, fault: Any, allowed: tuple[str, ...]) -> None:
         key = str(place[-1]) if place else ""
         if fault["type"] == "extra_forbidden":
-            self.unknown(place, known)
+            self.unknown(place, allowed)
         elif fault["type"] == "missing":
             self.problem(place[:-1], f'the key "{key}" is missing')
         else:
@@ -122,7 +126,7 @@ class Document(Problems):
     def _key_mark(self, place: Place) -> Mark:
         return self._node(place[:-1]).keys.get(place[-1], self._mark(place))
 
-    def _node(self, place: Place) -> Node:
+    def _node(self, place: Place) -> YamlNode:
         node = self._root
         for key in place:
             if key not in node.children:
@@ -151,16 +155,22 @@ def shown(value: Any) -> str:
     return f'"{text}"' if isinstance(value, str) else text
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
+def nearest(word: str, words: Iterable[str]) -> str:
     """A hint `; did you mean "..."?`, or nothing."""
-    close = closest(word, known)
+    close = closest(word, words)
     return f'; did you mean "{close}"?' if close else ""
 
 
-def closest(word: str, known: Iterable[str]) -> str | None:
-    """The known word that was probably meant, if any is near enough."""
-    close = get_close_matches(word.lower(), list(known), n=1, cutoff=0.6)
+def closest(word: str, words: Iterable[str]) -> str | None:
+    """The word of these that was probably meant; None where none is near enough."""
+    close = get_close_matches(word.lower(), list(words), n=1, cutoff=0.6)
     return close[0] if close else None
+
+
+def misnamed(word: object, allowed: Collection[str], none: str) -> str:
+    """The sentence that a word is none of those allowed; it begins with `none` where no word is allowed."""
+    rule = f"must be {choice(allowed)}" if allowed else none
+    return f"{rule}, is {shown(word)}{nearest(str(word), allowed)}"
 
 
 def choice(words: Iterable[str]) -> str:

@@ -1,4 +1,4 @@
-"""Check of a plant's files that are not in their folder yet, by all that `arboleda check` looks at."""
+"""Check of a draft: files of a plant that are not in their folder yet, by all checks of `arboleda check`."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from .unstated import Unstated, unstated
 
 
 @dataclass(frozen=True, kw_only=True)
-class CheckResult:
-    """Result of checking files: the plant, None where there are `problems`; lines with file, line and column.
+class DraftCheck:
+    """Result of checking a draft: the plant, None where there are `problems`.
 
-    `read`: all files that the plant was made of, by paths as those that were checked have. `unstated`: what
-    this plant file could state, and does not.
+    Problems and warnings are lines with file, line and column. `read` are all files that the plant was made
+    of, by paths like those of the draft. `unstated` are rules that the plant file could state, and does not.
     """
 
     plant: PlantModel | None = None
@@ -34,9 +34,9 @@ class CheckResult:
 
 @dataclass(frozen=True, kw_only=True)
 class Shade:
-    """Shade: a folder as that of a plant file, with other files in it; `plant_file` is the one to read there.
+    """A folder like that of a plant file, in which some files are others; `plant_file` is the file to read.
 
-    `named` has the folders that lines name, and those that they mean.
+    `named` has by each folder of the shade, which problems name, the real folder.
     """
 
     plant_file: Path
@@ -62,20 +62,20 @@ def shaded(files: PlantFiles, plant_file: Path) -> Iterator[Shade]:
         )
 
 
-def check(files: PlantFiles, plant_file: Path) -> CheckResult:
-    """The verdict on `files` as if they were in the folder of `plant_file`, where all others are.
+def check(files: PlantFiles, plant_file: Path) -> DraftCheck:
+    """The result of checking `files` as if they were in the folder of `plant_file`, beside its other files.
 
-    Lines name the files by where they would be. Nothing is written there; recipes in Python run as in
-    `arboleda check`, in a process of its own.
+    Problems name each file by the path that it would have. Nothing is written into that folder. Recipes in
+    Python run in a process of their own, as in `arboleda check`.
     """
     with shaded(files, plant_file) as shade:
         try:
             plant, read = loader.load_with_files(shade.plant_file)
             warnings, lacks = plant_check.warnings(plant), unstated(plant)
         except ConfigError as error:
-            return CheckResult(problems=tuple(map(shade.renamed, error.problems)))
+            return DraftCheck(problems=tuple(map(shade.renamed, error.problems)))
         named = read if read.plant == files.plant else None  # absolute paths have other names here
-        return CheckResult(
+        return DraftCheck(
             plant=plant,
             read=named,
             warnings=tuple(map(shade.renamed, warnings)),
@@ -90,7 +90,7 @@ def root_of(files: PlantFiles, plant_file: Path) -> Path:
 
 
 def _shade(shadow: Path, folder: Path, contents: Mapping[str, bytes]) -> None:
-    """Make a folder that is as `folder`, but for the files with these contents, by paths from it."""
+    """Make a folder like `folder`, in which the files at these paths have these contents."""
     shadow.mkdir()
     heads = {Path(name).parts[0] for name in contents}
     for each in os.listdir(folder) if folder.is_dir() else ():

@@ -1,5 +1,4 @@
-"""Forms for the drivers that a plant can name: a field for each of their settings, and the value of what a
-person wrote there."""
+"""Forms for the drivers that a plant can name: a field for each setting, and the value of a filled form."""
 
 from __future__ import annotations
 
@@ -18,7 +17,7 @@ from . import package_drivers
 from .drivers import OF_DEVICES
 from .python_uses import LONGEST, error_text
 from .yaml_flow import flow
-from .yaml_marks import YamlFault, parse
+from .yaml_marks import YamlFault, plain_value
 
 Row = dict[str, Any]
 FORMS = {bool: "bool", int: "int", float: "number", str: "text"}
@@ -27,10 +26,10 @@ WHAT = {"int": "a whole number", "number": "a number", "bool": "true or false"}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Key:
-    """Key of a driver's settings: its `form` is text, int, number, bool, choice or yaml.
+class SettingsKey:
+    """Key of a driver's settings. Its `form` is text, int, number, bool, choice or yaml.
 
-    `default` is as in a file; empty where there is none.
+    `default` is a text as a person writes it in a plant file; empty where there is none.
     """
 
     name: str
@@ -42,7 +41,7 @@ class Key:
     about: str = ""
 
     def read(self, text: str) -> Any:
-        """The value of a text that a person wrote; ArboledaError if it is none."""
+        """The value of a text that a person wrote; ArboledaError if the text is no value of this key."""
         if self.form == "text":
             return text
         if self.form == "choice":
@@ -50,13 +49,7 @@ class Key:
                 raise ArboledaError(f"{self.name} must be one of {', '.join(self.choices)}")
             return text
         value = _yaml(self.name, text)
-        fits = FITS.get(self.form)
-        is_null = value is None and self.can_be_null
-        if (
-            fits
-            and not is_null
-            and (not isinstance(value, fits) or isinstance(value, bool) != (bool in fits))
-        ):
+        if not self._fits(value):
             raise ArboledaError(f"{self.name} must be {WHAT[self.form]}, is {quoted(text)}")
         return value
 
@@ -68,32 +61,35 @@ class Key:
 
 
 def forms(own: Mapping[str, DriverSpec], words: Mapping[str, str]) -> list[Row]:
-    """Each driver that a device of a declared kind can have: `name`, `about`, `keys`, and why it cannot be
-    used. `own` are those of the plant's own files; `words` what is said of drivers and of their keys."""
+    """A row for each driver that a device of a declared kind can have: `name`, `about`, `keys`, `why_not`.
+
+    `why_not` says why the driver cannot be used. `own` are the drivers of the plant's own files. `words` are
+    the descriptions of drivers and of their keys.
+    """
     rows: list[Row] = [{"name": name, "about": words[name], "keys": [], "why_not": ""} for name in OF_DEVICES]
-    return [*rows, *(_form(name, own, words) for name in _known(own))]
+    return [*rows, *(_form(name, own, words) for name in _nameable(own))]
 
 
 def written(name: str, texts: Mapping[str, str], own: Mapping[str, DriverSpec]) -> Any:
-    """The value of the key `driver` as a person writes it: without what is as it would be anyway.
+    """The value of the key `driver` as a person writes it: without settings that equal their default.
 
-    `texts` are those of its fields; ArboledaError where one does not fit.
+    `texts` are the contents of the fields of the form; ArboledaError where one does not fit.
     """
-    known = {} if name in OF_DEVICES else {each.name: each for each in keys(_spec(name, own))}
-    if strange := sorted(texts.keys() - known.keys()):
+    by_name = {} if name in OF_DEVICES else {each.name: each for each in keys(_spec(name, own))}
+    if strange := sorted(texts.keys() - by_name.keys()):
         raise ArboledaError(f"the driver {name} has no key {quoted(strange[0])}")
     filled = {key: text.strip() for key, text in texts.items() if text.strip()}
-    if missing := [each.name for each in known.values() if each.required and each.name not in filled]:
+    if missing := [each.name for each in by_name.values() if each.required and each.name not in filled]:
         raise ArboledaError(f"the driver {name} needs {', '.join(missing)}")
     values = {
         key.name: key.read(filled[key.name])
-        for key in known.values()
+        for key in by_name.values()
         if key.name in filled and filled[key.name] != key.default
     }
     return {name: values} if values else name
 
 
-def keys(spec: DriverSpec, words: Mapping[str, str] | None = None) -> Iterator[Key]:
+def keys(spec: DriverSpec, words: Mapping[str, str] | None = None) -> Iterator[SettingsKey]:
     """The keys of the settings of a driver, without those that its dataclass hides."""
     if spec.settings is None:
         return
@@ -105,7 +101,7 @@ def keys(spec: DriverSpec, words: Mapping[str, str] | None = None) -> Iterator[K
         yield _key(field, hints[field.name], plain(str(about), LONGEST))
 
 
-def _known(own: Mapping[str, DriverSpec]) -> list[str]:
+def _nameable(own: Mapping[str, DriverSpec]) -> list[str]:
     installed = {point.name for point in entry_points(group=GROUP)} | package_drivers.OF_DEVICES
     return sorted(own.keys() | (installed - package_drivers.OF_ROBOTS))
 
@@ -129,14 +125,14 @@ def _spec(name: str, own: Mapping[str, DriverSpec]) -> DriverSpec:
     if point is None:
         raise ArboledaError(f"{quoted(name)} is no driver that this plant can name")
     try:
-        found = spec_of(point.load())
+        spec = spec_of(point.load())
     except (Exception, SystemExit) as error:
         raise ArboledaError(
             plain(f"{point.value} cannot be imported: {error_text(error)}", LONGEST)
         ) from error
-    if found is None:
+    if spec is None:
         raise ArboledaError(f"{point.value} is installed as a driver and is none")
-    return found
+    return spec
 
 
 def _about(spec: DriverSpec) -> str:
@@ -145,14 +141,14 @@ def _about(spec: DriverSpec) -> str:
         if not isinstance(each, type):
             continue
         text = (each.__doc__ or "").strip()
-        if text and not text.startswith(f"{each.__name__}("):  # as dataclasses write it themselves
+        if text and not text.startswith(f"{each.__name__}("):  # the docstring that `dataclass` makes
             return plain(" ".join(text.split()), LONGEST)
     return ""
 
 
-def _key(field: Field[Any], hint: Any, about: str) -> Key:
+def _key(field: Field[Any], hint: Any, about: str) -> SettingsKey:
     form, choices = _form_of(hint)
-    return Key(
+    return SettingsKey(
         name=field.name,
         form=form,
         choices=choices,
@@ -190,9 +186,6 @@ def _default(value: Any) -> str:
 
 def _yaml(name: str, text: str) -> Any:
     try:
-        root, faults = parse(text.encode("utf-8", "replace"))
+        return plain_value(text.encode("utf-8", "replace"))
     except YamlFault as fault:
         raise ArboledaError(f"{name}, line {fault.mark.line}: {fault.sentence}") from None
-    if faults:
-        raise ArboledaError(f"{name}, line {faults[0].mark.line}: {faults[0].sentence}")
-    return root.value

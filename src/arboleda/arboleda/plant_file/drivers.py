@@ -1,4 +1,4 @@
-"""Drivers of devices and their settings: those of Arboleda, of `uses`, or installed ones."""
+"""Drivers of devices and their settings: drivers of Arboleda, of files that `uses` names, or of packages."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from arboleda.model.plant_model import DriverUse, Link, PlantModel, Robot
 
 from . import package_drivers, settings
 from .document import Document, Place, choice, nearest, shown
-from .python_uses import LONGEST, PythonUses, Spot, error_text, refused
+from .python_uses import LONGEST, PythonUses, SourceSpot, error_text, refused
 from .shapes import ROBOT_KEYS
 from .shared import SECTION as SHARED
 
@@ -24,8 +24,8 @@ KEY, SHORT = "driver", "link"
 HOW = 'one of your own is a class with @driver("its name") before it, in a file that "uses" names'
 
 
-def link(document: Document, place: Place, written: str, known: Sequence[str]) -> Link:
-    """The link to a device, from its key `driver` or, as it was `written`, from the short form `link`."""
+def link(document: Document, place: Place, written: str, allowed: Sequence[str]) -> Link:
+    """The link to a device, from its key `driver`, else from its short form `link`, which is `written`."""
     here = (*place, KEY)
     if not document.has(here):
         return Link(written)
@@ -34,13 +34,13 @@ def link(document: Document, place: Place, written: str, known: Sequence[str]) -
     value = document.value(here)
     if not _comes_with_it(value):
         return Link.DRIVER
-    if value not in known:
-        document.problem(here, f"must be {choice(known)} or a driver of your own, is {shown(value)}")
+    if value not in allowed:
+        document.problem(here, f"must be {choice(allowed)} or a driver of your own, is {shown(value)}")
     return Link(value)
 
 
-def found(document: Document, used: PythonUses) -> dict[str, DriverUse]:
-    """The drivers of one's own, by the device's name, of all places that name one; problems are kept."""
+def driver_uses(document: Document, used: PythonUses) -> dict[str, DriverUse]:
+    """The driver of each device that names one which is not Arboleda's, by the device's name."""
     uses: dict[str, DriverUse] = {}
     for name, place in named(document):
         use = _use(document, place, used)
@@ -50,10 +50,10 @@ def found(document: Document, used: PythonUses) -> dict[str, DriverUse]:
 
 
 def with_drivers(document: Document, plant: PlantModel | None, used: PythonUses) -> PlantModel | None:
-    """The plant whose devices know their drivers, if nothing else is wrong with it."""
-    if plant is None or any(document.kept):
+    """The plant whose devices have their drivers; where there is any problem, the plant as it is."""
+    if plant is None or any(document.problems):
         return plant
-    uses = found(document, used)
+    uses = driver_uses(document, used)
     if not uses:
         return plant
     for name, place in named(document):
@@ -109,7 +109,7 @@ def _use(document: Document, place: Place, used: PythonUses) -> DriverUse | None
 
 
 def _check(document: Document, place: Place, use: DriverUse, device: Robot) -> None:
-    """Keep the objections of a driver's settings to the device that they belong to."""
+    """Keep the objections that a driver's settings have to their device."""
     if not isinstance(use.settings, FitsDevice):
         return
     try:
@@ -139,7 +139,7 @@ def _facts(document: Document, place: Place, settings: object) -> tuple[str, ...
 
 
 def _offered(document: Document, place: Place, settings: object, name: str, default: Any) -> Any:
-    """The value of a property that settings may have; its default, with the problem kept, if it raises."""
+    """The value of a property of the settings; `default` where there is none, or where it raises."""
     try:
         return getattr(settings, name, default)
     except Exception as error:  # noqa: BLE001 - it is user code: whatever it raises is told
@@ -148,7 +148,7 @@ def _offered(document: Document, place: Place, settings: object, name: str, defa
 
 
 def _installed(document: Document, place: Place, name: str, used: PythonUses) -> DriverSpec | None:
-    """The driver of that name that an installed package brings; None, with the problem kept."""
+    """The driver of that name of an installed package; None, with the problem kept, where there is none."""
     points = {point.name: point for point in entry_points(group=GROUP)}
     point = points.get(name)
     if point is None and not used.is_whole:
@@ -157,10 +157,10 @@ def _installed(document: Document, place: Place, name: str, used: PythonUses) ->
         document.problem(place, package_drivers.not_installed(name))
         return None
     if point is None:
-        known = [*COME_WITH_IT, *used.drivers, *points]
-        document.problem(place, f"must be {choice(known)}, is {shown(name)}{nearest(name, known)}; {HOW}")
+        allowed = [*COME_WITH_IT, *used.drivers, *points]
+        document.problem(place, f"must be {choice(allowed)}, is {shown(name)}{nearest(name, allowed)}; {HOW}")
         return None
-    used.watch(Spot(file=point.value), "importing this")
+    used.watch(SourceSpot(file=point.value), "importing this")
     try:
         loaded = point.load()
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told

@@ -12,10 +12,10 @@ if TYPE_CHECKING:
 PLANT = "plant.yaml"
 
 
-def found() -> dict[str, Traversable]:
+def folders() -> dict[str, Traversable]:
     """The folder of each example, by its name."""
-    folders = files("arboleda").joinpath("examples").iterdir()
-    return {each.name: each for each in sorted(folders, key=_name) if each.joinpath(PLANT).is_file()}
+    entries = files("arboleda").joinpath("examples").iterdir()
+    return {each.name: each for each in sorted(entries, key=_name) if each.joinpath(PLANT).is_file()}
 
 
 def about(example: Traversable) -> str:

@@ -1,4 +1,4 @@
-"""Findings of a plant: what is wrong with it by `check`, and by runs in which nothing goes wrong."""
+"""Findings of a plant: problems and warnings of `check`, and what goes wrong in runs without faults."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PLACE = re.compile(r"(?P<file>[^:\n]+):(?P<line>\d+):(?P<column>\d+): (?:warning
 
 
 class Source(str, Enum):
-    """Source of a finding; those above hide those below."""
+    """Source of a finding; findings of a source hide those of the sources below it."""
 
     PROBLEM = "problem"  # the plant cannot be used
     WARNING = "warning"
@@ -25,8 +25,8 @@ class Source(str, Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
-    """Finding: the sentence says what is wrong and what is allowed; file and line, if known, where."""
+class PlantFinding:
+    """A sentence that says what is wrong and what is allowed; file, line and column where there are any."""
 
     source: Source
     sentence: str
@@ -43,14 +43,14 @@ class Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class Checked:
-    """Checked plant: its model, None where it has problems, and what is found."""
+    """Checked plant: its findings, and its model, None where there are problems."""
 
     model: PlantModel | None
-    findings: tuple[Finding, ...]
+    findings: tuple[PlantFinding, ...]
 
 
 def checked(file: Path, *, apart: bool = True) -> Checked:
-    """The findings of `arboleda check`; `apart`: its Python is tried in another process."""
+    """The plant of a file with the findings of `arboleda check`; `apart`: its Python is tried apart."""
     folder = f"{file.parent}/"
     try:
         model = loader.load(file, apart=apart)
@@ -59,17 +59,17 @@ def checked(file: Path, *, apart: bool = True) -> Checked:
     return Checked(model=model, findings=tuple(_placed(plant_check.warnings(model), Source.WARNING, folder)))
 
 
-def _placed(sentences: tuple[str, ...], source: Source, folder: str) -> Iterator[Finding]:
+def _placed(sentences: tuple[str, ...], source: Source, folder: str) -> Iterator[PlantFinding]:
     for each in sentences:
         each = each.replace(folder, "")
-        found = PLACE.fullmatch(each)
-        if found is None:
-            yield Finding(source=source, sentence=each)
+        match = PLACE.fullmatch(each)
+        if match is None:
+            yield PlantFinding(source=source, sentence=each)
         else:
-            yield Finding(
+            yield PlantFinding(
                 source=source,
-                sentence=found["rest"],
-                file=found["file"],
-                line=int(found["line"]),
-                column=int(found["column"]),
+                sentence=match["rest"],
+                file=match["file"],
+                line=int(match["line"]),
+                column=int(match["column"]),
             )

@@ -1,56 +1,58 @@
-"""Foresight: what is so in a cell after each command of a recipe, as far as that is certain without a run."""
+"""Foresight: the facts of a cell after each command of a recipe, as far as they are certain without a run."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 from arboleda.model.commands import Command, Motion, Switch
 from arboleda.model.facts import Value, shown
 from arboleda.model.plant_model import Cell, Interlock, Place, Pose, Workspace
 
+from .declared_kinds import verbs_of
+
 HELD, TAKEN, AT, OVER = "=held", "=taken", "=at", "=over"
 CHANGE, LEAST, MOST = "=change", "=least", "=most"
-"""What is known besides facts: of a hand, whether it holds a part and where it took that; of a robot, at or
-over which target it is; and of a place how many parts came and went."""
+"""Keys beside facts. A hand holds a part (HELD), which it took at a target (TAKEN). A robot is at a target
+(AT), or over it (OVER). Since the task began, the number of parts at a place has changed by CHANGE, and never
+by less than LEAST or by more than MOST."""
 OF_PLACES = (CHANGE, LEAST, MOST)
-Key = tuple[str, str]
+SceneKey = tuple[str, str]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Scene:
-    """Scene: what is known at some moment of a way through a recipe; what is not in it is not certain."""
+    """The values that are certain at one moment on a path through a recipe; all others are not."""
 
-    known: Mapping[Key, Value] = field(default_factory=dict)
+    values: Mapping[SceneKey, Value] = field(default_factory=dict)
 
     def get(self, name: str, what: str) -> Value | None:
-        return self.known.get((name, what))
+        return self.values.get((name, what))
 
-    def put(self, changes: Mapping[Key, Value]) -> Scene:
-        return Scene(known={**self.known, **changes})
+    def put(self, changes: Mapping[SceneKey, Value]) -> Scene:
+        return Scene(values={**self.values, **changes})
 
-    def without(self, keys: set[Key]) -> Scene:
-        return Scene(known={key: value for key, value in self.known.items() if key not in keys})
+    def without(self, keys: set[SceneKey]) -> Scene:
+        return Scene(values={key: value for key, value in self.values.items() if key not in keys})
 
     @cached_property
-    def mark(self) -> frozenset[tuple[Key, Value]]:
-        """The key that tells it from others."""
-        return frozenset(self.known.items())
+    def mark(self) -> frozenset[tuple[SceneKey, Value]]:
+        """The key by which equal scenes are one."""
+        return frozenset(self.values.items())
 
 
 def common(scenes: Sequence[Scene]) -> tuple[Scene, ...]:
-    """One scene with all that these have in common; none of none."""
+    """One scene with the values that all of these have; no scene where there are none."""
     if len(scenes) < 2:
         return tuple(scenes)
-    return (Scene(known=dict(frozenset.intersection(*(scene.mark for scene in scenes)))),)
+    return (Scene(values=dict(frozenset.intersection(*(scene.mark for scene in scenes)))),)
 
 
 class Foresight:
-    """Foresight of one cell: what a command cannot do in a scene, and what is so after it.
+    """Foresight of one cell: the objections to a command in a scene, and the scene after the command.
 
-    `back`: by robot the target to which a recovery brings a part, where its recipe names one.
+    `back` has by robot the target to which a recovery brings a part, where the recipe names one.
     """
 
     def __init__(self, cell: Cell, back: Mapping[str, str]) -> None:
@@ -61,7 +63,7 @@ class Foresight:
 
     @cached_property
     def hands(self) -> dict[str, Workspace]:
-        """The workspaces by what holds parts there."""
+        """The workspaces by the name of the device that holds parts in them."""
         return {space.hand.name: space for space in self.cell.spaces if space.hand.held_fact}
 
     @cached_property
@@ -72,14 +74,14 @@ class Foresight:
     def begin(self) -> Scene:
         """The scene at the begin of a task: hands hold nothing, and no part has come or gone."""
         numbers = {(target, what): 0 for target in self.places for what in OF_PLACES}
-        return Scene(known={**numbers, **{(hand, HELD): False for hand in self.hands}})
+        return Scene(values={**numbers, **{(hand, HELD): False for hand in self.hands}})
 
     def home(self, robot: str) -> str:
         """The target at which a robot waits."""
         space = self.cell.reach[robot]
         return next(name for name, pose in space.targets.items() if pose == space.home)
 
-    def touched(self, command: Command) -> set[Key]:
+    def touched(self, command: Command) -> set[SceneKey]:
         """The facts and places that a command may change."""
         keys = {(command.robot, what) for what in (HELD, TAKEN, AT, OVER, *dict(command.sets))}
         if isinstance(command, Switch) and command.grips is not None:
@@ -92,7 +94,7 @@ class Foresight:
         if isinstance(command, Switch) and command.grips is not None and command.robot in self.hands:
             yield from self._by_hand(command, scene)
         if isinstance(command, Motion) and command.robot in self.cell.reach:
-            yield from self._on_the_way(command, scene)
+            yield from self._on_move(command, scene)
         yield from self._closing(command, scene)
 
     def after(self, command: Command, scene: Scene) -> Scene:
@@ -105,7 +107,7 @@ class Foresight:
         return scene
 
     def _taken(self, command: Switch, scene: Scene) -> Scene:
-        """The scene with what the hand holds, and where it took that."""
+        """The scene with HELD and TAKEN of a hand after it gripped or let go."""
         was, here = scene.get(command.robot, HELD), self._here(command.robot, scene)
         scene = scene.put({(command.robot, HELD): bool(command.grips)})
         if command.grips and was is True:
@@ -130,18 +132,17 @@ class Foresight:
     def _gone(self, command: Motion, scene: Scene) -> Scene:
         keys = (command.robot, AT), (command.robot, OVER)
         goal, over = self._goal(command), self._goal(command, is_over=True)
-        found = zip(keys, (goal, goal or over), strict=True)
-        scene = scene.without(set(keys)).put({key: target for key, target in found if target is not None})
+        ends = zip(keys, (goal, goal or over), strict=True)
+        scene = scene.without(set(keys)).put({key: target for key, target in ends if target is not None})
         return scene.put(
-            {key: value for key, value in self._let_in(command.robot, goal) if key not in scene.known}
+            {key: value for key, value in self._let_in(command.robot, goal) if key not in scene.values}
         )
 
-    def _let_in(self, robot: str, target: str | None) -> Iterator[tuple[Key, Value]]:
-        """The facts that let a robot into the zones of a target, so far as nothing but verbs changes them."""
+    def _let_in(self, robot: str, target: str | None) -> Iterator[tuple[SceneKey, Value]]:
+        """The facts that let a robot into the zones of a target, if verbs alone change them."""
         for lock in self._locks(robot, target):
-            device: Any = next(each for each in self.cell.robots if each.name == lock.device)
-            verbs = device.kind.verbs.values() if device.verb_names else ()
-            names = {name for verb in verbs for name, _ in verb.sets}
+            device = next(each for each in self.cell.robots if each.name == lock.device)
+            names = {name for verb in verbs_of(device).values() for name, _ in verb.sets}
             for fact, value in lock.free_while:
                 if fact in names:
                     yield (lock.device, fact), value
@@ -164,8 +165,8 @@ class Foresight:
         """The target to which, or over which, a robot goes; of several, one that is a place."""
         targets = self.cell.reach[command.robot].targets
         ends = {name: pose.above if is_over else pose.q for name, pose in targets.items()}
-        found = [name for name, end in ends.items() if command.way and end == command.way[-1]]
-        return next((name for name in found if name in self.places), next(iter(found), None))
+        names = [name for name, end in ends.items() if command.way and end == command.way[-1]]
+        return next((name for name in names if name in self.places), next(iter(names), None))
 
     def _here(self, hand: str, scene: Scene) -> Value | None:
         space = self.hands.get(hand)
@@ -178,10 +179,10 @@ class Foresight:
             if (each.device, each.word) == (command.robot, command.word)
         ]
         for name, fact, value in [*((command.robot, *need) for need in command.needs), *others]:
-            known = scene.get(name, fact)
-            if known is not None and known != value and name not in self.cell.shared:
-                needed = f"{fact} of {name} to be {shown(value)}"
-                yield f"has {command.robot} {command.word}, which needs {needed}, where it is {shown(known)}"
+            current = scene.get(name, fact)
+            if current is not None and current != value and name not in self.cell.shared:
+                needed, is_so = f"{fact} of {name} to be {shown(value)}", shown(current)
+                yield f"has {command.robot} {command.word}, which needs {needed}, where it is {is_so}"
 
     def _by_hand(self, command: Switch, scene: Scene) -> Iterator[str]:
         hand, here = command.robot, self._here(command.robot, scene)
@@ -199,20 +200,20 @@ class Foresight:
             yield f"has {hand} {does} of a part at {here}, {why}"
 
     def _second_part(self, hand: str, here: Value | None, scene: Scene) -> Iterator[str]:
-        """A second part in a hand, taken elsewhere than the first; cells with places refuse it."""
+        """The objection to a second part that a hand takes at another target; cells with places refuse it."""
         taken = scene.get(hand, TAKEN)
         if self.places and None not in (here, taken) and here != taken:
             yield f"has {hand} take hold of a part at {here} while it holds one from {taken}"
 
     def _can(self, scene: Scene, place: Place, parts: int) -> bool:
-        """True where there is any number of parts to begin with by which a place can give or take one."""
+        """True where a place can give or take a part, with some number of parts at the beginning."""
         after = self._moved(scene, place.target, parts)
         first = place.holds if place.supply else 0 if place.output else None
         lowest, highest = (0, place.holds) if first is None else (first, first)
         _, least, most = (int(after.get(place.target, what) or 0) for what in OF_PLACES)
         return max(lowest, -least) <= min(highest, place.holds - most)
 
-    def _on_the_way(self, command: Motion, scene: Scene) -> Iterator[str]:
+    def _on_move(self, command: Motion, scene: Scene) -> Iterator[str]:
         robot, space = command.robot, self.cell.reach[command.robot]
         here = self.places.get(str(scene.get(robot, AT)))
         holding = space.hand.name, None if here is None else here.device
@@ -221,12 +222,12 @@ class Foresight:
         goal = self._goal(command)
         for is_so, value in self._locked(robot, goal, scene):
             yield f"has {robot} go to {goal} where {is_so}; it has to be {value}"
-        over, back = goal or self._goal(command, is_over=True), self._way_back(space, scene)
+        over, back = goal or self._goal(command, is_over=True), self._return_target(space, scene)
         for is_so, value in self._locked(robot, back, scene) if over is not None else ():
             carries = f"has {robot} go to {over} with a part that goes back to {back} after a failure"
             yield f"{carries}, where {is_so}; it has to be {value}, or brings_back_to another target"
 
-    def _way_back(self, space: Workspace, scene: Scene) -> str | None:
+    def _return_target(self, space: Workspace, scene: Scene) -> str | None:
         """The target to which a recovery would bring what a robot holds for certain."""
         hand, robot = space.hand.name, space.robot.name
         if robot not in self.hands_of or scene.get(hand, HELD) is not True:
@@ -235,9 +236,9 @@ class Foresight:
         return None if taken is None else str(taken)
 
     def _locked(self, robot: str, target: str | None, scene: Scene) -> Iterator[tuple[str, str]]:
-        """The facts that keep a robot out of the zones of a target, and what they have to be."""
+        """The facts that keep a robot out of the zones of a target, each with the value that it must have."""
         for lock in self._locks(robot, target):
-            yield from _kept(lock, scene)
+            yield from _guarding_facts(lock, scene)
 
     def _closing(self, command: Command, scene: Scene) -> Iterator[str]:
         for lock in self.cell.interlocks_of(command.robot):
@@ -248,9 +249,9 @@ class Foresight:
                 yield from self._shut_out(command, lock.zone, scene)
 
     def _shut_out(self, command: Command, zone: str, scene: Scene) -> Iterator[str]:
-        """The machines that are in a zone which a command takes: a zone has one of them at a time."""
+        """The objections to a command that takes a zone in which another machine is."""
         for lock in (each for each in self._free if each.zone == zone and each.device != command.robot):
-            for is_so, value in _kept(lock, scene):
+            for is_so, value in _guarding_facts(lock, scene):
                 waits = f"has {command.robot} {command.word} in the zone {zone}, which {lock.device} keeps"
                 yield f"{waits} while {is_so}; it has to be {value}, or each has a zone of its own"
 
@@ -261,9 +262,9 @@ class Foresight:
                 yield space.robot.name, space.targets[str(at)]
 
 
-def _kept(lock: Interlock, scene: Scene) -> Iterator[tuple[str, str]]:
-    """The facts by which a machine keeps its zone for certain, and what they have to be."""
+def _guarding_facts(lock: Interlock, scene: Scene) -> Iterator[tuple[str, str]]:
+    """The facts by which a machine is in its zone for certain, each with the value that it must have."""
     for fact, value in lock.free_while:
-        known = scene.get(lock.device, fact)
-        if known not in (None, value):
-            yield f"{fact} of {lock.device} is {shown(known)}", shown(value)
+        current = scene.get(lock.device, fact)
+        if current not in (None, value):
+            yield f"{fact} of {lock.device} is {shown(current)}", shown(value)

@@ -1,4 +1,4 @@
-"""Check of grids: nodes in a zone by which another robot may drive although none of its targets is there."""
+"""Check of grids: nodes in a zone that another robot may drive over although no target of it is there."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ MEETING_M = 0.010  # two nodes that are so near to each other are one place
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
-    """The nodes in zones that other robots come by without a target there in that zone."""
+    """A sentence for each node in a zone that another robot may drive over outside the zone."""
     spaces = [space for cell in plant.cells for space in cell.spaces if space.robot.floor_grid is not None]
     return tuple(
         _sentence(one, pose, other, node)
@@ -32,7 +32,7 @@ def _sentence(one: Workspace, pose: Pose, other: Workspace, node: int) -> str:
 
 
 def _open_nodes(one: Workspace, pose: Pose, other: Workspace) -> Iterator[int]:
-    """The nodes of another robot at the place of a pose that lies in zones, if it has none of these there."""
+    """The nodes of another robot at a pose in zones, if no pose of that robot there is in these zones."""
     place, grid = on_floor(one.robot.floor_grid, pose), other.robot.floor_grid
     for node in range(grid.size):
         guarded = any(each.q == node and each.zones & pose.zones for each in other.poses)

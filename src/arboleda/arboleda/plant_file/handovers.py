@@ -9,7 +9,7 @@ from typing import Any
 from arboleda.model.plant_model import Handover, Robot, Workspace
 from arboleda.model.recipe import Recipe
 
-from .document import Document, Place, choice, nearest, shown
+from .document import Document, Place, choice, misnamed, shown
 from .own_recipes import SECTION
 from .paths import check_nodes_show, paths
 from .shapes import MAPPING, HandoverShape
@@ -21,7 +21,7 @@ def with_paths(
 ) -> tuple[Workspace, ...] | None:
     """The workspaces with the paths of their robots; None, with the problems kept, if something is wrong.
 
-    A robot with paths stays where it is when a recovery brings the others home.
+    A recovery brings robots home, but a robot with paths stays where it is.
     """
     here = (*place, "paths")
     if not document.has(here):
@@ -31,14 +31,12 @@ def with_paths(
     by_robot = {}
     for role in document.keys(here):
         if role not in drives:
-            there = f"must be {choice(drives)}" if drives else "no robot of this cell drives on a grid"
-            document.problem(
-                (*here, role), f"{there}, is {shown(role)}{nearest(role, drives)}", at=(*here, role)
-            )
+            sentence = misnamed(role, drives, "no robot of this cell drives on a grid")
+            document.problem((*here, role), sentence, at=(*here, role))
             return None
-        found = paths(document, (*here, role), drives[role].floor_grid)
-        check_nodes_show(document, (*place, "devices", role), found, drives[role])
-        by_robot[drives[role].name] = found
+        routes = paths(document, (*here, role), drives[role].floor_grid)
+        check_nodes_show(document, (*place, "devices", role), routes, drives[role])
+        by_robot[drives[role].name] = routes
     if not all(by_robot.values()):
         return None
     return tuple(
@@ -52,7 +50,7 @@ def with_paths(
 def handover(
     document: Document, place: Place, roles: Mapping[str, Robot], spaces: Sequence[Workspace]
 ) -> Handover | None:
-    """The handover of a cell; None where it has none, or, with the problems kept, where that is wrong."""
+    """The handover of a cell; None where there is none, or, with the problems kept, a wrong one."""
     here = (*place, "handover")
     shape = document.read(HandoverShape, here) if document.has(here) else None
     if shape is None:
@@ -71,15 +69,13 @@ def handover(
     ]
     rows += [(f"by_path.{code}", target, targets) for code, target in shape.by_path.items()]
     wrong = [each for each in rows if each[1] not in each[2]]
-    for key, name, known in wrong:
-        there = f"must be {choice(known)}" if known else "there is none to choose from"
-        document.problem((*here, *key.split(".")), f"{there}, is {shown(name)}{nearest(name, known)}")
+    for key, name, allowed in wrong:
+        sentence = misnamed(name, allowed, "there is none to choose from")
+        document.problem((*here, *key.split(".")), sentence)
     unknown = [code for code in shape.by_path if code.upper() not in codes]
     for code in unknown:
-        known = (
-            f"must be a path of {shape.giver}: {choice(codes)}" if codes else f"{shape.giver} has no paths"
-        )
-        document.problem((*here, "by_path", code), f"{known}, is {shown(code)}", at=(*here, "by_path", code))
+        rule = f"must be a path of {shape.giver}: {choice(codes)}" if codes else f"{shape.giver} has no paths"
+        document.problem((*here, "by_path", code), f"{rule}, is {shown(code)}", at=(*here, "by_path", code))
     if wrong or unknown:
         return None
     return Handover(
@@ -93,14 +89,14 @@ def handover(
 def recipes(
     document: Document,
     place: Place,
-    found: Handover | None,
+    handover: Handover | None,
     roles: Mapping[str, Robot],
     groups: Mapping[str, object],
 ) -> tuple[Recipe, ...]:
     """The recipes of storage that fit a cell with a handover; a problem is kept if it offers none."""
-    if found is None:
+    if handover is None:
         return ()
-    offered = fitting(found, roles, groups)
+    offered = fitting(handover, roles, groups)
     if not offered and not document.has(SECTION):
         document.problem(place, f'offers no recipe: {NEEDS}; or "uses" names a file with recipes', at=place)
     return offered

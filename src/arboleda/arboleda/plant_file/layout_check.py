@@ -1,4 +1,4 @@
-"""Check of a plant file's layout: everything has to be able to stand at its place."""
+"""Check of a plant file's layout: whether each robot and each part can be where the file says."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ Outline = Sequence[Sequence[float]]  # counterclockwise corners of a convex shap
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
-    """The places that cannot be as the file says, or the reason for which they could not be checked."""
+    """A sentence for each place that cannot be as the file says, or the reason why nothing was checked."""
     try:
         cells = [Stand.of(plant, cell) for cell in plant.cells if _hands_over(cell)]
         uneven = [*_uneven(plant)]
     except ArboledaError as error:
         return (f"nobody has looked where things stand: {error}",)
-    found = [each for cell in cells for each in (*_pickups(cell), *_stations(cell), *_below(cell))]
-    return (*found, *_crowded(cells), *uneven)
+    misplaced = [each for cell in cells for each in (*_pickups(cell), *_stations(cell), *_below(cell))]
+    return (*misplaced, *_crowded(cells), *uneven)
 
 
 def _hands_over(cell: Cell) -> bool:
@@ -47,7 +47,7 @@ def _hands_over(cell: Cell) -> bool:
 
 
 def _uneven(plant: PlantModel) -> Iterator[str]:
-    """The arrays of targets in which the tool of an arm is beside an even grid between the corners."""
+    """The arrays of targets at which the tool of an arm is not on an even grid between the corners."""
     for cell in plant.cells:
         for group, rows, columns in cell.grids:
             array = Array(group=group, rows=rows, columns=columns)
@@ -72,9 +72,9 @@ def _uneven_of(plant: PlantModel, arm: Arm, array: Array, poses: Sequence[Pose])
 
 @dataclass(frozen=True, kw_only=True)
 class Stand:
-    """One cell as it stands in the world, in m: its arm's body, and the outlines of what is on the floor.
+    """One cell in the world, in m: the body of its arm, and the outlines of arm and grid on the floor.
 
-    The arm takes what the mobile robot brings.
+    The arm takes the parts that the mobile robot brings.
     """
 
     cell: Cell
@@ -115,20 +115,20 @@ class Stand:
 
     @property
     def pickups(self) -> dict[str, Pose]:
-        """The pose at which the arm takes what came on each path, by its code."""
+        """By the code of a path, the pose at which the arm takes a part that came on that path."""
         handover, paths = self.cell.handover, self.cell.giver.paths
         assert handover is not None
         return {path.code: self.cell.taker.targets[handover.after(path.code)] for path in paths}
 
     @property
     def reach_m(self) -> float:
-        """The reach of the arm: no point is farther from its foot, in plan, than its tool can be."""
+        """The farthest that the tool of the arm can be from the arm's foot, in plan, m."""
         frames = kinematics.place(self.body, self.arm.reference)
-        way = bodies.way(self.body)
-        moving = [link for link in way if link["moves"]]
+        links = bodies.tool_chain(self.body)
+        moving = [link for link in links if link["moves"]]
         turning = [link for link in moving if link["moves"]["type"] == "turn"]
         upright = all(_is_upright(frames, link) for link in turning)
-        points = [kinematics.at(frames[link["link"]]) for link in way[way.index(moving[0]) :]]
+        points = [kinematics.at(frames[link["link"]]) for link in links[links.index(moving[0]) :]]
         if upright:
             points = [(x, y, 0.0) for x, y, _ in points]
         slides = sum(_slide_m(self.arm, frames, link, upright) for link in moving)
@@ -222,7 +222,7 @@ def _fixed(body: Body) -> Iterator[Body]:
 
 
 def _wide(links: Iterable[Body]) -> float:
-    """The reach of the boxes and upright cylinders of some links from the middle, in plan."""
+    """The farthest that a box or an upright cylinder of these links extends from its middle, in plan, m."""
     shapes = [shape for link in links for shape in link["shapes"] if not any(shape["rpy"])]
     return max((_half(shape) for shape in shapes), default=0.0)
 
@@ -236,7 +236,7 @@ def _is_upright(frames: Mapping[str, Matrix], link: Body) -> bool:
 
 
 def _slide_m(arm: Arm, frames: Mapping[str, Matrix], link: Body, upright: bool) -> float:
-    """The length in plan that a sliding joint may add; 0 for an upright one if all else turns upright."""
+    """The length in plan that a sliding joint may add, m; 0 where it slides upright, as all turning axes."""
     if link["moves"]["type"] == "turn" or (upright and _is_upright(frames, link)):
         return 0.0
     joint: Joint = arm.joints[link["moves"]["index"]]
@@ -244,9 +244,9 @@ def _slide_m(arm: Arm, frames: Mapping[str, Matrix], link: Body, upright: bool) 
 
 
 def _overlap(a: Outline, b: Outline) -> bool:
-    """True if two convex outlines share a piece of floor: no edge of either has them on two sides.
+    """True if two convex outlines share a piece of floor: no edge of either separates them.
 
-    A shape too thin for an outline takes no floor.
+    A shape that is too thin for an outline takes no floor.
     """
     return bool(a and b) and not any(_parts(edge, a, b) for outline in (a, b) for edge in _edges(outline))
 

@@ -1,4 +1,4 @@
-"""The files a person writes: plant file -> PlantModel, users file -> passwords; all problems at once."""
+"""A plant file with all files that it names -> PlantModel, or all problems at once."""
 
 from __future__ import annotations
 
@@ -10,37 +10,23 @@ from pathlib import Path
 from typing import NamedTuple
 
 from arboleda.drivers.port import DriverSpec
-from arboleda.host.packages import entry_points, package_of
 from arboleda.model.assistants import Assistants
 from arboleda.model.errors import ConfigError
-from arboleda.model.packages import FLEET, MISSING
 from arboleda.model.plant_files import PlantFiles
-from arboleda.model.plant_model import (
-    Cell,
-    ForeignCommands,
-    MqttVersion,
-    OpcUaView,
-    PlantModel,
-    Robot,
-    Timing,
-)
+from arboleda.model.plant_model import Cell, ForeignCommands, MqttVersion, PlantModel, Robot
 from arboleda.model.recipe import Recipe
-from arboleda.model.recording import Limits, Recording
-from arboleda.model.sentence import OWN
-from arboleda.store.address import has_password
-from arboleda.store.schemes import objection
+from arboleda.model.recording import Recording
 
-from . import drivers, own_kinds, own_recipes, user_file
-from .assistant_limits import assistant_limits
+from . import drivers, own_kinds, own_recipes, sections, user_file
 from .deadlines import check_arrivals_show
+from .declared_kinds import kinds
 from .devices import CELLS, Kinds, device_cell, is_of_devices, shared_devices
-from .document import Document, Place, shown
-from .kinds import kinds
-from .names import check_names
+from .document import Document, Place
+from .name_check import check_names
 from .python_uses import PythonUses, Watch
-from .recipe_check import MOST, Trial, combinations
-from .recipe_trial import Verdict, brought
-from .shapes import FileShape, OpcUaViewShape, RecordShape, TimingShape
+from .recipe_check import MOST, RecipeTrial, combinations
+from .recipe_trial import TrialResult, brought
+from .shapes import FileShape
 from .shared import check_homes
 from .shipped import SHIPPED, shipped
 from .storage_form import check_sections, storage_cell
@@ -50,56 +36,50 @@ from .zones import with_zones, zones
 
 Offers = Callable[[Sequence[Cell]], Mapping[str, tuple[Recipe, ...]]]
 Misses = Mapping[str, Mapping[str, str]]
-RECORD: Place = ("record",)
-REPORTS: Place = ("reports",)
-ON, OFF = "on", "off"
 
 
 def load(path: Path | None = None, *, recipes: bool = True, apart: bool = True) -> PlantModel:
     """The plant that the file describes, None for the shipped one; ConfigError with every problem.
 
     Without `recipes` no Python is run: cells of devices offer nothing, and a plant with devices of kinds in
-    Python has no cells. Without `apart` it is tried in this process, which is far quicker, and nothing ends
-    Python that never comes back.
+    Python has no cells. Without `apart` the plant's Python is tried in this process. That is far quicker, but
+    nothing ends Python that never comes back.
     """
     return _parsed(*_content(path), recipes=recipes, apart=apart).plant
 
 
 def load_with_offers(path: Path | None = None) -> tuple[PlantModel, Misses]:
-    """The same plant, and by cell and recipe why a cell does not offer what a file brings."""
+    """The plant of the file, and by cell and recipe why the cell does not offer that recipe of a file."""
     parsed = _parsed(*_content(path), recipes=True)
     return parsed.plant, parsed.missed
 
 
 def load_with_drivers(path: Path | None = None) -> tuple[PlantModel, Mapping[str, DriverSpec]]:
-    """The same plant, and by name the drivers that files of its own bring."""
+    """The plant of the file, and by name the drivers that files beside it bring."""
     parsed = _parsed(*_content(path), recipes=True)
     return parsed.plant, parsed.drivers
 
 
 def load_recorded(path: Path | None = None) -> tuple[PlantModel, Recording | None]:
-    """The same plant, and the beginning of its record; None if its file says `record: off`."""
+    """The plant of the file, and the beginning of its record; None where the file says `record: off`."""
     plant, document, *_ = _parsed(*_content(path), recipes=True)
-    if document.value(RECORD) == OFF:
-        return plant, None
-    reports = document.has(REPORTS) and document.value(REPORTS) == ON
-    return plant, Recording(files=_files(document), limits=_limits(document) or Limits(), reports=reports)
+    return plant, sections.recording(document, _files(document))
 
 
 def load_with_files(
     path: Path | None = None, *, runs: bool = False, apart: bool = True
 ) -> tuple[PlantModel, PlantFiles]:
-    """The same plant, and all files that were read for it; `apart` as of `load`.
+    """The plant of the file, and all files that were read for it; `apart` as in `load`.
 
-    With `runs` it is for a plant that runs in this process: Python that it has imported is not run again, and
-    is a problem where it is another now.
+    With `runs` the plant runs in this process. Python that the plant has imported is not run again; a file of
+    Python that was changed since is a problem.
     """
     plant, document, *_ = _parsed(*_content(path), recipes=True, runs=runs, apart=apart)
     return plant, _files(document)
 
 
 def parse(name: str, content: bytes, folder: Path | None = None, *, recipes: bool = True) -> PlantModel:
-    """The same for the content of a file that problems call `name`; `folder` has the files beside it."""
+    """The plant of a plant file's content. Problems call it `name`; `folder` has the files beside it."""
     return _parsed(name, content, folder, recipes=recipes).plant
 
 
@@ -147,43 +127,31 @@ def _parsed(
 def _files(document: Document) -> PlantFiles:
     """All files that were read, under paths from the folder that holds them all."""
     paths = {os.path.normpath(path.absolute()): content for path, content in document.files.items()}
-    plant, *_ = paths  # it is read first
+    plant, *_ = paths  # the plant file is read before all others
     folder = os.path.commonpath([os.path.dirname(path) for path in paths])
     names = {path: Path(os.path.relpath(path, folder)).as_posix() for path in paths}
     return PlantFiles(plant=names[plant], contents={names[path]: each for path, each in paths.items()})
 
 
-def _limits(document: Document) -> Limits | None:
-    """The limits of the record that is kept; None, with its problems kept, if they cannot be read."""
-    if document.has(RECORD) and document.value(RECORD) == OFF:
-        if document.has(REPORTS) and document.value(REPORTS) == ON:
-            document.problem(REPORTS, "reports are made of the record, which is off")
-        return Limits()
-    if not document.has(RECORD):
-        return Limits()
-    shape = document.read(RecordShape, RECORD)
-    return None if shape is None else Limits(**shape.model_dump())
+def trial(name: str, content: bytes, folder: Path | None, watch: Watch) -> TrialResult:
+    """The problems of a plant file and of its recipes, which are built for each task that they could have.
 
-
-def trial(name: str, content: bytes, folder: Path | None, watch: Watch) -> Verdict:
-    """The problems of a plant file and of its recipes, which are built here for each task they could have.
-
-    The plant's Python files run in this process, whatever they do to it; `parse` runs this function in
-    another one.
+    The plant's Python files run in this process, whatever they do to it. `recipe_trial` calls this function
+    in a process of its own.
     """
-    document, found = Document(name, content, folder), Verdict()
+    document, result = Document(name, content, folder), TrialResult()
 
     def tried(cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
-        tried_here = Trial(document=document, used=used, watch=watch)
-        found.offers, found.missed = tried_here.run(cells), tried_here.missed
-        found.unused = tried_here.unused
+        trial = RecipeTrial(document=document, used=used, watch=watch)
+        result.offers = trial.run(cells)
+        result.missed, result.unused = trial.missed, trial.unused
         return {}
 
     used = own_recipes.imported(document, own_recipes.listed(document), watch)
     _plant(document, used, tried)
-    drivers.found(document, used)
-    found.here, found.elsewhere = document.kept
-    return found
+    drivers.driver_uses(document, used)
+    result.here, result.elsewhere = document.problems
+    return result
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
@@ -217,31 +185,10 @@ def offers(plant: PlantModel, missed: Misses) -> tuple[str, ...]:
     """Lines that say which cells offer which recipes, and why a cell does not offer another one."""
     lines: dict[str, list[str]] = {}
     for cell in plant.cells:
-        known = ", ".join(each.name for each in cell.recipes) or "no recipe"
+        offered = ", ".join(each.name for each in cell.recipes) or "no recipe"
         others = "".join(f"; not {name}: {why}" for name, why in missed.get(cell.name, {}).items())
-        lines.setdefault(f"{known}{others}", []).append(cell.name)
+        lines.setdefault(f"{offered}{others}", []).append(cell.name)
     return tuple(f"{', '.join(names)}: {line}" for line, names in lines.items())
-
-
-def broker_users(path: Path) -> dict[str, str]:
-    """Passwords by user from lines `NAME:PASSWORD`; ConfigError with every problem, never with a password."""
-    lines = user_file.read_text(path, LARGEST).splitlines()
-    users: dict[str, str] = {}
-    problems = []
-    for number, line in enumerate(lines, start=1):
-        if not line.strip() or line.startswith("#"):
-            continue
-        name, _, password = line.partition(":")
-        if not (name.strip() and password):
-            problems.append(f"{path}:{number}:1: must be NAME:PASSWORD, neither of them empty")
-        elif name.strip() in users:
-            problems.append(f"{path}:{number}:1: the user {shown(name.strip())} is there twice")
-        users[name.strip()] = password
-    if not users:
-        problems.append(f"{path}: names no user; write lines of NAME:PASSWORD")
-    if problems:
-        raise ConfigError(tuple(problems))
-    return users
 
 
 def _nothing(cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
@@ -256,25 +203,24 @@ def _named(document: Document) -> PlantModel | None:
 def _plant(document: Document, used: PythonUses, recipes: Offers) -> PlantModel | None:
     shape = document.read(FileShape)
     own_kinds.complete(document, used)
-    known = Kinds(declared=kinds(document), names=document.keys(("kinds",)), used=used)
-    common = shared_devices(document, known)
-    cells = [_cell(document, name, known, common) for name in document.keys(("cells",))]
-    timing = _timing(document)
-    check_names(document, partial(known.has_twin, document))
+    device_kinds = Kinds(declared=kinds(document), names=document.keys(("kinds",)), used=used)
+    common = shared_devices(document, device_kinds)
+    cells = [_cell(document, name, device_kinds, common) for name in document.keys(("cells",))]
+    timing = sections.timing(document)
+    check_names(document, partial(device_kinds.has_twin, document))
     of_form = [(*CELLS, name) for name in document.keys(CELLS)]
     check_sections(document, [place for place in of_form if not is_of_devices(document, place)])
     whole = [cell for cell in cells if cell is not None]
     regions = zones(document, whole)
-    _check_ports(document, shape)
+    sections.check_ports(document, shape)
     check_homes(document, whole)
     zoned = {cell.name: with_zones(document, cell, regions) for cell in whole}
     offers = recipes(list(zoned.values()))
     if timing is None:
         return None
-    _limits(document)
-    limits = assistant_limits(document)
-    times = Timing(**timing.model_dump())
-    check_arrivals_show(document, whole, times)
+    sections.record_limits(document)
+    limits = sections.assistant_limits(document)
+    check_arrivals_show(document, whole, timing)
     if shape is None or len(whole) < len(cells):
         return None
     return PlantModel(
@@ -282,61 +228,17 @@ def _plant(document: Document, used: PythonUses, recipes: Offers) -> PlantModel 
         cells=tuple(
             replace(cell, recipes=(*cell.recipes, *offers.get(cell.name, ()))) for cell in zoned.values()
         ),
-        timing=times,
+        timing=timing,
         mqtt_version=MqttVersion(shape.mqtt_version),
         zones=tuple(region.name for region in regions),
         foreign_commands=ForeignCommands(shape.foreign_commands),
         history_days=shape.history_days,
         groot2_port=shape.groot2 or None,
-        opcua_view=_opcua_view(document),
-        store=_store(document, shape.store),
+        opcua_view=sections.opcua_view(document),
+        store=sections.store_address(document, shape.store),
         assistants=Assistants(shape.assistants),
         assistant_limits=limits,
     )
-
-
-def _check_ports(document: Document, shape: FileShape | None) -> None:
-    """Each cell needs two ports of its own for Groot2."""
-    if shape is not None:
-        last = 65_536 - 2 * len(shape.cells)
-        if shape.groot2 > last:
-            rule = f"must be at most {last}, for each of the {len(shape.cells)} cells has two ports"
-            document.problem(("groot2",), f"{rule}; is {shape.groot2}")
-
-
-def _opcua_view(document: Document) -> OpcUaView | None:
-    """The server that shows the plant; None if it is off, or cannot be read, with its problems kept."""
-    place = ("opcua_view",)
-    if not document.has(place):
-        return None
-    if FLEET not in {package_of(each) for each in entry_points("arboleda.parts")}:
-        document.problem(place, str(MISSING(what=OWN(text="opcua_view"), package=FLEET)))
-    shape = document.read(OpcUaViewShape, place)
-    return None if shape is None else OpcUaView(port=shape.port, isa95=tuple(shape.isa95))
-
-
-def _store(document: Document, address: str) -> str:
-    """The database of the plant's memory; problems do not repeat it, for there may be a password in it."""
-    wrong = objection(address) if address else ""
-    if wrong:
-        document.problem(("store",), wrong)
-    elif has_password(address):
-        document.problem(("store",), "has a password in it; leave it to PGPASSWORD or ~/.pgpass")
-    return address
-
-
-def _timing(document: Document) -> TimingShape | None:
-    if not document.has(("timing",)):
-        return TimingShape()
-    shape = document.read(TimingShape, ("timing",))
-    if shape and shape.piece_debounce_s >= shape.piece_wait_s:
-        rule = f"must be less than piece_wait_s, which is {shape.piece_wait_s:g}"
-        document.problem(("timing", "piece_debounce_s"), f"{rule}; is {shape.piece_debounce_s:g}")
-    if shape and shape.effector_settle_s > shape.effector_timeout_s:
-        rule = f"must be at most effector_timeout_s, which is {shape.effector_timeout_s:g}"
-        why = "else an effector that reports nothing is given up before it counts as switched"
-        document.problem(("timing", "effector_settle_s"), f"{rule}, {why}; is {shape.effector_settle_s:g}")
-    return shape
 
 
 def _cell(document: Document, name: str, kinds: Kinds, common: Mapping[str, Robot]) -> Cell | None:

@@ -1,6 +1,7 @@
-"""Steps that a recipe makes and that stand in no other one, so that nobody ever does them.
+"""Steps that a recipe makes and that stand in no other step, so that nobody ever does them.
 
-One in a statement of its own is lost for certain. One that gets a name may be for other parameters.
+A step that a statement makes and does not use is lost for certain. A step that gets a name may be used with
+other parameters.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ NAME = "__made_with_a_name__"  # function that an assignment calls with its valu
 
 @dataclass(frozen=True, kw_only=True)
 class Made:
-    """A step, and where it was made; `name` "": by a statement of its own."""
+    """A step, and where it was made; `name` is "" for a step that no variable has."""
 
     step: Behaviour
     file: str
@@ -26,7 +27,7 @@ class Made:
 
     @property
     def is_lost(self) -> bool:
-        """True if it stands in no other step."""
+        """True if the step stands in no other step."""
         return self.step.parent is None and not getattr(self.step, "is_taken", False)
 
 
@@ -37,7 +38,7 @@ class LostSteps:
     made: list[Made] = field(default_factory=list)
 
     def note(self, value: object, name: str = "") -> object:
-        """Called by a statement with its value, by an assignment with the name, too."""
+        """Note a step, and return it. A statement passes its value, an assignment its value and its name."""
         if isinstance(value, Behaviour):
             frame = sys._getframe(1)
             code = frame.f_code
@@ -45,7 +46,7 @@ class LostSteps:
         return value
 
     def lost(self) -> list[Made]:
-        """The steps of statements that stand in no other one."""
+        """The steps without a name that stand in no other step."""
         return [each for each in self.made if each.is_lost and not each.name]
 
 
@@ -67,5 +68,5 @@ def _passed_on(function: str, value: ast.expr, *more: ast.expr) -> ast.expr:
 
 
 def noting(tree: ast.Module) -> ast.Module:
-    """The same program, whose statements and assignments pass on their values."""
+    """The program, in which statements and assignments pass each step to `LostSteps.note`."""
     return ast.fix_missing_locations(_Noting().visit(tree))  # type: ignore[no-any-return]

@@ -22,7 +22,7 @@ MOST_NAMED = 3  # pairs of targets in one sentence
 
 @dataclass(frozen=True, kw_only=True)
 class ToolPoint:
-    """Place of an arm's tool at a target, m; of a mobile robot the node, which has no height."""
+    """Position of an arm's tool at a target, m; for a mobile robot, of the node, at height 0."""
 
     pose: Pose
     at: Point
@@ -30,7 +30,7 @@ class ToolPoint:
 
 @dataclass(frozen=True, kw_only=True)
 class Placed:
-    """Robot of a cell that stands where its file says, with its points; `drives`: on a grid."""
+    """Robot of a cell whose place is declared, with its points; `drives`: the robot is on a grid."""
 
     cell: Cell
     space: Workspace
@@ -38,7 +38,7 @@ class Placed:
     drives: bool
 
     def meets_on_purpose(self, other: Placed) -> bool:
-        """True for an arm and a mobile robot of one cell, which hand over to each other where no zone is."""
+        """True for an arm and a mobile robot of one cell: they hand over parts where there is no zone."""
         return self.cell is other.cell and self.drives != other.drives
 
 
@@ -52,8 +52,9 @@ def warnings(plant: PlantModel) -> tuple[str, ...]:
 
 
 def _alike(cell: Cell, space: Workspace) -> Iterator[str]:
-    """The targets of a robot that it cannot tell apart; ends of paths may be so, and two of where those are
-    met.
+    """The pairs of targets of a robot that it cannot tell apart.
+
+    Ends of paths may be alike, and so may two targets at which parts are handed over.
     """
     ends = {path.code for path in space.paths}
     met = set() if cell.handover is None else {*cell.handover.targets, *cell.groups.get("pickups", ())}
@@ -76,7 +77,7 @@ def _meetings(plant: PlantModel) -> Iterator[str]:
 
 
 def _placed(plant: PlantModel, cell: Cell, space: Workspace) -> Iterator[Placed]:
-    """The robot of a workspace; nothing where nobody says where it stands."""
+    """The robot of a workspace; nothing where the plant file does not say where the robot stands."""
     arm, grid = drawn_arm(space.robot), space.robot.floor_grid
     if arm is not None and arm.base.is_declared:
         yield Placed(cell=cell, space=space, points=_points(plant, space, arm), drives=False)
@@ -95,7 +96,7 @@ def _points(plant: PlantModel, space: Workspace, arm: Arm) -> list[ToolPoint]:
 
 
 def _near(one: Placed, other: Placed) -> Iterator[tuple[Pose, Pose, float]]:
-    """The targets at which the two would be near each other, and that have no zone in common."""
+    """The pairs of poses at which two robots would be near each other without a common zone, and how near."""
     axes = 2 if one.drives or other.drives else 3
     for its in one.points:
         for others in other.points:

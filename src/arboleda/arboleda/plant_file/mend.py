@@ -13,7 +13,7 @@ Texts = Mapping[str, str]
 
 
 class MendRefused(ArboledaError):
-    """The files are no longer those that a mend was made for."""
+    """The files are others than those that a mend was made for."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,8 +29,9 @@ class Edit:
 
 @dataclass(frozen=True, kw_only=True)
 class Mend:
-    """Mend: edits with which the plant was tried. `mends`: the findings that were gone then, each as its
-    sentence; `left`: how many there still were.
+    """Edits with which a plant was tried.
+
+    `mends` are the sentences of the findings that these edits remove, `left` is how many findings remain.
     """
 
     sentence: str
@@ -40,7 +41,7 @@ class Mend:
 
     @property
     def words(self) -> str:
-        """The sentence, with what would be left."""
+        """The sentence, and the number of findings that would remain."""
         left = f"; {counted(self.left, 'finding')} would be left" if self.left else ""
         return f"{self.sentence}{left}"
 
@@ -52,7 +53,7 @@ class Mend:
 
 @dataclass(frozen=True, kw_only=True)
 class Cut:
-    """Cut: the characters from `start` to `end` of a file give way to others."""
+    """Cut: the characters from `start` to `end` of a file become `new`."""
 
     file: str
     start: int
@@ -76,18 +77,21 @@ def cut_between(file: str, old: str, new: str) -> Cut:
     """The shortest cut that makes one text the other."""
     most = min(len(old), len(new))
     start = next((n for n in range(most) if old[n] != new[n]), most)
-    rest = most - start
-    same = next((n for n in range(rest) if old[-1 - n] != new[-1 - n]), rest)
+    behind = most - start
+    same = next((n for n in range(behind) if old[-1 - n] != new[-1 - n]), behind)
     return Cut(file=file, start=start, end=len(old) - same, new=new[start : len(new) - same])
 
 
 def edited(texts: Texts, edits: Iterable[Edit]) -> dict[str, str]:
-    """The texts with these edits, whose places are those before any of them; MendRefused where one is not."""
-    found, rows = dict(texts), [(_start(texts, each), each) for each in edits]
+    """The texts with these edits, whose lines and columns are those of `texts`.
+
+    MendRefused where a text does not have what an edit replaces.
+    """
+    changed, rows = dict(texts), [(_start(texts, each), each) for each in edits]
     for start, edit in sorted(rows, key=lambda row: row[0], reverse=True):
-        text = found[edit.file]
-        found[edit.file] = text[:start] + edit.new + text[start + len(edit.old) :]
-    return found
+        text = changed[edit.file]
+        changed[edit.file] = text[:start] + edit.new + text[start + len(edit.old) :]
+    return changed
 
 
 def _start(texts: Texts, edit: Edit) -> int:

@@ -1,4 +1,4 @@
-"""Needs across the devices of a cell: facts of one of them without which another is not told a verb."""
+"""Needs across the devices of a cell: facts of one device without which another is not told to do a verb."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from arboleda.model.commands import GO, GRIP, LET_GO
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Need, Robot
 
-from .document import Document, Place, choice, nearest, shown
+from .declared_kinds import verbs_of
+from .document import Document, Place, choice, misnamed, nearest, shown
 from .shapes import MAPPING
 
 SECTION = "needs"
@@ -17,19 +18,19 @@ Roles = Mapping[str, Any]  # robots; those that have verbs have a kind
 
 
 def needs(document: Document, cell: Place, roles: Roles) -> tuple[Need, ...]:
-    """The needs of a cell: those that its section has, and those that come with the kinds of its devices."""
+    """The needs of a cell: those of its section `needs`, and those of the kinds of its devices."""
     return (*_of_kinds(document, cell, roles), *_of_section(document, cell, roles))
 
 
 def _of_kinds(document: Document, cell: Place, roles: Roles) -> Iterator[Need]:
     for role, device in roles.items():
-        for verb in device.kind.verbs.values() if device.verb_names else ():
+        for verb in verbs_of(device).values():
             for name, value in verb.needs_of_others:
                 place = (*cell, "devices", role)
                 what = f"{verb.name} of {device.kind_name} needs {name}: "
-                found = _other(document, place, roles, role, name, value, what)
-                if found is not None:
-                    other, fact, value = found
+                need = _other(document, place, roles, role, name, value, what)
+                if need is not None:
+                    other, fact, value = need
                     yield Need(device=device.name, word=verb.name, other=other, fact=fact, value=value)
 
 
@@ -46,14 +47,14 @@ def _of_section(document: Document, cell: Place, roles: Roles) -> Iterator[Need]
         document.read_plain(MAPPING, place)
         for name in document.keys(place):
             value = document.value((*place, name))
-            found = _other(document, (*place, name), roles, role, name, value, "")
-            if found is not None:
-                other, fact, value = found
+            need = _other(document, (*place, name), roles, role, name, value, "")
+            if need is not None:
+                other, fact, value = need
                 yield Need(device=roles[role].name, word=word, other=other, fact=fact, value=value)
 
 
 def _is_verb(document: Document, place: Place, roles: Roles, role: str, word: str) -> bool:
-    """True if the device in a role has that verb; the problem is kept where it has not."""
+    """True if the device in a role has that verb; else the problem is kept."""
     if role not in roles:
         there = f'must be a role and one of its verbs, as "{next(iter(roles))}.close"; there is no role'
         document.problem(place, f"{there} {shown(role)}{nearest(role, roles)}", at=place)
@@ -75,10 +76,11 @@ def _words(robot: Robot) -> list[str]:
 def _other(
     document: Document, place: Place, roles: Roles, role: str, name: str, value: object, what: str
 ) -> tuple[str, str, Value] | None:
-    """The device, fact and value of a need that is written "reader.lid"; None, with the problem kept, if
-    there is no such fact.
+    """The device, fact and value of a need that is written "reader.lid".
+
+    None, with the problem kept, where there is no such fact, or the fact cannot have this value.
     """
-    known = {
+    facts = {
         f"{other}.{fact}": (device, fact)
         for other, device in roles.items()
         if device.verb_names and other != role
@@ -89,11 +91,11 @@ def _other(
         kind = f"as needs: {{{own}: {shown(value)}}} of the verb in its kind, {roles[role].kind_name}"
         document.problem(place, f"{what}{own} is a fact of {role} itself; say that {kind}", at=place)
         return None
-    if name not in known:
-        there = f"must be {choice(known)}" if known else "no other device of this cell reports facts"
-        document.problem(place, f"{what}{there}, is {shown(name)}{nearest(name, known)}", at=place)
+    if name not in facts:
+        sentence = misnamed(name, facts, "no other device of this cell reports facts")
+        document.problem(place, f"{what}{sentence}", at=place)
         return None
-    device, fact = known[name]
+    device, fact = facts[name]
     read = device.kind.facts[fact].read(value)
     if read is None:
         allowed = device.kind.facts[fact].allowed()

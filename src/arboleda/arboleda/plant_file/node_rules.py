@@ -1,4 +1,4 @@
-"""Rules of a walkthrough for the nodes of trees as XML: what can be so after each class of them."""
+"""Rules of a walkthrough for the nodes of trees as XML: the outcome of each class of nodes."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from arboleda.bt_xml.running import controls, decorators, leaves, watching
 from arboleda.bt_xml.running.device_steps import DeviceStep, FactStep, QuestionStep, as_variable
 from arboleda.bt_xml.running.memory import Scope
 from arboleda.bt_xml.running.node import FAILURE, SKIPPED, SUCCESS, Node, Result
-from arboleda.bt_xml.running.own import FunctionNode, WrapperNode
 from arboleda.bt_xml.running.ports import NodePorts
+from arboleda.bt_xml.running.python_nodes import FunctionNode, WrapperNode
 from arboleda.bt_xml.running.root import Main
 from arboleda.bt_xml.running.scripts import Script, ScriptError, is_true
 from arboleda.model.by_class import nearest
@@ -20,7 +20,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.recipes.handles import question_of
 
 from .foresight import Scene
-from .scene_variables import after_script, key_of, known_of, ports_in, run
+from .scene_variables import after_script, key_of, ports_in, run, scope_in
 from .step_rules import at_once, repeated, tried
 from .walkthrough import Outcome, Rule, Walkthrough, few
 
@@ -31,10 +31,10 @@ def _node(walk: Walkthrough, node: Node, scenes: Sequence[Scene]) -> Outcome:
     """The outcome of any node: its conditions, what it does, and its scripts."""
     with walk.at(None if node.place is None else str(node.place)):
         begin, decided = _by_condition(walk, node, scenes)
-        found = _ticked(walk, node, begin) if begin else Outcome()
+        ticked = _ticked(walk, node, begin) if begin else Outcome()
         if "_while" in node.before and begin:
-            found = found.plus(skipped=walk.blurred(node, begin))
-    both = decided.plus_all(found)
+            ticked = ticked.plus(skipped=walk.blurred(node, begin))
+    both = decided.plus_all(ticked)
     return Outcome(
         done=_after(node, "_onSuccess", both.done),
         failed=_after(node, "_onFailure", both.failed),
@@ -113,13 +113,15 @@ def _set(walk: Walkthrough, node: leaves.SetBlackboard, scenes: Sequence[Scene])
     done = []
     for scene in scenes:
         ports = replace(node.ports, texts={"value": node.ports.texts.get("value", "")})
-        known = ports_in(node.scope, ports, scene)
-        done.append(scene.without({key}) if known is None else scene.put({key: ports.text("value", known)}))
+        variables = ports_in(node.scope, ports, scene)
+        done.append(
+            scene.without({key}) if variables is None else scene.put({key: ports.text("value", variables)})
+        )
     return Outcome(done=tuple(done))
 
 
 def _writing(walk: Walkthrough, node: Node, scenes: Sequence[Scene]) -> Outcome:
-    """The outcome of a leaf that only gives values to variables, which nobody knows in advance."""
+    """The outcome of a leaf that only gives variables values, which are not certain in advance."""
     return Outcome(done=walk.blurred(node, scenes))
 
 
@@ -129,32 +131,33 @@ def _function(walk: Walkthrough, node: FunctionNode, scenes: Sequence[Scene]) ->
 
 
 def _step(walk: Walkthrough, node: leaves.Step, scenes: Sequence[Scene]) -> Outcome:
-    found = walk.follow(node.step, scenes)
-    return Outcome(done=found.passed, failed=found.failed)
+    after = walk.follow(node.step, scenes)
+    return Outcome(done=after.passed, failed=after.failed)
 
 
 def _device(walk: Walkthrough, node: DeviceStep, scenes: Sequence[Scene]) -> Outcome:
     if not node.order.variables:
-        found = walk.follow(node.step, scenes)
-        return Outcome(done=tuple(_answered(node, node.step, found.passed)), failed=found.failed)
+        after = walk.follow(node.step, scenes)
+        return Outcome(done=tuple(_answered(node, node.step, after.passed)), failed=after.failed)
     outcome = Outcome()
     for scene in scenes:
-        found, step = _with_values(walk, node, scene)
-        outcome = outcome.plus(done=_answered(node, step, found.passed), failed=found.failed)
+        after, step = _with_values(walk, node, scene)
+        outcome = outcome.plus(done=_answered(node, step, after.passed), failed=after.failed)
     return outcome
 
 
 def _with_values(walk: Walkthrough, node: DeviceStep, scene: Scene) -> tuple[Outcome, Behaviour]:
-    """The outcome of a step with the values that its variables have in a scene, and that step; where one is
-    not known, nothing of what the step may change is.
+    """The outcome of a step with the values that its variables have in a scene, and that step.
+
+    Where a variable has no certain value, nothing that the step may change is certain after it.
     """
-    known = known_of(node.scope, node.order.variables.values(), scene)
-    if known is None:
+    variables = scope_in(node.scope, node.order.variables.values(), scene)
+    if variables is None:
         blurred = walk.blurred(node, [scene])
         return Outcome(done=blurred, failed=blurred), node.step
     try:
-        found = node.order.values(known)
-        step = node.step if found == node.built else node.order.make(dict(found))
+        arguments = node.order.values(variables)
+        step = node.step if arguments == node.built else node.order.make(dict(arguments))
     except ArboledaError:  # a value that the device does not take: the task fails
         return Outcome(), node.step
     return walk.follow(step, [scene]), step
@@ -177,8 +180,8 @@ def _facts(walk: Walkthrough, node: FactStep, scenes: Sequence[Scene]) -> Outcom
         facts = {
             key_of(node.scope.place(variable)): scene.get(*fact) for variable, fact in node.facts.items()
         }
-        known = {key: as_variable(value) for key, value in facts.items() if value is not None}
-        done.append(scene.without(set(facts)).put(known))
+        values = {key: as_variable(value) for key, value in facts.items() if value is not None}
+        done.append(scene.without(set(facts)).put(values))
     return Outcome(done=tuple(done), failed=tuple(scenes))
 
 
@@ -202,26 +205,26 @@ def _in_order(walk: Walkthrough, below: Sequence[Node], scenes: Sequence[Scene],
 
 def _try_catch(walk: Walkthrough, node: controls.TryCatch, scenes: Sequence[Scene]) -> Outcome:
     *below, caught = node.below
-    found = _in_order(walk, below, scenes, FAILURE)
-    rescue = walk.follow(caught, found.failed)
-    return replace(found, failed=(*rescue.passed, *rescue.failed))
+    ended = _in_order(walk, below, scenes, FAILURE)
+    rescue = walk.follow(caught, ended.failed)
+    return replace(ended, failed=(*rescue.passed, *rescue.failed))
 
 
 def _parallel(
     walk: Walkthrough, node: controls.Parallel | controls.ParallelAll, scenes: Sequence[Scene]
 ) -> Outcome:
     """The outcome of children at once: as a rule all of them have to succeed."""
-    known = ports_in(node.scope, node.ports, Scene())
-    needs_all = known is not None and node.needs_all(known)
+    variables = ports_in(node.scope, node.ports, Scene())
+    needs_all = variables is not None and node.needs_all(variables)
     return at_once(walk, node, scenes) if needs_all else walk.unsure(node, scenes)
 
 
 def _if_then(walk: Walkthrough, node: controls.IfThenElse, scenes: Sequence[Scene]) -> Outcome:
-    condition, *ways = node.below
-    found = walk.follow(condition, scenes)
-    outcome = Outcome(skipped=found.skipped, failed=() if len(ways) > 1 else found.failed)
-    for way, begin in zip(ways, (found.done, found.failed), strict=False):
-        outcome = outcome.plus_all(walk.follow(way, begin))
+    condition, *branches = node.below
+    decided = walk.follow(condition, scenes)
+    outcome = Outcome(skipped=decided.skipped, failed=() if len(branches) > 1 else decided.failed)
+    for branch, begin in zip(branches, (decided.done, decided.failed), strict=False):
+        outcome = outcome.plus_all(walk.follow(branch, begin))
     return outcome
 
 
@@ -237,18 +240,18 @@ def _switch(walk: Walkthrough, node: controls.Switch, scenes: Sequence[Scene]) -
 def _alike(
     node: Node, ports: NodePorts, scenes: Sequence[Scene], read: Callable[[Scope], int]
 ) -> Iterable[tuple[int | None, list[Scene]]]:
-    """The scenes by the values of a node's ports in them; None where those are not known."""
+    """The scenes by the value that `read` makes of the node's ports; None where no value is certain."""
     rows: dict[int | None, list[Scene]] = {}
     for scene in scenes:
-        known = ports_in(node.scope, ports, scene)
-        rows.setdefault(None if known is None else read(known), []).append(scene)
+        variables = ports_in(node.scope, ports, scene)
+        rows.setdefault(None if variables is None else read(variables), []).append(scene)
     return rows.items()
 
 
 def _result(walk: Walkthrough, node: decorators.ResultDecorator, scenes: Sequence[Scene]) -> Outcome:
-    found = walk.follow(node.child, scenes)
-    outcome = _with(Outcome(skipped=found.skipped), node.ends[SUCCESS], found.done)
-    return _with(outcome, node.ends[FAILURE], found.failed)
+    after = walk.follow(node.child, scenes)
+    outcome = _with(Outcome(skipped=after.skipped), node.ends[SUCCESS], after.done)
+    return _with(outcome, node.ends[FAILURE], after.failed)
 
 
 def _until_failure(
@@ -261,19 +264,19 @@ def _until_failure(
 def _loop(walk: Walkthrough, node: decorators.Loop, scenes: Sequence[Scene]) -> Outcome:
     outcome = Outcome()
     for most, begin in _alike(node, node.ports, scenes, node.most):
-        found = walk.unsure(node, begin) if most is None else _rounds(walk, node, begin, most)
-        outcome = outcome.plus_all(found)
+        after = walk.unsure(node, begin) if most is None else _rounds(walk, node, begin, most)
+        outcome = outcome.plus_all(after)
     return outcome
 
 
 def _rounds(walk: Walkthrough, node: decorators.Loop, scenes: Sequence[Scene], most: int) -> Outcome:
-    """The outcome of at most so many rounds of a loop; -1 is without an end."""
+    """The outcome of at most so many rounds of a loop; -1 is an endless loop."""
     if most == 0:
         return _with(Outcome(), node.goes_on, scenes)
     if node.goes_on is FAILURE:
         return tried(walk, node.child, scenes, MANY if most < 0 else most)
-    found = repeated(walk, node.child, scenes, MANY if most < 0 else most)
-    return replace(found, done=()) if most < 0 else found
+    after = repeated(walk, node.child, scenes, MANY if most < 0 else most)
+    return replace(after, done=()) if most < 0 else after
 
 
 def _around(walk: Walkthrough, node: Node, scenes: Sequence[Scene]) -> Outcome:
@@ -286,12 +289,12 @@ def _timeout(walk: Walkthrough, node: decorators.Timeout, scenes: Sequence[Scene
 
 def _precondition(walk: Walkthrough, node: decorators.Precondition, scenes: Sequence[Scene]) -> Outcome:
     true, false = _split(walk, node.script, node, scenes)
-    found = walk.follow(node.child, true)
+    after = walk.follow(node.child, true)
     word = node.ports.texts.get("else", "FAILURE")
     if word not in decorators.STATUSES:
         walk.doubts += 1
-        return found.plus(done=false, failed=false, skipped=false)
-    return _with(found, decorators.STATUSES[word], false)
+        return after.plus(done=false, failed=false, skipped=false)
+    return _with(after, decorators.STATUSES[word], false)
 
 
 NODES: Mapping[type[Node], Rule] = {
@@ -324,6 +327,6 @@ NODES: Mapping[type[Node], Rule] = {
     FunctionNode: _function,
     watching.WasEntryUpdated: Walkthrough.unsure,
 }
-"""The rule for each class of nodes; what is none of them is unsure."""
+"""The rule for each class of nodes; a node of another class is unsure."""
 
 RULES: Mapping[type[Behaviour], Rule] = {Node: _node}

@@ -1,4 +1,4 @@
-"""Offers: what a plant file could state, as edits, of which a person takes the one that is so."""
+"""Offers: rules that a plant file could state, as edits, of which a person takes the right one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .mend import Edit, cut_between, edit_of
 
 @dataclass(frozen=True, kw_only=True)
 class Offer:
-    """Offer: what nobody knows, and the edits of which each alone would state it."""
+    """A sentence on a rule that the plant file lacks, and edits, each of which alone would state the rule."""
 
     sentence: str
     edits: tuple[Edit, ...]
@@ -29,9 +29,9 @@ class Offer:
 
 
 def offers(file: str, text: str, model: PlantModel) -> tuple[Offer, ...]:
-    """The offers for a plant file, whose text this is; one without an edit is for kinds of another file."""
-    found = [(each, tuple(_edits(file, text, each))) for each in unstated(model) if each.fits(text.encode())]
-    return tuple(Offer(sentence=each.unknown, edits=edits) for each, edits in found if edits)
+    """The offers for a plant file with this text; rules of kinds in other files are left out."""
+    rows = [(each, tuple(_edits(file, text, each))) for each in unstated(model) if each.fits(text.encode())]
+    return tuple(Offer(sentence=each.unknown, edits=edits) for each, edits in rows if edits)
 
 
 def _edits(file: str, text: str, lack: Unstated) -> Iterator[Edit]:

@@ -1,13 +1,11 @@
-"""Kinds of devices in Python: of files that the plant file uses, or of installed packages."""
+"""Devices of kinds in Python, which files that the plant file uses have, or installed packages."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import fields
 from importlib.metadata import EntryPoint
 from typing import Any
 
-from pydantic import create_model
 from pydantic.errors import PydanticSchemaGenerationError
 
 from arboleda.host.packages import entry_points
@@ -18,25 +16,26 @@ from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_model import Robot
 from arboleda.wire import mqtt_limits
 
+from .declared_kinds import OF_FACTS, OF_STEPS, name_objection
 from .document import Document, Place, shown
-from .kinds import OF_FACTS, OF_STEPS, name_objection
 from .moving_kinds import as_read
-from .python_uses import LONGEST, KindInPython, PythonUses, Spot, error_text, refused
-from .registry import COME_WITH_IT, IN_PYTHON, RESERVED
+from .python_uses import LONGEST, KindInPython, PythonUses, SourceSpot, error_text, refused
 from .robot_kind import RobotKind
-from .settings import TYPES, keys
+from .settings import TYPES, settings_of_kind, shape_of_kind
 from .shapes import DeviceShape
 from .shared import SECTION
+from .shipped_kinds import COME_WITH_IT, IN_PYTHON, RESERVED
 
 GROUP = "arboleda.kinds"
+CLASH = "{} is a key of every device; give the field another name"
 
 
 def registered() -> dict[str, list[EntryPoint]]:
     """The kinds that installed packages register, by name."""
-    found: dict[str, list[EntryPoint]] = {}
+    entries: dict[str, list[EntryPoint]] = {}
     for each in entry_points(group=GROUP):
-        found.setdefault(each.name, []).append(each)
-    return found
+        entries.setdefault(each.name, []).append(each)
+    return entries
 
 
 def needs_python(document: Document) -> bool:
@@ -47,7 +46,7 @@ def needs_python(document: Document) -> bool:
 
 
 def complete(document: Document, used: PythonUses) -> None:
-    """Add the kinds that devices name and that come with Arboleda, or from an installed package."""
+    """Add the kinds that devices name and that Arboleda or an installed package has."""
     entries = registered() if any(name not in used.kinds for name, _ in _named(document)) else {}
     for name, place in _named(document):
         rows = entries.get(name, [])
@@ -63,18 +62,18 @@ def complete(document: Document, used: PythonUses) -> None:
 
 
 def robot(document: Document, place: Place, kind: RobotKind, used: PythonUses) -> Robot | None:
-    """The device as its kind reads it; None, with the problems kept, if something is wrong with it."""
+    """The device that its kind reads; None, with the problems kept, if something is wrong with it."""
     if kind is COME_WITH_IT.get(kind.name):
         return kind.read(document, place)
     used.watch(used.spot(kind), f"making {kind.name} for {place[-1]}")
     try:
-        found = kind.read(document, place)
+        device = kind.read(document, place)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
         _tell(document, place, kind, error, used)
         return None
-    if found is None or isinstance(found, Robot):
-        return found
-    what = f"{kind.name} reads {quoted(found)}; a kind that reads by itself makes a Robot"
+    if device is None or isinstance(device, Robot):
+        return device
+    what = f"{kind.name} reads {quoted(device)}; a kind that reads by itself makes a Robot"
     _keep(document, place, used.spot(kind), what, used)
     return None
 
@@ -82,11 +81,11 @@ def robot(document: Document, place: Place, kind: RobotKind, used: PythonUses) -
 def device(
     document: Document, place: Place, kind: WrittenKind, used: PythonUses
 ) -> tuple[DeviceShape, DeviceKind] | None:
-    """The device as the plant file describes it, and its kind with its settings."""
+    """The keys of a device, and its kind made with its settings; None, with the problems kept, if wrong."""
     spot = used.spot(kind)
     used.watch(spot, f"making {kind.name} for {place[-1]}")
     try:
-        shape = document.read(_shape(kind), place)
+        shape = document.read(shape_of_kind(kind, DeviceShape, CLASH), place)
     except PydanticSchemaGenerationError:
         what = f"the settings of {kind.name} have a type that no plant file can give"
         used.keep(document, spot.problem(f"{what}; it can {TYPES}"))
@@ -131,7 +130,7 @@ def _installed(
     if len(rows) > 1:
         document.problem(place, f"{' and '.join(packages)} both register a kind {shown(name)}; uninstall one")
         return None
-    used.watch(Spot(file=rows[0].module), f"importing the kind {name}")
+    used.watch(SourceSpot(file=rows[0].module), f"importing the kind {name}")
     try:
         kind = rows[0].load()
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
@@ -154,24 +153,12 @@ def _package(entry: EntryPoint) -> str:
     return f"{entry.dist.name} {entry.dist.version}" if entry.dist else entry.module
 
 
-def _shape(kind: WrittenKind) -> type[DeviceShape]:
-    """The keys that a device of this kind may have: those of any device, and the kind's settings."""
-    rows = () if kind.settings is None else fields(kind.settings)
-    taken = next((row.name for row in rows if row.name in DeviceShape.model_fields), None)
-    if taken is not None:
-        raise KindError(f"{taken} is a key of every device; give the field another name")
-    return create_model(f"Device_{kind.name}", __base__=DeviceShape, **keys(kind.settings))
-
-
 def _settings(
     document: Document, place: Place, kind: WrittenKind, shape: DeviceShape, used: PythonUses
 ) -> Any:
     """The settings of a device; None, with the problem kept, if the kind's own rules refuse them."""
-    if kind.settings is None:
-        return None
-    settings = {each.name: getattr(shape, each.name) for each in fields(kind.settings)}
     try:
-        return kind.settings(**settings)
+        return settings_of_kind(kind, shape)
     except (ValueError, ArboledaError) as error:
         document.problem(place, plain(refused(error), LONGEST))
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
@@ -182,13 +169,13 @@ def _settings(
 def _tell(
     document: Document, place: Place, kind: KindInPython, error: BaseException, used: PythonUses
 ) -> None:
-    """Keep the error that a kind raised: at its line, or at the device if no file of a user has that line."""
+    """Keep the error that a kind raised, at its line; at the device where no file of a user has that line."""
     spot = used.where(error.__cause__ or error, used.where(error, used.spot(kind)))
     what = f"{kind.name}: {error}" if isinstance(error, KindError) else f"{kind.name}: {error_text(error)}"
     _keep(document, place, spot, what, used)
 
 
-def _keep(document: Document, place: Place, spot: Spot, what: str, used: PythonUses) -> None:
+def _keep(document: Document, place: Place, spot: SourceSpot, what: str, used: PythonUses) -> None:
     if spot.file in used.files.values():
         used.keep(document, spot.problem(what))
     else:
@@ -196,7 +183,7 @@ def _keep(document: Document, place: Place, spot: Spot, what: str, used: PythonU
 
 
 def _unusable(kind: DeviceKind) -> Iterator[str]:
-    """The objections to a kind: names that it cannot have, and parts that MQTT cannot carry."""
+    """The objections to a kind: names that no recipe can use, and messages that MQTT cannot carry."""
     yield from _misnamed(kind)
     yield from (each.sentence for each in mqtt_limits.objections(kind))
 

@@ -1,4 +1,4 @@
-"""A model of the plant's own: a URDF or YAML file beside the plant file, with the keys of `model:`."""
+"""Model of the plant's own: a URDF or YAML file beside the plant file, with the keys of `model:`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from arboleda.wire.units import to_wire
 
 from . import urdf_file, user_file, xml_marks, yaml_marks, yaml_model
 from .document import Document, Place, choice, shown
-from .drawing import drawing, lifts
+from .own_urdf import drawing, lifts
 from .robot_models import PINION_MM, TO_SI, ArmModel, millimetres
 from .shapes import DAY_S, MAPPING, POSITIVE, SPEED, ModelShape, OffsetShape
 from .urdf_axis import Axis
@@ -34,7 +34,7 @@ LEAST_STEP = 0.001  # deg or mm: MQTT has four decimals
 
 
 def is_own(value: Any) -> bool:
-    """True if `model:` names a file rather than a model that comes with arboleda."""
+    """True if `model:` names a file, and not a model that comes with Arboleda."""
     if isinstance(value, dict):
         return True
     return isinstance(value, str) and ("/" in value or value.endswith((*ENDINGS, ".xacro")))
@@ -105,7 +105,7 @@ def _content(document: Document, place: Place, file: str) -> bytes | None:
 
 
 def _fits(document: Document, place: Place, shape: ModelShape) -> bool:
-    """True if links are named only for a file that has some."""
+    """True if `model:` names links only for a URDF, which has links."""
     of_urdf = [key for key in ("base_link", "tip_link") if getattr(shape, key) is not None]
     foreign = of_urdf if not shape.file.endswith(".urdf") else []
     for key in foreign:
@@ -130,7 +130,7 @@ def _find_meshes(chain: Chain, folder: Path) -> None:
 def _joints(document: Document, place: Place, spot: Place, chain: Chain) -> tuple[Joint, ...] | None:
     """The joints with all that a motor needs; None, with the problems kept, if one cannot be driven.
 
-    `place` is that of `model:`, beside which `speeds:` may say what the file leaves open.
+    `place` is that of `model:`. `speeds:` beside it may have speeds that the file of the model lacks.
     """
     if len(chain.axes) > MOST_JOINTS:
         most = f"at most {MOST_JOINTS}; one MQTT message has room for no more"
@@ -144,17 +144,17 @@ def _joints(document: Document, place: Place, spot: Place, chain: Chain) -> tupl
         if axis.speed
     ]
     for key, unit in (("accelerations", "_s2"), ("steps", "")):
-        known = [f"q{number}_{_unit(axis)}{unit}" for number, axis in enumerate(chain.axes, start=1)]
+        allowed = [f"q{number}_{_unit(axis)}{unit}" for number, axis in enumerate(chain.axes, start=1)]
         written = document.read_plain(MAPPING, (*place, key)) if document.has((*place, key)) else None
         for name in written or {}:
-            if name not in known:
-                document.unknown((*place, key, name), known)
+            if name not in allowed:
+                document.unknown((*place, key, name), allowed)
     good = [_is_drivable(document, spot, joint) for joint in joints]
     return tuple(joints) if all(good) and len(joints) == len(axes) else None
 
 
 def _with_speed(document: Document, place: Place, number: int, axis: Axis) -> Axis:
-    """The axis; with the speed of the plant file, if its own file says none."""
+    """The axis with its speed, which the plant file may have where the file of the model has none."""
     if axis.speed is not None:
         return axis
     speed = document.read_plain(SPEED, _speed_place(place, number, axis))
@@ -166,7 +166,7 @@ def _speed_place(place: Place, number: int, axis: Axis) -> Place:
 
 
 def _refuse_open_speeds(document: Document, place: Place, spot: Place, axes: Sequence[Axis]) -> None:
-    """Keep a problem that says what to write, if neither file has the speed of some joints."""
+    """Keep a problem, with what to write, for joints whose speed neither file has."""
     places = {axis.name: _speed_place(place, number, axis) for number, axis in enumerate(axes, 1)}
     open_ = [axis for axis in axes if axis.speed is None and not document.has(places[axis.name])]
     if open_:
@@ -180,7 +180,7 @@ def _refuse_open_speeds(document: Document, place: Place, spot: Place, axes: Seq
 
 
 def _joint(document: Document, place: Place, number: int, axis: Axis, speed: float) -> Joint:
-    """The joint as its file and the plant file have it, with defaults if both say nothing."""
+    """The joint by the plant file, else by the file of its model, else by defaults."""
     si = TO_SI[_unit(axis)]
     acceleration = document.read_plain(POSITIVE, (*place, "accelerations", f"q{number}_{_unit(axis)}_s2"))
     step = document.read_plain(POSITIVE, (*place, "steps", f"q{number}_{_unit(axis)}"))
@@ -222,7 +222,7 @@ def _is_drivable(document: Document, place: Place, joint: Joint) -> bool:
 
 
 def _assumed(document: Document, place: Place, chain: Chain) -> Sequence[str]:
-    """The notes on accelerations and motor steps that are assumed for joints without their own."""
+    """The notes on accelerations and motor steps that are assumed, as no file has them."""
     open_: dict[str, list[str]] = {"accelerations": [], "steps": []}
     for number, axis in enumerate(chain.axes, start=1):
         own_values = {"accelerations": axis.acceleration, "steps": axis.step}

@@ -1,4 +1,4 @@
-"""Recipes, kinds and drivers that a plant file uses: of Python files beside it, or of installed modules."""
+"""Import of recipes, kinds, nodes and drivers that a plant file uses, from files beside it or modules."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ from . import tree_includes, user_file
 from .document import Document, Place, nearest, shown
 from .lost_steps import KEEP, NAME, LostSteps, noting
 from .moving_kinds import as_read
-from .python_uses import LONGEST, PythonUses, Spot, Watch, Written, error_text, unwatched
-from .registry import IN_PYTHON, RESERVED
+from .python_uses import LONGEST, PythonUses, SourceSpot, Watch, Written, error_text, unwatched
 from .shapes import NAME_RULE, WORDS, is_name
+from .shipped_kinds import IN_PYTHON, RESERVED
 from .source_text import source_of
 from .storage_form import TAKEN
 
@@ -47,7 +47,7 @@ LINKS = tuple(each.value for each in Link)
 
 
 def listed(document: Document) -> tuple[str, ...]:
-    """The files and modules that the plant file uses; none, with the problem kept, if that is no list."""
+    """The files and modules that the plant file uses; none, with the problem kept, if `uses` is no list."""
     words = document.read_plain(WORDS, SECTION) or ()
     for index, word in enumerate(words):
         if word in words[:index]:
@@ -56,7 +56,7 @@ def listed(document: Document) -> tuple[str, ...]:
 
 
 def imported(document: Document, words: Sequence[str], watch: Watch) -> PythonUses:
-    """Everything that the used files and modules bring; problems of failed imports are kept."""
+    """Everything that the used files and modules have; problems of failed imports are kept."""
     used = PythonUses(watch=watch, lost=None if watch is unwatched else LostSteps())
     for index, word in enumerate(words):
         place = (*SECTION, index)
@@ -68,7 +68,7 @@ def imported(document: Document, words: Sequence[str], watch: Watch) -> PythonUs
             used.is_whole = False
         else:
             _collect(document, place, module, used)
-    if all(_is_file(word) for word in words):  # of an installed module nobody knows which files are its own
+    if all(_is_file(word) for word in words):  # the files of an installed module are not known
         used.source = source_of(document.files, document.folder)
     return used
 
@@ -85,37 +85,37 @@ def _file(document: Document, place: Place, word: str, used: PythonUses, watch: 
         document.problem(place, f"must be a file that ends in {ENDING}, or a module; is {shown(word)}")
         return None
     path = (document.folder / word).absolute()
-    known_as = str(document.folder / word)
+    shown_path = str(document.folder / word)
     try:
         source = user_file.read_bytes(path, LARGEST)
     except ConfigError as error:
         near = nearest(word, (each.name for each in _beside(path)))
-        document.problem(place, plain(str(error).replace(str(path), known_as), LONGEST) + near)
+        document.problem(place, plain(str(error).replace(str(path), shown_path), LONGEST) + near)
         return None
-    used.files |= {str(each): str(Path(known_as).parent / each.name) for each in _beside(path)}
-    used.files[str(path)] = known_as
+    used.files |= {str(each): str(Path(shown_path).parent / each.name) for each in _beside(path)}
+    used.files[str(path)] = shown_path
     document.files[path] = source
     if document.runs:
         return _as_imported(document, place, path)
-    watch(Spot(file=known_as), "importing this")
+    watch(SourceSpot(file=shown_path), "importing this")
     read = {path: source}
     try:
         with _importing(path.parent, read):
             module = _run(path, source, used.lost)
         setattr(module, READ, read)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
-        spot = used.where(error, Spot(file=known_as))
+        spot = used.where(error, SourceSpot(file=shown_path))
         used.keep(document, spot.problem(f"cannot be imported: {error_text(error)}"))
         return None
     document.files |= read
-    _check_twice(document, known_as, source)
+    _check_twice(document, shown_path, source)
     return module
 
 
 def _as_imported(document: Document, place: Place, path: Path) -> ModuleType | None:
-    """The module that this process has of a file, or of one that it is a copy of.
+    """The module that this process has imported from a file, or from a file of which this one is a copy.
 
-    None, with the problem kept, where that is another now.
+    None, with the problem kept, where the file was changed since.
     """
     for module in [each for name, each in sys.modules.items() if name.startswith(USES)]:
         read: dict[Path, bytes] = getattr(module, READ, {})
@@ -139,37 +139,37 @@ def _module_name(path: Path) -> str:
 
 
 def _trees(document: Document, place: Place, word: str, used: PythonUses) -> None:
-    """Add the recipe of a file of trees; nothing of it is executed."""
+    """Add the recipe of a file of trees; nothing in the file is executed."""
     if document.folder is None:
         document.problem(place, "this plant file lies in no folder, so no trees can lie beside it")
         return
-    known_as = str(document.folder / word)
+    shown_path = str(document.folder / word)
 
     def fetch(file: str, path: str, package: str) -> tuple[str, bytes]:
-        found, content = tree_includes.read(file, path, package)
-        document.files[Path(found).absolute()] = content
-        return found, content
+        included, content = tree_includes.read(file, path, package)
+        document.files[Path(included).absolute()] = content
+        return included, content
 
     findings = Findings()
     try:
-        content = user_file.read_bytes(Path(known_as), LARGEST)
+        content = user_file.read_bytes(Path(shown_path), LARGEST)
     except ConfigError as error:
         document.problem(place, plain(str(error), LONGEST))
         used.is_whole = False
         return
-    document.files[Path(known_as).absolute()] = content
-    forest = reading.read(known_as, content, findings, fetch)
+    document.files[Path(shown_path).absolute()] = content
+    forest = reading.read(shown_path, content, findings, fetch)
     checking.check(forest, findings, leaves_are_checked_later=True)
     name = Path(word).stem
     problems = list(findings.mistakes)
     if not problems and forest.main not in forest.trees:
-        problems.append(f'{known_as}:1:1: which tree? <root main_tree_to_execute="...">')
+        problems.append(f'{shown_path}:1:1: which tree? <root main_tree_to_execute="...">')
     elif not problems and forest.main is not None:
         forest = runnable.part_of(forest, forest.main)
         runnable.check(forest, findings)
         problems += findings.mistakes
     if not problems:
-        recipe = tree_recipe(name, known_as, content, forest, used.nodes)
+        recipe = tree_recipe(name, shown_path, content, forest, used.nodes)
         problem = _objection("recipe", recipe, used.recipes, TAKEN, used)
         problems += [] if problem is None else [used.spot(recipe).problem(problem)]
         used.recipes.setdefault(name, recipe)
@@ -178,7 +178,7 @@ def _trees(document: Document, place: Place, word: str, used: PythonUses) -> Non
 
 
 def _module(document: Document, place: Place, word: str, used: PythonUses, watch: Watch) -> ModuleType | None:
-    watch(Spot(file=word), "importing this")
+    watch(SourceSpot(file=word), "importing this")
     try:
         module = importlib.import_module(word)
     except ModuleNotFoundError as error:
@@ -202,7 +202,7 @@ def _beside(path: Path) -> list[Path]:
 
 
 def _run(path: Path, source: bytes, lost: LostSteps | None) -> ModuleType:
-    """Run a file as a module of its own; Python keeps no compiled file of it beside the user's.
+    """Run a file as a module of its own; Python writes no compiled file beside the user's file.
 
     `lost`, where given, notes the steps that statements and assignments make.
     """
@@ -220,8 +220,10 @@ def _run(path: Path, source: bytes, lost: LostSteps | None) -> ModuleType:
 
 @contextmanager
 def _importing(folder: Path, files: dict[Path, bytes]) -> Iterator[None]:
-    """Make the files of `folder` importable meanwhile, add them to `files`, and forget them: other plants
-    have other files."""
+    """Context in which files of `folder` can be imported; adds those that were to `files`, and forgets them.
+
+    Another plant may have other files of these names.
+    """
     before, writes = set(sys.modules), sys.dont_write_bytecode
     sys.path.insert(0, str(folder))
     sys.dont_write_bytecode = True
@@ -234,7 +236,7 @@ def _importing(folder: Path, files: dict[Path, bytes]) -> Iterator[None]:
         for name in set(sys.modules) - before:
             file = getattr(sys.modules[name], "__file__", None)
             if file is not None and folder in Path(file).parents and not name.startswith(USES):
-                with suppress(OSError):  # whoever imports may have deleted it since
+                with suppress(OSError):  # the file may have deleted itself
                     files[Path(file)] = Path(file).read_bytes()
                 del sys.modules[name]
 
@@ -273,36 +275,38 @@ def _collect(document: Document, place: Place, module: ModuleType, used: PythonU
 
 
 def _objection(
-    what: str, found: Written, there: Mapping[str, Any], taken: Sequence[str], used: PythonUses
+    what: str, written: Written, there: Mapping[str, Any], taken: Sequence[str], used: PythonUses
 ) -> str | None:
-    """The reason for which it cannot stand beside the ones that exist already."""
-    name = found.name
+    """The reason why a recipe, a kind or a driver cannot have its name; None where it can."""
+    name = written.name
     if not isinstance(name, str) or not is_name(name):
         return f"{shown(name)} cannot be the name of a {what}; it must be {NAME_RULE}"
     if name in taken:
         return f"the {what} {shown(name)} comes with Arboleda; give this one another name"
-    return _twice(what, found, there, used)
+    return _twice(what, written, there, used)
 
 
-def _objection_to_node(found: WrittenNode, used: PythonUses) -> str | None:
-    """The reason for which trees of XML cannot have a node."""
-    if not isinstance(found.name, str) or not NODE.fullmatch(found.name):
-        return f"{shown(found.name)} cannot be the name of a node; it must be letters, digits and _"
-    if built_in(found.name) is not None or found.name in (*OTHER_SPELLINGS, *CATEGORIES):
-        return f"the node {shown(found.name)} comes with BehaviorTree.CPP; give this one another name"
-    return _twice("node", found, used.nodes, used)
+def _objection_to_node(node: WrittenNode, used: PythonUses) -> str | None:
+    """The reason why trees as XML cannot have a node of this name; None where they can."""
+    if not isinstance(node.name, str) or not NODE.fullmatch(node.name):
+        return f"{shown(node.name)} cannot be the name of a node; it must be letters, digits and _"
+    if built_in(node.name) is not None or node.name in (*OTHER_SPELLINGS, *CATEGORIES):
+        return f"the node {shown(node.name)} comes with BehaviorTree.CPP; give this one another name"
+    return _twice("node", node, used.nodes, used)
 
 
-def _twice(what: str, found: Written, there: Mapping[str, Any], used: PythonUses) -> str | None:
-    other = there.get(found.name)
-    if other is None or other is found:
+def _twice(what: str, written: Written, there: Mapping[str, Any], used: PythonUses) -> str | None:
+    other = there.get(written.name)
+    if other is None or other is written:
         return None
     first = used.spot(other)
-    return f"the {what} {shown(found.name)} is there twice; the other is on line {first.line} of {first.file}"
+    return (
+        f"the {what} {shown(written.name)} is there twice; the other is on line {first.line} of {first.file}"
+    )
 
 
-def _check_twice(document: Document, known_as: str, source: bytes) -> None:
-    """Keep a problem for each of these functions whose name a later one has: Python forgets it."""
+def _check_twice(document: Document, shown_path: str, source: bytes) -> None:
+    """Keep a problem for each second recipe, kind or node of one name: Python forgets the first."""
     lines: dict[str, int] = {}
     for node in ast.parse(source).body:
         if not isinstance(node, ast.FunctionDef | ast.ClassDef):
@@ -310,7 +314,7 @@ def _check_twice(document: Document, known_as: str, source: bytes) -> None:
         marked = [each for each in node.decorator_list if isinstance(each, ast.Call) and _marks(each.func)]
         first = lines.setdefault(node.name, node.lineno)
         if first != node.lineno and marked:
-            spot = Spot(file=known_as, line=node.lineno)
+            spot = SourceSpot(file=shown_path, line=node.lineno)
             sentence = f"the function {node.name} is there twice, so Python forgets that on line {first}"
             document.keep_those_of(ConfigError((spot.problem(sentence),)))
 

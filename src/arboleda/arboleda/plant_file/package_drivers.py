@@ -8,11 +8,11 @@ from arboleda.model.sentence import OWN
 OF_ROBOTS = frozenset(
     {"dobot", "follow_joint_trajectory", "follow_waypoints", "gcode", "navigate_to_pose", "serial_arm", "ur"}
 )
-"""They reach only arms and mobile robots, which are of no declared kind."""
+"""Drivers of arms and mobile robots, which are of no declared kind."""
 OF_DEVICES = frozenset({"gripper_command", "modbus", "opcua", "pylabrobot", "s7", "vda5050"})
 ALL = OF_ROBOTS | OF_DEVICES
 
 
 def not_installed(name: str) -> str:
-    """The sentence for a driver whose package is not there."""
+    """The sentence that the package of a driver is not installed."""
     return str(MISSING(what=OWN(text=f"the driver {name}"), package=DRIVERS))

@@ -1,4 +1,4 @@
-"""Scenes of steps at the same time: what the others of them may change, and what is sure after all."""
+"""Scenes of steps at the same time: the changes that each may make, and the scene after all of them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from py_trees.behaviour import Behaviour
 
-from .foresight import CHANGE, LEAST, MOST, OF_PLACES, Key, Scene
+from .foresight import CHANGE, LEAST, MOST, OF_PLACES, Scene, SceneKey
 from .walkthrough import Walkthrough
 
 
@@ -21,21 +21,21 @@ class Branches:
         ]
 
     def begin_of(self, number: int) -> Scene:
-        """The scene in which a branch begins, without what others may change meanwhile."""
+        """The scene in which a branch begins, without all that other branches may change meanwhile."""
         others = [keys for each, keys in enumerate(self.keys) if each != number]
         return self.begin.without(set().union(*others))
 
     def merged(self, ends: Sequence[Scene]) -> Scene:
-        """The scene after all branches, each of which has ended in its own."""
+        """The scene after all branches; `ends` has the scene in which each branch ended."""
         everything = set().union(*self.keys)
-        found = dict(self.begin.without(everything).known)
+        values = dict(self.begin.without(everything).values)
         for number, end in enumerate(ends):
             others = set().union(*(keys for each, keys in enumerate(self.keys) if each != number))
-            found |= {key: value for key, value in end.known.items() if key not in others}
-        return Scene(known=found).put(self._sums())
+            values |= {key: value for key, value in end.values.items() if key not in others}
+        return Scene(values=values).put(self._sums())
 
-    def _changed(self, walk: Walkthrough, branch: Behaviour, ends: Sequence[Scene]) -> set[Key]:
-        """The facts and places that a branch may change; of places only those at which some end differs."""
+    def _changed(self, walk: Walkthrough, branch: Behaviour, ends: Sequence[Scene]) -> set[SceneKey]:
+        """The facts that a branch may change, and the places at which some end of it differs."""
         keys, places = walk.touched(branch), walk.foresight.places if ends else ()
         same = {
             target
@@ -46,9 +46,9 @@ class Branches:
         }
         return {(name, what) for name, what in keys if not (what in OF_PLACES and name in same)}
 
-    def _sums(self) -> Mapping[Key, int]:
-        """The parts that came and went at places where several branches have worked."""
-        found: dict[Key, int] = {}
+    def _sums(self) -> Mapping[SceneKey, int]:
+        """The changes of the number of parts at places where several branches have worked."""
+        sums: dict[SceneKey, int] = {}
         for target, what in set().union(*self.keys):
             by = [ends for ends, keys in zip(self.alone, self.keys, strict=True) if (target, what) in keys]
             before = self.begin.get(target, what)
@@ -58,6 +58,6 @@ class Branches:
             if all(len(each) == 1 and None not in each for each in changes):
                 total = int(before) + sum(int(next(iter(each)) or 0) - int(before) for each in changes)
                 least, most = int(self.begin.get(target, LEAST) or 0), int(self.begin.get(target, MOST) or 0)
-                found |= {(target, CHANGE): total, (target, LEAST): min(least, total)}
-                found[target, MOST] = max(most, total)
-        return found
+                sums |= {(target, CHANGE): total, (target, LEAST): min(least, total)}
+                sums[target, MOST] = max(most, total)
+        return sums

@@ -1,4 +1,4 @@
-"""Places of a cell of devices: the targets at which parts lie, and how many each of them holds."""
+"""Places of a cell of devices: the targets at which parts lie, and how many parts each can hold."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from arboleda.model.plant_model import Place as PartPlace
 from arboleda.model.plant_model import Robot, Workspace
 
-from .document import Document, Place, choice, nearest, shown
+from .document import Document, Place, misnamed
 from .shapes import MAPPING, PlaceShape
-from .spots import START
+from .target_pose import START
 
 SECTION = "places"
 
@@ -21,29 +21,27 @@ def places(
     spaces: Sequence[Workspace],
     groups: Mapping[str, Sequence[str]],
 ) -> tuple[PartPlace, ...]:
-    """The places of a cell by target; a declaration of the target itself counts before that of its group."""
+    """The places of a cell; for a target that has a row of its own, the row of its group does not count."""
     here = (*cell, SECTION)
     if not document.has(here):
         return ()
     document.read_plain(MAPPING, here)
     targets = {name for space in spaces for name in space.targets} - {START}
-    found: dict[str, PartPlace] = {}
+    by_target: dict[str, PartPlace] = {}
     for name in sorted(document.keys(here), key=lambda name: name in targets):  # groups come first
         members = (name,) if name in targets else groups.get(name, ())
         if name not in targets and name not in groups:
             _refuse(document, (*here, name), [*sorted(targets), *groups])
         for member in members if _is_right(document, (*here, name), roles) else ():
-            found[member] = _place(document, (*here, name), member, roles)
-    return tuple(found.values())
+            by_target[member] = _place(document, (*here, name), member, roles)
+    return tuple(by_target.values())
 
 
-def _refuse(document: Document, place: Place, known: Sequence[str]) -> None:
+def _refuse(document: Document, place: Place, allowed: Sequence[str]) -> None:
     name = str(place[-1])
+    sentence = misnamed(name, allowed, "") if allowed else "there is no target"
     waits = f"{START} is where robots wait; no part lies there"
-    there = (
-        f"must be {choice(known)}, is {shown(name)}{nearest(name, known)}" if known else "there is no target"
-    )
-    document.problem(place, waits if name == START else there, at=place)
+    document.problem(place, waits if name == START else sentence, at=place)
 
 
 def _is_right(document: Document, place: Place, roles: Mapping[str, Robot]) -> bool:
@@ -52,8 +50,7 @@ def _is_right(document: Document, place: Place, roles: Mapping[str, Robot]) -> b
         return False
     devices = [role for role, device in roles.items() if device.verb_names]
     if shape.of and shape.of not in devices:
-        there = f"must be {choice(devices)}" if devices else "no device of this cell has verbs"
-        document.problem((*place, "of"), f"{there}, is {shown(shape.of)}{nearest(shape.of, devices)}")
+        document.problem((*place, "of"), misnamed(shape.of, devices, "no device of this cell has verbs"))
         return False
     if shape.supply and shape.output:
         document.problem((*place, "output"), "people fill a supply and empty an output; this is to be both")

@@ -1,4 +1,4 @@
-"""Check of trees as XML: nodes with which a task is done although its work failed, or was broken off."""
+"""Check of trees as XML: nodes that let a task succeed although its work failed, or was broken off."""
 
 from __future__ import annotations
 
@@ -30,28 +30,28 @@ MOST_NAMED = 3  # commands in one sentence
 def warnings(plant: PlantModel) -> tuple[str, ...]:
     """A sentence for each such node of the plant's trees, with its place."""
     runs = Plant(plant, epoch=0, now=0.0).cells
-    found = [
+    sentences = [
         f"{node.place}: {cell.name}: {recipe.name} {sentence}"
         for cell in plant.cells
         for recipe in cell.recipes
         if isinstance(recipe, TreeRecipe)
         for node, sentence in _of_recipe(cell, recipe, runs[cell.name].context)
     ]
-    return tuple(dict.fromkeys(found))
+    return tuple(dict.fromkeys(sentences))
 
 
 def _of_recipe(cell: Cell, recipe: TreeRecipe, context: Context) -> Iterator[tuple[Node, str]]:
-    """Nodes and sentences found with any parameters, which change a tree's values and not its nodes."""
+    """The nodes with their sentences. Parameters change the values of a tree and not its nodes."""
     for order in orders(cell, recipe):
         tree = _Tree(tree=recipe.build(order, context).children[0])
         if not any(isinstance(node, ResultDecorator | Parallel) for node in tree.nodes):
             return
-        yield from tree.found(cell, set(recipe.end_of(order.values)))
+        yield from tree.sentences(cell, set(recipe.end_of(order.values)))
 
 
 @dataclass(frozen=True)
 class _Tree:
-    """Work of a recipe, without what recovers after it, as its nodes in the order in which they begin."""
+    """The work of a recipe, without its recovery; `nodes` are in the order in which they begin."""
 
     tree: Behaviour
 
@@ -59,7 +59,7 @@ class _Tree:
     def nodes(self) -> list[Behaviour]:
         return list(in_order(self.tree))
 
-    def found(self, cell: Cell, ends: set[str]) -> Iterator[tuple[Node, str]]:
+    def sentences(self, cell: Cell, ends: set[str]) -> Iterator[tuple[Node, str]]:
         for node in self.nodes:
             if (
                 isinstance(node, ResultDecorator)
@@ -68,10 +68,10 @@ class _Tree:
             ):
                 yield from ((node, sentence) for sentence in self._forced(node))
             elif isinstance(node, Parallel) and not _needs_all(node):
-                yield from ((node, sentence) for sentence in self._left_in_hand(node, cell, ends))
+                yield from ((node, sentence) for sentence in self._held_parts(node, cell, ends))
 
     def _forced(self, node: ResultDecorator) -> Iterator[str]:
-        """The work below a ForceSuccess of which nobody asks afterwards what became of it."""
+        """The objection to a ForceSuccess below which work may fail that no later node asks about."""
         asked = {device for later in self._later(node) for device in _asked(later)}
         work = [
             each for each in _commands(node) if isinstance(each, Work | Switch) and each.robot not in asked
@@ -82,8 +82,8 @@ class _Tree:
             how = f"ask {work[0].robot} afterwards, or say in a Fallback what is done instead"
             yield f"has ForceSuccess pass over a failure of {shown}, and is done all the same; {how}"
 
-    def _left_in_hand(self, node: Parallel, cell: Cell, ends: set[str]) -> Iterator[str]:
-        """The hands that may be broken off while they hold a part, and do not let go of it afterwards."""
+    def _held_parts(self, node: Parallel, cell: Cell, ends: set[str]) -> Iterator[str]:
+        """The objections to a Parallel that may end while a hand holds a part that it never lets go."""
         freed = {each.robot for later in self._later(node) for each in _grips(later, grips=False)}
         for role, device in cell.members:
             takes = any(each.robot == device.name for each in _grips(node, grips=True))
@@ -93,14 +93,14 @@ class _Tree:
                 yield f"has {many}, and may be done with a part that {device.name} holds; {how}"
 
     def _later(self, node: Behaviour) -> list[Behaviour]:
-        """The nodes that begin after a node has ended; of a loop around it all."""
+        """The nodes that may begin after a node has ended: all later ones, and all in a loop around it."""
         last = list(in_order(node))[-1]
         later = self.nodes[self.nodes.index(last) + 1 :]
         around = [each for each in _above(node) if isinstance(each, Loop)]
         return [*later, *(each for loop in around for each in in_order(loop))]
 
     def _leads_to_failure(self, node: Behaviour) -> bool:
-        """True where the task is not done after it: in a rescue, or before a node that always fails."""
+        """True where the task fails after the node: in a rescue, or before a node that always fails."""
         for below, above in zip([node, *_above(node)], _above(node), strict=False):
             if isinstance(above, TryCatch) and above.children[-1] is below:
                 return True
@@ -111,11 +111,11 @@ class _Tree:
 
 
 def _above(node: Behaviour) -> list[Behaviour]:
-    found: list[Behaviour] = []
+    parents: list[Behaviour] = []
     while node.parent is not None:
         node = node.parent
-        found.append(node)
-    return found
+        parents.append(node)
+    return parents
 
 
 def _needs_all(node: Parallel) -> bool:
@@ -136,7 +136,7 @@ def _grips(node: Behaviour, *, grips: bool) -> Sequence[Switch]:
 
 
 def _asked(node: Behaviour) -> Iterator[str]:
-    """The devices that a node asks what is so."""
+    """The devices whose facts or answers a node asks for."""
     if isinstance(node, FactCheck | FactWait):
         yield node.device
     elif isinstance(node, FactStep):

@@ -27,7 +27,7 @@ def paths(document: Document, place: Place, grid: Grid = GRID) -> tuple[Path, ..
     """Every path of the section; empty, with the problems kept, if one is wrong."""
     document.read_plain(MAPPING, place)
     first_paths: dict[str, str] = {}
-    found = []
+    routes = []
     for key in document.keys(place):
         first = first_paths.setdefault(key.upper(), key)
         path = _path(document, (*place, key), grid)
@@ -38,8 +38,8 @@ def paths(document: Document, place: Place, grid: Grid = GRID) -> tuple[Path, ..
             document.problem(
                 (*place, key), f'is the same code as "{first}", case does not matter', at=(*place, key)
             )
-        found.append(path)
-    return tuple(path for path in found if path) if all(found) else ()
+        routes.append(path)
+    return tuple(path for path in routes if path) if all(routes) else ()
 
 
 def check_nodes_show(document: Document, place: Place, routes: Iterable[Path], mobile: Mobile) -> None:

@@ -15,7 +15,7 @@ Pickups = tuple[tuple[str, Pose], ...]  # by exit
 
 
 def default_pickup(reader: PoseReader, cell: Place) -> Pose | None:
-    """The pick-up of all exits without one of their own."""
+    """The pick-up for all exits that have no pick-up of their own."""
     return reader.pose((*cell, "pickup"), PICKUP())
 
 
@@ -28,7 +28,7 @@ def pickups(reader: PoseReader, cell: Place, paths: Sequence[Path]) -> Pickups |
         document.problem(cell, 'the key "pickup" is missing')
     exits = sorted({exit_of(path) for path in paths})
     first_pickups: dict[str, str] = {}
-    found = []
+    rows = []
     for key in document.keys(place):
         first = first_pickups.setdefault(key.upper(), key)
         if first != key:
@@ -37,10 +37,10 @@ def pickups(reader: PoseReader, cell: Place, paths: Sequence[Path]) -> Pickups |
         elif exits and key.upper() not in exits:
             rule = f"is no exit of a path here, the second character of its code; there is {choice(exits)}"
             document.problem((*place, key), rule, at=(*place, key))
-        found.append((key.upper(), reader.pose((*place, key), PICKUP_AT(exit=key.upper()))))
+        rows.append((key.upper(), reader.pose((*place, key), PICKUP_AT(exit=key.upper()))))
     _check_every_exit(document, cell, exits, first_pickups)
-    whole = tuple((exit, pose) for exit, pose in found if pose)
-    return whole if len(whole) == len(found) else None
+    whole = tuple((exit, pose) for exit, pose in rows if pose)
+    return whole if len(whole) == len(rows) else None
 
 
 def pickup_names(pickup: Pose, each: Pickups) -> dict[str, Pose]:
@@ -49,7 +49,8 @@ def pickup_names(pickup: Pose, each: Pickups) -> dict[str, Pose]:
 
 
 def _check_every_exit(document: Document, cell: Place, exits: Sequence[str], pickups: dict[str, str]) -> None:
-    left = [exit for exit in exits if exit not in pickups]
-    if left and pickups and not document.has((*cell, "pickup")):
+    without_pickup = [exit for exit in exits if exit not in pickups]
+    if without_pickup and pickups and not document.has((*cell, "pickup")):
         rule = 'add it, or a "pickup" for all exits that are not named here'
-        document.problem((*cell, "pickups"), f"the exit {choice(left)} of the paths has no pick-up; {rule}")
+        exit = choice(without_pickup)
+        document.problem((*cell, "pickups"), f"the exit {exit} of the paths has no pick-up; {rule}")

@@ -1,25 +1,25 @@
-"""Check of places: what a plant file leaves unsaid about where parts lie, and who gets in whose way there."""
+"""Check of places: devices without a place for their parts, and places where others get in the way."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import Any
 
 from arboleda.geometry import bodies, kinematics
 from arboleda.kinds.arm import Arm
-from arboleda.kinds.declared import DeviceVerb, Effect
+from arboleda.kinds.declared import Effect
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import Cell, Place, PlantModel, Pose, Robot
 
+from .declared_kinds import verbs_of
 from .urdf import drawn_arm, robot_urdf
 
-APART_M = 0.030  # beside each other, two tools at one place; a part is hardly smaller
+APART_M = 0.030  # so far apart two tools may be at one place; a part is hardly smaller
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
-    """The places that nothing guards, the devices that have none, and those that are two."""
+    """A sentence for each unguarded place, each device without a place, and each place that is two."""
     placed = frozenset(place.device for cell in plant.cells for place in cell.places)
     unsaid = [each for cell in plant.cells for each in (*_unguarded(cell), *_without_place(cell, placed))]
     try:
@@ -29,7 +29,7 @@ def warnings(plant: PlantModel) -> tuple[str, ...]:
 
 
 def _unguarded(cell: Cell) -> Iterator[str]:
-    """The places in or under devices that move there, whatever stands there."""
+    """The places at devices that move there, while nothing keeps robots out."""
     for place in cell.places:
         device = next((each for each in cell.robots if each.name == place.device), None)
         moves = _moves(device)
@@ -41,14 +41,9 @@ def _unguarded(cell: Cell) -> Iterator[str]:
         yield f"{place_text}, and nothing keeps {' and '.join(reaching)} out of there meanwhile; {how}"
 
 
-def _verbs(device: Any) -> dict[str, DeviceVerb]:
-    """The verbs of a device by their names; empty for a kind without verbs."""
-    return dict(device.kind.verbs) if device.verb_names else {}
-
-
 def _moves(device: Robot | None) -> list[str]:
     """The verbs with which something of a device moves."""
-    verbs = {} if device is None else _verbs(device)
+    verbs = {} if device is None else verbs_of(device)
     return [name for name, verb in verbs.items() if verb.effect is Effect.MOTION]
 
 
@@ -61,15 +56,16 @@ def _is_guarded(cell: Cell, place: Place) -> bool:
 
 
 def _without_place(cell: Cell, placed: frozenset[str | None]) -> Iterator[str]:
-    """The devices that have to do with parts, of which nobody knows whether one is there; a shared device may
-    be `placed` in another cell.
+    """The devices that work on parts and have no place, so that nobody knows whether a part is there.
+
+    A shared device may be `placed` in another cell.
     """
-    known = placed | {space.hand.name for space in cell.spaces}
+    placed_somewhere = placed | {space.hand.name for space in cell.spaces}
     for role, device in cell.members:
-        if device.name in known:
+        if device.name in placed_somewhere:
             continue
-        works = [name for name, verb in _verbs(device).items() if verb.works_on_part]
-        holds = [name for name, verb in _verbs(device).items() if verb.holds and cell.places]
+        works = [name for name, verb in verbs_of(device).items() if verb.works_on_part]
+        holds = [name for name, verb in verbs_of(device).items() if verb.holds and cell.places]
         if works or holds:
             what = f"works on a part ({works[0]})" if works else f"takes hold of a part ({holds[0]})"
             how = f"places: {{TARGET: {{of: {role}}}}}" + ("" if works else ", or tool_of")
@@ -77,7 +73,7 @@ def _without_place(cell: Cell, placed: frozenset[str | None]) -> Iterator[str]:
 
 
 def _split(plant: PlantModel, cell: Cell) -> Iterator[str]:
-    """The places that two arms go to, and that are far from each other."""
+    """The places at which two arms go to positions that are far from each other."""
     arms = [(arm, space.targets) for space in cell.spaces if (arm := drawn_arm(space.robot)) is not None]
     for (one, its), (other, others) in combinations(arms, 2):
         for place in cell.places:

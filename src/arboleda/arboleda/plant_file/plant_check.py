@@ -1,8 +1,11 @@
-"""Check of a plant whose file is good: all that it is warned of."""
+"""Check of a plant whose file is good: all that people are warned of."""
 
 from __future__ import annotations
 
-from arboleda.model.plant_model import PlantModel
+from collections.abc import Callable, Iterator
+
+from arboleda.model.plant_model import Cell, Evidence, PlantModel
+from arboleda.recipes.authoring import WrittenRecipe
 
 from . import (
     advance_check,
@@ -10,27 +13,57 @@ from . import (
     layout_check,
     loader,
     meeting_points,
-    need_check,
     passed_over,
     place_check,
-    unused_steps,
 )
+from .declared_kinds import verbs_of
 from .problems import told_once
-
-CHECKS = (
-    loader,
-    layout_check,
-    meeting_points,
-    grid_check,
-    place_check,
-    need_check,
-    unused_steps,
-    advance_check,
-    passed_over,
-)
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
-    """The warnings of all checks, one sentence each, and one for all cells of which it is the same."""
-    found = [sentence for check in CHECKS for sentence in check.warnings(plant)]
-    return told_once(found, [cell.name for cell in plant.cells])
+    """The warnings of all checks; a warning that several cells share is one sentence that names them all."""
+    sentences = [sentence for check in CHECKS for sentence in check(plant)]
+    return told_once(sentences, [cell.name for cell in plant.cells])
+
+
+def unmet_needs(plant: PlantModel) -> tuple[str, ...]:
+    """A sentence for each verb that is always refused: it needs a fact that its device never reports."""
+    return tuple(f"{cell.name}: {sentence}" for cell in plant.cells for sentence in _unmet(cell))
+
+
+def unused_steps(plant: PlantModel) -> tuple[str, ...]:
+    """A sentence for each step that gets a name in a recipe in Python and stands nowhere, with its place.
+
+    The steps were noted when the recipe was tried with all its parameters.
+    """
+    recipes = [recipe for cell in plant.cells for recipe in cell.recipes]
+    unused = [each for recipe in recipes if isinstance(recipe, WrittenRecipe) for each in recipe.unused]
+    return tuple(dict.fromkeys(unused))
+
+
+def _unmet(cell: Cell) -> Iterator[str]:
+    silent = {each.name for each in cell.robots if each.evidence is Evidence.STATE}
+    own = [
+        (device.name, verb.name, device.name, fact)
+        for device in cell.robots
+        for verb in verbs_of(device).values()
+        for fact, _ in verb.needs
+    ]
+    of_others = [(each.device, each.word, each.other, each.fact) for each in cell.needs]
+    for device, word, other, fact in (*own, *of_others):
+        if other in silent:
+            why = f"{other} reports no facts (evidence: state)"
+            yield f"{device} {word} needs {fact} of {other}, and {why}; it is always refused"
+
+
+CHECKS: tuple[Callable[[PlantModel], tuple[str, ...]], ...] = (
+    loader.warnings,
+    layout_check.warnings,
+    meeting_points.warnings,
+    grid_check.warnings,
+    place_check.warnings,
+    unmet_needs,
+    unused_steps,
+    advance_check.warnings,
+    passed_over.warnings,
+)

@@ -1,7 +1,7 @@
-"""Poses that a robot cannot tell apart, for it may stop at the one and count as standing at the other.
+"""Poses that a robot cannot tell apart: it may stop at one pose and count as standing at the other.
 
-An arm counts as standing at a pose within its tolerance of it, and may stop that far from its goal. So two
-poses that are no further apart than twice the tolerance, in every joint, look the same.
+An arm counts as standing at a pose within its tolerance, and may stop that far from its goal. So two poses
+that are no further apart than twice the tolerance, in every joint, look the same.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Pair = frozenset[str]  # of names of poses
 
 @dataclass(frozen=True, kw_only=True)
 class PoseConfusion:
-    """The reason for which a zone cannot have what is `named` for it: one pose, or the two ends of a move."""
+    """The reason why a zone cannot have the pose that is `named`, or the move between the two that are."""
 
     zone: str
     named: tuple[str, ...]
@@ -27,7 +27,7 @@ class PoseConfusion:
 
 
 def alike_crossings(space: Workspace) -> tuple[Crossing, ...]:
-    """The crossings, a move of a pose crossing whatever that move crosses from a pose that looks the same."""
+    """The crossings of moves. A move crosses all zones that it would cross between poses that look alike."""
     crossed = {frozenset({each.a, each.b}): each.zones for each in space.crossings}
     while (grown := _grown(space, crossed)) != crossed:
         crossed = grown
@@ -36,7 +36,7 @@ def alike_crossings(space: Workspace) -> tuple[Crossing, ...]:
 
 
 def confusions(space: Workspace) -> list[PoseConfusion]:
-    """The poses and moves near the zones of a robot that leave unknown whether it is in a zone."""
+    """The poses and moves after which nobody knows whether the robot is in a zone."""
     return list(_at_reference(space)) or list(_between_poses(space))
 
 
@@ -52,7 +52,7 @@ def _between_poses(space: Workspace) -> Iterator[PoseConfusion]:
 
 
 def _at_reference(space: Workspace) -> Iterator[PoseConfusion]:
-    """The confusions of poses with the reference, at which homing ends: it must lie outside all zones."""
+    """The poses in zones that look like the reference: homing ends there, outside all zones."""
     reference = space.robot.reference
     for pose in space.poses if reference is not None else ():
         if reference is not None and any(space.robot.motion.confuses(reference, q) for q in _own_spots(pose)):
@@ -63,7 +63,7 @@ def _at_reference(space: Workspace) -> Iterator[PoseConfusion]:
 
 
 def _grown(space: Workspace, crossed: dict[Pair, frozenset[str]]) -> dict[Pair, frozenset[str]]:
-    """The zones by move, each move's also for those from a pose that looks like one of its ends."""
+    """The zones by move. The zones of a move are also those of each move between poses that look alike."""
     grown = dict(crossed)
     pairs = [(a.name, b.name) for alike in _alike(space) for a, b in permutations(alike)]
     for (one, other), (ends, zones) in product(pairs, crossed.items()):

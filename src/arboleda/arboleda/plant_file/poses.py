@@ -25,7 +25,7 @@ ROUNDING = 1e-9  # rad or m, far below a motor step
 
 @dataclass(frozen=True, kw_only=True)
 class PoseReader:
-    """Reads the poses of one arm; problems in a section that cells share name the cell."""
+    """Reads the poses of one arm. A problem in a section that cells share names the cell."""
 
     document: Document
     cell: str
@@ -45,7 +45,7 @@ class PoseReader:
         return self.lifted(pose, shape.approach_mm, place) if pose and shape else None
 
     def position(self, place: Place) -> tuple[float, ...] | None:
-        """Joint values, not yet checked against limits: `deg` and `mm` matched to the arm's joints."""
+        """The values of all joints, from `deg` and `mm`, not yet checked against limits."""
         shape = self.document.read(PositionShape, place)
         return self._spread(shape, place) if shape else None
 
@@ -73,7 +73,7 @@ class PoseReader:
         return replace(pose, above=above)
 
     def heights(self, place: Place, *, needed: bool) -> tuple[float, ...] | None:
-        """The values of `mm` in m, one for each sliding joint; empty if it may be left out and is."""
+        """The values of `mm` in m, one for each sliding joint; empty where `mm` may lack and does."""
         slides = [joint for joint in self.joints if joint.unit == "m"]
         place = (*place, "mm")
         if not self.document.has(place):

@@ -1,4 +1,4 @@
-"""The Python that a plant file uses, by name, and the places of problems in its files."""
+"""Python that a plant file uses: recipes, kinds, drivers and nodes by name, and where problems stand."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from .robot_kind import RobotKind
 LONGEST = 500  # characters of a path, or of an error's text
 KindInPython = WrittenKind | RobotKind
 Written = Recipe | KindInPython | DriverSpec | WrittenNode
-Watch = Callable[["Spot", str], None]
-"""Told what begins now, and where it stands: whoever watches knows what takes too long."""
+Watch = Callable[["SourceSpot", str], None]
+"""Is told what begins, and where in a file, so that a watch knows which work takes too long."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Spot:
+class SourceSpot:
     """A place in a file of Python or XML, as problems name it."""
 
     file: str
@@ -40,48 +40,48 @@ class Spot:
         return f"{plain(self.file, LONGEST)}:{self.line}:{self.column}: {plain(sentence, LONGEST)}"
 
 
-def unwatched(spot: Spot, doing: str) -> None:
-    """A watch for a run whose duration nobody limits."""
+def unwatched(spot: SourceSpot, doing: str) -> None:
+    """Watch a run whose duration is not limited."""
 
 
 @dataclass
 class PythonUses:
-    """Everything that `uses` has brought, by name, and the files that problems can be found in."""
+    """Recipes, kinds, drivers and nodes by name that the files and modules of `uses` have."""
 
     recipes: dict[str, Recipe] = field(default_factory=dict)
     kinds: dict[str, KindInPython] = field(default_factory=dict)
     drivers: dict[str, DriverSpec] = field(default_factory=dict)
     nodes: dict[str, WrittenNode] = field(default_factory=dict)  # for trees that are written as XML
-    source: str = ""  # the hash of its files, by which a kept task finds its recipe changed; "": not known
-    files: dict[str, str] = field(default_factory=dict)  # Python's name of a file: people's name
+    source: str = ""  # a hash of all files, by which a kept task sees that its recipe changed; "": none
+    files: dict[str, str] = field(default_factory=dict)  # by the path of a file: its name for people
     watch: Watch = unwatched
     lost: LostSteps | None = None  # steps that statements make, where recipes are only tried
     is_whole: bool = True  # False: something could not be imported, so a name may be missing
-    may_import: bool = True  # False: it was tried elsewhere, and must not be run here
+    may_import: bool = True  # False: a trial has refused the files, so they are not run here
     installed: tuple[str, ...] = ()  # kinds that packages register
-    broken: set[str] = field(default_factory=set)  # names of these whose problem is kept
+    broken: set[str] = field(default_factory=set)  # names of kinds that cannot be used; problems are kept
 
-    def spot(self, written: Written) -> Spot:
+    def spot(self, written: Written) -> SourceSpot:
         """The beginning of the function of a recipe, a kind or a node, or of the first method of a driver."""
         if isinstance(written, TreeRecipe):
-            return Spot(file=written.file)
+            return SourceSpot(file=written.file)
         code = inspect.unwrap(_function(written)).__code__
-        return Spot(file=self.files.get(code.co_filename, code.co_filename), line=code.co_firstlineno)
+        return SourceSpot(file=self.files.get(code.co_filename, code.co_filename), line=code.co_firstlineno)
 
-    def where(self, error: BaseException, otherwise: Spot) -> Spot:
+    def where(self, error: BaseException, otherwise: SourceSpot) -> SourceSpot:
         """The last line of a user's file that an error passed through."""
         if isinstance(error, TreeError | NoDeviceError):
             mark = error.place.mark
-            return Spot(file=error.place.file, line=mark.line, column=mark.column)
+            return SourceSpot(file=error.place.file, line=mark.line, column=mark.column)
         frames = [frame for frame in extract_tb(error.__traceback__) if frame.filename in self.files]
         if isinstance(error, SyntaxError) and error.filename in self.files:
-            return Spot(file=self.files[error.filename], line=error.lineno or 1)
+            return SourceSpot(file=self.files[error.filename], line=error.lineno or 1)
         if not frames:
             return otherwise
-        return Spot(file=self.files[frames[-1].filename], line=frames[-1].lineno or 1)
+        return SourceSpot(file=self.files[frames[-1].filename], line=frames[-1].lineno or 1)
 
     def keep(self, document: Document, problem: str) -> None:
-        """Keep a problem of one of the files; names that it would bring are not reported as missing."""
+        """Keep a problem of one of the files. Names that this file may have are not reported as missing."""
         self.is_whole = False
         document.keep_those_of(ConfigError((problem,)))
 
@@ -104,7 +104,7 @@ def error_text(error: BaseException) -> str:
 
 
 def refused(error: BaseException) -> str:
-    """The reason for which settings are refused: a kind's or driver's rules raise ValueError with it."""
+    """The reason why settings are refused. The rules of a kind or driver raise ValueError with the reason."""
     return str(error) if isinstance(error, ValueError) and str(error) else error_text(error)
 
 

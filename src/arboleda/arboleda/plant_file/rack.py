@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from itertools import product
 
 from arboleda.model.counting import counted
@@ -62,32 +63,42 @@ def _by_number(reader: PoseReader, place: Place, keys: tuple[str, ...]) -> list[
 
 
 def _by_rule(reader: PoseReader, place: Place, home: Pose | None) -> list[Pose | None]:
-    """The stations row by row: q1 by column, q2 by row, the other joints as in `home`."""
+    """The stations row by row: q1 by its column, q2 by its row; none, with the problem kept, if it fails."""
     shape = reader.document.read(RackShape, place)
     if shape is None or home is None or not _has_columns_and_rows(reader, place):
         return []
     heights = reader.heights(place, needed=False)
     if heights is None:
         return []
-    columns, rows = shape.columns_q1_deg, shape.rows_q2_deg
+    columns, rows = list(enumerate(shape.columns_q1_deg)), list(enumerate(shape.rows_q2_deg))
     if len(columns) * len(rows) > MOST:
         size = f"{counted(len(rows), 'row')} x {counted(len(columns), 'column')}"
-        count = f"{size} are more than {MOST} stations"
-        reader.problem(place, count)
+        reader.problem(place, f"{size} are more than {MOST} stations")
         return []
-    slides, spots = iter(heights), reader.places_of_mm(place)
-    rest = tuple(
-        next(slides, value) if joint.unit == "m" else value
-        for joint, value in list(zip(reader.joints, home.joints, strict=True))[2:]
-    )
-    others = tuple(next(spots) if joint.unit == "m" else place for joint in reader.joints[2:])
+    values, places = _from_q3(reader, place, home, heights)
     poses: list[Pose | None] = []
-    for row, column in product(range(len(rows)), range(len(columns))):
-        q = (TO_SI["deg"](columns[column]), TO_SI["deg"](rows[row]), *rest)
-        places = ((*place, "columns_q1_deg", column), (*place, "rows_q2_deg", row), *others)
-        pose = reader.checked(STATION(number=len(poses)), q, places)
+    for number, ((row, q2_deg), (column, q1_deg)) in enumerate(product(rows, columns)):
+        q = (TO_SI["deg"](q1_deg), TO_SI["deg"](q2_deg), *values)
+        in_file = ((*place, "columns_q1_deg", column), (*place, "rows_q2_deg", row), *places)
+        pose = reader.checked(STATION(number=number), q, in_file)
         poses.append(reader.lifted(pose, shape.approach_mm, place) if pose else None)
     return poses
+
+
+def _from_q3(
+    reader: PoseReader, place: Place, home: Pose, heights: Sequence[float]
+) -> tuple[list[float], list[Place]]:
+    """The values of the joints from q3 on, which all stations share, and the place of each in the file.
+
+    A sliding joint has its height of `mm`, where the rack gives one. Every other joint stands as in `home`.
+    """
+    given, places_of_mm = iter(heights), reader.places_of_mm(place)
+    values, places = [], []
+    for joint, at_home in zip(reader.joints[2:], home.joints[2:], strict=True):
+        slides = joint.unit == "m"
+        values.append(next(given, at_home) if slides else at_home)
+        places.append(next(places_of_mm) if slides else place)
+    return values, places
 
 
 def _has_columns_and_rows(reader: PoseReader, place: Place) -> bool:

@@ -25,10 +25,10 @@ from arboleda.model.tree_nodes import nodes_of
 from arboleda.recipes.errors import RoleError
 from arboleda.views import tree_view
 
-from .document import Document, Place, choice, closest, nearest, shown
+from .document import Document, Place, choice, closest, misnamed, nearest, shown
 from .lost_steps import Made
 from .own_recipes import SECTION
-from .python_uses import LONGEST, PythonUses, Spot, Watch, error_text
+from .python_uses import LONGEST, PythonUses, SourceSpot, Watch, error_text
 
 MOST = 200  # combinations of parameters that are tried
 HOW_TO_CHOOSE = "; give it to a node that lists its values, or its port a type: int, double, bool"
@@ -49,29 +49,31 @@ NOT_WOKEN: Mapping[type[Behaviour], str] = {
     decorators.Retry: "cell.retry(step, times=2)",
     decorators.Timeout: "cell.timeout(step, seconds)",
 }
-"""What asks a clock or waits to be ticked, in an engine that ticks when something happens: what to take."""
+"""By the class of a node that asks a clock, or waits to be ticked: what a recipe takes instead.
+
+The engine ticks a tree when something happens, so such a node would never be ticked again."""
 
 
 @dataclass
-class Trial:
-    """Trial: builds the recipes of a plant in its cells, and keeps their offers and the problems."""
+class RecipeTrial:
+    """Builds the recipes of a plant in its cells, and keeps what each cell offers, and the problems."""
 
     document: Document
     used: PythonUses
     watch: Watch
     offers: dict[str, list[str]] = field(default_factory=dict)
-    misfits: dict[str, list[str]] = field(default_factory=dict)  # by recipe: why not
-    missed: dict[str, dict[str, str]] = field(default_factory=dict)  # by cell and recipe: why not
+    misfits: dict[str, list[str]] = field(default_factory=dict)  # by recipe: problems in cells without it
+    missed: dict[str, dict[str, str]] = field(default_factory=dict)  # by cell and recipe: why it is missed
     named: dict[str, dict[str, bool]] = field(default_factory=dict)  # by recipe and sentence: always lost
-    is_sound: bool = True  # False: there is a mistake already, in the plant file or in one that it names
+    is_sound: bool = True  # False: there is a problem already, in the plant file or in a file that it names
 
     def run(self, cells: Sequence[Cell]) -> dict[str, list[str]]:
         """The names of the recipes that each cell offers, in their order.
 
-        Where there is a mistake, a recipe may fit a cell that could not be read, or not whole, and a cell may
-        name a recipe that could not be read.
+        Where there is a problem already, a cell or a recipe may be missing because it could not be read. Then
+        a cell without recipes, and a recipe without cells, are no problem.
         """
-        self.is_sound = not any(self.document.kept)
+        self.is_sound = not any(self.document.problems)
         for cell in cells:
             named = self._named(cell)
             names = list(self.used.recipes) if named is None else named
@@ -84,7 +86,7 @@ class Trial:
 
     @property
     def unused(self) -> dict[str, list[str]]:
-        """By recipe a sentence for each step with a name that stands nowhere in any task, with its place."""
+        """By recipe a sentence, with its place, for each named step that no task of the recipe does."""
         return {
             recipe: [sentence for sentence, is_lost in said.items() if is_lost]
             for recipe, said in self.named.items()
@@ -104,23 +106,22 @@ class Trial:
                 self.document.problem(place, f"{none}{why and f' ({why})'}", at=place)
 
     def _brings_all(self, offered: Collection[str]) -> bool:
-        """True if no misfit is reported yet: some recipe fits another cell, or the files bring none."""
+        """True if no misfit is reported yet: another cell offers a recipe, or no file has a recipe."""
         none = self.used.is_whole and not self.used.recipes and self.document.has(SECTION)
         return bool(offered) or none
 
     def _named(self, cell: Cell) -> list[str] | None:
         """The recipes that the cell names and that exist; None if it names none."""
         place: Place = ("cells", cell.name, "recipes")
-        names, known = self.document.value(place), self.used.recipes
+        names, recipes = self.document.value(place), self.used.recipes
         if names is None:
             return None
         for index, name in enumerate(names):
             if name in names[:index]:
                 self.document.problem((*place, index), f"{shown(name)} is there twice")
-            elif name not in known and known and self._is_mistaken(name, known):
-                there = f"must be {choice(known)}"
-                self.document.problem((*place, index), f"{there}, is {shown(name)}{nearest(name, known)}")
-        return [name for name in dict.fromkeys(names) if name in known]
+            elif name not in recipes and recipes and self._is_mistaken(name, recipes):
+                self.document.problem((*place, index), misnamed(name, recipes, ""))
+        return [name for name in dict.fromkeys(names) if name in recipes]
 
     def _check_default(self, cell: Cell, offered: Sequence[str]) -> None:
         place: Place = ("cells", cell.name, "default_recipe")
@@ -129,14 +130,14 @@ class Trial:
             there = f"must be one that the cell offers: {choice(offered)}"
             self.document.problem(place, f"{there}; is {shown(name)}{nearest(name, offered)}")
 
-    def _is_mistaken(self, name: str, known: Collection[str]) -> bool:
-        """True if a recipe that is not there does not lack by a mistake that is told already."""
-        return self.is_sound or closest(name, known) is not None
+    def _is_mistaken(self, name: str, names: Collection[str]) -> bool:
+        """True if a recipe that is not there is misspelt, and not one of a file with a problem of its own."""
+        return self.is_sound or closest(name, names) is not None
 
     def _fits(self, cell: Cell, recipe: Recipe, named: bool) -> bool:
-        """True if the cell has what a recipe needs or names it; problems with building its trees are kept.
+        """True if the cell names a recipe, or has all that it needs; problems of building its trees are kept.
 
-        What may follow from a mistake that is told already is not told.
+        A problem that may follow from another one is not told.
         """
         spot = self.used.spot(recipe)
         if not named and (empty := _without_value(cell, recipe)):
@@ -153,7 +154,7 @@ class Trial:
         for number, order in enumerate(orders(cell, recipe)):
             self.watch(spot, f"building {recipe.name} for {cell.name}")
             try:
-                found = self._look(recipe, order, context)
+                tree_problems = self._look(recipe, order, context)
             except RoleError as error:
                 if isinstance(error, NoDeviceError) and not self.used.is_whole:
                     return True
@@ -161,8 +162,8 @@ class Trial:
                 if number == 0 and not named:
                     self._miss(cell, recipe, str(error), problem)
                     return False
-                found = (problem,)
-            problems |= dict.fromkeys(found)
+                tree_problems = (problem,)
+            problems |= dict.fromkeys(tree_problems)
         self._keep(list(problems))
         return True
 
@@ -183,28 +184,28 @@ class Trial:
             ]
         self._note_named(recipe)
         objection = _objection(tree)
-        found = [] if objection is None else [objection.at(spot).problem(f"{recipe.name} {objection.why}")]
-        return [*found, *self._lost(recipe)]
+        problems = [] if objection is None else [objection.at(spot).problem(f"{recipe.name} {objection.why}")]
+        return [*problems, *self._lost(recipe)]
 
     def _lost(self, recipe: Recipe) -> Iterator[str]:
-        """Problems of steps that were made and stand nowhere."""
+        """Problems of steps without a name that the recipe makes and does nowhere."""
         for made in self.used.lost.lost() if self.used.lost is not None else ():
             sentence = f"{recipe.name} makes the step {made.step.name} and does it nowhere; {DO_IT}"
             yield self._spot(made).problem(sentence)
 
     def _note_named(self, recipe: Recipe) -> None:
-        """Note which steps with a name stand nowhere in this task; other tasks may do them."""
-        known = self.named.setdefault(recipe.name, {})
+        """Note which named steps stand nowhere in this task. Other tasks of the recipe may do them."""
+        lost_in_all = self.named.setdefault(recipe.name, {})
         here: dict[str, bool] = {}
         for made in self.used.lost.made if self.used.lost is not None else ():
             if made.name:
                 step = f"{recipe.name} makes the step {made.step.name} as {made.name}"
                 said = self._spot(made).problem(f"{step} and does it nowhere; {USE_IT}")
                 here[said] = here.get(said, True) and made.is_lost
-        known |= {said: is_lost and known.get(said, True) for said, is_lost in here.items()}
+        lost_in_all |= {said: is_lost and lost_in_all.get(said, True) for said, is_lost in here.items()}
 
-    def _spot(self, made: Made) -> Spot:
-        return Spot(file=self.used.files.get(made.file, made.file), line=made.line)
+    def _spot(self, made: Made) -> SourceSpot:
+        return SourceSpot(file=self.used.files.get(made.file, made.file), line=made.line)
 
     def _miss(self, cell: Cell, recipe: Recipe, why: str, problem: str) -> None:
         self.misfits.setdefault(recipe.name, []).append(problem)
@@ -216,16 +217,16 @@ class Trial:
 
 @dataclass(frozen=True, kw_only=True)
 class _Objection:
-    """Objection to a tree, and the node of a file that it is about."""
+    """Objection to a tree, and the place of its node in a file of XML."""
 
     why: str
     place: XmlPlace | None = None
 
-    def at(self, spot: Spot) -> Spot:
-        """Its place in that file, or `spot` for a tree of Python."""
+    def at(self, spot: SourceSpot) -> SourceSpot:
+        """The place of the node in its file of XML; `spot` for a tree of Python."""
         if self.place is None:
             return spot
-        return Spot(file=self.place.file, line=self.place.mark.line, column=self.place.mark.column)
+        return SourceSpot(file=self.place.file, line=self.place.mark.line, column=self.place.mark.column)
 
 
 def _objection(tree: Behaviour) -> _Objection | None:
@@ -244,8 +245,9 @@ def _objection(tree: Behaviour) -> _Objection | None:
 
 
 def _at_once(tree: Behaviour) -> Iterator[tuple[str, XmlPlace | None]]:
-    """The devices to which two branches of a parallel give work, as the second would be refused, each with
-    the place of the parallel in a file of XML.
+    """The devices to which two branches of a parallel give work; a device refuses the second.
+
+    Each has the place of the parallel in its file of XML; None in a tree of Python.
     """
     for node in nodes_of(tree):
         branches = [_at_work(child) for child in node.children] if tree_view.kind(node) == "parallel" else []
@@ -255,7 +257,7 @@ def _at_once(tree: Behaviour) -> Iterator[tuple[str, XmlPlace | None]]:
 
 
 def _at_work(branch: Behaviour) -> set[str]:
-    """The devices that a part of a tree has move, or work by themselves."""
+    """The devices that a part of a tree has do work."""
     commands = [node.make(id="") for node in nodes_of(branch) if isinstance(node, Act)]
     return {command.robot for command in commands if isinstance(command, Work)}
 
@@ -266,7 +268,7 @@ def combinations(cell: Cell, recipe: Recipe) -> int:
 
 
 def orders(cell: Cell, recipe: Recipe) -> Iterator[Order]:
-    """Every task of a recipe; of more than MOST, so many, with each value of each parameter if possible."""
+    """Every task of a recipe; of more than MOST, so many of them, with each value if possible."""
     words = [each.words(cell) for each in recipe.parameters]
     total = combinations(cell, recipe)
     for number in range(min(total, MOST)):
@@ -281,7 +283,7 @@ def orders(cell: Cell, recipe: Recipe) -> Iterator[Order]:
 
 
 def _nth(words: Sequence[Sequence[str]], number: int) -> list[str]:
-    """The combination of that number; each number below the number of combinations has another one."""
+    """The combination of that number; different numbers have different combinations."""
     chosen = []
     for each in words:
         number, index = divmod(number, len(each))
@@ -290,7 +292,10 @@ def _nth(words: Sequence[Sequence[str]], number: int) -> list[str]:
 
 
 def _sampled(words: Sequence[Sequence[str]], number: int) -> list[str]:
-    """The combination of that number among MOST: parameters go through their values, ever shifted."""
+    """The combination of that number among MOST: each parameter goes through all its values.
+
+    The values of one parameter are shifted against those of the next, so that all pairs come together.
+    """
     chosen = []
     for column, each in enumerate(words):
         many = len(each)
@@ -300,8 +305,9 @@ def _sampled(words: Sequence[Sequence[str]], number: int) -> list[str]:
 
 
 def _without_value(cell: Cell, recipe: Recipe) -> str | None:
-    """The sentence that a parameter has no possible value in a cell; else None. It is for want of targets, or
-    of the device that lists them.
+    """The sentence that a parameter has no possible value in a cell; None where each has one.
+
+    The cell lacks targets, or the device that lists the values.
     """
     for each in recipe.parameters:
         if not each.words(cell):
@@ -322,7 +328,7 @@ def _how_to_choose(cell: Cell, recipe: Recipe, parameter: Parameter) -> str:
 
 
 def _unspellable(cell: Cell, recipe: Recipe) -> str | None:
-    """The reason for which no task text can name a value of a parameter."""
+    """The reason why no task text can name some value of a parameter; None where each can be named."""
     if empty := _without_value(cell, recipe):
         return empty
     for each in recipe.parameters:
@@ -337,5 +343,5 @@ def _unspellable(cell: Cell, recipe: Recipe) -> str | None:
 
 
 def _is_spellable(word: str) -> bool:
-    """True if a task text can have it as one of its words, and not as an id."""
+    """True if a task text can have `word` as one of its words, and not as an id."""
     return word.split() == [word] and word.isprintable() and not word.startswith("#")

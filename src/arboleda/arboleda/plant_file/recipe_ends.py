@@ -1,4 +1,4 @@
-"""Ends of a recipe: what its ways leave that nobody wants, and in what they differ."""
+"""Ends of a recipe: parts and facts that its paths leave and nobody wants, and differences between ends."""
 
 from __future__ import annotations
 
@@ -11,17 +11,18 @@ from .foresight import CHANGE, HELD, LEAST, MOST, OVER, Scene
 
 
 def of_ends(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> Iterator[str]:
-    """Sentences on ways that leave something nobody wants, and on how their ends differ."""
+    """Sentences on ends of paths that nobody wants, and on differences between them."""
     for end in ends:
         yield from _held(cell, wanted, end)
-        yield from _left(cell, wanted, end)
+        yield from _changed_places(cell, wanted, end)
         yield from _otherwise(cell, wanted, end)
     yield from _unlike(cell, wanted, ends)
 
 
 def certain_ends(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> Iterator[str]:
-    """The end that all ways have in common: as the recipe says, which is marked, then facts, parts and robots
-    as its steps leave them. A device that cells share is so when the task gives it back.
+    """The facts that all paths end with: those that the recipe states, then those that its steps leave.
+
+    The facts of a device that cells share are those when the task gives the device back.
     """
     sure = dict(frozenset.intersection(*(end.mark for end in ends))) if ends else {}
     for what, value in wanted.items():
@@ -42,7 +43,7 @@ def certain_ends(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene])
 
 
 def _when(cell: Cell, device: str) -> str:
-    """Words for when a device is so: another cell may have a shared one before the task is over."""
+    """Words for the moment at which a fact counts: another cell may use a shared device before the end."""
     return f" when {device} is given back" if device in cell.shared else ""
 
 
@@ -56,7 +57,7 @@ def _held(cell: Cell, wanted: Mapping[str, Value], end: Scene) -> Iterator[str]:
             yield f"ends with a part that {device.name} still holds"
 
 
-def _left(cell: Cell, wanted: Mapping[str, Value], end: Scene) -> Iterator[str]:
+def _changed_places(cell: Cell, wanted: Mapping[str, Value], end: Scene) -> Iterator[str]:
     for place in cell.places:
         change = int(end.get(place.target, CHANGE) or 0)
         if place.device is not None and not place.by_people and place.target not in wanted and change:
@@ -67,15 +68,15 @@ def _otherwise(cell: Cell, wanted: Mapping[str, Value], end: Scene) -> Iterator[
     for what, value in wanted.items():
         role, dot, fact = what.partition(".")
         if dot:
-            known = end.get(cell.roles[role].name, fact)
-            if known not in (None, value):
-                yield f"ends with {what} {shown(known)}, and says that it ends with {shown(value)}"
+            actual = end.get(cell.roles[role].name, fact)
+            if actual not in (None, value):
+                yield f"ends with {what} {shown(actual)}, and says that it ends with {shown(value)}"
         elif (number := _unlike_number(cell, what, int(value), end)) is not None:
             yield f"ends with {what} {number}, and says that it ends with {shown(value)}"
 
 
 def _unlike_number(cell: Cell, target: str, wanted: int, end: Scene) -> str | None:
-    """The parts at a place in the end where these cannot be so many, whatever was there at the beginning."""
+    """The possible numbers of parts at a place in the end, in words; None where `wanted` is one of them."""
     place = next(each for each in cell.counted if each.target == target)
     if end.get(target, CHANGE) is None:
         return None
@@ -90,7 +91,7 @@ def _unlike_number(cell: Cell, target: str, wanted: int, end: Scene) -> str | No
 
 
 def _unlike(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> Iterator[str]:
-    """The facts that guard something, and the places of robots, that are not the same on all ways."""
+    """The facts that guard something, and the targets of robots, that differ between the ends."""
     guards = {(each.other, each.fact) for each in cell.needs}
     guards |= {(each.device, fact) for each in cell.interlocks for fact, _ in each.free_while}
     guards |= {(space.robot.name, OVER) for space in cell.spaces if space.returns}
@@ -98,7 +99,7 @@ def _unlike(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> I
         (cell.roles[what.partition(".")[0]].name, what.partition(".")[2]) for what in wanted if "." in what
     }
     for name, fact in sorted(guards - named):
-        found = {end.get(name, fact) for end in ends}
-        if len(found) > 1 and None not in found and name not in cell.shared:
-            values = " and ".join(sorted(shown(value) for value in found if value is not None))
+        values_at_ends = {end.get(name, fact) for end in ends}
+        if len(values_at_ends) > 1 and None not in values_at_ends and name not in cell.shared:
+            values = " and ".join(sorted(shown(value) for value in values_at_ends if value is not None))
             yield f"ends with {name} {'at' if fact == OVER else fact} {values}, by which way it goes"

@@ -1,5 +1,7 @@
-"""Trial of recipes and kinds in a process of its own, so that one that never ends, or ends Python, is a
-problem of the file."""
+"""Trial of recipes and kinds in a process of its own.
+
+So a recipe that never ends, or that ends Python, is a problem of its file.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from arboleda.host import abilities
-from arboleda.host.processor_alarm import ProcessorAlarm, ended_by_alarm
+from arboleda.host.limits import ProcessorAlarm, ended_by_alarm
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Recipe
 from arboleda.recipes.authoring import WrittenRecipe
@@ -25,8 +27,8 @@ from arboleda.recipes.authoring import WrittenRecipe
 from . import drivers, own_kinds, own_recipes
 from .devices import CELLS, is_of_devices
 from .document import Document
-from .problems import Kept
-from .python_uses import PythonUses, Spot, unwatched
+from .problems import MarkedProblem
+from .python_uses import PythonUses, SourceSpot, unwatched
 
 LONGEST_S = 10.0  # of processor time for the import of a file, and for each build of a recipe
 WAITS = 4.0  # times as long it may take by the clock, on a busy machine or waiting for something
@@ -40,14 +42,14 @@ PLANT, REQUEST, RESULT, PHASE, STACK = "plant", "request.json", "result.json", "
 
 
 @dataclass
-class Verdict:
-    """The result of a trial: marked problems of the plant file, those of other files, and offers.
+class TrialResult:
+    """Result of a trial: problems of the plant file (`here`) and of other files, and the offers of each cell.
 
-    `missed` has by cell and recipe why a cell does not offer it, `unused` by recipe the steps that it makes
-    and never does.
+    `missed` has by cell and recipe why the cell does not offer the recipe. `unused` has by recipe sentences
+    on steps that it makes and never does.
     """
 
-    here: list[Kept] = field(default_factory=list)
+    here: list[MarkedProblem] = field(default_factory=list)
     elsewhere: list[str] = field(default_factory=list)
     offers: dict[str, list[str]] = field(default_factory=dict)
     missed: dict[str, dict[str, str]] = field(default_factory=dict)
@@ -56,10 +58,7 @@ class Verdict:
 
 @dataclass
 class PlantPython:
-    """The Python of a plant, and the recipes that each of its cells offers; `missed`: why not the others.
-
-    `unused`: by recipe the steps that it makes and never does.
-    """
+    """The Python of a plant, and the names of the recipes that each cell offers; see `TrialResult`."""
 
     document: Document
     used: PythonUses = field(default_factory=PythonUses)
@@ -68,10 +67,10 @@ class PlantPython:
     unused: dict[str, list[str]] = field(default_factory=dict)
 
     def offered(self, cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
-        """The recipes of one's own for each of these cells."""
-        known = {cell.name: self.offers.get(cell.name, []) for cell in cells}
-        rows = {name: [self._tried(each) for each in offers] for name, offers in known.items()}
-        beside = {cell.name: cell.recipes for cell in cells}  # those that come with its shape
+        """By cell, the plant's own recipes that the cell offers."""
+        names = {cell.name: self.offers.get(cell.name, []) for cell in cells}
+        rows = {name: [self._tried(each) for each in offers] for name, offers in names.items()}
+        beside = {cell.name: cell.recipes for cell in cells}  # recipes of the short form
         return {
             name: _marked(self.document, name, each, beside[name], self.used.source)
             for name, each in rows.items()
@@ -79,16 +78,16 @@ class PlantPython:
         }
 
     def _tried(self, name: str) -> Recipe:
-        """The recipe with what was noted when it was tried."""
+        """The recipe with the unused steps that its trial noted."""
         recipe = self.used.recipes[name]
         unused = tuple(self.unused.get(name, ()))
         return replace(recipe, unused=unused) if isinstance(recipe, WrittenRecipe) else recipe
 
 
 def brought(document: Document, content: bytes, *, apart: bool = True) -> PlantPython:
-    """The Python that a plant file uses, tried before; nothing, with the problems kept, if it is wrong.
+    """The Python that a plant file uses, once a trial has passed; else none of it, with the problems kept.
 
-    `apart`: it is tried in another process, where there can be one.
+    `apart`: the trial is in another process, where there can be one.
     """
     places = [(*CELLS, name) for name in document.keys(CELLS)]
     of_devices = [place for place in places if is_of_devices(document, place)]
@@ -99,31 +98,33 @@ def brought(document: Document, content: bytes, *, apart: bool = True) -> PlantP
             document.problem(place, f"offers no recipe; {how}", at=place)
     if not (words or own_kinds.needs_python(document) or any(drivers.named(document))):
         return PlantPython(document)
-    found = verdict(document.name, document.folder, content, apart=apart)
-    document.keep_all(found.here, found.elsewhere)
-    if any(document.kept):
+    result = verdict(document.name, document.folder, content, apart=apart)
+    document.keep_all(result.here, result.elsewhere)
+    if any(document.problems):
         return PlantPython(document, PythonUses(is_whole=False, may_import=False))
     used = own_recipes.imported(document, words, unwatched)
-    if any(document.kept):  # a file may do another thing the second time
+    if any(document.problems):  # a file may do another thing the second time
         return PlantPython(document, used)
     has_effect = of_devices or used.recipes or any(drivers.named(document))
     if words and not has_effect:
         document.problem(own_recipes.SECTION, "brings no recipe, so this has no effect; delete it")
-    return PlantPython(document, used, found.offers, found.missed, found.unused)
+    return PlantPython(document, used, result.offers, result.missed, result.unused)
 
 
 def _marked(
     document: Document, cell: str, recipes: Sequence[Recipe], beside: Sequence[Recipe], source: str
 ) -> tuple[Recipe, ...]:
-    """The recipes of a cell with their source; one is marked as the default of tasks: the one it names, or
-    its only one."""
+    """The recipes of a cell with their source; the default one of tasks is marked.
+
+    The default is the recipe that the cell names, or the only recipe of the cell.
+    """
     default = document.value((*CELLS, cell, "default_recipe"))
     alone = len(recipes) == 1 and not beside
     return tuple(replace(each, is_default=each.name == default or alone, source=source) for each in recipes)
 
 
-def verdict(name: str, beside: Path | None, content: bytes, *, apart: bool = True) -> Verdict:
-    """The verdict on the recipes that a plant file uses, tried in another process, if there can be one."""
+def verdict(name: str, beside: Path | None, content: bytes, *, apart: bool = True) -> TrialResult:
+    """The result of trying the recipes that a plant file uses, in another process, if there can be one."""
     if not (apart and HAS_PROCESSES):
         from . import loader  # which imports this module
 
@@ -136,9 +137,9 @@ def verdict(name: str, beside: Path | None, content: bytes, *, apart: bool = Tru
         (folder / REQUEST).write_text(json.dumps(request), "utf-8")
         status = _run(folder)
         if (folder / RESULT).exists():
-            found = json.loads((folder / RESULT).read_text("utf-8"))
-            return Verdict(**found)
-        return Verdict(elsewhere=[broken_off(folder, status)])
+            result = json.loads((folder / RESULT).read_text("utf-8"))
+            return TrialResult(**result)
+        return TrialResult(elsewhere=[broken_off(folder, status)])
 
 
 def main(name: str) -> None:
@@ -149,13 +150,13 @@ def main(name: str) -> None:
     request = json.loads((folder / REQUEST).read_text("utf-8"))
     beside = None if request["folder"] is None else Path(request["folder"])
     with watching(folder, request["longest_s"], request["by_clock_s"]) as watch:
-        found = loader.trial(request["name"], (folder / PLANT).read_bytes(), beside, watch)
-    _write_whole(folder / RESULT, vars(found))
+        result = loader.trial(request["name"], (folder / PLANT).read_bytes(), beside, watch)
+    _write_whole(folder / RESULT, vars(result))
     os._exit(0)  # whatever threads the files have started
 
 
 def _write_whole(path: Path, data: dict[str, Any]) -> None:
-    """Write the file so that a reader finds it whole, or the one before, whenever this process ends."""
+    """Write a file so that a reader finds it whole, or its former content, whenever this process ends."""
     half = path.with_suffix(".half")
     half.write_text(json.dumps(data), "utf-8")
     half.replace(path)
@@ -163,13 +164,14 @@ def _write_whole(path: Path, data: dict[str, Any]) -> None:
 
 @contextmanager
 def watching(folder: Path, longest_s: float, by_clock_s: float) -> Iterator[Any]:
-    """A watch that ends this process, with the line that it was at, if something takes more than
-    `longest_s` of the processor's time, or `by_clock_s` by the clock.
+    """A watch that ends this process if one piece of work takes too long, and notes the line that it was at.
+
+    Too long is more than `longest_s` of the processor's time, or `by_clock_s` by the clock.
     """
     with open(folder / STACK, "w", encoding="utf-8") as stack:
         alarm = ProcessorAlarm(stack)
 
-        def watch(spot: Spot, doing: str) -> None:
+        def watch(spot: SourceSpot, doing: str) -> None:
             _write_whole(folder / PHASE, {**vars(spot), "doing": doing})
             alarm.set(longest_s)
             faulthandler.dump_traceback_later(by_clock_s, exit=True, file=stack)
@@ -192,7 +194,7 @@ def _run(folder: Path) -> int | None:
 
 
 def _ended(process: subprocess.Popen[bytes], phase: Path) -> int | None:
-    """The exit status of the process; None if it neither ends nor begins anything for long."""
+    """The exit status of the process; None if it neither ends nor begins another piece of work for long."""
     before: float | None = None
     while True:
         try:
@@ -205,12 +207,12 @@ def _ended(process: subprocess.Popen[bytes], phase: Path) -> int | None:
 
 
 def broken_off(folder: Path, status: int | None) -> str:
-    """The reason for which the other process gave no result, and where; `status` None: it was given up."""
+    """The reason why the other process gave no result, and where; `status` is None if it was given up."""
     if not (folder / PHASE).exists():
         ended = SLOW if status is None else f"Python ended with status {status}"
         return f"the recipes could not be tried: {ended}"
     phase = json.loads((folder / PHASE).read_text("utf-8"))
-    spot = Spot(file=phase["file"], line=phase["line"])
+    spot = SourceSpot(file=phase["file"], line=phase["line"])
     stack = (folder / STACK).read_text("utf-8", "replace")
     if not stack:
         late = f"takes more than {STUCK_S:g} s"
@@ -219,7 +221,7 @@ def broken_off(folder: Path, status: int | None) -> str:
     beside = Path(spot.file).absolute().parent
     for file, line in FRAME.findall(stack):
         if Path(file).parent == beside:  # the innermost comes first
-            spot = Spot(file=str(Path(spot.file).parent / Path(file).name), line=int(line))
+            spot = SourceSpot(file=str(Path(spot.file).parent / Path(file).name), line=int(line))
             break
     by_clock = f"{WAITS * LONGEST_S:g} s"
     limit = f"{LONGEST_S:g} s of processor time" if ended_by_alarm(status) else by_clock

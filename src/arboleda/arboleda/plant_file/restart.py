@@ -1,4 +1,4 @@
-"""Changes of a plant's files that a plant which runs cannot take, each with the reason."""
+"""Changes of a plant's files that a running plant cannot take, each with the reason."""
 
 from __future__ import annotations
 
@@ -48,13 +48,13 @@ CELL = "a cell joins the plant, or leaves it, when the plant starts"
 
 
 def needing_restart(changes: Iterable[Change]) -> tuple[str, ...]:
-    """Those of the changes that need a restart of the plant, or a handover, a line each with the reason."""
-    found = ((each, _reason(each)) for each in changes)
-    return tuple(f"{each.words}: {why}" for each, why in found if why)
+    """A line for each change that needs a restart of the plant, or a handover, with the reason."""
+    rows = ((each, _reason(each)) for each in changes)
+    return tuple(f"{each.words}: {why}" for each, why in rows if why)
 
 
 def _reason(change: Change) -> str:
-    """Why a plant that runs cannot take a change; "" where it can."""
+    """The reason why a running plant cannot take a change; "" where the plant can."""
     place = [str(key) for key in change.place]
     if not place:
         return "" if change.file.endswith(TREES) else _of_file(change)
@@ -78,7 +78,7 @@ def _of_cell(change: Change, place: list[str]) -> str:
 
 
 def _touches(change: Change, place: list[str], key: str) -> bool:
-    """True for a change of this key, or of the whole mapping with another value of it."""
+    """True for a change of this key, or of its whole mapping with another value of the key."""
     if place:
         return place[0] == key
     values = [each.get(key) if isinstance(each, dict) else None for each in (change.before, change.after)]

@@ -14,8 +14,8 @@ from .document import Document, Place
 class RobotKind:
     """A kind that reads the keys of its devices by itself, and keeps their problems.
 
-    Devices of a kind that `goes` have targets, carry tools and belong to one cell. Those of a kind with a
-    twin have a key `twin`: the name under which they are drawn.
+    Devices of a kind that `goes` have targets, carry tools and belong to one cell. Devices of a kind that
+    `has_twin` have a key `twin`: the name under which they are drawn.
     """
 
     name: str

@@ -94,7 +94,7 @@ class SlideFile(Shape):
 
 
 class JointFile(Shape):
-    """One joint; limits and speed in the unit their source gives, `step_deg` of the motor or its pinion."""
+    """One joint; limits and speed are in the unit of their source, `step_deg` is of motor or pinion."""
 
     name: str
     type: Literal["revolute", "continuous", "prismatic"]
@@ -117,24 +117,26 @@ class JointFile(Shape):
 
 @cache
 def arm_models() -> dict[str, ArmModel]:
-    """Every described arm by model name; ConfigError if a file is damaged."""
+    """Every arm of these files by the name of its model; ConfigError if a file is damaged."""
     return {name: _arm(document) for name, document in _documents("arm").items()}
 
 
 @cache
 def mobile_models() -> dict[str, MobileModel]:
-    """Every described mobile robot by model name; ConfigError if a file is damaged."""
+    """Every mobile robot of these files by the name of its model; ConfigError if a file is damaged."""
     return {name: _mobile(document) for name, document in _documents("mobile").items()}
 
 
 def _documents(kind: str) -> dict[str, Document]:
     robots = sorted(files("arboleda_description").joinpath("robots").iterdir(), key=lambda entry: entry.name)
-    found = [
+    documents = [
         Document(f"robots/{entry.name}", entry.read_bytes())
         for entry in robots
         if entry.name.endswith(".yaml")
     ]
-    return {document.value(("model",)): document for document in found if document.value(("kind",)) == kind}
+    return {
+        document.value(("model",)): document for document in documents if document.value(("kind",)) == kind
+    }
 
 
 def _arm(document: Document) -> ArmModel:
@@ -195,7 +197,7 @@ def _limits(document: Document, place: Place, shape: JointFile, units: tuple[str
 
 
 def _quantity(document: Document, place: Place, key: str, units: tuple[str, ...]) -> tuple[float, ...]:
-    """Numbers under the one given key, in SI; empty, with the problem kept, unless exactly one is."""
+    """The numbers of a quantity in SI units; empty, with the problem kept, unless one unit's key is there."""
     keys = {key.format(unit): TO_SI[unit] for unit in units}
     present = [name for name in keys if document.has((*place, name))]
     if len(present) != 1:

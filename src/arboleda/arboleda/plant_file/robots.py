@@ -1,9 +1,8 @@
-"""The robots and people of a plant file, which narrows the numbers of a model and never widens them."""
+"""The robots and people of a plant file, which may narrow the limits of a model and never widen them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -12,7 +11,7 @@ from arboleda.kinds.floor import Placement
 from arboleda.kinds.joints import Joint
 from arboleda.kinds.mobile import Grid, Mobile
 from arboleda.kinds.person import Person, person
-from arboleda.model.plant_model import Evidence, Link, Robot
+from arboleda.model.plant_model import Evidence
 
 from . import drivers
 from .document import Document, Place, choice, closest, nearest, shown
@@ -65,7 +64,7 @@ def arm(
     """The arm of a cell; None, with its problems kept, if something is wrong with it."""
     of_a_cell = DrivenArmShape if document.has((*place, drivers.KEY)) else ArmShape
     shape = document.read(written or of_a_cell, place)
-    base = _section(document, (*place, "base"), BaseShape)
+    base = document.section(BaseShape, (*place, "base"))
     check_homing(document, place, shape)
     tolerance = _tolerance(document, (*place, "tolerance"), model) if model else None
     if shape is None or base is None or model is None:
@@ -88,7 +87,7 @@ def mobile(document: Document, place: Place, written: type[MobileShape] | None =
     """The mobile robot of a cell; None, with its problems kept, if something is wrong with it."""
     of_a_cell = DrivenMobileShape if document.has((*place, drivers.KEY)) else MobileShape
     shape = document.read(written or of_a_cell, place)
-    grid = _section(document, (*place, "grid"), GridShape)
+    grid = document.section(GridShape, (*place, "grid"))
     check_homing(document, place, shape)
     model = _model(document, (*place, "model"), mobile_models(), default="mobile")
     if shape is None or grid is None or model is None:
@@ -155,10 +154,6 @@ def _placement(shape: BaseShape, *, is_declared: bool) -> Placement:
     return Placement(x=x, y=y, yaw=math.radians(shape.yaw_deg), is_declared=is_declared)
 
 
-def _section(document: Document, place: Place, shape: type[BaseShape]) -> Any:
-    return document.read(shape, place) if document.has(place) else shape()
-
-
 def _model(
     document: Document,
     place: Place,
@@ -166,18 +161,20 @@ def _model(
     default: str | None = None,
     also: tuple[str, ...] = (),
 ) -> T | None:
-    """The model of that name; for a misspelt one, with the problem kept, the model probably meant, so that
-    the other keys can be checked against it."""
+    """The model of that name; for a misspelt name, with the problem kept, the model that was probably meant.
+
+    So the other keys can be checked against that model.
+    """
     name = document.value(place) if document.has(place) else default
     if not isinstance(name, str):
         if also and document.has(place):
             document.problem(place, f"must be {choice([*sorted(models), *also])}, is {shown(name)}")
         return None
     if name not in models:
-        known, unchecked = choice([*sorted(models), *also]), ""
+        allowed, unchecked = choice([*sorted(models), *also]), ""
         if closest(name, models) is None:
             unchecked = "; what depends on the model is checked once it is right"
-        document.problem(place, f"must be {known}, is {shown(name)}{nearest(name, models)}{unchecked}")
+        document.problem(place, f"must be {allowed}, is {shown(name)}{nearest(name, models)}{unchecked}")
     return models.get(name) or models.get(closest(name, models) or "")
 
 
@@ -189,12 +186,12 @@ def _speed_key(number: int, joint: Joint) -> str:
     return _limits_key(number, joint) + "_s"
 
 
-def _refuse_other_keys(document: Document, place: Place, known: list[str]) -> None:
+def _refuse_other_keys(document: Document, place: Place, allowed: list[str]) -> None:
     if not document.has(place):
         return
     for key in document.read_plain(MAPPING, place) or ():
-        if key not in known:
-            document.unknown((*place, key), known)
+        if key not in allowed:
+            document.unknown((*place, key), allowed)
 
 
 def _narrowed(document: Document, place: Place, number: int, joint: Joint) -> Joint:
@@ -229,13 +226,3 @@ def _tolerance(document: Document, place: Place, model: ArmModel) -> tuple[float
             rule = f"at least {in_file_unit(joint, least)}, half a motor step and a little"
             document.problem(place, f"q{number} must have {rule}, has {in_file_unit(joint, value)}")
     return tolerance
-
-
-def check_absence(document: Document, place: Place, on_absence: str, robots: Iterable[Robot]) -> None:
-    """Keep a problem if a cell is to go on after an absence and a device cannot prove its acts meanwhile."""
-    unproved = [
-        robot.name for robot in robots if robot.link is not Link.NONE and robot.evidence is not Evidence.IDS
-    ]
-    if on_absence == "go_on" and unproved:
-        rule = "go_on needs evidence: ids of each device, which proves what it did meanwhile"
-        document.problem((*place, "on_absence"), f"{rule}; {unproved[0]} has none")

@@ -1,4 +1,4 @@
-"""The fields of a settings dataclass as keys of a plant file."""
+"""Fields of a dataclass of settings as keys of a plant file."""
 
 from __future__ import annotations
 
@@ -8,19 +8,22 @@ from enum import Enum
 from functools import reduce
 from operator import or_
 from types import UnionType
-from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from pydantic import Field as PydanticField
 from pydantic import create_model
 
+from arboleda.kinds import KindError, MovingKind, WrittenKind
+
 from .document import Document, Place
 from .robot_models import Shape
 
+M = TypeVar("M", bound=Shape)
 TYPES = "give bool, int, float, str, Literal, an Enum, and tuples of them"
 
 
 class SettingsRefused(Exception):
-    """A dataclass of settings refused its values: the place of these, and the error."""
+    """A dataclass of settings refused the values at `place`, by `error`."""
 
     def __init__(self, place: Place, error: Exception) -> None:
         super().__init__(str(error))
@@ -36,7 +39,7 @@ def shape(name: str, settings: type) -> type[Shape]:
 
 
 def read(document: Document, place: Place, fits: type[Shape], settings: type) -> Any:
-    """The settings, with those inside them; None, with its problems kept, if they do not fit.
+    """The settings, with the settings inside them; None, with the problems kept, if they do not fit.
 
     SettingsRefused if a dataclass refuses the values.
     """
@@ -69,14 +72,14 @@ def _inside(document: Document, place: Place, hint: Any, value: Any) -> Any:
         return read(document, place, shape(inner.__name__, inner), inner)
     within = get_args(hint)[-1 if get_origin(hint) is dict else 0]
     rows = value.items() if isinstance(value, dict) else enumerate(value)
-    found = {key: _inside(document, (*place, key), within, row) for key, row in rows}
-    if None in found.values():
+    made = {key: _inside(document, (*place, key), within, row) for key, row in rows}
+    if None in made.values():
         return None
-    return found if isinstance(value, dict) else tuple(found.values())
+    return made if isinstance(value, dict) else tuple(made.values())
 
 
 def _outer(hint: Any, written: Any) -> Any:
-    """The type of a key, without the contents of mappings: those are read with keys of their own."""
+    """The type of a key, in which mappings may have any keys: these are read by a shape of their own."""
     if next(_dataclasses(hint), None) is None:
         return written
     if get_origin(hint) in (Union, UnionType):
@@ -90,6 +93,25 @@ def _dataclasses(hint: Any) -> Iterator[type]:
         yield hint
     for each in get_args(hint):
         yield from _dataclasses(each)
+
+
+def shape_of_kind(kind: WrittenKind | MovingKind, base: type[M], clash: str) -> type[M]:
+    """The keys of a device of this kind: those of `base`, and the kind's settings.
+
+    KindError with the sentence `clash` if a field of the settings has the name of a key of `base`.
+    """
+    own = keys(kind.settings)
+    taken = next((name for name in own if name in base.model_fields), None)
+    if taken is not None:
+        raise KindError(clash.format(taken))
+    return create_model(f"Device_{kind.name}", __base__=base, **own)
+
+
+def settings_of_kind(kind: WrittenKind | MovingKind, shape: Shape) -> Any:
+    """The settings of a device as its kind takes them; None for a kind without settings."""
+    if kind.settings is None:
+        return None
+    return kind.settings(**{each.name: getattr(shape, each.name) for each in fields(kind.settings)})
 
 
 def keys(settings: type | None) -> dict[str, Any]:

@@ -147,8 +147,21 @@ ROBOT_KEYS = TAKER_KEY, GIVER_KEY = "arm", "mobile"
 """The keys of the two robots of a cell in the short form."""
 
 
-class CellShape(Shape):
-    """One cell; its name is its key under `cells:`."""
+class AnyCellShape(Shape):
+    """The keys that a cell of either form has; its name is its key under `cells:`."""
+
+    queue_limit: QueueLimit = QUEUE_LIMIT
+    on_restart: OnRestart = "hold"
+    on_absence: OnAbsence = "hold"
+    drive_to_start: bool = True
+    retry: Any = None
+    teach: Any = None
+    piece_check: Annotated[Any, AfterValidator(_piece_check)] = Cell.piece_check
+    zone_wait_s: Duration = Cell.zone_wait_s
+
+
+class CellShape(AnyCellShape):
+    """One cell in the short form: an arm and a mobile robot that store parts."""
 
     arm: Any
     mobile: Any
@@ -158,36 +171,20 @@ class CellShape(Shape):
     paths: Any = None
     stations: Any = None
     palletizing: Any = None
-    queue_limit: QueueLimit = QUEUE_LIMIT
-    on_restart: OnRestart = "hold"
-    on_absence: OnAbsence = "hold"
-    drive_to_start: bool = True
-    retry: Any = None
-    teach: Any = None
-    piece_check: Annotated[Any, AfterValidator(_piece_check)] = Cell.piece_check
-    zone_wait_s: Duration = Cell.zone_wait_s
 
 
-class DeviceCellShape(Shape):
+class DeviceCellShape(AnyCellShape):
     """One cell of devices by role; without `recipes` it offers all that fit."""
 
     devices: Annotated[dict[str, Any], Field(min_length=1)]
     recipes: Annotated[list[str], Field(min_length=1)] = Field(default_factory=list)
     default_recipe: str = ""
-    queue_limit: QueueLimit = QUEUE_LIMIT
-    on_restart: OnRestart = "hold"
-    on_absence: OnAbsence = "hold"
-    retry: Any = None
-    teach: Any = None
     targets: Any = None
     groups: Any = None
     paths: Any = None
     handover: Any = None
     needs: Any = None
     places: Any = None
-    drive_to_start: bool = True
-    piece_check: Annotated[Any, AfterValidator(_piece_check)] = Cell.piece_check
-    zone_wait_s: Duration = Cell.zone_wait_s
 
 
 class HandoverShape(Shape):

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from arboleda.model.plant_model import Cell, Evidence, Link, Pose, Robot
 
-from .document import Document, Place, choice, nearest, shown
+from .document import Document, Place, misnamed
 from .shapes import MAPPING, NAME_RULE, SharedRoleShape, is_name
 
 SECTION = "shared"  # key of the file; in a role of a cell, the key for the device's name
@@ -15,11 +15,11 @@ Read = Callable[[Place], "Robot | None"]
 
 
 def shared_devices(document: Document, read: Read) -> dict[str, Robot]:
-    """The devices by name, as `read` reads one; the problems of the others are kept."""
+    """The correct shared devices by name; `read` reads one. Problems of the others are kept."""
     if not document.has((SECTION,)):
         return {}
     document.read_plain(MAPPING, (SECTION,))
-    found = {}
+    devices = {}
     for name in document.keys((SECTION,)):
         place: Place = (SECTION, name)
         if not is_name(name):
@@ -30,44 +30,43 @@ def shared_devices(document: Document, read: Read) -> dict[str, Robot]:
             continue
         device = read(place)
         if device is not None and _shows_its_place(document, place, device):
-            found[name] = device
-    for name, device in found.items():
-        _check_tool(document, (SECTION, name), device, found)
-    return found
+            devices[name] = device
+    for name, device in devices.items():
+        _check_tool(document, (SECTION, name), device, devices)
+    return devices
 
 
 def tools(document: Document) -> dict[str, str]:
     """The names of the tools that shared robots carry, by the names of the robots."""
-    names, found = document.keys((SECTION,)), dict[str, str]()
+    names, by_robot = document.keys((SECTION,)), dict[str, str]()
     for name in names:
         robot = document.value((SECTION, name, TOOL_OF))
         if robot in names:
-            found.setdefault(str(robot), name)
-    return found
+            by_robot.setdefault(str(robot), name)
+    return by_robot
 
 
 def in_role(document: Document, place: Place, devices: Mapping[str, Robot]) -> Robot | None:
-    """The shared device in a role of a cell; None, with the problem kept, if there is no such one."""
+    """The shared device in a role of a cell; None, with the problem kept, where there is none."""
     shape = document.read(SharedRoleShape, place)
     names = document.keys((SECTION,))
     if shape is None:
         return None
     if shape.shared not in names:
-        there = f"must be {choice(names)}" if names else f'there is no "{SECTION}" at the top of the file'
-        hint = nearest(shape.shared, names)
-        document.problem((*place, SECTION), f"{there}, is {shown(shape.shared)}{hint}")
+        none = f'there is no "{SECTION}" at the top of the file'
+        document.problem((*place, SECTION), misnamed(shape.shared, names, none))
     return devices.get(shape.shared)
 
 
 def named(document: Document, cell: Place) -> dict[str, str]:
     """The shared devices that a cell names, by role."""
     roles = [(*cell, "devices", role) for role in document.keys((*cell, "devices"))]
-    found = {str(place[-1]): document.value((*place, SECTION)) for place in roles}
-    return {role: name for role, name in found.items() if isinstance(name, str)}
+    by_role = {str(place[-1]): document.value((*place, SECTION)) for place in roles}
+    return {role: name for role, name in by_role.items() if isinstance(name, str)}
 
 
 def check_use(document: Document) -> None:
-    """Keep a problem for each shared device that no cell names, and for cells that name it wrongly."""
+    """Keep a problem for each shared device that no cell names, or that a cell names wrongly."""
     used = set()
     for cell in document.keys(("cells",)):
         place: Place = ("cells", cell)
@@ -91,7 +90,7 @@ def check_use(document: Document) -> None:
 
 
 def check_homes(document: Document, cells: Sequence[Cell]) -> None:
-    """Keep a problem for each cell in which the home of a shared robot is another one than in the first."""
+    """Keep a problem for each cell in which a shared robot has another home than in its first cell."""
     first: dict[str, tuple[str, Pose]] = {}
     for cell in cells:
         roles = {robot.name: role for role, robot in cell.roles.items()}
@@ -106,7 +105,7 @@ def check_homes(document: Document, cells: Sequence[Cell]) -> None:
 
 
 def _check_use_in(document: Document, cell: Place) -> None:
-    """Keep a problem for each shared robot without its tool in a cell, and for paths and handovers of it."""
+    """Keep a problem for a shared robot without its tool in a cell, and for one with paths or handovers."""
     names = named(document, cell)
     for robot, tool in tools(document).items():
         for one, other in ((robot, tool), (tool, robot)):
@@ -128,7 +127,7 @@ def _check_use_in(document: Document, cell: Place) -> None:
 
 
 def _shows_its_place(document: Document, place: Place, device: Robot) -> bool:
-    """True unless it goes from place to place and cannot say that it is where the next cell expects it."""
+    """False, with the problem kept, for a robot that cannot report where it is to its next cell."""
     if not device.goes:
         return True
     if device.link is Link.NONE:
@@ -147,10 +146,9 @@ def _check_tool(document: Document, place: Place, device: Robot, devices: Mappin
         return
     carrier, robots = document.value(here), [name for name, each in devices.items() if each.goes]
     if carrier in document.keys((SECTION,)) and carrier not in devices:
-        return  # its mistakes are reported there
+        return  # its problems are reported at the carrier
     if carrier not in robots:
-        there = f"must be {choice(robots)}" if robots else "no shared device is a robot"
-        document.problem(here, f"{there}, is {shown(carrier)}{nearest(str(carrier), robots)}")
+        document.problem(here, misnamed(carrier, robots, "no shared device is a robot"))
     elif device.held_fact is None:
         document.problem(here, f"{device.name} holds no part: none of its verbs has holds: part")
     elif (first := tools(document)[str(carrier)]) != device.name:

@@ -1,4 +1,4 @@
-"""Name of the shipped plant, for those who need nothing else of it: its whole file takes long to load."""
+"""File of the shipped plant, and its name, which is read without loading the whole plant."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Source of what a plant uses, as one hash: the same for each Python, whatever its layout and comments."""
+"""Source of a plant's recipes as one hash, which layout, comments and the version of Python do not change."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ LAYOUT = frozenset({"ctx", "kind", "type_comment"})  # fields that follow from o
 
 def source_of(files: Mapping[Path, bytes], folder: Path | None) -> str:
     """The hash of the Python and the trees among the files, by their paths from the plant's folder."""
-    found = blake2b(digest_size=16)
+    digest = blake2b(digest_size=16)
     named = {_name(path, folder): content for path, content in files.items()}
     for name in sorted(name for name in named if name.endswith((PYTHON, TREES))):
-        found.update(name.encode("utf-8", "replace"))
+        digest.update(name.encode("utf-8", "replace"))
         words = _of_python(named[name]) if name.endswith(PYTHON) else named[name]
-        found.update(words)
-    return found.hexdigest()
+        digest.update(words)
+    return digest.hexdigest()
 
 
 def _name(path: Path, folder: Path | None) -> str:
@@ -28,7 +28,7 @@ def _name(path: Path, folder: Path | None) -> str:
 
 
 def _of_python(content: bytes) -> bytes:
-    """The words of a file; the file itself where it is no Python, as its import tells."""
+    """The words of a file; its whole content where it is no Python, which its import reports."""
     try:
         return "\n".join(_words(ast.parse(content))).encode("utf-8", "surrogatepass")
     except (SyntaxError, ValueError, RecursionError):
@@ -36,7 +36,7 @@ def _of_python(content: bytes) -> bytes:
 
 
 def _words(node: ast.AST) -> Iterator[str]:
-    """The node and what is in it; what is empty or left out has no word, as not each Python knows it."""
+    """The words of a node and of all below it. An empty field has none: not each Python has each field."""
     yield type(node).__name__
     for name, value in ast.iter_fields(node):
         parts = value if isinstance(value, list) else [value]

@@ -1,4 +1,4 @@
-"""Rules of a walkthrough for the steps of recipes in Python: what can be so after each class of them."""
+"""Rules of a walkthrough for the steps of recipes in Python: the outcome of each class of steps."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from arboleda.recipes.decorators import Again, AtMost, Forgiven, Inverted, Rescu
 from arboleda.recipes.handles import FactCheck, FactWait
 from arboleda.recipes.place_questions import PlaceQuestion
 
-from .foresight import AT, OVER, Key, Scene, common
+from .foresight import AT, OVER, Scene, SceneKey, common
 from .parallel_scenes import Branches
 from .walkthrough import MOST_ROUNDS, Outcome, Rule, Walkthrough, answer_key, few
 
@@ -38,7 +38,10 @@ def _act(walk: Walkthrough, node: Act, scenes: Sequence[Scene]) -> Outcome:
 
 
 def _approach(walk: Walkthrough, node: Approach, scenes: Sequence[Scene]) -> Outcome:
-    """It may not be needed, and the move after it begins where it ends: that one says where the robot is."""
+    """The outcome of an approach: where the robot is, the move after the approach says.
+
+    An approach may not be needed, and that move begins where the approach ends.
+    """
     return Outcome(done=tuple(scenes), failed=walk.blurred(node, scenes))
 
 
@@ -48,35 +51,35 @@ def _require(walk: Walkthrough, node: Require, scenes: Sequence[Scene]) -> Outco
 
 
 def _unless(walk: Walkthrough, node: Unless, scenes: Sequence[Scene]) -> Outcome:
-    if node.title.key == IS.key:  # the choice sees to it that these are the scenes of this answer
+    if node.title.key == IS.key:  # `_chosen` has only the scenes with this answer begin here
         return Outcome(done=tuple(scenes))
     walk.doubts += 1
     return Outcome(done=tuple(scenes), failed=tuple(scenes))
 
 
 def _fact_check(walk: Walkthrough, node: FactCheck, scenes: Sequence[Scene]) -> Outcome:
-    """The outcome of a check: what is known otherwise fails it."""
+    """The outcome of a check of facts: a certain other value fails it."""
     facts = _facts(node)
     possible = [each for each in scenes if all(each.get(*key) in (None, facts[key]) for key in facts)]
     return _fact_outcome(walk, facts, possible, scenes)
 
 
 def _fact_wait(walk: Walkthrough, node: FactWait, scenes: Sequence[Scene]) -> Outcome:
-    """The outcome of waiting for facts: what is known may change by itself meanwhile."""
+    """The outcome of waiting for facts: a certain other value may change by itself meanwhile."""
     return _fact_outcome(walk, _facts(node), scenes, scenes)
 
 
 def _place_question(walk: Walkthrough, node: PlaceQuestion, scenes: Sequence[Scene]) -> Outcome:
-    """The outcome of a question to the books: an earlier answer counts no more."""
+    """The outcome of a question where parts are: an earlier answer does not count."""
     return Outcome(done=tuple(scene.without({answer_key(node)}) for scene in scenes))
 
 
-def _facts(node: FactCheck | FactWait) -> dict[Key, Value]:
+def _facts(node: FactCheck | FactWait) -> dict[SceneKey, Value]:
     return {(node.device, fact): value for fact, value in node.facts.items()}
 
 
 def _fact_outcome(
-    walk: Walkthrough, facts: Mapping[Key, Value], possible: Sequence[Scene], scenes: Sequence[Scene]
+    walk: Walkthrough, facts: Mapping[SceneKey, Value], possible: Sequence[Scene], scenes: Sequence[Scene]
 ) -> Outcome:
     unlike = [scene for scene in scenes if any(scene.get(*key) != facts[key] for key in facts)]
     walk.doubts += any(scene.get(*key) is None for scene in unlike for key in facts)
@@ -88,8 +91,8 @@ def _sequence(walk: Walkthrough, node: composites.Sequence, scenes: Sequence[Sce
         return walk.unsure(node, scenes)
     outcome = Outcome(done=tuple(scenes))
     for child in node.children:
-        found = walk.follow(child, outcome.done)
-        outcome = Outcome(done=found.passed, failed=(*outcome.failed, *found.failed))
+        after = walk.follow(child, outcome.done)
+        outcome = Outcome(done=after.passed, failed=(*outcome.failed, *after.failed))
     return outcome
 
 
@@ -105,13 +108,13 @@ def _selector(walk: Walkthrough, node: composites.Selector, scenes: Sequence[Sce
         return walk.unsure(node, scenes)
     outcome = Outcome(failed=tuple(scenes))
     for child in node.children:
-        found = walk.follow(child, outcome.failed)
-        outcome = Outcome(done=(*outcome.done, *found.passed), failed=found.failed)
+        after = walk.follow(child, outcome.failed)
+        outcome = Outcome(done=(*outcome.done, *after.passed), failed=after.failed)
     return outcome
 
 
 def _gone_home(walk: Walkthrough, node: composites.Selector, robot: str, scenes: Sequence[Scene]) -> Outcome:
-    """The outcome of going home unless a robot is there already: both ways lead to one and the same scene."""
+    """The outcome of going home unless the robot is there: it is at home after both branches."""
     home = walk.foresight.home(robot)
     there = {(robot, AT): home, (robot, OVER): home}
     stays = [scene.put(there) for scene in scenes if scene.get(robot, AT) in (None, home)]
@@ -122,12 +125,12 @@ def _gone_home(walk: Walkthrough, node: composites.Selector, robot: str, scenes:
 def _chosen(
     walk: Walkthrough, node: composites.Selector, question: Behaviour, scenes: Sequence[Scene]
 ) -> Outcome:
-    """The outcome of a choice by an answer: each way begins where the answer is its own."""
+    """The outcome of a choice by an answer: each branch begins in the scenes with its answer."""
     outcome, key = Outcome(), answer_key(question)
     for number, child in enumerate(node.children):
         begin = [scene.put({key: number}) for scene in scenes if scene.get(*key) in (None, number)]
-        found = walk.follow(child, begin)
-        outcome = outcome.plus(done=found.passed, failed=found.failed)
+        after = walk.follow(child, begin)
+        outcome = outcome.plus(done=after.passed, failed=after.failed)
     return outcome
 
 
@@ -138,45 +141,45 @@ def _parallel(walk: Walkthrough, node: composites.Parallel, scenes: Sequence[Sce
 
 
 def at_once(walk: Walkthrough, node: Behaviour, scenes: Sequence[Scene]) -> Outcome:
-    """The outcome of steps at the same time that are done once all of them are.
+    """The outcome of steps at the same time that is done once all of the steps are.
 
-    Each is followed with nothing known of what the others may change meanwhile.
+    Each step is followed without the values that the other steps may change meanwhile.
     """
     outcome = Outcome(failed=walk.blurred(node, scenes))
     for scene in scenes:
         branches = Branches(walk, node.children, scene)
-        found = [walk.follow(child, [branches.begin_of(n)]) for n, child in enumerate(node.children)]
-        every = [branches.merged(ends) for ends in _combined([each.passed for each in found])]
-        none = [branches.merged(ends) for ends in _combined([each.skipped for each in found])]
+        outcomes = [walk.follow(child, [branches.begin_of(n)]) for n, child in enumerate(node.children)]
+        every = [branches.merged(ends) for ends in _combined([each.passed for each in outcomes])]
+        none = [branches.merged(ends) for ends in _combined([each.skipped for each in outcomes])]
         is_none = {each.mark for each in none}
         outcome = outcome.plus(done=[each for each in every if each.mark not in is_none], skipped=none)
     return outcome
 
 
 def _combined(ends: Sequence[Sequence[Scene]]) -> Iterator[tuple[Scene, ...]]:
-    """One end of each branch, in all ways; where these are many, what the ends of each have in common."""
+    """All combinations of one end of each branch; where these are many, the common scene of each branch."""
     many = prod(map(len, ends)) > MOST_MERGED
     return product(*(common(each) if many else each for each in ends))
 
 
 def _around(walk: Walkthrough, node: Decorator, scenes: Sequence[Scene]) -> Outcome:
-    found = walk.follow(node.decorated, scenes)
-    return Outcome(done=found.passed, failed=found.failed)
+    after = walk.follow(node.decorated, scenes)
+    return Outcome(done=after.passed, failed=after.failed)
 
 
 def _at_most(walk: Walkthrough, node: AtMost, scenes: Sequence[Scene]) -> Outcome:
-    found = walk.follow(node.decorated, scenes)
-    return Outcome(done=found.passed, failed=walk.blurred(node, scenes))
+    after = walk.follow(node.decorated, scenes)
+    return Outcome(done=after.passed, failed=walk.blurred(node, scenes))
 
 
 def _rescue(walk: Walkthrough, node: Rescue, scenes: Sequence[Scene]) -> Outcome:
-    found = walk.follow(node.decorated, scenes)
-    return Outcome(failed=(*found.passed, *found.failed))
+    after = walk.follow(node.decorated, scenes)
+    return Outcome(failed=(*after.passed, *after.failed))
 
 
 def _inverted(walk: Walkthrough, node: Inverted, scenes: Sequence[Scene]) -> Outcome:
-    found = walk.follow(node.decorated, scenes)
-    return Outcome(done=found.failed, failed=found.passed)
+    after = walk.follow(node.decorated, scenes)
+    return Outcome(done=after.failed, failed=after.passed)
 
 
 def _again(walk: Walkthrough, node: Again, scenes: Sequence[Scene]) -> Outcome:
@@ -184,7 +187,7 @@ def _again(walk: Walkthrough, node: Again, scenes: Sequence[Scene]) -> Outcome:
 
 
 def tried(walk: Walkthrough, step: Behaviour, scenes: Sequence[Scene], times: float) -> Outcome:
-    """The outcome of a step that is tried again where it failed: after that, halfway may be anywhere."""
+    """The outcome of a step that is tried again where it failed, from halfway through the step."""
     first = walk.follow(step, scenes)
     if times <= 1:
         return first
@@ -193,19 +196,22 @@ def tried(walk: Walkthrough, step: Behaviour, scenes: Sequence[Scene], times: fl
 
 
 def _times(walk: Walkthrough, node: Times, scenes: Sequence[Scene]) -> Outcome:
-    found = repeated(walk, node.decorated, scenes, node.times)
-    return Outcome(done=found.passed, failed=found.failed)
+    after = repeated(walk, node.decorated, scenes, node.times)
+    return Outcome(done=after.passed, failed=after.failed)
 
 
 def repeated(walk: Walkthrough, step: Behaviour, scenes: Sequence[Scene], times: int) -> Outcome:
-    """The outcome of a step that is done so many times; of many rounds the last one counts."""
+    """The outcome of a step that is done so many times.
+
+    At most MOST_ROUNDS are followed. The last of them stands for all others.
+    """
     outcome = Outcome(done=tuple(scenes))
     for number in range(min(times, MOST_ROUNDS)):
         is_last = number + 1 == MOST_ROUNDS < times
         begin = walk.blurred(step, outcome.done) if is_last else outcome.done
-        found = walk.follow(step, begin)
-        others = outcome.plus(failed=found.failed, skipped=found.skipped)
-        outcome = replace(others, done=found.done)
+        after = walk.follow(step, begin)
+        others = outcome.plus(failed=after.failed, skipped=after.skipped)
+        outcome = replace(others, done=after.done)
         if few(outcome.done) == few(begin):
             break
     return outcome
@@ -230,4 +236,4 @@ RULES: Mapping[type, Rule] = {
     Inverted: _inverted,
     Times: _times,
 }
-"""The rule for each class of steps; what is none of them is unsure."""
+"""The rule for each class of steps; a step of another class is unsure."""

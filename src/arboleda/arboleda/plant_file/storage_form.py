@@ -1,7 +1,7 @@
 """Short form of a cell that stores parts: keys for an arm, a mobile robot, their poses, paths and a rack.
 
-It says the same as a cell of devices whose arm and mobile robot have the roles `arm` and `mobile`, whose
-targets are called `home`, `pickup`, `pickup_b`, `station_7`, and which has paths and a handover.
+It stands for a cell of devices with paths and a handover. In that cell, the arm and the mobile robot have the
+roles `arm` and `mobile`, and targets are called `home`, `pickup`, `pickup_b`, `station_7`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
 from arboleda.model import zone_plan
-from arboleda.model.plant_model import STATIONS, Cell, Handover, Pose, Retry, Robot, Workspace
+from arboleda.model.plant_model import STATIONS, Cell, Handover, Pose, Robot, Workspace
 from arboleda.model.plant_model import Path as Route
 from arboleda.model.recipe import Recipe
 from arboleda.model.sentence import OWN
@@ -27,13 +27,14 @@ from arboleda.recipes.storage import (
 )
 
 from . import rack
+from .any_cell import check_absence, common_keys
 from .document import Document, Place
 from .paths import check_nodes_show, exit_of, paths
 from .pickups import Pickups, default_pickup, pickups
 from .poses import PoseReader
 from .robot_models import ArmModel
-from .robots import arm, arm_model, check_absence, mobile
-from .shapes import CellShape, PoseShape, PositionShape, RetryShape, TeachShape
+from .robots import arm, arm_model, mobile
+from .shapes import CellShape, PoseShape, PositionShape
 
 TAKEN = tuple(each.name for each in RECIPES)  # names that no recipe of a plant can have
 NEEDS = f'storage needs the roles {ARM} (the taker) and {MOBILE} (the giver) and a group "{STATIONS}"'
@@ -42,7 +43,7 @@ SECTIONS = ("paths", "stations", "palletizing")  # they may stand at the top of 
 
 @dataclass(frozen=True, kw_only=True)
 class ArmPoses:
-    """Poses of the arm; `pickup` is that of every exit which `pickups` does not name."""
+    """Poses of the arm; `pickup` is for every exit that `pickups` does not name."""
 
     home: Pose
     pickup: Pose
@@ -59,42 +60,35 @@ def storage_cell(document: Document, place: Place) -> Cell | None:
     the_mobile = mobile(document, (*place, MOBILE))
     routes = paths(document, _section(document, place, "paths"))
     poses = _poses(document, place, kind, routes)
-    retry = document.read(RetryShape, (*place, "retry")) if document.has((*place, "retry")) else RetryShape()
-    teach = document.read(TeachShape, (*place, "teach")) if document.has((*place, "teach")) else TeachShape()
+    keys = common_keys(document, place, shape)
     if the_mobile and routes:
         check_nodes_show(document, (*place, MOBILE), routes, the_mobile)
-    if not (shape and retry and teach and the_arm and the_mobile and routes and poses):
+    if not (shape and keys and the_arm and the_mobile and routes and poses):
         return None
     check_absence(document, place, shape.on_absence, (the_arm, the_mobile))
     return Cell(
-        name=str(place[-1]),
+        **keys,
         members=((ARM, the_arm), (MOBILE, the_mobile)),
         spaces=(_of_arm(the_arm, routes, poses), _of_mobile(the_mobile, routes)),
         handover=_handover(the_arm, the_mobile, routes, poses),
         arrays=_groups(routes, poses),
         recipes=RECIPES,
-        queue_limit=shape.queue_limit,
-        goes_on=shape.on_restart == "go_on",
-        goes_on_after_absence=shape.on_absence == "go_on",
-        drive_to_start=shape.drive_to_start,
-        retry=Retry(**retry.model_dump()),
-        teach=teach.teach,
-        piece_check=shape.piece_check,
-        zone_wait_s=shape.zone_wait_s,
     )
 
 
-def fitting(found: Handover, roles: Mapping[str, Robot], groups: Mapping[str, object]) -> tuple[Recipe, ...]:
+def fitting(
+    handover: Handover, roles: Mapping[str, Robot], groups: Mapping[str, object]
+) -> tuple[Recipe, ...]:
     """The recipes of storage that a cell of devices with this handover can do."""
     meet = {role: robot.name for role, robot in roles.items() if role in (ARM, MOBILE)}
-    if meet != {ARM: found.taker, MOBILE: found.giver}:
+    if meet != {ARM: handover.taker, MOBILE: handover.giver}:
         return ()
     needs: dict[Recipe, str] = {storage: STATIONS, palletizing: PALLETIZING_TARGETS}
     return tuple(recipe for recipe, group in needs.items() if group in groups)
 
 
 def plan_problems(cell: Cell) -> dict[str, str]:
-    """Problems of planning the arm's own cycle: a sentence by the name of the pose that is in the way."""
+    """Problems of planning the arm's own cycle: by the name of a pose, the sentence why it is wrong."""
     if PALLETIZING_TARGETS not in cell.groups or cell.handover is None:
         return {}
     _, last = cell.groups[PALLETIZING_TARGETS]
@@ -104,7 +98,7 @@ def plan_problems(cell: Cell) -> dict[str, str]:
 
 
 def check_sections(document: Document, cells: Sequence[Place]) -> None:
-    """Keep a problem for each section at the top that no cell takes; `cells` are all those of this form."""
+    """Keep a problem for each section at the top that no cell uses; `cells` are all cells of this form."""
     for key in SECTIONS:
         if (
             document.has((key,))
@@ -129,19 +123,19 @@ def _of_arm(the_arm: Arm, routes: tuple[Route, ...], poses: ArmPoses) -> Workspa
 
 
 def _of_mobile(the_mobile: Mobile, routes: tuple[Route, ...]) -> Workspace:
-    """Its targets are where its first path begins and where each path ends."""
+    """The workspace of the mobile robot; its targets are the begin of the first path, and the end of each."""
     home = Pose(name=HOME, title=OWN(text=HOME), q=routes[0].nodes[0])
     ends = [Pose(name=path.code, title=OWN(text=path.code), q=path.nodes[-1]) for path in routes]
     return Workspace(robot=the_mobile, home=home, returns=False, poses=(home, *ends), paths=routes)
 
 
 def _handover(the_arm: Arm, the_mobile: Mobile, routes: tuple[Route, ...], poses: ArmPoses) -> Handover:
-    ways = [(exit, path.code) for exit, _ in poses.pickups for path in routes if exit_of(path) == exit]
+    rows = [(exit, path.code) for exit, _ in poses.pickups for path in routes if exit_of(path) == exit]
     return Handover(
         taker=the_arm.name,
         giver=the_mobile.name,
         otherwise="pickup",
-        by_path=tuple((code, _pickup_target(exit)) for exit, code in ways),
+        by_path=tuple((code, _pickup_target(exit)) for exit, code in rows),
     )
 
 
@@ -155,7 +149,7 @@ def _groups(routes: tuple[Route, ...], poses: ArmPoses) -> tuple[tuple[str, tupl
 
 
 def _pickup_targets(routes: tuple[Route, ...], poses: ArmPoses) -> list[tuple[str, str]]:
-    """The targets at which the arm takes parts, with the names of their poses: one, and one for each exit."""
+    """The targets at which the arm takes parts, `pickup` and one for each exit, with the names of poses."""
     own = dict(poses.pickups)
     exits = dict.fromkeys(exit_of(path) for path in routes)
     by_exit = [(_pickup_target(exit), own.get(exit, poses.pickup).name) for exit in exits]
@@ -195,7 +189,7 @@ def _poses(
 
 
 def _section(document: Document, place: Place, key: str, *, needed: bool = True) -> Place:
-    """The place of this section for a cell: its own, else the one at the top that cells share."""
+    """The place of this section for a cell: in the cell, else at the top, where cells share it."""
     if document.has((*place, key)):
         return (*place, key)
     if needed and not document.has((key,)) and document.has(place):

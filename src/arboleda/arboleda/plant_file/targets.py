@@ -1,4 +1,4 @@
-"""The targets of a cell of devices: places with one name, and the pose of each of its robots there."""
+"""Targets of a cell of devices: names of places, each with the pose of each robot there."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from collections.abc import Collection, Mapping, Sequence
 from arboleda.model.plant_model import Pose, Robot, Workspace
 
 from . import arrays
-from .document import Document, Place, choice, nearest, shown
+from .document import Document, Place, misnamed, shown
 from .shapes import MAPPING, NAME_RULE, WORDS, is_name
-from .spots import START, spot
+from .target_pose import START, target_pose
 
 
 def workspaces(
     document: Document, place: Place, roles: Mapping[str, Robot], tools: Mapping[str, Robot]
 ) -> tuple[Workspace, ...] | None:
-    """The targets of each robot of a cell; None, with the problems kept, if something is wrong.
+    """The workspaces of a cell, with the targets of each robot; None, with the problems kept, if wrong.
 
     `tools` are the devices that robots carry, by the role of the robot.
     """
@@ -33,7 +33,7 @@ def workspaces(
         document.read_plain(MAPPING, (*here, name))
         for role in document.keys((*here, name)):
             if role in movers:
-                spots[role].append(spot(document, (*here, name, role), movers[role], name))
+                spots[role].append(target_pose(document, (*here, name, role), movers[role], name))
             else:
                 _refuse_role(document, (*here, name, role), movers)
     for array in arrays.arrays(document, place):
@@ -51,28 +51,28 @@ def workspaces(
 def groups(
     document: Document, place: Place, spaces: Sequence[Workspace]
 ) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """The groups of targets, each in its order; problems of those that name no target are kept."""
+    """The groups of targets, each in its order; a problem is kept for each name that is no target."""
     here = (*place, "groups")
     if not document.has(here):
         return ()
     document.read_plain(MAPPING, here)
-    known = {pose.name for space in spaces for pose in space.poses}
-    found = []
+    targets = {pose.name for space in spaces for pose in space.poses}
+    rows = []
     of_corners = {array.group: array.names for array in arrays.arrays(document, place)}
     for name in document.keys(here):
-        if not is_name(name) or name in known:
+        if not is_name(name) or name in targets:
             rule = f"a group must be {NAME_RULE}" if not is_name(name) else "a target has this name already"
             document.problem((*here, name), rule, at=(*here, name))
         if arrays.is_array(document, (*here, name)):
-            found.append((name, of_corners.get(name, ())))
+            rows.append((name, of_corners.get(name, ())))
             continue
         names = document.read_plain(WORDS, (*here, name)) or []
         for index, each in enumerate(names):
-            if each not in known:
-                must = f"must be {choice(sorted(known))}" if known else "there are no targets"
-                document.problem((*here, name, index), f"{must}, is {shown(each)}{nearest(each, known)}")
-        found.append((name, tuple(names)))
-    return tuple(found)
+            if each not in targets:
+                sentence = misnamed(each, sorted(targets), "there are no targets")
+                document.problem((*here, name, index), sentence)
+        rows.append((name, tuple(names)))
+    return tuple(rows)
 
 
 def _check_names(document: Document, place: Place, array: arrays.Array, targets: Collection[str]) -> None:
@@ -101,6 +101,5 @@ def _workspace(
 
 
 def _refuse_role(document: Document, place: Place, movers: Mapping[str, Robot]) -> None:
-    role = str(place[-1])
-    there = f"must be {choice(movers)}" if movers else "no device of this cell goes anywhere"
-    document.problem(place, f"{there}, is {shown(role)}{nearest(role, movers)}", at=place)
+    sentence = misnamed(place[-1], movers, "no device of this cell goes anywhere")
+    document.problem(place, sentence, at=place)

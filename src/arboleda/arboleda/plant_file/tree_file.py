@@ -1,4 +1,4 @@
-"""Files of trees that a person names on the command line: read with all their includes, and checked."""
+"""File of trees that a person names on the command line: read with all its includes, and checked."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from arboleda.bt_xml import checking, reading
-from arboleda.bt_xml.checking import CheckResult
+from arboleda.bt_xml.checking import TreeCheck
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.forest import Forest
 from arboleda.bt_xml.markup import LARGEST
@@ -24,7 +24,7 @@ LONGEST = 500  # characters of a line
 
 
 def is_tree_file(path: Path) -> bool:
-    """True if a file is one of trees, by its name."""
+    """True if the name of a file is that of a file of trees."""
     return path.suffix.lower() in (ENDING, PROJECT)
 
 
@@ -33,33 +33,33 @@ class TreeFile:
     """A file without mistakes; `warnings` has a line for each."""
 
     forest: Forest
-    checked: CheckResult
+    checked: TreeCheck
     warnings: tuple[str, ...]
 
 
-def load(path: Path, known: Mapping[str, Kind] | None = None) -> TreeFile:
-    """The trees of a file and of those that it includes; ConfigError with every mistake.
+def load(path: Path, allowed: Mapping[str, Kind] | None = None) -> TreeFile:
+    """The trees of a file and of the files that it includes; ConfigError with every mistake.
 
-    `known` are the only kinds of leaves that there are; None: there may be any.
+    `allowed` are the only kinds of leaves that a tree may have; None: a tree may have any.
     """
     findings = Findings()
     forest = reading.read(str(path), user_file.read_bytes(path, LARGEST), findings, tree_includes.read)
-    checked = checking.check(forest, findings, known)
+    checked = checking.check(forest, findings, allowed)
     if findings.mistakes:
         raise ConfigError(findings.mistakes)
     return TreeFile(forest=forest, checked=checked, warnings=findings.warnings)
 
 
-def report(path: Path, known: Mapping[str, Kind] | None = None) -> list[str]:
-    """The lines about a file that can be used; ConfigError with every mistake of one that cannot."""
-    found = load(path, known)
-    lines = [*found.warnings, *_unknown(path, found.checked)]
-    trees = ", ".join(found.forest.trees) or "none"
-    lines.append(f"{path}: good: {found.checked.nodes} nodes; trees {trees}")
+def report(path: Path, allowed: Mapping[str, Kind] | None = None) -> list[str]:
+    """The lines about a file without mistakes; ConfigError with every mistake."""
+    file = load(path, allowed)
+    lines = [*file.warnings, *_unknown(path, file.checked)]
+    trees = ", ".join(file.forest.trees) or "none"
+    lines.append(f"{path}: good: {file.checked.nodes} nodes; trees {trees}")
     return [plain(line, LONGEST) for line in lines]
 
 
-def _unknown(path: Path, checked: CheckResult) -> list[str]:
+def _unknown(path: Path, checked: TreeCheck) -> list[str]:
     if not checked.unknown:
         return []
     names = sorted(checked.unknown)

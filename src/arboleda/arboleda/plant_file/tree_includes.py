@@ -21,8 +21,8 @@ def read(file: str, path: str, package: str) -> tuple[str, bytes]:
     """The name of an included file and its content, as `reading.Fetch` has it."""
     if "\0" in path or "\0" in package:
         raise ConfigError(("this is not the name of a file",))
-    found = os.path.normpath(_placed(file, path, package))
-    return found, user_file.read_bytes(Path(found), LARGEST)
+    target = os.path.normpath(_placed(file, path, package))
+    return target, user_file.read_bytes(Path(target), LARGEST)
 
 
 def _placed(file: str, path: str, package: str) -> Path:

@@ -1,7 +1,7 @@
-"""Rules that a plant file could state, and does not: of parts, of devices in a zone, of what work needs.
+"""Rules that a plant file could state, and does not: of parts, of devices in a zone, of needs of work.
 
-Nobody can judge what nobody has stated. Where it matters is read off the recipes. What is right there, a
-person knows: a recipe may be wrong, so each value of a fact is offered.
+Nobody can judge a rule that is not stated. Recipes show where a rule matters. A recipe may be wrong, so each
+value of a fact is offered, and a person takes the right one.
 """
 
 from __future__ import annotations
@@ -14,27 +14,29 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.engine import Act, Plant
-from arboleda.kinds.declared import DeviceVerb, Effect
+from arboleda.kinds.declared import Effect
 from arboleda.model.commands import Motion, Switch
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.recipes.authoring import WrittenRecipe
 
+from .declared_kinds import verbs_of
 from .document import Place, dotted
 from .recipe_check import orders
 from .walkthrough import in_order
 from .yaml_flow import flow
 from .yaml_marks import parse
 
-Facts = dict[tuple[str, str], Value]
+FactValues = dict[tuple[str, str], Value]
 HOME = "home"
 MOST_ORDERS = 20  # tasks of a recipe that are looked at
 
 
 @dataclass(frozen=True, kw_only=True)
 class Unstated:
-    """Statement that a plant file lacks: what is not known without it, its place in the file, and the values
-    of which one could stand there.
+    """Rule that a plant file lacks.
+
+    `unknown` says what nobody knows without the rule. One of `values` could stand at `place` in the file.
     """
 
     unknown: str
@@ -48,12 +50,12 @@ class Unstated:
 
     @property
     def plain(self) -> dict[str, Any]:
-        """The same for JSON: each value with what it would be in the file."""
+        """The rule for JSON: each value with its text in the file."""
         choices = [{"text": f"{dotted(self.place)}: {flow(each)}", "value": each} for each in self.values]
         return {"sentence": self.unknown, "place": list(self.place), "choices": choices}
 
     def fits(self, content: bytes) -> bool:
-        """True where a plant file of this content can state it: a kind may be one of another file."""
+        """True where a plant file of this content can state the rule; a kind may be of another file."""
         node, _ = parse(content)
         for key in self.place[:-1]:
             if key not in node.children:
@@ -63,40 +65,40 @@ class Unstated:
 
 
 def unstated(plant: PlantModel) -> tuple[Unstated, ...]:
-    """All that could be stated of the cells whose recipes are the plant's own."""
-    runs, found = Plant(plant, epoch=0, now=0.0).cells, dict[Place, Unstated]()
+    """All rules that could be stated of the cells whose recipes are the plant's own."""
+    runs, by_place = Plant(plant, epoch=0, now=0.0).cells, dict[Place, Unstated]()
     for cell in (each for each in plant.cells if each.handover is None):
         seen = _Seen(cell=cell)
         for recipe in (each for each in cell.recipes if isinstance(each, TreeRecipe | WrittenRecipe)):
             for order, _ in zip(orders(cell, recipe), range(MOST_ORDERS), strict=False):
                 seen.follow(recipe.build(order, runs[cell.name].context).children[0])
         for each in (*_places(seen), *_guards(plant, seen), *_needs(seen)):
-            found.setdefault(each.place, each)
-    return tuple(found.values())
+            by_place.setdefault(each.place, each)
+    return tuple(by_place.values())
 
 
 def notes(plant: PlantModel) -> tuple[str, ...]:
-    """A sentence for each, with what could be written."""
+    """A sentence for each rule that could be stated, with the text that would state it."""
     return tuple(each.offer for each in unstated(plant))
 
 
 def unknowns(plant: PlantModel) -> tuple[str, ...]:
-    """A sentence for each, as the answer of whoever judges the plant has it."""
+    """A sentence for each rule that could be stated, for the answer of a judge of the plant."""
     return tuple(each.unknown for each in unstated(plant))
 
 
 @dataclass(kw_only=True)
 class _Seen:
-    """Acts of the tasks of a cell, in the order of their steps; alternatives count as if all were done."""
+    """Acts of the tasks of a cell in the order of their steps. Of alternatives, all count as done."""
 
     cell: Cell
     taken: set[str] = field(default_factory=set)  # targets
     put: set[str] = field(default_factory=set)
-    entered: dict[tuple[str, str], list[Facts]] = field(default_factory=dict)  # by robot and target
-    called: dict[tuple[str, str], list[Facts]] = field(default_factory=dict)  # by device and verb
+    entered: dict[tuple[str, str], list[FactValues]] = field(default_factory=dict)  # by robot and target
+    called: dict[tuple[str, str], list[FactValues]] = field(default_factory=dict)  # by device and verb
 
     def follow(self, tree: Behaviour) -> None:
-        at, facts = dict[str, str](), Facts()
+        at, facts = dict[str, str](), FactValues()
         hands = {space.hand.name: space.robot.name for space in self.cell.spaces if space.hand.held_fact}
         for command in (node.make(id="") for node in in_order(tree) if isinstance(node, Act)):
             if isinstance(command, Motion) and command.robot in self.cell.reach:
@@ -112,10 +114,12 @@ class _Seen:
             self.called.setdefault((command.robot, command.word), []).append(dict(facts))
             facts |= {(command.robot, fact): value for fact, value in command.sets}
 
-    def doors(self, times: Sequence[Facts], roles: Collection[str]) -> Iterator[tuple[str, str, list[Value]]]:
-        """The facts by which something of a device moves, and that recipes have seen to each time.
+    def doors(
+        self, times: Sequence[FactValues], roles: Collection[str]
+    ) -> Iterator[tuple[str, str, list[Value]]]:
+        """The facts of moving parts of devices that recipes had brought to one value each time.
 
-        Each with its role and its values, of which the recipes' own is the first.
+        Each has the role of its device and all values of the fact, that of the recipes first.
         """
         sure = set.intersection(*(set(each.items()) for each in times)) if times else set[Any]()
         for role, device in self.cell.members:
@@ -130,18 +134,18 @@ def _places(seen: _Seen) -> Iterator[Unstated]:
     cell, targets = seen.cell, sorted((seen.taken | seen.put) - {HOME})
     if cell.places or not targets:
         return
-    value = {each: _kept(is_taken=each in seen.taken, is_put=each in seen.put) for each in targets}
+    value = {each: _keys_of_place(is_taken=each in seen.taken, is_put=each in seen.put) for each in targets}
     unknown = f"{cell.name}: nothing is known of where parts lie"
     yield Unstated(unknown=unknown, place=("cells", cell.name, "places"), values=(value,))
 
 
-def _kept(*, is_taken: bool, is_put: bool) -> dict[str, bool]:
-    """The keys of a place: people fill it where parts are only taken, empty it where they are only put."""
+def _keys_of_place(*, is_taken: bool, is_put: bool) -> dict[str, bool]:
+    """The keys of a place. People fill a place from which parts are only taken, and empty the opposite."""
     return {} if is_taken and is_put else {"supply": True} if is_taken else {"output": True}
 
 
 def _guards(plant: PlantModel, seen: _Seen) -> Iterator[Unstated]:
-    """The zones in which only one robot ever is, and no device: they keep nobody out."""
+    """The zones that only one robot enters, and no device: such a zone keeps nobody out."""
     roles = [role for role, _ in seen.cell.members]
     for zone in plant.zones:
         inside = [space for cell in plant.cells for space in cell.spaces if zone in space.zones]
@@ -158,11 +162,11 @@ def _guards(plant: PlantModel, seen: _Seen) -> Iterator[Unstated]:
 
 
 def _needs(seen: _Seen) -> Iterator[Unstated]:
-    """The work of devices before which recipes see to a moving part of the device, and that needs nothing."""
+    """The work of devices that needs nothing, although recipes move a part of the device before it."""
     cell = seen.cell
     for role, device in cell.members:
         stated = {each.word for each in cell.needs if each.device == device.name}
-        for name, verb in _verbs(device).items():
+        for name, verb in verbs_of(device).items():
             if verb.effect is not Effect.PROCESS or verb.needs or verb.needs_of_others or name in stated:
                 continue
             for _, fact, values in seen.doors(seen.called.get((device.name, name), []), [role]):
@@ -174,14 +178,9 @@ def _needs(seen: _Seen) -> Iterator[Unstated]:
 def _moved(cell: Cell, name: str) -> dict[str, list[Value]]:
     """The values that the moves of a device set, by fact."""
     device = next(each for each in cell.robots if each.name == name)
-    found: dict[str, list[Value]] = {}
-    for verb in (each for each in _verbs(device).values() if each.effect is Effect.MOTION):
+    by_fact: dict[str, list[Value]] = {}
+    for verb in (each for each in verbs_of(device).values() if each.effect is Effect.MOTION):
         for fact, value in verb.sets:
-            if isinstance(value, str | bool) and value not in found.setdefault(fact, []):
-                found[fact].append(value)
-    return found
-
-
-def _verbs(device: Any) -> dict[str, DeviceVerb]:
-    """The verbs of a device by their names; empty for a kind without verbs."""
-    return dict(device.kind.verbs) if device.verb_names else {}
+            if isinstance(value, str | bool) and value not in by_fact.setdefault(fact, []):
+                by_fact[fact].append(value)
+    return by_fact

@@ -1,4 +1,4 @@
-"""The robots of a plant as URDF: each with its prefix, its limits and its speeds."""
+"""Robots of a plant as URDF, each with its prefix, its limits and its speeds."""
 
 from __future__ import annotations
 
@@ -50,17 +50,17 @@ def own_description(robot: Robot) -> Description | None:
 
 
 def prefix(robot: Robot) -> str:
-    """The prefix of the names of its links and joints, as in its `joint_states`."""
+    """The prefix of the names of a robot's links and joints, as in its `joint_states`."""
     return f"{robot.joint_states.twin}_"
 
 
 def root_link(robot: Robot) -> str:
-    """The link whose place in `world` is the arm's base, or node 0 of the mobile's grid."""
+    """The link that stands in `world` at the arm's base, or at node 0 of the mobile robot's grid."""
     return prefix(robot) + ("base_link" if robot.joints else "grid_link")
 
 
 def limits(robot: Robot) -> dict[str, Limits]:
-    """The limits by joint name without prefix, in SI units; a mobile's joints end with its grid."""
+    """The limits by joint name without prefix, in SI units; joints of a mobile robot end with its grid."""
     if robot.joints:
         return {joint.name: Limits(joint.lower, joint.upper, joint.speed) for joint in robot.joints}
     far, speed = robot.floor_grid.position(robot.floor_grid.size - 1), cast(Mobile, robot).speed
@@ -87,8 +87,8 @@ def _described(urdf: str, prefix: str, limits: Mapping[str, Limits]) -> str:
 def _named(plant: PlantModel, name: str) -> Robot:
     robot = plant.robots.get(name)
     if robot is None:
-        known = f"there are {', '.join(plant.robots)}{nearest(name, plant.robots)}"
-        raise ConfigError((f"{shown(name)} is not a robot of the plant {plant.name}; {known}",))
+        allowed = f"there are {', '.join(plant.robots)}{nearest(name, plant.robots)}"
+        raise ConfigError((f"{shown(name)} is not a robot of the plant {plant.name}; {allowed}",))
     if robot.drawn() is None:
         raise ConfigError((f"{shown(name)} has no model, so there is no drawing of it",))
     return robot

@@ -1,4 +1,4 @@
-"""A joint of a URDF that moves an arm: its limits and its speed, checked."""
+"""Joint of a URDF that moves an arm: its limits and its speed, checked."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Axis:
 
 
 def axis(problems: Problems, joint: Tag) -> Axis | None:
-    """The joint, checked against the abilities of any motor here; None, with the problems kept."""
+    """The joint, if a motor can drive it; None, with the problems kept, if not."""
     name, kind = joint.attributes["name"], joint.attributes["type"]
     if mimic := joint.first("mimic"):
         problems.keep(mimic.mark, f"the joint {name} has <mimic>: {FOLLOWS}")
@@ -50,7 +50,7 @@ def _check_direction(problems: Problems, joint: Tag) -> None:
 
 
 def _limits(problems: Problems, joint: Tag, limit: Tag) -> tuple[float, float] | None:
-    """Both ends of the joint; None, with the problem kept, if a motor here cannot have them."""
+    """Both ends of the joint; None, with the problem kept, if no motor can have them."""
     name = joint.attributes["name"]
     lower, upper = (number(problems, limit, key, 0.0) for key in ("lower", "upper"))
     if lower is None or upper is None:
@@ -69,7 +69,7 @@ def _limits(problems: Problems, joint: Tag, limit: Tag) -> tuple[float, float] |
 
 
 def _speed(problems: Problems, joint: Tag, limit: Tag | None) -> float | None:
-    """The speed; None if the file says none, as exporters do that write 0."""
+    """The speed; None where the file has none. Some exporters write 0 for none."""
     speed = number(problems, limit, "velocity", 0.0) if limit else None
     if speed is not None and speed < 0:
         rule = f"velocity of the joint {joint.attributes['name']} must be more than 0 {_unit(joint)}/s"

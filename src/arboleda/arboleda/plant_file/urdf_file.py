@@ -15,7 +15,7 @@ from .urdf_values import check_color, check_origin, check_shapes, name_of
 from .xml_marks import Tag, XmlFault, parse
 from .yaml_marks import clipped
 
-KNOWN = (*MOVING, "fixed")
+JOINT_TYPES = (*MOVING, "fixed")
 NO_ENDS = "the joint {} has no ends; it is taken as -360 deg to 360 deg"
 MOST_LINKS = 300
 REFUSED = {
@@ -36,7 +36,7 @@ class Chain:
 
 
 class WrongLink(Exception):
-    """The plant file names a link that cannot be the one: its key, and a sentence."""
+    """The plant file names a wrong link under `key`; `sentence` says why."""
 
     def __init__(self, key: str, sentence: str) -> None:
         super().__init__(sentence)
@@ -45,18 +45,18 @@ class WrongLink(Exception):
 
 
 def read(name: str, raw: bytes, *, base: str | None = None, tip: str | None = None) -> Chain:
-    """The chain from the link `base` to the link `tip`, found where None; ConfigError with every problem.
+    """The chain from the link `base` to the link `tip`, each of which is looked for where it is None.
 
-    WrongLink if a given link cannot be the one.
+    ConfigError with every problem of the file; WrongLink if a given link cannot begin or end the chain.
     """
     try:
         top = parse(raw)
     except XmlFault as fault:
         raise ConfigError((f"{name}:{fault.mark.line}:{fault.mark.column}: {fault.sentence}",)) from None
-    return _Reader(name, top).chain(base, tip)
+    return _ChainReader(name, top).chain(base, tip)
 
 
-class _Reader:
+class _ChainReader:
     def __init__(self, name: str, top: Tag) -> None:
         self._problems = Problems(name)
         self._top = top
@@ -74,18 +74,18 @@ class _Reader:
         self._problems.finish()
         end = self._tool(foot, tip)
         self._problems.finish()
-        way = self._way(foot, end)
-        axes = [axis(self._problems, joint) for joint in way if joint.attributes["type"] in MOVING]
+        joints = self._joints_between(foot, end)
+        axes = [axis(self._problems, joint) for joint in joints if joint.attributes["type"] in MOVING]
         if not axes:
             self._say(self._top, f"no joint moves between {foot} and {end}; an arm has one at least")
         self._problems.finish()
-        kept = tuple(each for each in axes if each)
+        whole = tuple(each for each in axes if each)
         return Chain(
-            robot=self._pruned(foot, {each.name for each in kept}),
+            robot=self._pruned(foot, {each.name for each in whole}),
             base=foot,
             tip=end,
-            axes=kept,
-            notes=tuple(self._notes(foot, way)),
+            axes=whole,
+            notes=tuple(self._notes(foot, joints)),
         )
 
     def _check_form(self) -> None:
@@ -97,9 +97,9 @@ class _Reader:
         if self._top.name != "robot":
             self._say(self._top, f"a URDF begins with <robot>, not <{clipped(self._top.name)}>")
             self._problems.finish()
-        for name, kept in (("link", self._links), ("joint", self._joints)):
+        for name, tags in (("link", self._links), ("joint", self._joints)):
             for tag in self._top.all(name):
-                self._note(tag, kept)
+                self._note(tag, tags)
         if len(self._links) > MOST_LINKS:
             self._say(self._top, f"it has {len(self._links)} links; at most {MOST_LINKS} are taken")
             self._problems.finish()
@@ -112,22 +112,22 @@ class _Reader:
         self._problems.finish()
         self._check_circles()
 
-    def _note(self, tag: Tag, kept: dict[str, Tag]) -> None:
+    def _note(self, tag: Tag, tags: dict[str, Tag]) -> None:
         name = name_of(self._problems, tag)
         if name is None:
             return
-        if name in kept:
-            first = f"the first is on line {kept[name].mark.line}"
+        if name in tags:
+            first = f"the first is on line {tags[name].mark.line}"
             self._say(tag, f"the {tag.name} {name} is there twice; {first}")
-        kept.setdefault(name, tag)
+        tags.setdefault(name, tag)
 
     def _check_joint(self, name: str, joint: Tag) -> None:
         kind = joint.attributes.get("type", "")
         if kind in REFUSED:
             self._say(joint, f"the joint {name} is {kind}: {REFUSED[kind]}")
-        elif kind not in KNOWN:
-            rule = f"type of the joint {name} must be {choice(KNOWN)}"
-            self._say(joint, f"{rule}, is {shown(kind)}{nearest(kind, KNOWN)}")
+        elif kind not in JOINT_TYPES:
+            rule = f"type of the joint {name} must be {choice(JOINT_TYPES)}"
+            self._say(joint, f"{rule}, is {shown(kind)}{nearest(kind, JOINT_TYPES)}")
         check_origin(self._problems, joint)
         for end in ("parent", "child"):
             tag = joint.first(end)
@@ -142,7 +142,7 @@ class _Reader:
                 self._above[link] = joint
 
     def _check_circles(self) -> None:
-        """Check that the way from each link upwards ends; a circle is named once."""
+        """Check that joints lead from each link up to a first link; a circle is named once."""
         for link in self._links:
             above, visited = link, {link}
             while above in self._above:
@@ -169,7 +169,7 @@ class _Reader:
         return first[0]
 
     def _tool(self, foot: str, wanted: str | None) -> str:
-        """The link at the arm's end: after its last joint that moves, `tool0` or the only end there is."""
+        """The link at the arm's end, behind its last joint that moves: `tool0`, or the only end."""
         below = set(self._below(foot))
         if wanted is not None:
             self._check_link("tip_link", wanted)
@@ -188,7 +188,7 @@ class _Reader:
         return ""
 
     def _last(self, foot: str) -> list[str]:
-        """The links after the last motors, and those that follow these, as the second finger of a hand."""
+        """The links behind the last motors, and links that follow them, as the second finger of a hand."""
         above = {link: self._above[link] for link in self._below(foot) if link != foot and self._moves(link)}
         driven = {link for link, joint in above.items() if joint.first("mimic") is None}
         last = [link for link in above if link in driven and set(self._below(link)) & driven == {link}]
@@ -196,9 +196,9 @@ class _Reader:
         return last + [link for link in above if _leader(above[link]) in leaders]
 
     def _hand(self, foot: str, ends: list[str]) -> str:
-        """A hint, if the arm has moved before these ends part, as it has before its fingers."""
-        ways = [self._way(foot, end) for end in ends]
-        common = [joint for joint in ways[0] if all(joint in way for way in ways)]
+        """A hint that these ends may be fingers, where joints that move come before the ends part."""
+        chains = [self._joints_between(foot, end) for end in ends]
+        common = [joint for joint in chains[0] if all(joint in chain for chain in chains)]
         if not any(joint.attributes["type"] in MOVING for joint in common):
             return ""
         return f"; if they are fingers, write tip_link: {_end_of(common[-1], 'child')}"
@@ -217,20 +217,20 @@ class _Reader:
         if name not in self._links:
             raise WrongLink(key, f"must be a link of the file, is {shown(name)}{nearest(name, self._links)}")
 
-    def _way(self, foot: str, end: str) -> list[Tag]:
+    def _joints_between(self, foot: str, end: str) -> list[Tag]:
         """The joints from foot to end."""
-        way: list[Tag] = []
+        joints: list[Tag] = []
         while end != foot:
-            way.insert(0, self._above[end])
-            end = _end_of(way[0], "parent")
-        return way
+            joints.insert(0, self._above[end])
+            end = _end_of(joints[0], "parent")
+        return joints
 
-    def _notes(self, foot: str, way: list[Tag]) -> Iterator[str]:
+    def _notes(self, foot: str, chain: list[Tag]) -> Iterator[str]:
         for link in self._below(foot):
             joint = self._above[link] if link != foot else None
             if joint is None or joint.attributes["type"] not in MOVING:
                 continue
-            if joint not in way:
+            if joint not in chain:
                 yield f"the joint {joint.attributes['name']} is not on the way to the tool and stays at 0"
             elif joint.attributes["type"] == "continuous":
                 yield NO_ENDS.format(joint.attributes["name"])
@@ -257,7 +257,7 @@ class _Reader:
             waiting += self._children(each)
 
     def _pruned(self, foot: str, moving: set[str]) -> Element:
-        """The links below the foot as a robot of their own; a joint that is not one of `moving` is fixed."""
+        """The links below the foot as a robot of their own; all joints are fixed but those of `moving`."""
         robot = Element("robot", {"name": self._top.attributes.get("name", "robot")})
         robot.extend(_element(material) for material in self._top.all("material"))
         for link in self._below(foot):
@@ -277,13 +277,13 @@ def _all(tag: Tag) -> Iterator[Tag]:
 
 
 def _leader(joint: Tag) -> str | None:
-    """The joint that this one follows."""
+    """The name of the joint that a joint follows."""
     mimic = joint.first("mimic")
     return mimic.attributes.get("joint") if mimic else None
 
 
 def _needs_xacro(tag: Tag) -> bool:
-    """True if xacro has something to do for the tag: a property that nothing uses changes nothing."""
+    """True if xacro would change the tag. A property that nothing uses changes nothing."""
     used = any("${" in value or "$(" in value for value in tag.attributes.values())
     return used or (tag.name.startswith("xacro:") and tag.name != "xacro:property")
 
@@ -298,7 +298,7 @@ def _has_mesh(link: Tag) -> bool:
 
 
 def _element(tag: Tag) -> Element:
-    """The tag without what another namespace has added to it: nothing of that is drawn."""
+    """The tag without names of other namespaces, which are not drawn."""
     element = Element(tag.name, _own(tag.attributes))
     element.extend(_element(child) for child in tag.children if ":" not in child.name)
     return element

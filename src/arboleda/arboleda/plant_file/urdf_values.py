@@ -1,4 +1,4 @@
-"""The numbers, origins and shapes of a URDF; an impossible one is kept as a problem with its line."""
+"""Numbers, origins and shapes of a URDF; for an impossible one, a problem is kept with its line."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ def number(problems: Problems, tag: Tag, key: str, default: float | None = None)
     """One number of a tag; None, with the problem kept, if there is none and no default."""
     if key not in tag.attributes and default is not None:
         return default
-    found = numbers(problems, tag, key, 1)
-    return found[0] if found else None
+    values = numbers(problems, tag, key, 1)
+    return values[0] if values else None
 
 
 def numbers(problems: Problems, tag: Tag, key: str, count: int) -> tuple[float, ...] | None:
@@ -47,11 +47,11 @@ def numbers(problems: Problems, tag: Tag, key: str, count: int) -> tuple[float, 
         wanted = "a number" if count == 1 else f"{count} numbers with spaces between them"
         problems.keep(tag.mark, f"{key} of <{tag.name}> must be {wanted}, is {shown(text)}")
         return None
-    found = tuple(float(word) for word in words)
-    if not all(map(math.isfinite, found)):
+    values = tuple(float(word) for word in words)
+    if not all(map(math.isfinite, values)):
         problems.keep(tag.mark, f"{key} of <{tag.name}> must be finite, is {shown(text)}")
         return None
-    return found
+    return values
 
 
 def check_origin(problems: Problems, tag: Tag) -> None:
@@ -60,8 +60,8 @@ def check_origin(problems: Problems, tag: Tag) -> None:
     if origin is None:
         return
     for key in ("xyz", "rpy"):
-        found = numbers(problems, origin, key, 3) if key in origin.attributes else None
-        if found and key == "xyz" and max(map(abs, found)) > FARTHEST_M:
+        values = numbers(problems, origin, key, 3) if key in origin.attributes else None
+        if values and key == "xyz" and max(map(abs, values)) > FARTHEST_M:
             problems.keep(origin.mark, f"xyz of <origin> is in metres; more than {FARTHEST_M:g} m is too far")
 
 
@@ -81,8 +81,8 @@ def check_shapes(problems: Problems, link: Tag) -> None:
 def check_color(problems: Problems, material: Tag) -> None:
     """Check the colour of a material, if it gives one."""
     color = material.first("color")
-    found = numbers(problems, color, "rgba", 4) if color else None
-    if color and found and not all(0 <= share <= 1 for share in found):
+    shares = numbers(problems, color, "rgba", 4) if color else None
+    if color and shares and not all(0 <= share <= 1 for share in shares):
         problems.keep(color.mark, "rgba of <color> must be 4 numbers from 0 to 1")
 
 
@@ -95,7 +95,7 @@ def _check_shape(problems: Problems, shape: Tag) -> None:
         problems.keep(shape.mark, f"a shape is a {choice([*SIZES, 'mesh'])}, not {shown(shape.name)}")
         return
     for key, count in SIZES[shape.name]:
-        found = numbers(problems, shape, key, count)
-        if found and not all(0 <= value <= FARTHEST_M for value in found):
+        sizes = numbers(problems, shape, key, count)
+        if sizes and not all(0 <= value <= FARTHEST_M for value in sizes):
             rule = f"must be 0 to {FARTHEST_M:g} m"
             problems.keep(shape.mark, f"{key} of <{shape.name}> {rule}, is {shown(shape.attributes[key])}")

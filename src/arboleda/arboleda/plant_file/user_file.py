@@ -1,4 +1,4 @@
-"""Files that a person names on the command line: read whole or refused, whatever they are."""
+"""Files that a person names: read whole or refused, whatever they are; and the users of a broker."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ from pathlib import Path
 from arboleda.host.files import AT_ONCE
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import quoted
+
+from .document import shown
+from .yaml_marks import LARGEST
 
 
 def read_bytes(path: Path, largest: int) -> bytes:
@@ -32,7 +35,7 @@ def read_bytes(path: Path, largest: int) -> bytes:
 
 
 def read_text(path: Path, largest: int) -> str:
-    """The same as text in UTF-8, with or without a byte order mark."""
+    """The text of a file in UTF-8, with or without a byte order mark; ConfigError as in `read_bytes`."""
     try:
         return read_bytes(path, largest).decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -40,7 +43,7 @@ def read_text(path: Path, largest: int) -> str:
 
 
 def check_writable(path: Path) -> None:
-    """Raise ConfigError if a file cannot be written, before minutes of work; makes it if there is none."""
+    """Raise ConfigError if a file cannot be written, before minutes of work; makes a new one."""
     try:
         os.close(os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT | AT_ONCE, 0o666))
     except ValueError:
@@ -55,3 +58,24 @@ def check_new(path: Path) -> None:
         raise ConfigError((f"{path}: is there already; name another file",))
     check_writable(path)
     path.unlink()
+
+
+def broker_users(path: Path) -> dict[str, str]:
+    """Passwords by user from lines `NAME:PASSWORD`; ConfigError with every problem, never with a password."""
+    lines = read_text(path, LARGEST).splitlines()
+    users: dict[str, str] = {}
+    problems = []
+    for number, line in enumerate(lines, start=1):
+        if not line.strip() or line.startswith("#"):
+            continue
+        name, _, password = line.partition(":")
+        if not (name.strip() and password):
+            problems.append(f"{path}:{number}:1: must be NAME:PASSWORD, neither of them empty")
+        elif name.strip() in users:
+            problems.append(f"{path}:{number}:1: the user {shown(name.strip())} is there twice")
+        users[name.strip()] = password
+    if not users:
+        problems.append(f"{path}: names no user; write lines of NAME:PASSWORD")
+    if problems:
+        raise ConfigError(tuple(problems))
+    return users

@@ -1,4 +1,4 @@
-"""Versions of a plant: what was put to work and when, kept beside its plant file."""
+"""Versions of a plant: the files that were put to work, and when, in a folder beside the plant file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ DIGITS = 4  # of the name of a version's folder
 class Version:
     """Version: plant file and trees as they were, and a digest of each other file that was used.
 
-    `at` is when, in UTC (ISO 8601), `by` who, `changes` what was another than before, a line each.
+    `at` is the time in UTC (ISO 8601), `by` the person. `changes` has a line for each change against the
+    version before.
     """
 
     number: int
@@ -42,7 +43,7 @@ class Version:
 
     @property
     def digest(self) -> str:
-        """One hash of all of its files: equal ones are the same plant."""
+        """One hash of all files of the version; equal hashes are equal plants."""
         return _digest_of(self.files.plant, {**_digests(self.files.contents), **self.others})
 
 
@@ -50,30 +51,30 @@ def version_of(files: PlantFiles, *, at: str, number: int = 0, by: str = "", not
     """A version of a plant's files that no folder has yet."""
     editable = {name: each for name, each in files.contents.items() if is_editable(files, name)}
     others = {name: each for name, each in files.contents.items() if name not in editable}
-    kept = replace(files, contents=editable)
-    return Version(number=number, at=at, by=by, note=note, files=kept, others=_digests(others))
+    editable_files = replace(files, contents=editable)
+    return Version(number=number, at=at, by=by, note=note, files=editable_files, others=_digests(others))
 
 
 def is_editable(files: PlantFiles, name: str) -> bool:
-    """True for the plant file and for trees: what a version brings back."""
+    """True for the plant file and for trees, which a version can bring back."""
     return name == files.plant or name.endswith(ENDING)
 
 
 def whole(version: Version) -> PlantFiles:
-    """The files of a version to be compared: of those that it has no content of, the digest stands for it."""
+    """The files of a version for a comparison; of a file without content, the digest stands for it."""
     digests = {name: each.encode() for name, each in version.others.items()}
     return replace(version.files, contents={**digests, **version.files.contents})
 
 
 class Versions:
-    """Versions: those of one plant file, oldest first, in a folder `.arboleda` beside it."""
+    """Versions of one plant file, oldest first, in a folder `.arboleda` beside it."""
 
     def __init__(self, plant_file: Path) -> None:
         self._plant_file = plant_file
         self._folder = plant_file.parent / FOLDER / plant_file.name
 
     def all(self) -> list[Version]:
-        """Every version that is there whole; StartError where they cannot be read."""
+        """Every version that is there; StartError where one cannot be read."""
         try:
             names = sorted(os.listdir(self._folder)) if self._folder.is_dir() else []
         except OSError as error:
@@ -81,20 +82,20 @@ class Versions:
         return [read(self._folder / name) for name in names if name.isdigit()]
 
     def last(self) -> Version | None:
-        """The version that was kept last; None if there is none."""
+        """The last version; None if there is none."""
         return next(iter(reversed(self.all())), None)
 
     def find(self, number: int) -> Version:
         """A version by its number; ConfigError if there is none."""
-        known = self.all()
-        found = next((each for each in known if each.number == number), None)
-        if found is None:
-            numbers = ", ".join(str(each.number) for each in known) or "none"
+        versions = self.all()
+        version = next((each for each in versions if each.number == number), None)
+        if version is None:
+            numbers = ", ".join(str(each.number) for each in versions) or "none"
             raise ConfigError((f"there is no version {number} of {self._plant_file}; kept: {numbers}",))
-        return found
+        return version
 
     def keep(self, version: Version) -> Version:
-        """Keep one more under the next number; StartError, and nothing is kept, if the disk refuses."""
+        """Keep a version under the next number; StartError, and nothing is kept, if the disk refuses."""
         last = self.last()
         numbered = replace(version, number=1 if last is None else last.number + 1)
         write(self._folder / str(numbered.number).zfill(DIGITS), numbered)
@@ -103,10 +104,9 @@ class Versions:
         return numbered
 
     def bring_back(self, version: Version) -> None:
-        """Write plant file and trees of a kept version where they were, all of them or none; StartError if
-        the disk refuses.
+        """Write plant file and trees of a version to where they were, all or none; StartError if that fails.
 
-        What is cut off in the middle is done by `go_on`: who starts next finds all of it.
+        Where a crash cuts this off, `go_on` completes it at the next start.
         """
         mark = self._folder / MARK
         if len(version.files.contents) > 1:
@@ -125,14 +125,14 @@ class Versions:
         self._unmark()
 
     def _unmark(self) -> None:
-        """Remove the mark for good: after a power cut it would write over what people edited since."""
+        """Remove the mark for good: a mark that came back by a power cut would undo later edits of people."""
         mark = self._folder / MARK
         if mark.exists():
             mark.unlink(missing_ok=True)
             sync_folder(self._folder)
 
     def forget(self, version: Version) -> None:
-        """Forget a version that was kept and never was in its place; a kill leaves none of it or all."""
+        """Delete a version that never was at work; a kill leaves all of it or nothing."""
         folder = self._folder / str(version.number).zfill(DIGITS)
         gone = _aside(folder)
         with suppress(OSError):
@@ -140,22 +140,22 @@ class Versions:
         shutil.rmtree(gone, ignore_errors=True)
 
     def go_on(self) -> Version | None:
-        """Write the rest of a version that was cut off in the middle of `bring_back`; None if none was."""
+        """Bring back the version whose `bring_back` was cut off, and return it; None if none was cut off."""
         try:
             number = int((self._folder / MARK).read_text("ascii"))
-        except (OSError, ValueError):  # a name that cannot be a folder has no versions either
+        except (OSError, ValueError):  # no mark, or a folder of an impossible name
             return None
         version = self.find(number)
         self.bring_back(version)
         return version
 
     def is_in_place(self, version: Version) -> bool:
-        """True where plant file and trees are those of this version now."""
+        """True where plant file and trees are those of this version."""
         rows = version.files.contents.items()
         return all(_digest_now(self._path(version, name)) == _digest(each) for name, each in rows)
 
     def others_now(self, version: Version) -> tuple[str, ...]:
-        """The other files of its time that are gone or others now; they do not come back."""
+        """The other files that are gone or different from those of the version; they do not come back."""
         return tuple(
             name
             for name, digest in version.others.items()
@@ -237,7 +237,7 @@ def _put_in_place(fresh: Path, folder: Path, *, syncs: bool = True) -> None:
 
 
 def _aside(path: Path) -> Path:
-    """The name of a file or folder before it is whole, and of a folder that is being deleted."""
+    """The path of a file or folder while it is being written, or of a folder while it is being deleted."""
     return path.with_name(f".{path.name}.{os.getpid()}")
 
 
@@ -273,7 +273,7 @@ def _content(file: Path) -> bytes | None:
 
 
 def _put_back(written: Mapping[Path, bytes | None]) -> None:
-    """Give files their contents of before, as far as the disk lets that be done."""
+    """Give files their former contents, as far as the disk allows."""
     for file, content in written.items():
         with suppress(StartError):
             if content is None:
@@ -304,7 +304,7 @@ def _digests(contents: Mapping[str, bytes]) -> dict[str, str]:
 
 
 def _digest_of(plant: str, digests: Mapping[str, str]) -> str:
-    found = blake2b(plant.encode(), digest_size=16)
+    digest = blake2b(plant.encode(), digest_size=16)
     for name, each in sorted(digests.items()):
-        found.update(f"\n{name} {each}".encode())
-    return found.hexdigest()
+        digest.update(f"\n{name} {each}".encode())
+    return digest.hexdigest()

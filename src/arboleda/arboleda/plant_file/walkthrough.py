@@ -14,7 +14,7 @@ from arboleda.engine import Act
 from arboleda.model.by_class import nearest
 from arboleda.recipes.place_questions import PlaceQuestion
 
-from .foresight import Foresight, Key, Scene, common
+from .foresight import Foresight, Scene, SceneKey, common
 from .scene_variables import key_of
 
 MOST_SCENES = 256  # that are followed at once
@@ -24,7 +24,7 @@ ANSWER = "=answer"
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """Outcome of a step: the scenes in which it can have succeeded, failed, or been skipped."""
+    """Outcome of a step: the scenes after it, by whether it succeeded, failed, or was skipped."""
 
     done: tuple[Scene, ...] = ()
     failed: tuple[Scene, ...] = ()
@@ -32,7 +32,7 @@ class Outcome:
 
     @property
     def passed(self) -> tuple[Scene, ...]:
-        """The scene in which the next step of a sequence begins."""
+        """The scenes in which the next step of a sequence begins."""
         return self.done + self.skipped
 
     def plus(
@@ -46,7 +46,7 @@ class Outcome:
         return self.plus(done=other.done, failed=other.failed, skipped=other.skipped)
 
     def joined(self) -> Outcome:
-        """The same without the marks that tell one way from another."""
+        """The outcome with one scene for each result, which has the values that its scenes share."""
         passed = common(self.passed)
         return Outcome(
             done=passed if self.done else (),
@@ -56,16 +56,16 @@ class Outcome:
 
 
 Rule = Callable[["Walkthrough", Any, Sequence[Scene]], Outcome]
-"""What becomes of scenes in a node of some class."""
+"""The outcome of a node of some class that begins in these scenes."""
 
 
 @dataclass(kw_only=True)
 class Walkthrough:
     """Walkthrough of one tree, by a rule for each class of nodes.
 
-    `findings` has what is wrong on some way, and the place of its node, if that is known. `doubts` counts the
-    conditions that cannot be decided in advance: what follows from one may follow from it again, so the ways
-    that it parts are one from where they meet.
+    `findings` are the objections on some path, each with the place of its node, if there is one. `doubts`
+    counts conditions that cannot be decided in advance. Such a condition may decide alike when it is asked
+    again, so its branches are joined where they meet: else impossible paths would be followed.
     """
 
     foresight: Foresight
@@ -73,7 +73,7 @@ class Walkthrough:
     findings: dict[tuple[str | None, str], None] = field(default_factory=dict)
     place: str | None = None
     doubts: int = 0
-    known_touched: dict[Behaviour, set[Key]] = field(default_factory=dict)
+    touched_by_node: dict[Behaviour, set[SceneKey]] = field(default_factory=dict)
 
     def follow(self, node: Behaviour, scenes: Sequence[Scene]) -> Outcome:
         """The outcome of a node that begins in one of these scenes."""
@@ -87,12 +87,12 @@ class Walkthrough:
         return thin if self.doubts == before else thin.joined()
 
     def unsure(self, node: Behaviour, scenes: Sequence[Scene]) -> Outcome:
-        """The outcome of a node whose children are ticked in an order, and so far, as nobody knows."""
+        """The outcome of a node that may tick its children in any order, and break off anywhere."""
         self.doubts += 1
-        found = self.blurred(node, scenes)
+        blurred = self.blurred(node, scenes)
         for child in node.children:
-            self.follow(child, found)
-        return Outcome(done=found, failed=found, skipped=found)
+            self.follow(child, blurred)
+        return Outcome(done=blurred, failed=blurred, skipped=blurred)
 
     def check(self, act: Act, scenes: Sequence[Scene]) -> None:
         """Note the objections to a command in these scenes."""
@@ -102,17 +102,17 @@ class Walkthrough:
                 self.findings[self.place, sentence] = None
 
     def blurred(self, node: Behaviour, scenes: Iterable[Scene]) -> tuple[Scene, ...]:
-        """The scenes without what a part of a tree may change, halfway or in any order."""
+        """The scenes without all values that a part of a tree may change."""
         keys = self.touched(node)
         return few([scene.without(keys) for scene in scenes])
 
-    def touched(self, node: Behaviour) -> set[Key]:
+    def touched(self, node: Behaviour) -> set[SceneKey]:
         """The facts and places that a part of a tree may change."""
-        if node not in self.known_touched:
-            self.known_touched[node] = set(self._touched(node))
-        return self.known_touched[node]
+        if node not in self.touched_by_node:
+            self.touched_by_node[node] = set(self._touched(node))
+        return self.touched_by_node[node]
 
-    def _touched(self, node: Behaviour) -> Iterator[Key]:
+    def _touched(self, node: Behaviour) -> Iterator[SceneKey]:
         for each in node.iterate():
             if isinstance(each, Node):
                 yield from map(key_of, each.writes)
@@ -130,19 +130,19 @@ class Walkthrough:
         self.place = before
 
     def apart(self) -> Walkthrough:
-        """The same, whose findings are its own."""
+        """A walkthrough like this one, with findings of its own."""
         return replace(self, findings={})
 
 
-def answer_key(act: Behaviour) -> Key:
+def answer_key(act: Behaviour) -> SceneKey:
     """The key of the answer to a question."""
     return act.id.hex, ANSWER
 
 
 def few(scenes: Iterable[Scene]) -> tuple[Scene, ...]:
-    """The scenes, each once; of too many what they have in common."""
+    """The scenes, each once; where they are too many, one scene with the values that all share."""
     all_of_them = tuple(scenes)
-    if len(all_of_them) < 2:  # as mostly
+    if len(all_of_them) < 2:
         return all_of_them
     distinct = tuple({scene.mark: scene for scene in all_of_them}.values())
     return distinct if len(distinct) <= MOST_SCENES else common(distinct)
@@ -150,8 +150,8 @@ def few(scenes: Iterable[Scene]) -> tuple[Scene, ...]:
 
 def in_order(node: Behaviour) -> Iterator[Behaviour]:
     """The node and all below it, each before its children."""
-    rest = [node]
-    while rest:
-        each = rest.pop()
+    waiting = [node]
+    while waiting:
+        each = waiting.pop()
         yield each
-        rest += reversed(each.children)
+        waiting += reversed(each.children)

@@ -40,7 +40,7 @@ class XmlFault(Exception):
 
 def parse(raw: bytes) -> Tag:
     """The outermost element; XmlFault if the bytes are no XML of the accepted kind."""
-    reader = _Reader()
+    reader = _TagReader()
     try:
         reader.parser.Parse(raw, True)
     except expat.ExpatError as error:
@@ -51,7 +51,7 @@ def parse(raw: bytes) -> Tag:
     return reader.top.children[0]
 
 
-class _Reader:
+class _TagReader:
     def __init__(self) -> None:
         self.top = Tag("", {}, Mark(1, 1))
         self._open = [self.top]

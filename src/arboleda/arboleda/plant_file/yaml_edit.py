@@ -1,7 +1,7 @@
 """Edits of a YAML text: one value is set or removed, and every other character stays as it was.
 
-The text itself is cut, so comments, order, alignment and anchors are those of whoever wrote it. Each edit is
-read again before it counts: it changed exactly what was to be changed, or it is refused.
+The text itself is cut, so comments, order, alignment and anchors stay. Each new text is read again: an edit
+that changed anything else is refused.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from arboleda.model.errors import ArboledaError
 
 from .document import Place, dotted
 from .yaml_flow import block, flow, key_text
-from .yaml_marks import YamlFault, parse
-from .yaml_spans import Key, Span, Style, spans
+from .yaml_marks import YamlFault, parse, plain_value
+from .yaml_spans import EntryKey, Span, Style, spans
 
 BOM = "\ufeff"
 ELSEWHERE = "the file refers to it elsewhere (&, *), or writes it in a rare way; change it there"
@@ -25,9 +25,9 @@ class EditRefused(ArboledaError):
 
 
 def with_value(raw: bytes, place: Place, value: Any) -> bytes:
-    """The text with this plain value at a place, made with what leads to it where there is none.
+    """The text with this plain value at a place; mappings that lead to the place are made where they lack.
 
-    EditRefused where something on the way is no mapping, or the change would reach other places.
+    EditRefused where a value above the place is no mapping, or where the change would reach other places.
     """
     if not _is_finite(value):
         raise EditRefused(f"{dotted(place)} must have numbers, neither nan nor infinity")
@@ -44,7 +44,7 @@ def without(raw: bytes, place: Place) -> bytes:
 
 
 def _is_finite(value: Any) -> bool:
-    """False for data with a number that equals no number, or is beyond all of them."""
+    """False for data with nan or infinity."""
     if isinstance(value, dict):
         return all(map(_is_finite, value.values()))
     if isinstance(value, list):
@@ -54,12 +54,9 @@ def _is_finite(value: Any) -> bool:
 
 def _plain(raw: bytes) -> Any:
     try:
-        root, faults = parse(raw)
+        return plain_value(raw)
     except YamlFault as fault:
         raise EditRefused(f"line {fault.mark.line}: {fault.sentence}") from None
-    if faults:
-        raise EditRefused(f"line {faults[0].mark.line}: {faults[0].sentence}")
-    return root.value
 
 
 def _cut(raw: bytes) -> _Cut:
@@ -72,7 +69,7 @@ def _text(raw: bytes, text: str) -> bytes:
 
 
 def _verified(raw: bytes, place: Place, wanted: Any) -> bytes:
-    """The new text, read again; EditRefused where it does not say exactly what it should."""
+    """The new text, read again; EditRefused where its value is not `wanted`."""
     try:
         root, faults = parse(raw)
     except YamlFault as fault:
@@ -82,11 +79,11 @@ def _verified(raw: bytes, place: Place, wanted: Any) -> bytes:
     return raw
 
 
-def _set(node: Any, rest: Place, place: Place, value: Any) -> Any:
+def _set(node: Any, inside: Place, place: Place, value: Any) -> Any:
     """A copy of plain data with a value in it."""
-    if not rest:
+    if not inside:
         return value
-    key, *deeper = rest
+    key, *deeper = inside
     if node is None and isinstance(key, str):
         node = {}
     if isinstance(node, dict) and isinstance(key, str):
@@ -97,17 +94,17 @@ def _set(node: Any, rest: Place, place: Place, value: Any) -> Any:
     raise EditRefused(f"{dotted(place)}: there is no such place in the file")
 
 
-def _removed(node: Any, rest: Place, place: Place) -> Any:
+def _removed(node: Any, inside: Place, place: Place) -> Any:
     """A copy of plain data without one entry."""
-    if not rest:
+    if not inside:
         raise EditRefused("the whole file cannot be removed")
-    key, *deeper = rest
+    key, *deeper = inside
     if isinstance(node, dict) and key in node:
         inner = {key: _removed(node[key], tuple(deeper), place)} if deeper else {}
         return {name: inner.get(name, each) for name, each in node.items() if deeper or name != key}
     if isinstance(node, list) and isinstance(key, int) and 0 <= key < len(node):
-        inside = [_removed(node[key], tuple(deeper), place)] if deeper else []
-        return [*node[:key], *inside, *node[key + 1 :]]
+        entry = [_removed(node[key], tuple(deeper), place)] if deeper else []
+        return [*node[:key], *entry, *node[key + 1 :]]
     raise EditRefused(f"{dotted(place)}: there is nothing to remove")
 
 
@@ -120,25 +117,25 @@ class _Cut:
         self.root = root
 
     def set(self, place: Place, wanted: Any, before: Any) -> str:
-        """The text in which all that differs at `place` is as in `wanted`."""
-        chain, known = self._chain(place)
-        for key in known:
+        """The text in which the value at `place` is as in `wanted`; only differences are cut."""
+        chain, keys = self._chain(place)
+        for key in keys:
             wanted, before = wanted[key], before[key]
-        if len(known) == len(place) or chain[-1].style in (Style.ALIAS, Style.SCALAR):
-            return self._replace(chain, known, wanted, before)
-        return self._insert(chain[-1], place[len(known)], wanted[place[len(known)]])
+        if len(keys) == len(place) or chain[-1].style in (Style.ALIAS, Style.SCALAR):
+            return self._replace(chain, keys, wanted, before)
+        return self._insert(chain[-1], place[len(keys)], wanted[place[len(keys)]])
 
     def remove(self, place: Place, wanted: Any) -> str:
         """The text without the entry at `place`."""
-        chain, known = self._chain(place)
-        if len(known) < len(place):  # within an alias, which becomes what it refers to
-            for key in known:
+        chain, keys = self._chain(place)
+        if len(keys) < len(place):  # within an alias, which becomes what it refers to
+            for key in keys:
                 wanted = wanted[key]
-            return self._replace(chain, known, wanted, None)
+            return self._replace(chain, keys, wanted, None)
         mapping, key = chain[-2], place[-1]
         if len(mapping.entries) == 1:
             empty: Any = [] if mapping.is_list else {}
-            return self._replace(chain[:-1], known[:-1], empty, None)
+            return self._replace(chain[:-1], keys[:-1], empty, None)
         return self._without(mapping, key)
 
     def _chain(self, place: Place) -> tuple[list[Span], Place]:
@@ -150,18 +147,18 @@ class _Cut:
             chain.append(chain[-1].entries[key])
         return chain, place[: len(chain) - 1]
 
-    def _replace(self, chain: list[Span], known: Place, wanted: Any, before: Any) -> str:
-        """The text with another value in a span; of lists and mappings alike only what differs changes."""
+    def _replace(self, chain: list[Span], keys: Place, wanted: Any, before: Any) -> str:
+        """The text with another value in a span; of two like lists or mappings, only entries that differ."""
         span = chain[-1]
         alike = isinstance(wanted, dict) and isinstance(before, dict) and wanted.keys() == before.keys()
         rows = isinstance(wanted, list) and isinstance(before, list) and len(wanted) == len(before)
         if span.entries and (alike or rows):
             return self._inner(span, wanted, before)
-        above = chain[-2] if known else None
-        if span.style is not Style.BLOCK or above is None or known[-1] not in above.keys:
+        above = chain[-2] if keys else None
+        if span.style is not Style.BLOCK or above is None or keys[-1] not in above.keys:
             space = " " if span.start == span.end else ""  # of an empty value
             return self._put(span.start, span.end, space + flow(wanted))
-        colon = self.text.index(":", above.keys[known[-1]][1]) + 1
+        colon = self.text.index(":", above.keys[keys[-1]][1]) + 1
         line_end = self._line_end(colon)
         if line_end > span.start:
             return self._put(span.start, span.end, flow(wanted))
@@ -173,12 +170,12 @@ class _Cut:
         text = self.text
         keys: list[Any] = [key for key in span.entries if wanted[key] != before[key]]
         for key in sorted(keys, key=lambda each: -span.entries[each].start):
-            # What stands before the last cut is where it was.
+            # Cuts go from the last entry to the first, so that the spans of earlier entries stay right.
             cut = _Cut(text, self.root)
             text = cut._replace([span, span.entries[key]], (key,), wanted[key], before[key])
         return text
 
-    def _insert(self, span: Span, key: Key, value: Any) -> str:
+    def _insert(self, span: Span, key: EntryKey, value: Any) -> str:
         """The text with one more entry behind the others of a list or mapping."""
         entry = flow(value) if span.is_list else f"{key_text(str(key))}: {flow(value)}"
         if span.style is Style.FLOW:
@@ -202,7 +199,7 @@ class _Cut:
         lengths = {end - start for start, end in span.keys.values()}
         return min(widths) if len(widths) == 1 and len(lengths) > 1 else 0
 
-    def _without(self, span: Span, key: Key) -> str:
+    def _without(self, span: Span, key: EntryKey) -> str:
         """The text without one of several entries."""
         keys = list(span.entries)
         number, start, end = keys.index(key), span.entry_start(key), span.entries[key].end
@@ -223,5 +220,5 @@ class _Cut:
         return self.text.rfind("\n", 0, at) + 1
 
     def _line_end(self, at: int) -> int:
-        found = self.text.find(self.newline, at)
-        return len(self.text) if found < 0 else found
+        end = self.text.find(self.newline, at)
+        return len(self.text) if end < 0 else end

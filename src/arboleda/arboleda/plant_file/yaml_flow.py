@@ -42,11 +42,7 @@ def block(head: str, value: Any, indent: str, newline: str) -> str:
 
 def key_text(key: str) -> str:
     """A key, in quotes only where it needs them; any word is a key."""
-    return (
-        key
-        if re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", key, re.ASCII)
-        else json.dumps(key, ensure_ascii=False)
-    )
+    return key if KEY.fullmatch(key) else json.dumps(key, ensure_ascii=False)
 
 
 def _word(text: str) -> str:

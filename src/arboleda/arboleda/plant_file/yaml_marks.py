@@ -1,4 +1,4 @@
-"""Strict YAML: bytes -> nodes that know their line and column; nothing is turned into something else.
+"""Strict YAML: bytes -> nodes that know their line and column; no text is read as another type.
 
 Plain `true`/`false`, decimal numbers and empty values are themselves, as in YAML 1.2; every other
 scalar (`on`, `yes`, `012`, `12:30`) is text. Keys are always text. Anchors are read; tags, merge keys,
@@ -18,8 +18,8 @@ from arboleda.model.outside import plain
 
 LARGEST = 256 * 1024  # bytes of a file
 MOST_VALUES = 50_000  # values after aliases are followed
-MOST_REPEATED = 5_000  # of them by aliases: nobody has written these, and a check looks at each
-LETTERS = 100  # of a text or a key that count as one more value
+MOST_REPEATED = 5_000  # values by aliases: a short file could have millions, and a check looks at each
+LETTERS = 100  # so many letters of a text or a key count as one more value
 DEEPEST = 20  # levels
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
@@ -41,12 +41,12 @@ class Mark:
 
 
 @dataclass(frozen=True)
-class Node:
+class YamlNode:
     """A value, where it stands, and its children by key (text) or position."""
 
     value: Any
     mark: Mark
-    children: dict[str | int, Node] = field(default_factory=dict)
+    children: dict[str | int, YamlNode] = field(default_factory=dict)
     keys: dict[str | int, Mark] = field(default_factory=dict)
     size: int = 1
 
@@ -60,7 +60,7 @@ class YamlFault(Exception):
         self.sentence = sentence
 
 
-def parse(raw: bytes) -> tuple[Node, list[YamlFault]]:
+def parse(raw: bytes) -> tuple[YamlNode, list[YamlFault]]:
     """The document and the faults that did not stop the reading; raises the YamlFault that did."""
     text = _text(raw)
     try:
@@ -105,8 +105,8 @@ def _text(raw: bytes) -> str:
         (CONTROL, "the character {!a} is not allowed in a text file"),
         (INDENTING_TAB, "a tab stands before the text; indent with spaces"),
     ):
-        if found := pattern.search(text):
-            place = found.end() - 1
+        if match := pattern.search(text):
+            place = match.end() - 1
             raise YamlFault(_at(text, place), sentence.format(text[place]))
     return text
 
@@ -135,11 +135,11 @@ class _Composer:
 
     def __init__(self, text: str) -> None:
         self.events: Iterator[Any] = yaml.parse(text, Loader=LOADER)
-        self.anchors: dict[str, Node] = {}
+        self.anchors: dict[str, YamlNode] = {}
         self.faults: list[YamlFault] = []
         self.repeated = 0  # values by aliases
 
-    def document(self) -> tuple[Node, list[YamlFault]]:
+    def document(self) -> tuple[YamlNode, list[YamlFault]]:
         next(self.events)
         event = next(self.events)
         if isinstance(event, yaml.StreamEndEvent):
@@ -151,7 +151,7 @@ class _Composer:
             raise YamlFault(_mark(event.start_mark), "a second document starts here; write one per file")
         return root, self.faults
 
-    def node(self, event: Any, depth: int) -> Node:
+    def node(self, event: Any, depth: int) -> YamlNode:
         mark = _mark(event.start_mark)
         if isinstance(event, yaml.AliasEvent):
             if event.anchor not in self.anchors:
@@ -168,30 +168,30 @@ class _Composer:
             self.anchors[event.anchor] = node
         return node
 
-    def repeat(self, anchor: str, mark: Mark) -> Node:
+    def repeat(self, anchor: str, mark: Mark) -> YamlNode:
         node = self.anchors[anchor]
         self.repeated += node.size
         if self.repeated > MOST_REPEATED:
             raise YamlFault(mark, f"aliases (*{clipped(anchor)}) repeat more than {MOST_REPEATED} values")
         return node
 
-    def built(self, event: Any, mark: Mark, depth: int) -> Node:
+    def built(self, event: Any, mark: Mark, depth: int) -> YamlNode:
         if isinstance(event, yaml.MappingStartEvent):
             return self.mapping(mark, depth)
         if isinstance(event, yaml.SequenceStartEvent):
             return self.sequence(mark, depth)
         value = scalar(event.value) if event.implicit[0] else event.value
-        return Node(value, mark, size=1 + len(event.value) // LETTERS)
+        return YamlNode(value, mark, size=1 + len(event.value) // LETTERS)
 
-    def sequence(self, mark: Mark, depth: int) -> Node:
-        children: dict[str | int, Node] = {}
+    def sequence(self, mark: Mark, depth: int) -> YamlNode:
+        children: dict[str | int, YamlNode] = {}
         while not isinstance(event := next(self.events), yaml.SequenceEndEvent):
             children[len(children)] = self.node(event, depth + 1)
         value = [child.value for child in children.values()]
-        return Node(value, mark, children, size=_size(children))
+        return YamlNode(value, mark, children, size=_size(children))
 
-    def mapping(self, mark: Mark, depth: int) -> Node:
-        children: dict[str | int, Node] = {}
+    def mapping(self, mark: Mark, depth: int) -> YamlNode:
+        children: dict[str | int, YamlNode] = {}
         keys: dict[str | int, Mark] = {}
         while not isinstance(event := next(self.events), yaml.MappingEndEvent):
             key = self.key(event)
@@ -204,7 +204,7 @@ class _Composer:
                 continue
             keys[key], children[key] = _mark(event.start_mark), child
         value = {key: child.value for key, child in children.items()}
-        return Node(value, mark, children, keys, size=_size(children))
+        return YamlNode(value, mark, children, keys, size=_size(children))
 
     def key(self, event: Any) -> str:
         mark = _mark(event.start_mark)
@@ -219,6 +219,6 @@ class _Composer:
         return str(event.value)
 
 
-def _size(children: dict[str | int, Node]) -> int:
+def _size(children: dict[str | int, YamlNode]) -> int:
     keys = sum(len(key) // LETTERS for key in children if isinstance(key, str))
     return 1 + keys + sum(child.size for child in children.values())

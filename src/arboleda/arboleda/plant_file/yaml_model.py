@@ -1,4 +1,4 @@
-"""A YAML that a person wrote in the form of those of arboleda_description -> the arm's chain of joints."""
+"""YAML of an arm, in the form of the files of arboleda_description -> the arm's chain of joints."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pydantic import Field
 from arboleda.kinds.joints import Joint
 
 from .document import Document, Place, shown
-from .drawing import ROOT, in_words
+from .own_urdf import ROOT, in_words
 from .robot_models import ArmFile, JointFile, described_joint
 from .urdf_axis import Axis
 from .urdf_file import NO_ENDS, Chain
@@ -22,7 +22,7 @@ UPWARDS = (0.0, 0.0, 1.0)
 
 
 class OwnArmFile(ArmFile):
-    """The form of a packaged arm; keys that only its drawing and its readers need may be left out."""
+    """The form of an arm of arboleda_description, without keys that only its drawing and readers need."""
 
     model: str = ""
     kind: Literal["arm"] = "arm"

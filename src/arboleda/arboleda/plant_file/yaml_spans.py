@@ -1,4 +1,4 @@
-"""Spans of a YAML text: where each key and each value of it begins and ends, to the character."""
+"""Spans of a YAML text: the first and last character of each key and each value."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import yaml
 
 from .yaml_marks import LOADER
 
-Key = str | int
+EntryKey = str | int
 
 
 class Style(Enum):
@@ -25,17 +25,19 @@ class Style(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Span:
-    """Value from character `start` to `end`, its anchor within; `keys` has where the keys of a mapping begin
-    and end. An alias has no entries: what it refers to is written elsewhere."""
+    """Value from character `start` to `end`, its anchor included.
+
+    `keys` has the begin and end of each key of a mapping. An alias has no entries: they stand elsewhere.
+    """
 
     start: int
     end: int
     style: Style
     is_list: bool = False
-    entries: dict[Key, Span] = field(default_factory=dict)
-    keys: dict[Key, tuple[int, int]] = field(default_factory=dict)
+    entries: dict[EntryKey, Span] = field(default_factory=dict)
+    keys: dict[EntryKey, tuple[int, int]] = field(default_factory=dict)
 
-    def entry_start(self, key: Key) -> int:
+    def entry_start(self, key: EntryKey) -> int:
         """The begin of an entry: its key, or its value where it has no key."""
         return self.keys[key][0] if key in self.keys else self.entries[key].start
 
@@ -59,27 +61,35 @@ def _span(event: Any, events: Iterator[Any]) -> Span:
 
 
 def _list(event: Any, events: Iterator[Any]) -> Span:
-    entries: dict[Key, Span] = {}
+    entries: dict[EntryKey, Span] = {}
     while not isinstance(each := next(events), yaml.SequenceEndEvent):
         entries[len(entries)] = _span(each, events)
     return _collection(event, each, entries, {}, is_list=True)
 
 
 def _mapping(event: Any, events: Iterator[Any]) -> Span:
-    entries: dict[Key, Span] = {}
-    keys: dict[Key, tuple[int, int]] = {}
+    entries: dict[EntryKey, Span] = {}
+    keys: dict[EntryKey, tuple[int, int]] = {}
     while not isinstance(each := next(events), yaml.MappingEndEvent):
         value = _span(next(events), events)
-        if each.value not in keys:  # one that is there twice is a fault, and the first counts
+        if each.value not in keys:  # a key that is there twice is a fault; the first counts
             keys[each.value] = (each.start_mark.index, each.end_mark.index)
             entries[each.value] = value
     return _collection(event, each, entries, keys, is_list=False)
 
 
 def _collection(
-    first: Any, last: Any, entries: dict[Key, Span], keys: dict[Key, tuple[int, int]], *, is_list: bool
+    first: Any,
+    last: Any,
+    entries: dict[EntryKey, Span],
+    keys: dict[EntryKey, tuple[int, int]],
+    *,
+    is_list: bool,
 ) -> Span:
-    """A list or mapping; one in a block ends with its last entry, not where the next thing begins."""
+    """The span of a list or mapping. In a block it ends with its last entry.
+
+    The parser has the end of a block where the next value begins.
+    """
     flow = first.flow_style
     end = last.end_mark.index if flow else max(each.end for each in entries.values())
     style = Style.FLOW if flow else Style.BLOCK

@@ -1,4 +1,4 @@
-"""The zones that robots share: the poses that lie in them and the moves that cross them."""
+"""Zones that robots share: the poses in them, and the moves that cross them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from arboleda.model import zone_plan
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Cell, Crossing, Interlock, Pose, Robot, Workspace
 
-from .document import Document, Place, choice, nearest, shown
+from .document import Document, Place, choice, misnamed, nearest, shown
 from .pose_confusion import alike_crossings, confusions
 from .shapes import MAPPING, NAME_RULE, WORDS, ZoneShape, is_name
 from .storage_form import plan_problems
@@ -22,7 +22,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Spot:
+class PoseOfCell:
     """One pose of one cell, both by the names they have in the plant model."""
 
     cell: str
@@ -31,15 +31,15 @@ class Spot:
 
 @dataclass(frozen=True, kw_only=True)
 class Zone:
-    """Poses and moves of a zone, each with its position in its list; a move is the set of its two ends."""
+    """Poses and moves of a zone, each with its index in the file; a move is the set of its two ends."""
 
     name: str
-    poses: dict[Spot, int]
-    moves: dict[frozenset[Spot], int]
+    poses: dict[PoseOfCell, int]
+    moves: dict[frozenset[PoseOfCell], int]
     interlocks: tuple[Interlock, ...] = ()
 
-    def place(self, *spots: Spot) -> Place:
-        """The place in the file of this pose, or of the move between two; a move need not be named itself."""
+    def place(self, *spots: PoseOfCell) -> Place:
+        """The place in the file of this pose, or of the move between two; `moves` if it has no row."""
         if len(spots) > 1:
             place: Place = (*SECTION, self.name, "moves")
             number = self.moves.get(frozenset(spots))
@@ -48,9 +48,9 @@ class Zone:
 
 
 def zones(document: Document, cells: Sequence[Cell]) -> tuple[Zone, ...]:
-    """Every zone of the file; parts that are wrong are left out, with the problems kept.
+    """Every zone of the file; wrong poses and moves are left out, with the problems kept.
 
-    `cells` are those that could be read; poses of the others are not looked at.
+    `cells` are the cells that could be read; poses of other cells are not checked.
     """
     if not document.has(SECTION):
         return ()
@@ -94,23 +94,23 @@ def _device_names(cell: Cell) -> set[str]:
 def _keep_unplanned(
     document: Document, cell: Cell, unplanned: Mapping[str, str], all_zones: Sequence[Zone]
 ) -> None:
-    """Keep a problem for each pose for which no way can be planned."""
+    """Keep a problem for each pose through which no path can be planned; `unplanned` has the sentences."""
     for pose, sentence in unplanned.items():
-        spot = Spot(cell=cell.name, pose=pose)
+        spot = PoseOfCell(cell=cell.name, pose=pose)
         zone = next(zone for zone in all_zones if spot in zone.poses)
         document.problem(zone.place(spot), sentence)
 
 
 def _keep_confusions(document: Document, cell: Cell, space: Workspace, all_zones: Sequence[Zone]) -> None:
-    """Keep a problem for each zone in which a robot might be without anybody knowing it."""
-    for found in confusions(space) if space.zones else ():
-        zone = next(zone for zone in all_zones if zone.name == found.zone)
-        spots = [Spot(cell=cell.name, pose=name) for name in found.named]
-        document.problem(zone.place(*spots), f"in cell {cell.name}: {found.sentence}")
+    """Keep a problem for each zone in which a robot might be although it counts as outside."""
+    for confusion in confusions(space) if space.zones else ():
+        zone = next(zone for zone in all_zones if zone.name == confusion.zone)
+        spots = [PoseOfCell(cell=cell.name, pose=name) for name in confusion.named]
+        document.problem(zone.place(*spots), f"in cell {cell.name}: {confusion.sentence}")
 
 
 def _placed(cell: Cell, pose: Pose, all_zones: Sequence[Zone]) -> Pose:
-    spot = Spot(cell=cell.name, pose=pose.name)
+    spot = PoseOfCell(cell=cell.name, pose=pose.name)
     return replace(pose, zones=frozenset(zone.name for zone in all_zones if spot in zone.poses))
 
 
@@ -140,7 +140,7 @@ def _zone(document: Document, name: str, cells: Sequence[Cell]) -> Zone:
 
 
 def _interlocks(document: Document, place: Place, cells: Sequence[Cell]) -> tuple[Interlock, ...]:
-    """The devices that are in a zone by themselves, each with when it is and when it is not."""
+    """The devices that occupy a zone by themselves, each with the facts or verbs by which it does."""
     robots = {device.name: device for cell in cells for device in cell.robots}
     free = _of_devices(document, (*place, "free_while"), robots, _facts)
     held = _of_devices(document, (*place, "held_while"), robots, _verbs)
@@ -162,16 +162,15 @@ def _of_devices(
     read: Callable[[Document, Place, Any], tuple[T, ...]],
 ) -> dict[str, tuple[T, ...]]:
     """The values of a mapping by the names of devices; problems of wrong names are kept."""
-    found = {}
+    values = {}
     devices = {name: robot for name, robot in robots.items() if robot.verb_names}
     for name in document.keys(place):
         if name in devices:
-            found[name] = read(document, (*place, name), devices[name])
-        elif name in robots or name not in _named_devices(document):  # else its mistakes are reported there
-            there = f"must be {choice(devices)}" if devices else "there is no declared device"
-            sentence = f"{there}, is {shown(name)}{nearest(name, devices)}"
+            values[name] = read(document, (*place, name), devices[name])
+        elif name in robots or name not in _named_devices(document):  # else reported at the device
+            sentence = misnamed(name, devices, "there is no declared device")
             document.problem(place, sentence, at=(*place, name))
-    return found
+    return values
 
 
 def _facts(document: Document, place: Place, device: Any) -> tuple[tuple[str, Value], ...]:
@@ -188,8 +187,7 @@ def _verbs(document: Document, place: Place, device: Any) -> tuple[str, ...]:
     verbs = document.read_plain(WORDS, place) or []
     for index, verb in enumerate(verbs):
         if verb not in device.verb_names:
-            there = f"must be {choice(device.verb_names)}, is {shown(verb)}"
-            document.problem((*place, index), f"{there}{nearest(verb, device.verb_names)}")
+            document.problem((*place, index), misnamed(verb, device.verb_names, ""))
     return tuple(verbs)
 
 
@@ -201,12 +199,14 @@ def _named_devices(document: Document) -> list[str]:
     return [str(document.value((*place, "name")) or place[-1]) for place in places]
 
 
-def _spots(document: Document, place: Place, texts: list[str], cells: Sequence[Cell]) -> list[Spot | None]:
+def _spots(
+    document: Document, place: Place, texts: list[str], cells: Sequence[Cell]
+) -> list[PoseOfCell | None]:
     return [_spot(document, (*place, index), text, cells) for index, text in enumerate(texts)]
 
 
-def _spot(document: Document, place: Place, text: str, cells: Sequence[Cell]) -> Spot | None:
-    """The spot in a text such as `sis_a pickup`; None if it is none, or if its cell could not be read."""
+def _spot(document: Document, place: Place, text: str, cells: Sequence[Cell]) -> PoseOfCell | None:
+    """The pose in a text such as `sis_a pickup`; None if there is none, or if its cell could not be read."""
     name, *words = text.lower().split() or [""]
     names = document.keys(("cells",))
     if name not in names:
@@ -219,10 +219,10 @@ def _spot(document: Document, place: Place, text: str, cells: Sequence[Cell]) ->
         return None
     poses, pose = _poses(cell), "_".join(words)  # "station 7" and "station_7" are the same target
     if pose not in poses:
-        known = f"targets of {name} are {choice(poses)}" if poses else f"{name} has no targets"
-        document.problem(place, f"{known}, is {shown(text)}{nearest(pose, poses)}")
+        allowed = f"targets of {name} are {choice(poses)}" if poses else f"{name} has no targets"
+        document.problem(place, f"{allowed}, is {shown(text)}{nearest(pose, poses)}")
         return None
-    return Spot(cell=name, pose=poses[pose].name)
+    return PoseOfCell(cell=name, pose=poses[pose].name)
 
 
 def _poses(cell: Cell) -> dict[str, Pose]:
@@ -231,9 +231,9 @@ def _poses(cell: Cell) -> dict[str, Pose]:
 
 
 def _move(
-    document: Document, place: Place, ends: Sequence[Spot | None], inside: Collection[Spot | None]
-) -> frozenset[Spot] | None:
-    """The move between two ends; None, with the problem kept, if it cannot cross a zone with `inside`."""
+    document: Document, place: Place, ends: Sequence[PoseOfCell | None], inside: Collection[PoseOfCell | None]
+) -> frozenset[PoseOfCell] | None:
+    """The move between two ends; None, with the problem kept, if it cannot cross a zone with these poses."""
     a, b = ends
     if a is None or b is None:
         return None
@@ -251,13 +251,13 @@ def _move(
 
 def _once(document: Document, place: Place, values: Iterable[T | None], sentence: str) -> dict[T, int]:
     """The values, with their first positions; keeps a problem for each repeated one."""
-    found: dict[T, int] = {}
+    positions: dict[T, int] = {}
     for index, value in enumerate(values):
-        if value is not None and value in found:
+        if value is not None and value in positions:
             document.problem((*place, index), sentence)
         elif value is not None:
-            found[value] = index
-    return found
+            positions[value] = index
+    return positions
 
 
 def _crossings(cell: Cell, all_zones: Sequence[Zone]) -> tuple[Crossing, ...]:

@@ -37,8 +37,8 @@ from .place_questions import PlaceHandle
 from .sharing import check_at_once, using
 
 RETURNS = "a recipe returns a step, e.g. work(...)"
-MOST_TIMES = 100_000  # that something is done again
-MOST_NESTED, MOST_SHOWN = 50, 4  # recipes within each other; those of them that a sentence names
+MOST_TIMES = 100_000  # of a repeat or a retry
+MOST_NESTED, MOST_SHOWN = 50, 4  # recipes within each other; recipes that a sentence names
 FINAL = frozenset({Reason.STOPPED, Reason.CANCELLED, Reason.PART_LOST, Reason.INTERRUPTED, Reason.INTERNAL})
 CHOOSE = Phrase("step.choose", "choose")
 IS = Phrase("step.is", "is {answer}")
@@ -55,7 +55,7 @@ OTHER_ANSWER = Phrase("recipe.other_answer", "{robot} answered {answer}; the rec
 class WrittenRecipe(Recipe):
     """A recipe that is a function; `function(cell, **values)` returns its step.
 
-    `unused`: a sentence for each step that it makes with a name and never does, where it was tried.
+    `unused` has a sentence for each named step that the recipe makes and never does, once it was tried.
     """
 
     function: Callable[..., Step]
@@ -66,11 +66,11 @@ class WrittenRecipe(Recipe):
         return self.function.__module__.startswith("arboleda.recipes.")
 
     def __reduce__(self) -> tuple[Callable[..., object], tuple[str, str]]:
-        """Its place in its module, by which `pickle` takes it to another process, as it does functions."""
-        return _found, (self.function.__module__, self.function.__qualname__)
+        """The name of the recipe in its module, by which `pickle` takes it to another process."""
+        return _by_qualified_name, (self.function.__module__, self.function.__qualname__)
 
 
-def _found(module: str, name: str) -> object:
+def _by_qualified_name(module: str, name: str) -> object:
     return reduce(getattr, name.split("."), import_module(module))
 
 
@@ -85,21 +85,22 @@ def recipe(
     part_from: str | None = None,
     ends_with: Mapping[str, Value] | None = None,
 ) -> Callable[[Callable[..., Step]], WrittenRecipe]:
-    """Makes a recipe of a function of a Kit and parameters that are annotated with what they can be.
+    """Makes a recipe of a function of a Kit and of parameters that are annotated with their values.
 
-    `title` is its name in sentences, where they exist in several languages; `about` is shown to people, else
-    the first line of the docstring. `is_default`: a task that names no recipe means this one. `alone`: the
-    role of the one robot that works in it, whose name may stand for that of the cell; `alone_called`: that
-    role in sentences. `part_from`: the group of targets at whose first one the part of a task waits, where no
-    robot brings it. `ends_with`: what is so once a task is done, `{"nest": 1, "reader.lid": "open"}`: the
-    number of parts at a place, which a parameter may name, and facts.
+    `title` is the name of the recipe in sentences, for names in several languages. `about` is shown to
+    people, else the first line of the docstring. `is_default`: tasks that name no recipe are of this one.
+    `alone` is the role of the only robot that works in the recipe: tasks may name the robot in place of the
+    cell. `alone_called` is that role in sentences. `part_from` is a group of targets: the part of a task
+    waits at the first of them, where no robot brings parts. `ends_with` are facts and numbers of parts once a
+    task is done,
+    `{"nest": 1, "reader.lid": "open"}`; a parameter may name the place.
     """
 
     def made(function: Callable[..., Step]) -> WrittenRecipe:
         notes = notes_of(name, function)
         declared = list(inspect.signature(function).parameters.values())[1:]
         read = {each.name: parameter(each.name, notes.get(each.name, each.default)) for each in declared}
-        missing = next((each for each, found in read.items() if found is None), None)
+        missing = next((each for each, value in read.items() if value is None), None)
         if missing is not None:
             forms = f"{missing}: Choice[1, 2] or {missing}=Choice(1, 2)"
             raise RecipeError(f"{name}: {missing} needs what it can be, e.g. {forms}")
@@ -112,12 +113,12 @@ def recipe(
             check_end(name, {str(order.values.get(what, what)): value for what, value in end}, context.cell)
             return built
 
-        known = tuple(each for each in read.values() if each is not None)
+        parameter_list = tuple(each for each in read.values() if each is not None)
         first_line = (inspect.getdoc(function) or "").partition("\n")[0]
         return WrittenRecipe(
             name=name,
             build=build,
-            parameters=known,
+            parameters=parameter_list,
             about=first_line if about is None else about,
             is_default=is_default,
             alone=alone,
@@ -151,7 +152,7 @@ def _build(
 
 
 def check_end(name: str, end: Mapping[str, Value], cell: Cell) -> None:
-    """RecipeError where a cell never says whether a task has ended as its recipe says."""
+    """RecipeError where no device and no place of a cell can report an end that a recipe states."""
     places = {place.target: place for place in cell.counted}
     members: Sequence[tuple[str, Any]] = [each for each in cell.members if each[1].verb_names]
     facts = {f"{role}.{fact}": (device, fact) for role, device in members for fact in device.fact_names}
@@ -170,19 +171,22 @@ def _reason(word: Reason | str) -> Reason:
     try:
         return Reason(word)
     except ValueError:
-        known = among(str(word), [each.value for each in Reason])
-        raise RecipeError(f"retry knows no cause {quoted(word)}; {known}") from None
+        allowed = among(str(word), [each.value for each in Reason])
+        raise RecipeError(f"retry knows no cause {quoted(word)}; {allowed}") from None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Making:
-    """A recipe in the making: those that run each other in it, and what was chosen by whose answer."""
+    """A recipe that is being built.
+
+    `running` are the recipes that run each other in it, `chosen` its choices, each with the question.
+    """
 
     running: tuple[tuple[str, Mapping[str, object]], ...] = ()
     chosen: list[tuple[Step, Question]] = field(default_factory=list)
 
     def within(self, name: str, values: Mapping[str, object]) -> Making:
-        """The same, of a recipe in it; RecipeError where it would run itself without an end."""
+        """The making of another recipe inside this one; RecipeError where a recipe would run itself."""
         running = (*self.running, (name, values))
         if running[-1] in self.running or len(running) > MOST_NESTED:
             ring = running[running.index(running[-1]) :] if running[-1] in self.running else running
@@ -192,12 +196,12 @@ class Making:
 
 
 def check_choices(step: Step, making: Making) -> None:
-    """RecipeError where something is chosen by an answer that nobody has been asked for by then."""
+    """RecipeError where a choice comes before the question whose answer it needs."""
     if not making.chosen:
         return
     order = {id(node): number for number, node in enumerate(step.iterate())}  # children before their parents
     for node, question in making.chosen:
-        first = order.get(id(next(node.iterate())), -1)  # a choice that stands nowhere is none
+        first = order.get(id(next(node.iterate())), -1)  # -1: the choice is not used
         if first >= 0 and order.get(id(question), first) >= first:
             how = "let it stand before, as in work(seen, cell.choose(seen, ...))"
             raise RecipeError(
@@ -206,12 +210,12 @@ def check_choices(step: Step, making: Making) -> None:
 
 
 def _one(step: Step | Sequence[Step], where: str) -> Step:
-    """The step, or several of them as one."""
+    """The step, or a list of steps as one step."""
     return usable(step, f"{where} is given") if not is_list(step) else chain(WORK(), flat(list(step), where))
 
 
 def _several(parts: Sequence[Step], where: str) -> list[Step]:
-    """The steps, each of them whole; RecipeError where there is none, or one twice."""
+    """The steps, each by itself; RecipeError where there is none, or where one is there twice."""
     if not parts:
         raise RecipeError(f"{where} has no step")
     steps = [usable(each, f"{where} is given") for each in parts]
@@ -257,19 +261,19 @@ class Kit(Offers):
         return self._context.cell.name
 
     def devices(self, *roles: str) -> list[Any]:
-        """The devices in these roles, to be told what to do."""
+        """The devices in these roles."""
         return [self.device(role) for role in roles]
 
     def device(self, role: str) -> Any:
-        """The device in this role, to be told what to do."""
+        """The device in this role."""
         return handle(self._named(role), self._context)
 
     def _named(self, role: str) -> Robot:
-        known = self._context.cell.roles
-        if role not in known:
+        roles = self._context.cell.roles
+        if role not in roles:
             name = self._context.cell.name
-            raise RoleError(f"{name} has no device in the role {role!r}; {among(role, known)}")
-        return known[role]
+            raise RoleError(f"{name} has no device in the role {role!r}; {among(role, roles)}")
+        return roles[role]
 
     def group(self, name: str) -> tuple[str, ...]:
         """The targets of a group of the cell, in their order."""
@@ -280,7 +284,7 @@ class Kit(Offers):
         return groups[name]
 
     def place(self, target: str) -> PlaceHandle:
-        """The place at a target, of which a recipe may ask whether a part is there."""
+        """The place at a target, which a recipe may ask whether a part is there."""
         places = [place.target for place in self._context.cell.places]
         if target not in places:
             cell = self._context.cell.name
@@ -288,15 +292,17 @@ class Kit(Offers):
         return PlaceHandle(target, self._context)
 
     def handover(self, path: str = "") -> str:
-        """The target at which one robot takes what another one brings on this path, or on most paths."""
+        """The target at which a robot takes the part that another robot brings on this path, else on most."""
         handover = self._context.cell.handover
         if handover is None:
             raise RoleError(f"{self._context.cell.name} has no handover from one robot to another")
         return handover.after(path)
 
     def using(self, roles: str | Sequence[str], *parts: Step | Sequence[Step]) -> Step:
-        """The steps, with devices that other cells share held meanwhile; a recipe without it holds each from
-        its first use to its last. What this cell does not share is its own anyway.
+        """The steps, with shared devices held meanwhile.
+
+        A recipe without `using` holds each shared device from its first use to its last. Devices that this
+        cell does not share are always its own.
         """
         names = [roles] if isinstance(roles, str) else roles
         cell = self._context.cell
@@ -315,7 +321,7 @@ class Kit(Offers):
         )
 
     def choose(self, question_step: Step, ways: Mapping[Value, Step | Sequence[Step]]) -> Step:
-        """A way for each answer to a step that asks a device or a person; another answer is a failure."""
+        """A branch for each answer to a step that asks a device or a person; another answer is a failure."""
         question = question_of(question_step)
         if question is None:
             raise RecipeError(
@@ -327,12 +333,12 @@ class Kit(Offers):
             return question.answer == value
 
         def other() -> Failure | None:
-            """A way that was taken and failed has named its cause."""
+            """The cause of a chosen branch that failed; else a failure for an answer without a branch."""
             answer = question.answer
             if answer in ways:
                 return self._context.failures.first
-            known = tuple(map(shown, ways))
-            sentence = OTHER_ANSWER(robot=question.name, answer=value_text(answer), known=known)
+            expected = tuple(map(shown, ways))
+            sentence = OTHER_ANSWER(robot=question.name, answer=value_text(answer), known=expected)
             return Failure(reason=Reason.REJECTED, sentence=sentence)
 
         def branch(value: Value, way: Step | Sequence[Step]) -> Step:
@@ -365,9 +371,9 @@ class Kit(Offers):
         pause_s: float = 1.0,
         causes: Collection[Reason | str] | None = None,
     ) -> Step:
-        """The step again, `times` more at most and after a pause, where it fails for one of the causes.
+        """The step; where it fails by one of the causes, the step again after a pause, at most `times` more.
 
-        Without `causes` after any failure that another try may mend: not a stop, not a part that is lost.
+        Without `causes`, all failures count that another try may mend: not a stop, not a lost part.
         """
         reasons = set(Reason) - FINAL if causes is None else {_reason(each) for each in causes}
         most, pause = _times(times, "times of retry", 0), _seconds(pause_s, "pause_s of retry")
@@ -378,23 +384,24 @@ class Kit(Offers):
         return Times(_one(step, "repeat"), self._context.time, times=_times(times, "times of repeat", 1))
 
     def timeout(self, step: Step, seconds: float) -> Step:
-        """The step, which is left and has failed after so many seconds."""
+        """The step, which is halted and fails after so many seconds."""
         return AtMost(_one(step, "timeout"), self._context, seconds=_seconds(seconds, "timeout"))
 
     def fallback(self, *parts: Step) -> Step:
-        """The first step that does not fail; where all do, the last one's failure counts."""
+        """The steps in order until one does not fail; where all do, the failure of the last one counts."""
         *others, last = _several(parts, "fallback")
         forgiven = [Forgiven(each, self._context.failures) for each in others]
         return steps.framed(steps.selector(FALLBACK(), *forgiven, last))
 
     def recover(self, work: Step | Sequence[Step], rescue: Step | Sequence[Step]) -> Step:
-        """The work, and where it fails the rescue after it; it has failed then for the cause of the work,
-        whatever becomes of the rescue.
+        """The work, and the rescue after work that fails.
+
+        Then the whole step fails by the cause of the work, also where the rescue succeeds.
         """
         tried = _one(work, "recover")
         rescued = Rescue(_one(rescue, "recover"), self._context.failures)
         return steps.framed(steps.selector(RECOVER(), tried, rescued))
 
     def invert(self, step: Step) -> Step:
-        """The step, which has to fail."""
+        """The step, which succeeds if it fails, and fails if it succeeds."""
         return Inverted(_one(step, "invert"), self._context.failures)

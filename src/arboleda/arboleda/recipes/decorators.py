@@ -1,6 +1,6 @@
-"""Steps around steps: again after a failure, at most so long, instead of a failure.
+"""Steps around steps: retry, repeat, time limit, fallback, rescue, inversion.
 
-They are woken by the plant's events and times; the decorators of py_trees ask a clock of their own.
+The plant's events and times wake them. Decorators of py_trees would ask a clock of their own.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ NOT_FAILED = Phrase("recipe.not_failed", "{step} was to fail, and did not")
 
 
 class Around(Keeps, Decorator):
-    """A step around another one, which is the step that screens name."""
+    """A step around a step; screens name the inner one."""
 
     frame = True
 
@@ -134,7 +134,7 @@ class Times(Around):
 
 
 class AtMost(Around):
-    """Its step ends within `seconds`, or is left, and the task fails."""
+    """Its step ends within `seconds`, or is halted and fails."""
 
     def __init__(self, child: Behaviour, context: Context, *, seconds: float) -> None:
         super().__init__(TIMEOUT, child)
@@ -159,7 +159,7 @@ class AtMost(Around):
 
 
 class Forgiven(Around):
-    """Its step may fail, for another one is tried then."""
+    """Its step may fail, for another step is tried after it."""
 
     def __init__(self, child: Behaviour, failures: Failures) -> None:
         super().__init__(TRY, child)
@@ -172,9 +172,9 @@ class Forgiven(Around):
 
 
 class Rescue(Around):
-    """Its step is done because another one has failed, whose cause stays that of the failure.
+    """Does its step because another step has failed; the cause of that failure stays the cause.
 
-    Meanwhile the cause is put aside, so that what the step retries or answers is its own.
+    Meanwhile the cause is put aside, so that the step sees only failures of its own.
     """
 
     def __init__(self, child: Behaviour, failures: Failures) -> None:
@@ -216,7 +216,7 @@ class Rescue(Around):
 
 
 def with_second(cause: Failure, second: Failure | None) -> Failure:
-    """The first cause, with what a rescue failed for."""
+    """The first cause, with the cause of a failed rescue."""
     if second is None:
         return cause
     sentence = RESCUE_FAILED(cause=cause.sentence, second=second.sentence)
@@ -224,13 +224,13 @@ def with_second(cause: Failure, second: Failure | None) -> Failure:
 
 
 def first_cause(sentence: Sentence) -> Sentence:
-    """The sentence of the first cause, without what a rescue failed for."""
+    """The sentence of the first cause, without that of a failed rescue."""
     cause = sentence.values.get("cause") if sentence.key == RESCUE_FAILED.key else None
     return first_cause(cause) if isinstance(cause, Sentence) else sentence
 
 
 class Inverted(Around):
-    """Its step has to fail."""
+    """Succeeds if its step fails, and fails if its step succeeds."""
 
     def __init__(self, child: Behaviour, failures: Failures) -> None:
         super().__init__(INVERT, child)

@@ -15,14 +15,14 @@ class RoleError(RecipeError):
 
 
 class Offers:
-    """Base of what a recipe calls by name, so that a misspelled name is told with the names that there are.
+    """Base of objects whose methods a recipe calls: the error for a misspelled name lists the right names.
 
-    Its text is what sentences call it.
+    `str` of such an object is its name in sentences.
     """
 
 
 def misspelled(error: AttributeError) -> str | None:
-    """The sentence for a call that a cell or a device does not offer; None for any other error."""
+    """The sentence for a method that a cell or a device does not have; None for any other error."""
     if not isinstance(error.obj, Offers) or error.name is None:
         return None
     offered = [name for name in dir(error.obj) if not name.startswith("_")]

@@ -1,4 +1,4 @@
-"""The devices of a cell as a recipe tells them what to do: each call returns a step."""
+"""Devices of a cell as a recipe commands them: each call returns a step."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ ASKING = Phrase("doing.ask", "asking {person}")
 
 
 class Question(Leaf):
-    """A step that ends with one of these `answers`, by which a recipe may go on."""
+    """A step that ends with one of these `answers`, by which a recipe may choose a branch."""
 
     answers: tuple[Value, ...] = ()
 
@@ -54,19 +54,19 @@ class Question(Leaf):
         """The answer; None where there is none yet."""
         raise NotImplementedError
 
-    def check(self, ways: Mapping[Value, object]) -> None:
-        """RecipeError where the ways are not those of all answers, and of no others."""
+    def check(self, branches: Mapping[Value, object]) -> None:
+        """RecipeError unless there is a branch for each answer, and for nothing else."""
         allowed = ", ".join(map(shown, self.answers))
-        for answer in ways:
+        for answer in branches:
             if answer not in self.answers:
                 raise RecipeError(f"{self.name} never answers {quoted(answer)}; its answers: {allowed}")
         for answer in self.answers:
-            if answer not in ways:
+            if answer not in branches:
                 raise RecipeError(f"choose has no way for {quoted(answer)}, which {self.name} may answer")
 
 
 class Ask(Act, Question):
-    """A question to a device, and what it may answer; `by` is its name, `asked` the question in words."""
+    """A question to a device or a person; `by` is the name of who answers, `asked` the question in words."""
 
     by = asked = ""
     _answer: Value | None = None  # of an earlier start of the plant
@@ -92,21 +92,21 @@ class Ask(Act, Question):
 
 
 class FactCheck(Require):
-    """Check of what a device says: each of these `facts` has this value."""
+    """Check that a device reports these `facts`."""
 
     device = ""
     facts: Mapping[str, Value] = {}
 
 
 class FactWait(Await):
-    """Wait until a device says so: each of these `facts` has this value."""
+    """Wait until a device reports these `facts`."""
 
     device = ""
     facts: Mapping[str, Value] = {}
 
 
 class AskInZones(composites.Sequence):
-    """Question to a device that is in zones while it answers: it takes them before."""
+    """Question to a device that is in zones while it answers; the zones are taken before."""
 
     def __init__(self, question: Ask, zones: Sequence[Step]) -> None:
         super().__init__(question.name, memory=True, children=[*zones, question])
@@ -114,13 +114,13 @@ class AskInZones(composites.Sequence):
 
 
 def question_of(step: object) -> Question | None:
-    """The question of a step that asks, also one in zones."""
-    found = step.asked if isinstance(step, AskInZones) else step
-    return found if isinstance(found, Question) else None
+    """The question of a step that asks, also in zones; None for any other step."""
+    question = step.asked if isinstance(step, AskInZones) else step
+    return question if isinstance(question, Question) else None
 
 
 class Handle(Offers):
-    """A device of the cell, in whatever it can be asked; its kind adds what it can be told."""
+    """A device of the cell: the facts that it may be asked for. Subclasses add its commands."""
 
     def __init__(self, device: Robot, context: Context) -> None:
         self._device = device
@@ -130,14 +130,14 @@ class Handle(Offers):
         return self._device.name
 
     def says(self, **facts: Value) -> Step:
-        """A check: the device says so, else the task fails."""
+        """A check: the device reports these facts, else the task fails."""
         self._check(facts)
         step = FactCheck(SAYS(), self._context.failures, partial(self._objection, facts))
         step.device, step.facts = self._device.name, facts
         return step
 
     def becomes(self, *, at_most_s: float, **facts: Value) -> Step:
-        """Wait until the device says so, at most `at_most_s` s."""
+        """Wait until the device reports these facts, at most `at_most_s` s."""
         self._check(facts)
 
         def late() -> Failure:
@@ -152,7 +152,7 @@ class Handle(Offers):
         return step
 
     def _of(self, step: StepOf) -> StepOf:
-        """A step with commands to the device, noted where cells share that; work in it is noted already."""
+        """The step, in which commands to a shared device are marked; steps inside are marked already."""
         if self._device.name in self._context.cell.shared:
             for node in step.iterate():
                 if isinstance(node, Leaf) and node.uses is None:
@@ -160,10 +160,10 @@ class Handle(Offers):
         return step
 
     def _check(self, facts: Mapping[str, Value]) -> None:
-        """UseError for what the device never says."""
+        """UseError for a fact that the device never reports."""
 
     def _unsaid(self, facts: Mapping[str, Value]) -> list[str]:
-        """Those of the facts that the device does not say."""
+        """The names of the facts that the device does not report."""
         return [name for name, value in facts.items() if self._reported(name) != value]
 
     def _reported(self, fact: str) -> Value | None:
@@ -201,7 +201,7 @@ class DeviceHandle(Handle):
             def make(id: str) -> Any:
                 return kind.command(id=id, robot=name, verb=verb, values=given)
 
-            order = make("")  # wrong words are told at once
+            order = make("")  # raises UseError for wrong values at once
             zones = steps.interlocked(self._context, order)
             words = " ".join([verb, *map(shown, given.values())])
             if not isinstance(order, QueryCall):
@@ -222,7 +222,7 @@ class PersonHandle(Handle):
     _device: Person
 
     def ask(self, question: str, answers: Sequence[str] = ("done",), *, at_most_s: float = PATIENCE_S) -> Ask:
-        """Ask them, and wait for one of the answers; the step of `cell.choose`."""
+        """Ask the person, and wait for one of the answers; a question for `cell.choose`."""
         if not question.strip() or len(question) > LONGEST_QUESTION:
             raise RecipeError(f"a question has 1 to {LONGEST_QUESTION} characters; this one {len(question)}")
         wrong = [
@@ -248,8 +248,8 @@ class PersonHandle(Handle):
 class Pick:
     """Stop of a tour at which the robot takes hold of a part.
 
-    `check`: True: its piece sensor has to see the part before and after; "auto": where it has one; None: as
-    the cell has it.
+    `check` True: the piece sensor has to see the part before and after. "auto": if the robot has a sensor.
+    None: as the cell says.
     """
 
     target: str
@@ -258,7 +258,7 @@ class Pick:
 
 @dataclass(frozen=True)
 class Place:
-    """Stop of a tour at which the robot lets go of its part; `check` as of a `Pick`."""
+    """Stop of a tour at which the robot lets go of its part; `check` as for a `Pick`."""
 
     target: str
     check: PieceCheck | None = None
@@ -268,7 +268,7 @@ class RobotHandle(Handle):
     """A robot that goes from target to target: an arm, or a mobile robot."""
 
     def go(self, target: str) -> Step:
-        """Go to a target and stay there, unless it lies in a shared zone: from there it goes home."""
+        """Go to a target and stay there; from a target in a shared zone, the robot goes home."""
         return self.visit(target)
 
     def visit(self, target: str, *work: Step | Sequence[Step]) -> Step:
@@ -280,10 +280,10 @@ class RobotHandle(Handle):
         return self._of(steps.sequence(VISIT(pose=pose.sentence), *parts))
 
     def tour(self, *stops: str | Pick | Place) -> Step:
-        """Go from target to target, take hold and let go there, and stay at the last one.
+        """Go from target to target, take hold and let go there, and stay at the last target.
 
-        The zones of each leg, from one target outside all zones to the next such target, are held over the
-        whole leg, also while it works there; so nobody else gets between two stops in a zone.
+        A leg leads from one target outside all zones to the next such target. Its zones are held over the
+        whole leg, also during work, so that no other robot gets between two stops in a zone.
         """
         name = self._device.name
         poses = [self._pose(each if isinstance(each, str) else each.target) for each in stops]
@@ -302,7 +302,7 @@ class RobotHandle(Handle):
         return steps.let_go(self._context, self._device.name, check=check)
 
     def follow(self, path: str) -> Step:
-        """Drive over a path of the cell, by its code; first to its start, where the cell allows that."""
+        """Drive over a path of the cell, by its code; before that to its start, where the cell allows it."""
         space = self._context.cell.reach[self._device.name]
         codes = [each.code for each in space.paths]
         if path not in codes:
@@ -311,22 +311,23 @@ class RobotHandle(Handle):
         return self._of(chain(FOLLOW(path=path), follow))
 
     def home(self) -> Step:
-        """Go where it waits."""
+        """Go to the target where the robot waits."""
         home = self._context.cell.reach[self._device.name].home
         parts = steps.visit_from_anywhere(self._context, self._device.name, home, [])
         return self._of(steps.sequence(steps.GO_HOME(), *parts))
 
     def grip(self) -> Step:
         """Take hold of a part."""
-        self._context.cell.workspaces[self._device.name].hand.grip(id="")  # what it cannot is told at once
+        hand = self._context.cell.workspaces[self._device.name].hand
+        hand.grip(id="")  # raises an error at once if the hand cannot grip
         return self._of(steps.unchecked_grip(self._context, self._device.name))
 
     def let_go(self) -> Step:
-        """Let go of what it holds."""
+        """Let go of the part."""
         return self._of(steps.effector(self._context, self._device.name, on=False))
 
     def brings_back_to(self, target: str) -> None:
-        """A recovery brings what it holds there; else it is where the part was taken."""
+        """Have a recovery bring the robot's part to this target, and not to where the part was taken."""
         self._context.parts.back[self._device.name] = self._pose(target)
 
     def _pose(self, target: str) -> Pose:
@@ -358,13 +359,13 @@ def value_text(value: Value | None) -> str:
 
 
 class Chain(composites.Sequence):
-    """Steps one after the other, which another sequence takes in as its own: fewer nodes are ticked."""
+    """Steps one after the other; a sequence around them takes them over, so that fewer nodes are ticked."""
 
     frame = True
-    is_taken = False  # its steps are those of another sequence
+    is_taken = False  # True: another sequence has taken over the steps
 
     def dissolved(self) -> list[Step]:
-        """Its steps, of which it is no longer the parent."""
+        """The steps, which lose this parent."""
         steps = list(self.children)
         self.remove_all_children()
         self.is_taken = True
@@ -379,24 +380,24 @@ def chain(title: Sentence, parts: Sequence[Step]) -> Chain:
 
 
 def flat(parts: Sequence[Step | Sequence[Step]], where: str = "work") -> list[Step]:
-    """The steps in their order; those of a chain in its place. RecipeError for what is no step."""
+    """The steps in their order, a chain as its steps. RecipeError for an object that is no step."""
     listed: list[Step] = []
     for part in parts:
         if not isinstance(part, Behaviour) and is_list(part):
             listed += part
         else:
             listed.append(part)  # type: ignore[arg-type]
-    found: list[Step] = []
+    steps_in_order: list[Step] = []
     for step in listed:
         usable(step, f"{where} is given")
         if isinstance(step, Chain):
-            found += step.dissolved()
+            steps_in_order += step.dissolved()
         else:
-            found.append(step)
-    if len(set(map(id, found))) < len(found):
-        twice = next(step for number, step in enumerate(found) if step in found[:number])
+            steps_in_order.append(step)
+    if len(set(map(id, steps_in_order))) < len(steps_in_order):
+        twice = next(step for number, step in enumerate(steps_in_order) if step in steps_in_order[:number])
         raise RecipeError(TWICE.format(step=twice.name))
-    return found
+    return steps_in_order
 
 
 def is_list(part: object) -> TypeGuard[Iterable[Any]]:
@@ -404,7 +405,7 @@ def is_list(part: object) -> TypeGuard[Iterable[Any]]:
 
 
 def usable(step: object, context: str, rule: str = "it takes steps, e.g. mill.open()") -> Step:
-    """The step, which nothing else has used; RecipeError for anything else, which begins with `told`."""
+    """The step, if it is one and no other step has it; else RecipeError, which begins with `context`."""
     if not isinstance(step, Behaviour):
         if callable(step):
             name = getattr(step, "__qualname__", type(step).__name__)

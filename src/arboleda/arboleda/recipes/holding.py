@@ -1,4 +1,4 @@
-"""Span of a recipe over which a cell holds what it shares: from the first step that tells it something."""
+"""Span of a recipe over which a cell holds a shared device: from the first step that uses it to the last."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ WORK = Phrase("step.work", "work")
 
 @runtime_checkable
 class TakesLate(Protocol):
-    """Node of another kind of tree that has a place of its own for the taking of devices."""
+    """Node that inserts the taking of devices into its own tree."""
 
     def uses_first(self) -> bool:
-        """True where nothing comes before its first use of a shared device."""
+        """True where no step comes before the first use of a shared device."""
 
     def take_late(self, take: Take) -> None:
-        """Have them taken before that."""
+        """Insert the step that `take` makes before the first use."""
 
 
 def held(context: Context, step: Behaviour) -> Behaviour:
-    """The step with what it uses of shared devices held from before the first use until after the last.
+    """The step, with the shared devices that it uses held from before the first use until after the last.
 
-    A recipe with a `using` of its own says itself when.
+    A recipe with `using` of its own must use all shared devices inside of it.
     """
     outside = context.cell.together(used(step)) if context.cell.shared else frozenset[str]()
     if not outside:
@@ -50,11 +50,11 @@ def held(context: Context, step: Behaviour) -> Behaviour:
 
 
 def _take_late(step: Behaviour, take: Take) -> bool:
-    """Have shared devices taken in a step, before the first of its parts that uses one; whether they are
-    taken for certain once it has succeeded.
+    """Insert the taking of shared devices into a step, before the first of its parts that uses one.
 
-    A part that stays whole, as a visit does with its zones, has them taken before it. A part that is done
-    again, or one of two that run at the same time, may find them taken already.
+    True if the devices are certainly taken once the step has succeeded. A part that cannot be divided, such
+    as a visit with its zones, has them taken before it. A repeated part, or one of two that run at the same
+    time, may find them taken already.
     """
     if isinstance(step, TakesLate):
         step.take_late(take)
@@ -66,12 +66,12 @@ def _take_late(step: Behaviour, take: Take) -> bool:
     if isinstance(step, Decorator):
         return _take_late(step.decorated, take) and not isinstance(step, Inverted)
     if isinstance(step, composites.Parallel):
-        branches = [_take_late(child, take) for child in step.children if any(used(child))]
-        return any(branches)
-    ways = [_late([child], take) for child in step.children]
+        taken = [_take_late(child, take) for child in step.children if any(used(child))]
+        return any(taken)
+    branches = [_late([child], take) for child in step.children]
     _replace(step, [])  # a step has one parent
-    _replace(step, [_one(parts) for parts, _ in ways])
-    return all(certain for _, certain in ways)
+    _replace(step, [_one(parts) for parts, _ in branches])
+    return all(certain for _, certain in branches)
 
 
 @dataclass
@@ -84,7 +84,7 @@ class _Group:
 
 
 def _hold_in(context: Context, work: Behaviour) -> None:
-    """Hold what the steps of a work use, each device from its first use to its last."""
+    """Hold the devices that the steps of a sequence use, each from its first use to its last."""
     children = list(work.children)
     for group in reversed(_groups(context, children)):
         parts = children[group.first : group.last + 1]
@@ -103,9 +103,9 @@ def _hold(context: Context, devices: frozenset[str], parts: Sequence[Behaviour])
 
 
 def _groups(context: Context, parts: Sequence[Behaviour]) -> list[_Group]:
-    """The parts that use shared devices, in groups of which none uses what another one does.
+    """Groups of parts that use shared devices; no two groups use one device.
 
-    A person is asked for one answer at a time, and is free for other cells between two questions.
+    Only a person may be in several: between two questions, a person is free for other cells.
     """
     needed = [context.cell.together(used(part)) for part in parts]
     for index, part in enumerate(parts):
@@ -113,32 +113,32 @@ def _groups(context: Context, parts: Sequence[Behaviour]) -> list[_Group]:
             needed[index] = needed[index].union(*needed[index:])
     people = {each.name for each in context.cell.robots if each.is_person}
     last = {device: index for index, devices in enumerate(needed) for device in devices - people}
-    found: list[_Group] = []
+    groups: list[_Group] = []
     for index, devices in enumerate(needed):
         end = max([index, *(last[device] for device in devices - people)])
-        if found and index <= found[-1].last:
-            found[-1].last, found[-1].devices = max(found[-1].last, end), found[-1].devices | devices
+        if groups and index <= groups[-1].last:
+            groups[-1].last, groups[-1].devices = max(groups[-1].last, end), groups[-1].devices | devices
         elif devices:
-            found.append(_Group(first=index, last=end, devices=devices))
-    return found
+            groups.append(_Group(first=index, last=end, devices=devices))
+    return groups
 
 
 def _late(parts: Sequence[Behaviour], take: Take) -> tuple[list[Behaviour], bool]:
-    """The parts of a sequence, with the devices taken in them or between them; whether that is certain."""
-    found: list[Behaviour] = []
+    """The parts of a sequence with the taking of devices in or between them, and whether it is certain."""
+    with_taking: list[Behaviour] = []
     certain = False
     for part in parts:
         if not certain and (any(used(part)) or _may_stay_in_zones(part)):
             if certain := _uses_first(part):
-                found.append(take())
+                with_taking.append(take())
             else:
                 certain = _take_late(part, take)
-        found.append(part)
-    return found, certain
+        with_taking.append(part)
+    return with_taking, certain
 
 
 def _uses_first(step: Behaviour) -> bool:
-    """True for a step that has to find the devices taken: nothing comes, or may come, before they are."""
+    """True for a step before which the devices must be taken, as it uses them at once or is not divided."""
     if isinstance(step, TakesLate):
         return step.uses_first()
     if _may_stay_in_zones(step):
@@ -151,12 +151,12 @@ def _uses_first(step: Behaviour) -> bool:
 
 
 def _may_stay_in_zones(step: Behaviour) -> bool:
-    """True where a robot may have failed in a zone and the work goes on: who holds one asks for no device."""
+    """True where work may go on while a robot is in a zone: it may not wait for a device there."""
     return any(_goes_on_after_failure(each) and _takes_zones(each) for each in step.iterate())
 
 
 def _goes_on_after_failure(step: Behaviour) -> bool:
-    if isinstance(step, Again):  # the next try may go another way
+    if isinstance(step, Again):  # the next try may take another branch
         return any(isinstance(each, composites.Selector) and steps.is_frame(each) for each in step.iterate())
     return isinstance(step, Forgiven | Inverted)
 
@@ -170,7 +170,7 @@ def _is_work(step: Behaviour) -> bool:
 
 
 def _is_open(step: Behaviour) -> bool:
-    """True for a step whose parts stand for themselves, so that something may be done between them."""
+    """True for a step between whose parts another step may be inserted."""
     several = composites.Sequence | composites.Selector | composites.Parallel | Decorator
     return isinstance(step, several) and steps.is_frame(step)
 
@@ -186,7 +186,7 @@ def _replace(step: Behaviour, parts: Collection[Behaviour]) -> None:
 
 
 def used(step: Behaviour) -> Iterator[str]:
-    """Names of the shared devices that a part of a recipe tells something, without those it takes itself."""
+    """Names of the shared devices that a part of a recipe uses, without devices that it takes itself."""
     if any(isinstance(child, TakeDevices) for child in step.children):
         return
     if device := getattr(step, "uses", None):

@@ -1,4 +1,4 @@
-"""Nodes of one's own for trees that are written as XML: functions, with what they take and give.
+"""Nodes of one's own for trees as XML: functions with inputs and outputs.
 
 @node("BehindClosedDoor")
 def behind_closed_door(cell, child):
@@ -9,7 +9,7 @@ def behind_closed_door(cell, child):
 def grip_force(grams: float, margin: Number[1, 5] = 2):
     return {"force": grams * 0.00981 * margin}
 
-A `node` returns a step, as a recipe does. Who has a `child` is a decorator, who has `*children` a control. A
+A `node` returns a step, as a recipe does. A node with a `child` is a decorator, with `*children` a control. A
 `function` is called while the tree runs.
 """
 
@@ -41,7 +41,7 @@ Function = Callable[..., Any]
 
 @dataclass(frozen=True, kw_only=True)
 class Taken:
-    """A value that a node takes. `words`: all that it can be in a cell, where these are listed."""
+    """A value that a node takes. `words` are all its values in a cell; empty where they are not listed."""
 
     name: str
     type: type[Value]
@@ -64,7 +64,7 @@ class WrittenNode:
     about: str = ""
 
     def build(self, context: Context, children: Sequence[Step], values: Mapping[str, Value]) -> Step:
-        """Its step, around its children; RecipeError where it is none."""
+        """The step of the node, around its children; RecipeError where the function returns none."""
         making = Making()
         step = usable(
             self.function(Kit(context, making), *children, **values), f"{self.name} returns", RETURNS
@@ -76,23 +76,24 @@ class WrittenNode:
         return step
 
     def calculate(self, values: Mapping[str, Value]) -> Mapping[str, Value] | None:
-        """Its result with these values; None where it fails. RecipeError for anything else, and
-        for whatever the function raises.
+        """The result of the function with these values; None where the node fails.
+
+        RecipeError for any other result, and for every exception of the function.
         """
         try:
-            found = self.function(**values)
+            result = self.function(**values)
         except Exception as error:
             raise RecipeError(f"{self.name} raised {type(error).__name__}: {error}") from error
         if not self.gives:
-            if not isinstance(found, bool):
-                raise RecipeError(f"{self.name} returned {quoted(found)}; it is to return True or False")
-            return {} if found else None
-        if found is None:
+            if not isinstance(result, bool):
+                raise RecipeError(f"{self.name} returned {quoted(result)}; it is to return True or False")
+            return {} if result else None
+        if result is None:
             return None
-        if not isinstance(found, Mapping) or set(found) != set(self.gives):
+        if not isinstance(result, Mapping) or set(result) != set(self.gives):
             names = ", ".join(self.gives)
-            raise RecipeError(f"{self.name} returned {quoted(found)}; it is to return a dict of {names}")
-        return {name: self._given(name, value) for name, value in found.items()}
+            raise RecipeError(f"{self.name} returned {quoted(result)}; it is to return a dict of {names}")
+        return {name: self._given(name, value) for name, value in result.items()}
 
     def _given(self, name: str, value: object) -> Value:
         wanted = self.gives[name]
@@ -106,9 +107,10 @@ class WrittenNode:
 
 
 def node(name: str, *, children: tuple[int, int] | None = None) -> Callable[[Function], WrittenNode]:
-    """Makes a node for trees of XML of a function of a Kit, of the steps below it, and of values.
+    """Makes a node for trees as XML of a function of a Kit, of the steps below the node, and of values.
 
-    It returns a step, as a recipe does. `children`: how many `*children` it has at least and at most.
+    The function returns a step, as a recipe does. `children` are the least and the greatest number of
+    `*children`.
     """
 
     def made(function: Function) -> WrittenNode:
@@ -136,10 +138,10 @@ def node(name: str, *, children: tuple[int, int] | None = None) -> Callable[[Fun
 def function(
     name: str, *, gives: Mapping[str, type[Value]] | None = None
 ) -> Callable[[Function], WrittenNode]:
-    """Makes a node for trees of XML of a function of values, which is called while the tree runs.
+    """Makes a node for trees as XML of a function of values, which is called while the tree runs.
 
-    It returns a dict of what it `gives`, or None where it fails; one that gives nothing is a condition, and
-    returns True or False.
+    The function returns a dict of the values that it `gives`, or None where it fails. A function that gives
+    none is a condition, and returns True or False.
     """
 
     def made(function: Function) -> WrittenNode:
@@ -185,7 +187,7 @@ def _one(node: str, declared: Declared, note: object) -> Taken:
 
 
 def _words(name: str, note: object) -> Callable[[Cell], Sequence[str]]:
-    """All that a parameter of a recipe that is annotated so can be."""
-    found = parameter(name, note)
-    assert found is not None
-    return found.words
+    """The words of a recipe's parameter with this annotation."""
+    declared = parameter(name, note)
+    assert declared is not None
+    return declared.words

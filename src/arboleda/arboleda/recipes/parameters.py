@@ -2,8 +2,8 @@
 
     def load(cell, dose: Choice[5, 10], force: Number[1, 40], blank=Target("pallet")): ...
 
-An annotation in brackets, a default in parentheses, or `Annotated[str, Target("pallet")]`, which checkers of
-types take: they read words in brackets as names.
+A type is an annotation in brackets, a default in parentheses, or `Annotated[str, Target("pallet")]` for type
+checkers, which read words in brackets as names.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class Path:
 
 
 class Slot:
-    """One of a group of targets, which tasks name by its number in the group, from 0: `Slot("stations")`.
+    """One of a group of targets, by its number in the group, from 0: `Slot("stations")`.
 
     `called` is its name in sentences.
     """
@@ -88,7 +88,7 @@ class Slot:
 
 
 class Target:
-    """One of a group of targets, or that of this name: `Target("pallet")`; `Target()` is any."""
+    """One of a group of targets, or the target of this name: `Target("pallet")`; `Target()` is any target."""
 
     def __init__(self, group: str | None = None) -> None:
         self.group = group
@@ -108,9 +108,9 @@ class Target:
 
 
 def parameter(name: str, note: object) -> Parameter | None:
-    """The parameter of that annotation; None where it is none."""
+    """The parameter of an annotation; None for an annotation that is no type of parameters."""
     for each in getattr(note, "__metadata__", (note,)):  # Annotated[str, Target("pallet")]
-        found = Target() if each is Target else each
-        if isinstance(found, (Choice, Number, Path, Slot, Target)):
-            return found.parameter(name)
+        declared = Target() if each is Target else each
+        if isinstance(declared, (Choice, Number, Path, Slot, Target)):
+            return declared.parameter(name)
     return None

@@ -1,4 +1,4 @@
-"""The places of a cell as a recipe asks for the parts there: each call returns a step."""
+"""Places of a cell as a recipe asks for the parts there: each call returns a step."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ NO_ROOM_YET = Phrase("recipe.no_room_yet", "{place} got no room for another part
 
 
 class PlaceQuestion(Question):
-    """A question that the books of parts answer, with yes or no."""
+    """A question about parts at a place; the plant's count of parts answers it with True or False."""
 
     answers = (True, False)
-    known: bool | None = None
+    told: bool | None = None
 
     def __init__(self, title: Sentence, is_so: Callable[[], bool]) -> None:
         super().__init__(title)
@@ -35,21 +35,21 @@ class PlaceQuestion(Question):
 
     @property
     def answer(self) -> Value | None:
-        return self.known
+        return self.told
 
     def update(self) -> Status:
-        self.known = self._is_so()
+        self.told = self._is_so()
         return Status.SUCCESS
 
     def kept(self) -> Mapping[str, Any] | None:
-        return None if self.known is None else {"answer": self.known}
+        return None if self.told is None else {"answer": self.told}
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        self.known = state["answer"]
+        self.told = state["answer"]
 
 
 class PlaceHandle(Offers):
-    """A place, of which the plant counts the parts: whether one is there, and whether there is room."""
+    """A place whose parts the plant counts: whether a part is there, and whether there is room."""
 
     def __init__(self, target: str, context: Context) -> None:
         self._target = target

@@ -1,4 +1,4 @@
-"""`using` of recipes: which steps hold the devices that their cell shares with others."""
+"""`using` of recipes: steps that hold devices which their cell shares."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ def using(context: Context, devices: frozenset[str], parts: Sequence[Behaviour])
 
 
 def check_holds_none(where: str, parts: Sequence[Behaviour]) -> None:
-    """RecipeError where one of the parts takes shared devices: who holds something would wait for them."""
+    """RecipeError where a part takes shared devices: a task would wait for them while it holds others."""
     if any(isinstance(node, TakeDevices) for part in parts for node in part.iterate()):
         raise RecipeError(f"using(...) stands in {where}; put it around that")
 
 
 def check_at_once(parts: Sequence[Behaviour]) -> None:
-    """RecipeError where two branches of a parallel take shared devices for themselves."""
+    """RecipeError where two branches of a parallel take shared devices, each by its own `using`."""
     takes = [part for part in parts if any(isinstance(node, TakeDevices) for node in part.iterate())]
     if len(takes) > 1:
         raise RecipeError("two branches of a parallel have using(...); put one around the parallel")

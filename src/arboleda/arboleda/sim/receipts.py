@@ -6,7 +6,7 @@ from collections import deque
 
 from arboleda.model.facts import Value
 from arboleda.wire import epochs
-from arboleda.wire.payloads import FAILURES_KEPT, Goal, StopGoal
+from arboleda.wire.payloads import MOST_FAILURES, Goal, StopGoal
 
 UNKNOWN_SEQ = 0  # senders count from 1
 
@@ -104,7 +104,7 @@ class Receipts:
     def fail(self, goal: Goal, word: str) -> None:
         """Note a command that gave up by itself."""
         if goal.epoch == self.epoch and goal.seq is not None:
-            self.failures = (*self.failures, (goal.seq, word))[-FAILURES_KEPT:]
+            self.failures = (*self.failures, (goal.seq, word))[-MOST_FAILURES:]
             self._note()
 
     def refuse(self, word: str, seq: int | None, epoch: int | None) -> None:

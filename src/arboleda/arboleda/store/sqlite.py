@@ -15,8 +15,8 @@ from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 from typing import Any
 
-from arboleda.host.boot import this_boot
 from arboleda.host.files import sync_data
+from arboleda.host.machine import this_boot
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import Remember
 

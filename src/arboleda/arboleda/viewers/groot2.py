@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from . import groot2_messages as messages
-from .groot2_messages import NoAnswer, Request, Transition, Type
+from .groot2_messages import NoAnswer, Request, RequestType, Transition
 from .groot2_tree import NONE_YET, CellTree, Row
 
-KEPT = 1000  # transitions between two requests for them, as BehaviorTree.CPP keeps
+MOST_TRANSITIONS = 1000  # between two requests for them, as in BehaviorTree.CPP
 READ_ONLY = "read only: breakpoints and hooks would change what robots do"
 Pack = Callable[[Any], bytes]  # plain data as MessagePack
 
@@ -24,19 +24,19 @@ class WatchedTree:
         self._rows: Sequence[Row] = ()
         self._facts: Mapping[str, Any] = {}
         self._recorded_from: int | None = None
-        self._transitions: deque[Transition] = deque(maxlen=KEPT)
+        self._transitions: deque[Transition] = deque(maxlen=MOST_TRANSITIONS)
 
     def saw(
         self, rows: Sequence[Row], facts: Mapping[str, Any], at_us: int, *, has_succeeded: bool = False
     ) -> None:
-        """Take in the cell's snapshot: the rows of its tree, none if none runs, and other facts.
+        """Take the cell's snapshot: the rows of its tree, none if none runs, and other facts.
 
-        `has_succeeded`: the task whose tree was seen last is done.
+        `has_succeeded`: the task of the last tree is done.
         """
         self._rows, self._facts = rows, facts
         if rows and not self._tree.is_of(rows):
             self._tree = CellTree(rows)
-            self._transitions.clear()  # their numbers are those of the tree before
+            self._transitions.clear()  # they have numbers of the former tree
         for node, status in self._tree.stand(rows, has_succeeded=has_succeeded):
             if self._recorded_from is not None:
                 at = at_us - self._recorded_from
@@ -51,26 +51,26 @@ class WatchedTree:
             return messages.refusal(error)
 
     def _content(self, request: Request, now_us: int) -> list[bytes]:
-        if request.type is Type.TREE:
+        if request.type is RequestType.TREE:
             return [self._tree.xml]
-        if request.type is Type.STATUS:
+        if request.type is RequestType.STATUS:
             return [messages.statuses(self._tree.codes)]
-        if request.type is Type.BLACKBOARD:
+        if request.type is RequestType.BLACKBOARD:
             return [self._pack(self._blackboards(request.words.split(";")))]
-        if request.type is Type.HOOKS_DUMP:
+        if request.type is RequestType.HOOKS_DUMP:
             return [b"[]"]
-        if request.type is Type.RECORDING:
+        if request.type is RequestType.RECORDING:
             return self._record(request.words, now_us)
-        if request.type is Type.TRANSITIONS:
-            found = messages.transitions(self._transitions)
+        if request.type is RequestType.TRANSITIONS:
+            content = messages.transitions(self._transitions)
             self._transitions.clear()
-            return [found]
-        if request.type in (Type.REMOVE_ALL_HOOKS, Type.DISABLE_ALL_HOOKS):
+            return [content]
+        if request.type in (RequestType.REMOVE_ALL_HOOKS, RequestType.DISABLE_ALL_HOOKS):
             return []  # there are none
         raise NoAnswer(READ_ONLY)
 
     def _blackboards(self, names: Sequence[str]) -> dict[str, Any] | None:
-        """The variables of the trees that are named and there; None if there are none."""
+        """The variables of the trees of these names; None if there is no such tree."""
         values = self._tree.values(self._rows)
         values[self._tree.tree.main] = {**self._facts, **values[self._tree.tree.main]}
         return {name: values[name] for name in names if name in values} or None

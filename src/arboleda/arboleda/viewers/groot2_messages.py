@@ -1,7 +1,7 @@
-"""The messages by which a viewer such as Groot2 watches a tree of BehaviorTree.CPP, as bytes.
+"""Messages by which a viewer such as Groot2 watches a tree of BehaviorTree.CPP, as bytes.
 
-What they look like is stated in `groot2_protocol.h` of BehaviorTree.CPP 4: a request is a header of 6 bytes,
-and for some types one part more; a reply is that header, 16 bytes that name the tree, then its parts.
+`groot2_protocol.h` of BehaviorTree.CPP 4 defines them. A request is a header of 6 bytes, with a second part
+for some types. A reply is that header, 16 bytes that name the tree, then its parts.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ NOT_RECOGNIZED = "Request not recognized"
 TWO_PARTS = "must be 2 parts message"
 
 
-class Type(Enum):
+class RequestType(Enum):
     """Type of a request."""
 
     TREE = b"T"
@@ -38,7 +38,13 @@ class Type(Enum):
     TRANSITIONS = b"t"
 
 
-WITH_WORDS = {Type.BLACKBOARD, Type.HOOK_INSERT, Type.HOOK_REMOVE, Type.BREAKPOINT_UNLOCK, Type.RECORDING}
+WITH_WORDS = {
+    RequestType.BLACKBOARD,
+    RequestType.HOOK_INSERT,
+    RequestType.HOOK_REMOVE,
+    RequestType.BREAKPOINT_UNLOCK,
+    RequestType.RECORDING,
+}
 
 
 class NodeStatus(IntEnum):
@@ -52,21 +58,21 @@ class NodeStatus(IntEnum):
 
 
 class NoAnswer(Exception):
-    """Refusal of a request, or a request that is not understood; its text goes to the client."""
+    """Request that is refused, or not understood; the text goes to the client."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
     """Request of a client; `words` is its second part."""
 
-    type: Type
+    type: RequestType
     number: int
     words: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Transition:
-    """Change of a node's status; the time is that since the recording began."""
+    """Change of a node's status; `at_us` counts from the begin of the recording."""
 
     at_us: int
     node: int
@@ -82,7 +88,7 @@ def request_of(parts: Sequence[bytes]) -> Request:
         raise NoAnswer(WRONG_HEADER)
     _, letter, number = HEADER.unpack(parts[0])
     try:
-        type = Type(bytes([letter]))
+        type = RequestType(bytes([letter]))
     except ValueError:
         raise NoAnswer(NOT_RECOGNIZED) from None
     if type in WITH_WORDS and len(parts) != 2:

@@ -16,9 +16,9 @@ NONE_YET: tuple[Row, ...] = ({"path": "root", "name": "no task yet", "kind": "id
 
 
 class CellTree:
-    """The tree that a cell runs, or ran last. Nodes that are idle again keep how they ended.
+    """The tree that a cell runs, or ran last. A node that is idle again keeps its last result.
 
-    A tree whose nodes are the same is the same tree: it keeps its name of 16 bytes, and nobody loads it anew.
+    A tree with the same nodes has the same name of 16 bytes, so that viewers do not load it again.
     """
 
     def __init__(self, rows: Sequence[Row]) -> None:
@@ -33,10 +33,10 @@ class CellTree:
         return form_of(rows) == self._form
 
     def stand(self, rows: Sequence[Row], *, has_succeeded: bool = False) -> Iterator[tuple[int, NodeStatus]]:
-        """Take how nodes stand now, idle where there are no rows; each that has changed, by its number.
+        """Take the status of each node, idle without rows; returns each changed one, by the node's number.
 
-        A tree is gone as soon as it has ended, so nobody sees how. Of one that `has_succeeded` what was at
-        work last has, too.
+        A tree is gone as soon as it has ended, before its last status is seen. Where its task
+        `has_succeeded`, the nodes that were running have, too.
         """
         for number in [
             number for number, code in enumerate(self.codes, start=1) if code == NodeStatus.RUNNING
@@ -44,9 +44,9 @@ class CellTree:
             if has_succeeded and not rows:
                 self.codes[number - 1] = NodeStatus.SUCCESS
                 yield number, NodeStatus.SUCCESS
-        known = {row["path"]: STATUSES.get(row["status"], NodeStatus.IDLE) for row in rows}
+        status_by_path = {row["path"]: STATUSES.get(row["status"], NodeStatus.IDLE) for row in rows}
         for number, node in enumerate(self.tree.nodes, start=1):
-            before, status = self.codes[number - 1], _status(node, known)
+            before, status = self.codes[number - 1], _status(node, status_by_path)
             if status is NodeStatus.IDLE and before < IDLE_FROM:
                 self.codes[number - 1] = IDLE_FROM + before if before else 0
             elif status is not NodeStatus.IDLE:
@@ -55,14 +55,16 @@ class CellTree:
                 yield number, status
 
     def values(self, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
-        """The values that nodes were given, by the path of their tree; the main tree goes by its name."""
-        found: dict[str, dict[str, Any]] = {node.tree or self.tree.main: {} for node in self.tree.nodes}
-        known = {row["path"]: row for row in rows}
+        """The values of nodes by the path of their tree, of the main tree by its name."""
+        values_by_tree: dict[str, dict[str, Any]] = {
+            node.tree or self.tree.main: {} for node in self.tree.nodes
+        }
+        row_by_path = {row["path"]: row for row in rows}
         for number, node in enumerate(self.tree.nodes, start=1):
-            row = known.get(node.paths[0], {}) if node.kind != "SubTree" else {}
+            row = row_by_path.get(node.paths[0], {}) if node.kind != "SubTree" else {}
             if row.get("parameters"):
-                found[node.tree or self.tree.main][f"{number} {row['name']}"] = row["parameters"]
-        return found
+                values_by_tree[node.tree or self.tree.main][f"{number} {row['name']}"] = row["parameters"]
+        return values_by_tree
 
 
 def form_of(rows: Sequence[Row]) -> list[tuple[str, str, str]]:
@@ -70,9 +72,9 @@ def form_of(rows: Sequence[Row]) -> list[tuple[str, str, str]]:
     return [(row["path"], row["name"], row["kind"]) for row in rows]
 
 
-def _status(node: LiveNode, known: Mapping[str, NodeStatus]) -> NodeStatus:
-    """The status of a node by its rows: at work before ended, and ended only if no row has work left."""
-    there = [known.get(path, NodeStatus.IDLE) for path in node.paths]
+def _status(node: LiveNode, status_by_path: Mapping[str, NodeStatus]) -> NodeStatus:
+    """The status of a node by its rows: it runs while one of them does, and succeeds once all have."""
+    there = [status_by_path.get(path, NodeStatus.IDLE) for path in node.paths]
     if len(there) == 1:
         return there[0]
     for status in (NodeStatus.RUNNING, NodeStatus.FAILURE):

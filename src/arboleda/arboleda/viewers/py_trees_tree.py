@@ -48,7 +48,7 @@ def behaviours(cell: str, rows: Sequence[Row]) -> list[Behaviour]:
 
 
 def idle(rows: Sequence[Row]) -> list[Row]:
-    """The same tree with no node at work."""
+    """The rows of the tree, with no node at work."""
     return [{**row, "status": "INVALID", "feedback": ""} for row in rows]
 
 
@@ -88,7 +88,7 @@ def _parent(path: str) -> str:
 
 
 def _current(children: Sequence[str], status: Mapping[str, str]) -> str | None:
-    """The child that is at work, else the last one that was."""
+    """The child that is at work, else the last child that was."""
     running = [child for child in children if status[child] == "RUNNING"]
     ended = [child for child in children if status[child] != "INVALID"]
     return next(iter(running or ended[-1:]), None)

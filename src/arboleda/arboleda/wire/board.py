@@ -1,4 +1,4 @@
-"""Robot as the bridge sees it: commands to its board, its telemetry, its stop latch."""
+"""State machine of one board: commands to the board, its telemetry, its stop latch."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from arboleda.model.sentence import Phrase, Sentence
 from . import rejections
 from .board_reports import BoardReports
 from .copies import Copies
-from .forms import Form, form_of
+from .forms import MessageForm, form_of
 from .hop import is_stop, shown
 from .labels import Labels
 from .link import BoardLink, LinkUpdate
 from .motion import OpenMotion
 from .payloads import Beat, Payload, Presence, Telemetry, decode, encode, read_angles
 from .rejections import OTHER_BRIDGE, ForeignCommand, Rejection
-from .repeats import Words
+from .repeats import SplitTelemetry
 from .rivals import News, Rivals
 from .topics import Channel, topic
 from .transport import Delivery, Publication
@@ -34,12 +34,14 @@ DENIED = Phrase(
     "its board talks, but its `conexion` says 0; "
     "the board has to publish 1 there, retained, when it connects",
 )
-AGAIN_S = 0.1  # in a burst of others' commands, no report between two of the board's own
+AGAIN_S = 0.1  # least time between two reports in a burst of foreign commands
 
 
 class Board:
-    """State machine of one board: commands in, reports out; a command needs a link, and no latch against
-    it."""
+    """Takes commands and telemetry of one board, and gives publications and reports.
+
+    A command needs a link to the board, and a motion no latched stop.
+    """
 
     def __init__(self, robot: Robot, *, epoch: int, stale_after_s: float, has_lease: bool = False) -> None:
         supervised = robot.evidence is not Evidence.STATE
@@ -51,7 +53,9 @@ class Board:
         self.reports = BoardReports(robot, self.labels, self.link)
         self._foreign_reported_at = 0.0
         self._last: Report | None = None
-        self._words: Words | None = None  # of the last telemetry, until a command changes what it means
+        self._words: SplitTelemetry | None = (
+            None  # of the last telemetry, until a command changes what it means
+        )
         self._form = form_of(robot)
         self._axes = self._form.joints
         self._motion: OpenMotion | None = None
@@ -68,7 +72,7 @@ class Board:
         return [] if up else self.lose(at)
 
     def lose(self, at: float) -> list[Message]:
-        """Lose the link, and all open work; nothing is sent again."""
+        """Lose the link and all open work, of which nothing is sent again."""
         self._motion = None
         self.rivals.lose()
         return [self.reports.no_link(at)] if self.link.lose() else []
@@ -82,22 +86,22 @@ class Board:
         word = self._refusal(command)
         if word:
             return self.refuse(at, command, word, sender)
-        goes_on = self.in_motion and not isinstance(command, Work | Stop)  # those end what is under way
+        goes_on = self.in_motion and not isinstance(command, Work | Stop)  # these end the motion
         self.rivals.answer(at, self.labels, in_motion=goes_on)
         return [*self._passed_over(at, command), *self._send(at, command, sender)]
 
     def _passed_over(self, at: float, command: Command) -> list[Message]:
-        """The notice of a command that a board without ids silently ignores; once for each reason."""
+        """The notice that a board without ids will silently ignore a command; once for each reason."""
         last = self._last
         if last is None or self.robot.evidence is Evidence.IDS or not isinstance(command, Work):
             return []
-        way = self._form.way(type(command))
-        if way is None:
+        form = self._form.form_of_command(type(command))
+        if form is None:
             return []
         rests = self._motion is None and last.state is MotionState.STOPPED
-        why = way.passed_over(self.robot, command, last) if rests else None
-        known, self._warned = self._warned, why
-        if why is None or why == known:
+        why = form.passed_over(self.robot, command, last) if rests else None
+        warned_before, self._warned = self._warned, why
+        if why is None or why == warned_before:
             return []
         sentence = rejections.passed_over(self.robot, command, why)
         self.reports.count(sentence)
@@ -115,7 +119,7 @@ class Board:
         return [rejection, self.reports.word(at)] if command.id else [rejection]
 
     def report_foreign(self, at: float, sentence: Sentence, *, refused: bool) -> list[Message]:
-        """Report a command of somebody else to the plant that commands the robot."""
+        """Report a foreign command to the plant that commands the robot."""
         self._words = None
         self.reports.count_foreign(sentence, refused=refused)
         reports = [] if refused else [ForeignCommand(at=at, robot=self.robot.name, sentence=sentence)]
@@ -131,7 +135,7 @@ class Board:
         return self._send(at, Stop(id="", robot=self.robot.name, mode=StopMode.HALT))
 
     def hear_plant(self, at: float, epoch: int) -> list[Message]:
-        """Take a heartbeat of the plant: answer rivals, and give a new plant the board's last report."""
+        """Take a heartbeat of the plant: answer rivals; a new plant gets the last report of the board."""
         answer = self._answer_rivals(at)
         if epoch == self.reports.plant:
             return answer
@@ -140,7 +144,7 @@ class Board:
         return [*answer, self._last] if self._last and self.link.up else answer
 
     def _answer_rivals(self, at: float) -> list[Message]:
-        """Halt a motion that somebody else began, under a number above theirs."""
+        """Halt a motion that a rival began, under a number above the rival's."""
         if self.rivals.noticed_at is None or not self.link.up:
             return []
         if not self.rivals.answer(at, self.labels, in_motion=self.in_motion):
@@ -153,7 +157,7 @@ class Board:
         return _beat(self.robot.mqtt, self.labels.beat())
 
     def fence(self) -> list[Message]:
-        """A heartbeat for a board that would still take commands of the bridge before this one."""
+        """A heartbeat for a board that would still take commands of an earlier bridge."""
         numbered = self.robot.evidence is Evidence.IDS and not self.rivals.yielded
         return [self.beat()] if numbered and self.link.up and not self.labels.fenced else []
 
@@ -173,7 +177,7 @@ class Board:
         return self._telemetry(delivery, message) if isinstance(message, Telemetry) else []
 
     def _again(self, delivery: Delivery) -> Report | None:
-        """The last report once more, if the message has the same meaning; else None."""
+        """The last report once more, if the message repeats it under a new number; else None."""
         if self._words is None or self._last is None or delivery.retain:
             return None
         number = self._words.number(delivery.payload)
@@ -185,8 +189,8 @@ class Board:
         self._last = self._last.again(delivery.at, **news)
         return self._last
 
-    def _turned(self, delivery: Delivery, words: Words, last: Report) -> Report | None:
-        """The last report with new joints, if a moving arm's message brings nothing else; else None."""
+    def _turned(self, delivery: Delivery, words: SplitTelemetry, last: Report) -> Report | None:
+        """The last report with new joints, if nothing else is new in a moving arm's message; else None."""
         read = read_angles(delivery.payload, len(self._axes))
         if read is None:
             return None
@@ -227,17 +231,17 @@ class Board:
             self._motion = None
         out = [*self._objections(at), *self.reports.earlier_failures(at)]
         self._last = self.reports.of_telemetry(at, message, q, facts)
-        self._words = Words.of(delivery.payload, message)
+        self._words = SplitTelemetry.of(delivery.payload, message)
         return [*out, self._last, *([] if update is LinkUpdate.NEWS else self._stop_again(at))]
 
     def _objections(self, at: float) -> list[Message]:
-        """The messages for what telemetry newly shows: refused commands, and commands from others."""
+        """The messages on newly refused commands and on rivals, which telemetry shows."""
         out: list[Message] = []
         if self.labels.objection is not None:
             issued, word = self.labels.objection
             rejection = self.reports.rejection(at, issued.command, word, issued.sender, by_board=True)
             out.append(rejection)
-            if not issued.command.id:  # the plant counts those of its own
+            if not issued.command.id:  # the plant counts refusals of its own commands
                 self.reports.count(rejection.sentence)
         if (sentence := _of_rivals(self.rivals.hear(at, self.labels), self.robot, self.labels)) is not None:
             self._words = None
@@ -270,7 +274,7 @@ class Board:
         return [publication]
 
     def _stamp(self, command: Command, seq: int) -> dict[str, int | str | None]:
-        """The numbers of a command, its token, and the number of the telemetry that its sender had heard."""
+        """The seq, epoch and token of a command, and the number of the telemetry that its sender heard."""
         if self.robot.evidence is not Evidence.IDS:
             return {"seq": None, "epoch": None}
         stamp: dict[str, int | str | None] = {"seq": seq, "epoch": self.labels.epoch}
@@ -280,7 +284,7 @@ class Board:
         return stamp
 
     def _stop_again(self, at: float) -> list[Message]:
-        """Send the stop again to a board that comes back, as it may have forgotten its latch."""
+        """Send the stop again to a board that comes back, for it may have forgotten its latch."""
         if not self._latched or not self.robot.has_stop:
             return []
         return self._send(at, Stop(id="", robot=self.robot.name, mode=StopMode.LATCH))
@@ -293,7 +297,7 @@ class Board:
         return Publication(topic=topic(self.robot.mqtt, channel), payload=encode(payload), qos=qos)
 
 
-def _check(message: Payload, delivery: Delivery, form: Form) -> None:
+def _check(message: Payload, delivery: Delivery, form: MessageForm) -> None:
     """Raise PayloadError for a message that breaks the contract."""
     if not isinstance(message, (Presence, Telemetry)):
         raise PayloadError("a command is not for the bridge")
@@ -306,7 +310,7 @@ def _check(message: Payload, delivery: Delivery, form: Form) -> None:
 
 
 def _of_rivals(news: News | None, robot: Robot, labels: Labels) -> Sentence | None:
-    """A sentence on an act of others at a robot, if it is new."""
+    """The sentence on news of rivals at a robot; None where there is none."""
     if news is News.TAKEN and labels.foreign is not None:
         return rejections.taken(robot, *labels.foreign)
     if news is None or labels.beaten_by is None:

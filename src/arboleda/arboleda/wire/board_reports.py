@@ -1,4 +1,4 @@
-"""Reports of one board: what its telemetry says, which commands were refused, and who else sent some."""
+"""Reports of one board: its telemetry, refused commands, and foreign commands."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .rejections import Rejection
 
 @dataclass(frozen=True, kw_only=True)
 class Counters:
-    """Counts of messages not used: refused whole, or overtaken; `last` has the last refusal's sentence."""
+    """Counts of unused messages, refused or overtaken (`old`); `last` is the sentence of the last refusal."""
 
     refused: int = 0
     old: int = 0
@@ -29,7 +29,7 @@ class Counters:
 
 @dataclass(frozen=True, kw_only=True)
 class ForeignCommandCount:
-    """Count of commands from others while a plant commands, refused and obeyed; `last` is a sentence."""
+    """Counts of foreign commands while a plant commands; `last` is the sentence on the last one."""
 
     refused: int = 0
     obeyed: int = 0
@@ -37,7 +37,7 @@ class ForeignCommandCount:
 
 
 class BoardReports:
-    """Writer of the reports of one board. `plant` is the epoch of the plant that the bridge has heard."""
+    """Writes the reports of one board. `plant` is the epoch of the plant that the bridge has heard."""
 
     def __init__(self, robot: Robot, labels: Labels, link: BoardLink) -> None:
         self.plant: int | None = None
@@ -48,7 +48,7 @@ class BoardReports:
         self._foreign = ForeignCommandCount()
 
     def no_link(self, at: float, **fields: object) -> Report:
-        """That the board has no link."""
+        """A report that the board has no link."""
         return self.report(at, state=MotionState.NO_LINK, **fields)
 
     def word(self, at: float) -> Report:
@@ -56,7 +56,7 @@ class BoardReports:
         return self.report(at, state=None if self._link.up else MotionState.NO_LINK)
 
     def report(self, at: float, **fields: object) -> Report:
-        """A report with these fields, and all that each report says."""
+        """A report with these fields, and with those that every report has."""
         rejected, word = self._labels.rejected or (None, None)
         foreign = self._foreign
         return Report(
@@ -100,7 +100,7 @@ class BoardReports:
         )
 
     def earlier_failures(self, at: float) -> list[Report]:
-        """A report of each newly abandoned command but the last, which is part of the usual report."""
+        """A report of each newly abandoned command except the last, which the usual report names."""
         return [
             replace(self.word(at), failed=command_id, failure=word)
             for command_id, word in self._labels.failed_before
@@ -118,14 +118,14 @@ class BoardReports:
         )
 
     def count_foreign(self, sentence: Sentence, *, refused: bool) -> None:
-        """Count a command of somebody else."""
-        known = self._foreign
+        """Count a foreign command."""
+        before = self._foreign
         self._foreign = ForeignCommandCount(
-            refused=known.refused + refused, obeyed=known.obeyed + (not refused), last=sentence
+            refused=before.refused + refused, obeyed=before.obeyed + (not refused), last=sentence
         )
 
     def count(self, sentence: Sentence) -> None:
-        """Count a message that is not used, with the sentence that refuses it."""
+        """Count a refused message, with the sentence of its refusal."""
         self.counters = replace(self.counters, refused=self.counters.refused + 1, last=sentence)
 
     @property
@@ -134,7 +134,7 @@ class BoardReports:
         return self._link.returns if counted else self._link.boot_id
 
     def count_old(self) -> None:
-        """Count a message that was overtaken."""
+        """Count a message that a newer one has overtaken."""
         self.counters = replace(self.counters, old=self.counters.old + 1)
 
 

@@ -1,7 +1,7 @@
 """Bridge: commands of the plant to MQTT, telemetry of the boards to reports. A pure state machine.
 
-A pure machine; one `Board` per robot does the work, this file routes and keeps what all share:
-the plant's epoch and the heartbeat.
+One `Board` per robot does the work. This file routes messages, and has what all boards share: the plant's
+epoch and the heartbeat.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from .topics import Channel
 from .transport import Connection, Delivery
 
 BEAT_S = 0.25
-PLANT_GONE_S = 5.0  # without a heartbeat: a plant that is only slow still commands its robots
-UNSURE_S = 0.2  # in which the original of a copy arrives that overtook it
+PLANT_GONE_S = 5.0  # without a heartbeat; a plant that is only slow still commands its robots
+UNSURE_S = 0.2  # within it the original arrives of a copy that overtook it
 _ID = re.compile(r"(\d{1,10})-\d{1,10}", re.ASCII)
 
 
@@ -42,23 +42,25 @@ class Leaving:
 
 @dataclass(frozen=True, kw_only=True)
 class UnconfirmedCopy:
-    """Command without an id, reported as foreign at `due` unless it has proved to be a copy by then.
+    """Command without an id, which is reported as foreign at `due` unless its original has come by then.
 
-    `known`: it was reported, or need not be. Its original may come until `until`, and brings no other copy.
+    `is_told`: the command was reported, or need not be. An original that comes before `until` brings no other
+    copy.
     """
 
     due: float
     board: Board
     event: FromPlant
     refused: bool
-    known: bool
+    is_told: bool
 
     @property
     def until(self) -> float:
-        """The time up to which its original is waited for.
+        """The time until which the original may come.
 
-        Where nobody but the plant publishes on its topic, it is a copy, however long before its original it
-        came. Where somebody else does, it may be theirs, and the plant may give the same command soon after.
+        Where only the plant publishes on the topic, the command is a copy, however long before its original
+        it came. Where another node does, the command may be of that node, and the plant may soon give the
+        same.
         """
         return self.due if self.event.sender else self.event.at + COPY_S
 
@@ -67,10 +69,10 @@ Event = FromPlant | Delivery | Connection | Leaving
 
 
 class Bridge:
-    """`epoch` is Unix seconds at this start; a board that has heard a higher one raises its own.
+    """Bridge of all robots that speak MQTT; `subscriptions` are its topics, `now` the time of its last step.
 
-    `subscriptions` are the topics to subscribe to, of every robot that speaks MQTT; `now` is the time of its
-    last step. `has_lease`: its plant leads by a lease in a shared store, so that it never yields a board.
+    `epoch` is Unix seconds at this start; for a board that has heard a higher epoch, a higher one is used.
+    `has_lease`: the plant leads by a lease in a shared store, so the bridge never yields a board.
     """
 
     def __init__(self, model: PlantModel, *, epoch: int, now: float, has_lease: bool = False) -> None:
@@ -91,7 +93,7 @@ class Bridge:
         self._epoch = epoch
         self.now = now
         self._stale_after_s = stale_after_s
-        self._started_at = now  # never again once that was reported
+        self._started_at = now  # inf once the start was reported
         self._plant_epoch = 0
         self._plant_beats = False
         self._plant_beat_at = -math.inf
@@ -103,7 +105,7 @@ class Bridge:
 
     @property
     def counters(self) -> dict[str, Counters]:
-        """The counts of refused and dropped messages by robot; "" has topics that belong to no robot."""
+        """The counts of refused and dropped messages by robot; "" counts topics of no robot."""
         return {"": self._strays, **{name: board.reports.counters for name, board in self._boards.items()}}
 
     @property
@@ -111,7 +113,7 @@ class Bridge:
         """The time (s) at which `step` is due even without events; None if it never is."""
         due = min(self._started_at, self._beat_at, *self._stale_at.values())
         if self._unsure:
-            due = min(due, *(each.due for each in self._unsure if not each.known), math.inf)
+            due = min(due, *(each.due for each in self._unsure if not each.is_told), math.inf)
         return due if due < math.inf else None
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
@@ -178,7 +180,7 @@ class Bridge:
         return board.refuse(event.at, command, word) if word else board.command(event.at, command)
 
     def _expect_copy(self, event: FromPlant, command: Command, board: Board) -> None:
-        """Expect a copy of a command, or match one that came before; note whether the plant copies."""
+        """Expect a copy of a command, or match a copy that came before; note whether the plant copies."""
         if loses_its_id(command):
             board.copies.flow = event.copied
         if not event.copied:
@@ -191,36 +193,38 @@ class Bridge:
             self._unsure.remove(early)
 
     def _unlabelled(self, event: FromPlant, command: Command, board: Board) -> list[Message]:
-        """Take a command without an id: a copy of one of the plant's, or somebody else's."""
+        """Take a command without an id: a copy of a command of the plant, or a foreign command."""
         at, sender = event.at, event.sender
         if board.copies.take(at, command):
             return []
         if (late := self._late(at, command)) is not None:
-            self._unsure.append(UnconfirmedCopy(due=at, board=board, event=event, refused=True, known=True))
+            self._unsure.append(UnconfirmedCopy(due=at, board=board, event=event, refused=True, is_told=True))
             return board.refuse(at, command, late, sender)
         commanded = self._is_commanded(at)
         refused = commanded and self._refuses_others and not is_stop(command)
         out = [] if refused else board.command(at, command, sender)
-        known = not commanded or any(isinstance(each, Rejection) for each in out)
-        unsure = UnconfirmedCopy(due=at + UNSURE_S, board=board, event=event, refused=refused, known=known)
-        if not known and not board.copies.flow:
+        is_told = not commanded or any(isinstance(each, Rejection) for each in out)
+        unsure = UnconfirmedCopy(
+            due=at + UNSURE_S, board=board, event=event, refused=refused, is_told=is_told
+        )
+        if not is_told and not board.copies.flow:
             out += self._report(unsure)
-            unsure = replace(unsure, known=True)
+            unsure = replace(unsure, is_told=True)
         self._unsure.append(unsure)
         return out
 
     def _is_commanded(self, at: float) -> bool:
-        """True while a plant is heard: then nobody else commands its robots."""
+        """True while a plant is heard, which commands the robots."""
         return at < self._plant_beat_at + PLANT_GONE_S
 
     def _no_copies(self, now: float) -> list[Message]:
         out = [message for each in self._unsure if each.due <= now for message in self._report(each)]
-        told = [replace(each, known=each.known or each.due <= now) for each in self._unsure]
+        told = [replace(each, is_told=each.is_told or each.due <= now) for each in self._unsure]
         self._unsure = [each for each in told if each.until > now]
         return out
 
     def _report(self, unsure: UnconfirmedCopy) -> list[Message]:
-        if unsure.known:
+        if unsure.is_told:
             return []
         board, event = unsure.board, unsure.event
         assert not isinstance(event.message, Heartbeat)
@@ -243,7 +247,7 @@ class Bridge:
         ]
 
     def _fence(self, command: Command) -> str | None:
-        """The word that refuses a command of any plant but the one heard; never a stop."""
+        """The word that refuses a command of another plant than the one that is heard; None for a stop."""
         match = _ID.fullmatch(command.id)
         if match is None:
             return "formato"
@@ -252,7 +256,7 @@ class Bridge:
         return None if int(match[1]) == self._plant_epoch else "old_epoch"
 
     def _late(self, at: float, command: Command) -> str | None:
-        """The word that refuses a command that waited while this process was stopped; never a stop."""
+        """The word that refuses a command that waited while this process was stopped; None for a stop."""
         late = self.now - at > self._stale_after_s
         return "no_link" if late and not isinstance(command, Stop) else None
 
@@ -266,7 +270,7 @@ class Bridge:
         return [*news, *self._beat_all(), *self._fence_all()]
 
     def _fence_all(self) -> list[Message]:
-        """A heartbeat for each resting board that accepts older commands, which may be on their way."""
+        """A heartbeat for each resting board that accepts older commands: some may still arrive."""
         return [beat for board in self._boards.values() if not board.in_motion for beat in board.fence()]
 
     def _beat_all(self) -> list[Message]:

@@ -1,4 +1,4 @@
-"""Copies, without an id, of commands that the plant has sent with one."""
+"""Copies, without an id, of commands that the plant has sent with an id."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from arboleda.model.commands import Command
 
 from .hop import without_id
 
-COPY_S = 5.0  # after its original a copy comes at once, or as late as a lossy network repeats it
+COPY_S = 5.0  # so late after its original a copy may come over a network that loses and repeats messages
 
 
 class Copies:
-    """Copies of commands for one robot; `expected` are still to come. `flow`: the plant makes copies now."""
+    """Copies that are expected for one robot; `flow`: the plant sends copies at present."""
 
     def __init__(self) -> None:
         self.flow = False
@@ -22,9 +22,9 @@ class Copies:
         self._expected.append((at, without_id(command)))
 
     def take(self, at: float, command: Command) -> bool:
-        """True if a command without an id is an expected copy; it is expected no more then.
+        """True if a command without an id is an expected copy, which is then removed.
 
-        It is that of the latest equal command: a copy that never comes is expected no longer than COPY_S.
+        Of equal commands, the latest one counts: the copy of an earlier one may be lost.
         """
         self._forget(at)
         for each in reversed(self._expected):

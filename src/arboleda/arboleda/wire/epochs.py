@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 AHEAD_S = 366 * 86_400  # clocks of two machines differ by no more where both have ever learned the time
-HORIZON = 4_102_444_800  # the year 2100: no plant of this protocol starts later, whatever any clock says
+HORIZON = 4_102_444_800  # the year 2100: no plant of this protocol starts later, whatever a clock shows
 
 
-def can_follow(epoch: int, known: int | None) -> bool:
-    """True if a board without a clock accepts `epoch`; `known` is the newest it has heard, None for none."""
-    return epoch <= (HORIZON if known is None else min(known + AHEAD_S, HORIZON))
+def can_follow(epoch: int, newest_heard: int | None) -> bool:
+    """True if a board without a clock accepts `epoch`; `newest_heard` is None before any."""
+    return epoch <= (HORIZON if newest_heard is None else min(newest_heard + AHEAD_S, HORIZON))
 
 
 def objection(epoch: int, unix_s: int | None) -> str | None:
     """The reason why no plant can have started at `epoch`, by a clock that shows `unix_s`; None if one can.
 
-    Without a clock only the horizon counts: a plant on a machine that forgot the time still has its bridge.
+    Without a clock only the horizon counts, so that a machine that forgot the time can still run a bridge.
     """
     if epoch <= (HORIZON if unix_s is None else min(unix_s + AHEAD_S, HORIZON)):
         return None

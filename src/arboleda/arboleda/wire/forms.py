@@ -42,19 +42,19 @@ class CommandForm:
     goal: type[Goal]
     body: Callable[[Any, Any], dict[str, object]]
     refusal: Callable[[Any, Any], str | None] = lambda robot, command: None
-    # Reasons why a board without refusals ignores a command, by its robot's place at rest.
+    # The reason why a board without refusals ignores a command at the place where its robot rests.
     passed_over: Callable[[Any, Any, Report], Sentence | None] = lambda robot, command, report: None
 
 
 @dataclass(frozen=True, kw_only=True)
-class Form:
+class MessageForm:
     """Form of one robot's messages: the commands it takes, and the fields of its telemetry.
 
-    `missing` has the words that refuse commands without a way; the default is `formato`. `why` gives the
-    sentence on a refusal, if there is more to say than its word.
+    `missing` has the words that refuse commands without a form, else `formato` does. `why` gives the sentence
+    on a refusal, if there is more to say than its word.
     """
 
-    ways: Mapping[type[Command], CommandForm]
+    command_forms: Mapping[type[Command], CommandForm]
     axes: int | None  # as `decode` wants it
     joints: tuple[Joint, ...] = ()
     nodes: int = 0
@@ -62,24 +62,28 @@ class Form:
     missing: Mapping[type[Command], str] = field(default_factory=dict)
     why: Callable[[Any, Any, str, bool], Sentence | None] = lambda robot, command, word, by_board: None
 
-    def way(self, kind: type[Command]) -> CommandForm | None:
-        """The form of commands of this class, or of its nearest base that has one; None if there is none."""
-        return nearest(self.ways, kind)
+    def form_of_command(self, kind: type[Command]) -> CommandForm | None:
+        """The form of a class of commands, or of its nearest base; None if neither has one."""
+        return nearest(self.command_forms, kind)
 
     def refusal(self, robot: Robot, command: Command) -> str | None:
         """The word that refuses a command which the robot can never carry out; None if it can."""
         kind = type(command)
-        way = self.way(kind)
-        return self.missing.get(kind, "formato") if way is None else way.refusal(robot, command)
+        command_form = self.form_of_command(kind)
+        return (
+            self.missing.get(kind, "formato")
+            if command_form is None
+            else command_form.refusal(robot, command)
+        )
 
     def goal(self, robot: Robot, command: Command, **stamp: int | str | None) -> tuple[Channel, Goal]:
         """The channel and payload of a command that `refusal` accepted; `stamp` has its `seq` and `epoch`.
 
         For all commands but a stop, `stamp` also has `heard` and `token`.
         """
-        way = self.way(type(command))
-        assert way is not None
-        return way.channel, way.goal(**way.body(robot, command), **stamp)  # type: ignore[arg-type]
+        command_form = self.form_of_command(type(command))
+        assert command_form is not None
+        return command_form.channel, command_form.goal(**command_form.body(robot, command), **stamp)  # type: ignore[arg-type]
 
     def facts_in(self, facts: Facts | None) -> Facts | None:
         """The facts of telemetry in the types of the kind; raises PayloadError for an invalid one."""
@@ -88,16 +92,16 @@ class Form:
     def _fact(self, name: str, value: object) -> tuple[str, Any]:
         type = self.facts.get(name)
         if type is None:
-            known = ", ".join(self.facts) or "none"
-            raise PayloadError(f"datos has {quoted(name)}; this device has {known}")
+            names = ", ".join(self.facts) or "none"
+            raise PayloadError(f"datos has {quoted(name)}; this device has {names}")
         read = type.read(value)
         if read is None:
             raise PayloadError(f"datos.{name} is {quoted(value)}; allowed: {type.allowed()}")
         return name, read
 
 
-def form_of(robot: Robot) -> Form:
-    """The form of the robot's type, or of the nearest base that has one."""
+def form_of(robot: Robot) -> MessageForm:
+    """The form of the robot's class, or of its nearest base."""
     form = nearest(FORMS, type(robot))
     if form is None:
         raise TypeError(f"{robot.name} is reached over no wire: nothing says how a {robot.kind_name} is told")
@@ -208,21 +212,23 @@ OF_DEVICES: dict[type[Command], CommandForm] = {
 }
 
 
-def _of_jointed(robot: Jointed) -> Form:
-    return Form(ways=OF_JOINTS, axes=len(robot.joints), joints=robot.joints, why=_why_of_joints)
+def _of_jointed(robot: Jointed) -> MessageForm:
+    return MessageForm(
+        command_forms=OF_JOINTS, axes=len(robot.joints), joints=robot.joints, why=_why_of_joints
+    )
 
 
-def _of_arm(arm: Arm) -> Form:
-    return replace(_of_jointed(arm), ways=OF_ARMS)
+def _of_arm(arm: Arm) -> MessageForm:
+    return replace(_of_jointed(arm), command_forms=OF_ARMS)
 
 
-def _of_mobile(mobile: Mobile) -> Form:
-    return Form(ways=OF_MOBILES, axes=None, nodes=mobile.grid.size, why=_why_of_mobiles)
+def _of_mobile(mobile: Mobile) -> MessageForm:
+    return MessageForm(command_forms=OF_MOBILES, axes=None, nodes=mobile.grid.size, why=_why_of_mobiles)
 
 
-def _of_device(device: Device) -> Form:
-    return Form(
-        ways=OF_DEVICES,
+def _of_device(device: Device) -> MessageForm:
+    return MessageForm(
+        command_forms=OF_DEVICES,
         axes=DEVICE,
         facts=device.kind.facts,
         missing={Home: "no_home"},
@@ -230,7 +236,7 @@ def _of_device(device: Device) -> Form:
     )
 
 
-FORMS: dict[type[Robot], Callable[[Any], Form]] = {
+FORMS: dict[type[Robot], Callable[[Any], MessageForm]] = {
     Jointed: _of_jointed,
     Arm: _of_arm,
     Mobile: _of_mobile,

@@ -1,8 +1,8 @@
 """Hop between plant and bridge: the topics of commands, and the data of a command that they carry.
 
-A robot's topic `command` carries all its commands, each with its id, so that none overtakes another.
-Beside it stand the plain topics, one per kind, for nodes that know no ids: UInt8 has no place for one.
-A device of a declared kind has `order` in place of `command`: that names verbs and values, for everybody.
+A robot's topic `command` carries all its commands, each with its id, so that none overtakes another. Beside
+it there is a plain topic for each kind of command, for nodes that know no ids: UInt8 has no place for an id.
+A device of a declared kind has `order` in place of `command`, with verbs and values, for all nodes.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ PLAIN: dict[type[Command], str] = {
 
 @dataclass(frozen=True, kw_only=True)
 class FromPlant:
-    """Message that reaches the bridge over the hop; a command without an id is from somebody else.
+    """Message that reaches the bridge over the hop; a command without an id is foreign, or a copy.
 
-    `copied`: the same command also comes on its plain topic, without its id. `sender` names the nodes that
-    may have published it, "" where nobody knows. `unix_s`: the time by the clock of this machine, where
-    others than our own plant could have said it.
+    `copied`: the command also comes on its plain topic, without its id. `sender` names the nodes that may
+    have published the message, "" where that is unknown. `unix_s` is the time of this machine's clock, None
+    for a message that only our own plant can have sent.
     """
 
     at: float

@@ -1,4 +1,4 @@
-"""Numbers of one board: command id <-> (epoca, seq), and the commands accepted, finished and rejected."""
+"""Numbers of one board: command id <-> (epoca, seq), and commands accepted, done and rejected."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ REMEMBERED = 256  # commands per board; an open one is never that old
 
 @dataclass(frozen=True, kw_only=True)
 class IssuedCommand:
-    """Command that was given a number under `epoch`; `sender` names its sender if it has no id."""
+    """Command that has a number under `epoch`; `sender` names the sender of a command without an id."""
 
     command: Command
     epoch: int
@@ -33,10 +33,10 @@ class Labels:
     - `rejected` is the last rejected command and its word, from the board or the bridge.
     - `objection` is the command that the board newly refused in its last telemetry, with the word.
     - `answered` is the last answered query of a device, with the answer.
-    - `failed` is the last command that it gave up, with its word; `failed_before` those that it newly names
-      beside that one.
-    - `foreign` is the (epoca, seq) of an unknown sender that it has newly accepted.
-    - `epoch` is the one under which commands are given now, `start` that of this bridge's begin.
+    - `failed` is the last command that the board gave up, with the word; `failed_before` are others that its
+      last telemetry newly names.
+    - `foreign` is the (epoca, seq) of a newly accepted command of an unknown sender.
+    - `epoch` is that of new commands, `start` the epoch with which this bridge began.
     """
 
     def __init__(self, epoch: int) -> None:
@@ -53,7 +53,7 @@ class Labels:
         self._least = -1  # the oldest epoch whose commands the board takes, by its last telemetry
         self._seq = 0
         self._issued: OrderedDict[int, IssuedCommand] = OrderedDict()
-        self._known: OrderedDict[str, None] = OrderedDict()
+        self._ids: OrderedDict[str, None] = OrderedDict()
         self._spoken = False  # True once the board may have heard of this bridge
         self._led = False  # True if the board says this bridge is the newest it hears
         self._last_refusal: tuple[int | None, int | None, str | None] | None = None
@@ -71,20 +71,20 @@ class Labels:
 
     @property
     def beaten_by(self) -> int | None:
-        """The epoch of a bridge that came after this one, and is refused since; None if there is none."""
-        known = self._led or self._spoken
-        return self._least if known and self._least > self.epoch else None
+        """The epoch of a later bridge, since which this one is refused; None if there is none."""
+        was_heard = self._led or self._spoken
+        return self._least if was_heard and self._least > self.epoch else None
 
     def rise(self) -> None:
-        """Use an epoch above all that the board has heard from now on."""
+        """Raise the epoch above all epochs that the board has heard."""
         self.epoch = min(max(self._least, self.epoch) + 1, UINT32)
 
     def repeated(self, command_id: str) -> bool:
-        """True if a command of this id came before; remembers the id. Commands without an id never repeat."""
-        if command_id in self._known:
+        """True if a command of this id came before; remembers the id. Without an id none repeats."""
+        if command_id in self._ids:
             return True
         if command_id:
-            _remember(self._known, command_id, None)
+            _remember(self._ids, command_id, None)
         return False
 
     def beat(self) -> int:
@@ -112,10 +112,10 @@ class Labels:
         self._least = -1
 
     def hear(self, message: Telemetry) -> frozenset[int]:
-        """Take over the state of our commands from telemetry; returns the seqs that it reports as ended."""
+        """Take the state of our commands from telemetry; returns the seqs of commands that have ended."""
         acknowledged = -1 if message.ack_epoch is None else message.ack_epoch
         self._least = max(acknowledged, -1 if message.least_epoch is None else message.least_epoch)
-        begins = not self._spoken and not self._led  # later it is another one that has come after this bridge
+        begins = not self._spoken and not self._led  # a later one is another bridge
         if begins and (acknowledged >= self.epoch or self._least > self.epoch):
             self.rise()
             self.start = self.epoch
@@ -135,11 +135,11 @@ class Labels:
         self.answered = None if query is None or message.answer is None else (query, message.answer)
 
     def _failed(self, message: Telemetry) -> list[int]:
-        """The seqs of the commands that the board abandoned; it repeats the last few in every message."""
+        """The seqs of the commands that the board gave up; every message repeats the last few of them."""
         failures = tuple(each for each in message.failures or () if self._ours(message, each[0]))
         names = [(self._name(message, seq), word) for seq, word in failures]
-        known = [(name, word) for name, word in names if name is not None]
-        self.failed = known[-1] if known else None
+        with_names = [(name, word) for name, word in names if name is not None]
+        self.failed = with_names[-1] if with_names else None
         before = set(self._last_failures)
         news = [(self._name(message, seq), word) for seq, word in failures[:-1] if (seq, word) not in before]
         self.failed_before = [(name, word) for name, word in news if name is not None]
@@ -147,10 +147,9 @@ class Labels:
         return [seq for seq, _ in failures]
 
     def _strange(self, message: Telemetry) -> tuple[int, int] | None:
-        """A newly accepted number above ours, which another MQTT client must have sent; None if there is
-        none.
+        """A newly accepted number above ours, which another MQTT client must have sent; None without one.
 
-        Before the board has heard of us, it may be one of the bridge before us, whose clock was ahead.
+        Before the board has heard of us, the number may be of an earlier bridge, whose clock was ahead.
         """
         accepted = (message.ack_epoch, message.ack)
         before, self._accepted = self._accepted, accepted
@@ -160,7 +159,7 @@ class Labels:
         return (message.ack_epoch, message.ack) if above else None
 
     def _refused(self, message: Telemetry) -> int | None:
-        """The seq of ours that is newly rejected; a board repeats its last refusal in every message."""
+        """The seq of our newly rejected command; a board repeats its last refusal in every message."""
         self.objection = None
         seq, word = message.refused_seq, message.refusal
         refusal = (message.ack_epoch, seq, word)
@@ -184,11 +183,12 @@ class Labels:
             return True
         if message.ack_epoch != issued.epoch:
             return message.ack_epoch is not None and message.ack_epoch > issued.epoch
-        # equal: it came twice (QoS 1), and the first one counts; above: a stranger's, ours is on its way
+        # An equal seq came twice (QoS 1), and the first counts. A seq above ours is of a stranger: the board
+        # has not taken ours yet.
         return message.ack is not None and refused_seq < message.ack
 
     def _ours(self, message: Telemetry, seq: int | None) -> bool:
-        """True if a number from the board was given to it by this bridge."""
+        """True if this bridge gave the number to a command."""
         issued = self._issued.get(seq) if seq is not None else None
         return issued is not None and issued.epoch == message.ack_epoch
 

@@ -13,21 +13,21 @@ class LinkUpdate(Enum):
 
     LATE = "late"  # it left the broker before the connection was lost
     ABSENT = "absent"  # the board's presence says that nobody is there
-    DENIED = "denied"  # so it says, but the board goes on talking: one message of it
+    DENIED = "denied"  # the presence says so, but the board goes on talking; reported once
     OLD = "old"  # overtaken by a newer one of the same boot
     NEWS = "news"
     ARRIVAL = "arrival"  # the link came up with it
     REBOOT = "reboot"  # so did another boot of the board
 
 
-DENIED_S = 2.0  # of talk after an absence: what was sent before it has arrived by then
+DENIED_S = 2.0  # after an absence; older messages have arrived by then
 
 
 class BoardLink:
     """State of the link: up with the broker reached, presence not "0", and telemetry within `stale_after_s`.
 
-    With `stale_after_s` None telemetry of any age counts. `stale_at` is the time at which silence will have
-    lasted too long; inf while nobody talks, and if silence means nothing.
+    With `stale_after_s` None, telemetry of any age counts. `stale_at` is the time at which silence is too
+    long; inf while the board does not talk, and where silence means nothing.
     """
 
     def __init__(self, stale_after_s: float | None) -> None:
@@ -40,14 +40,14 @@ class BoardLink:
         self._absent_since: float | None = None
         self._denied = False  # the board talks, though its presence says that nobody is there
         self.number: int | None = None  # of the last telemetry, counted since boot
-        self._below: tuple[float, int] | None = None  # since when old numbers rise, and the last of them
+        self._below: tuple[float, int] | None = None  # since when lower numbers rise, and the last of them
 
     def connection(self, up: bool) -> None:
         self._connected = up
         self._absent_since = None  # the broker tells the retained presence again at the next subscription
 
     def presence(self, at: float, online: bool) -> None:
-        """Take the presence of a board; one that never sends any counts as present."""
+        """Take the presence of a board; a board that never sends its presence counts as present."""
         if not online:
             self._absent_since = at if self._absent_since is None else self._absent_since
         elif self._absent_since is not None:
@@ -56,7 +56,7 @@ class BoardLink:
             self._denied = False
 
     def lose(self) -> bool:
-        """Lose the way to the board, or the board that talked without one; True if that is new."""
+        """Lose the board, also one that talks although it counts as absent; True if that is new."""
         was_heard = self.up or self._denied
         self.up, self._denied, self.stale_at, self._below = False, False, math.inf, None
         return was_heard
@@ -81,12 +81,12 @@ class BoardLink:
     def _hear_absent(self, at: float, since: float) -> LinkUpdate:
         if at - since < DENIED_S:
             return LinkUpdate.ABSENT
-        known, self._denied = self._denied, True
+        was_denied, self._denied = self._denied, True
         self.stale_at = at + self._stale_after_s
-        return LinkUpdate.ABSENT if known else LinkUpdate.DENIED
+        return LinkUpdate.ABSENT if was_denied else LinkUpdate.DENIED
 
     def hear_again(self, at: float, seq: int) -> bool:
-        """Take telemetry that repeats the last one; True if it is surely news, else `hear` decides."""
+        """Take telemetry that repeats the last one; True if it is certainly newer, else `hear` decides."""
         if not self.up:
             return False
         if self.number is not None:
@@ -104,7 +104,7 @@ class BoardLink:
     def _counts_anew(self, at: float, seq: int | None) -> bool:
         """True if a lost board's lower numbers have risen for `stale_after_s`: then the higher one was wrong.
 
-        After a damaged number, or where a counter begins anew without a boot, nobody would hear it for long.
+        Else the board would not be heard for long, after a damaged number or a counter that began anew.
         """
         if self.up or seq is None:
             return False

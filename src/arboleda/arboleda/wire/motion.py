@@ -1,6 +1,6 @@
-"""Open motion or process, and the decision whether a board's telemetry ends it.
+"""Open motion or process of a board, and whether telemetry ends it.
 
-The judge of the core decides on the outcome; this only decides how long the board needs beats.
+The engine decides whether the work is done. This module decides how long the board needs heartbeats.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from arboleda.model.plant_model import Evidence, Robot
 
 from .payloads import Telemetry
 
-LINGER_S = 1.0  # a board drives on for so long without heartbeats; its report may be from before this command
+LINGER_S = 1.0  # a board drives on for so long without heartbeats
 
 
 @dataclass(kw_only=True)
 class OpenMotion:
-    """Work that was sent as `seq`; `stopping` once a halt or a stop followed it.
+    """Work that was sent as `seq`; `stopping` once a halt or a stop followed.
 
-    A board that names no command may report rest because an earlier move has ended, or before this one has
-    reached it. So it gets heartbeats until it has reported rest for LINGER_S; `ending` is True meanwhile.
+    A board that names no command may report rest of an earlier move, or before this command has reached it.
+    So it gets heartbeats until it has reported rest for LINGER_S. `ending` is True meanwhile.
     """
 
     robot: Robot
@@ -47,8 +47,7 @@ class OpenMotion:
     ) -> bool:
         """True if telemetry heard `at` ends this work.
 
-        `q`: joints in SI units. `seqs`: numbers of the commands that the telemetry ends. `facts`: those of a
-        device.
+        `q` are joints in SI units, `seqs` the commands that the telemetry ends, `facts` those of a device.
         """
         if self.seq in seqs:
             return True

@@ -11,7 +11,7 @@ from arboleda.model.facts import Value
 from arboleda.model.messages import MotionState
 
 from . import strict
-from .payloads import DEVICE_REFUSALS, FAILURES_KEPT, OrderGoal, Telemetry, encode
+from .payloads import DEVICE_REFUSALS, MOST_FAILURES, OrderGoal, Telemetry, encode
 from .strict import LONGEST, LONGEST_WORD, UINT32
 
 SMALLEST = -2.2250738585072014e-300  # no number takes more characters
@@ -24,7 +24,7 @@ Place = tuple[str | int, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Objection:
-    """Reason against a kind of device over MQTT, and the place in the kind that it is about."""
+    """Reason why a kind of device cannot be used over MQTT, and the place of the fault in the kind."""
 
     place: Place
     sentence: str
@@ -32,8 +32,8 @@ class Objection:
 
 def objections(kind: DeviceKind) -> list[Objection]:
     """All objections to a kind of device over MQTT."""
-    found = [*_names(kind), *_silent(kind)]
-    return found or [*_lengths(kind)]
+    first = [*_names(kind), *_silent(kind)]
+    return first or [*_lengths(kind)]
 
 
 def _names(kind: DeviceKind) -> Iterator[Objection]:
@@ -96,7 +96,7 @@ def _telemetry(kind: DeviceKind) -> Telemetry:
         facts=tuple((name, longest(type)) for name, type in kind.facts.items()),
         answer=max(answers, key=_length, default=None),
         answered_seq=UINT32 if answers else None,
-        failures=((UINT32, "x" * LONGEST_WORD),) * FAILURES_KEPT,
+        failures=((UINT32, "x" * LONGEST_WORD),) * MOST_FAILURES,
     )
 
 

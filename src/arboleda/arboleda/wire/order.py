@@ -1,9 +1,9 @@
-"""The text of a device's topic `order`: a verb with its values, or a stop, with the id of the command.
+"""Text of a device's topic `order`: a verb with its values, or a stop, with the id of the command.
 
 `{"id": "7-1", "verb": "run", "values": {"program": 1001}, "heard": 512, "token": "0a3f9x001201"}`,
 `{"id": "7-2", "stop": 2}`.
-What has no id is of somebody else. All commands of a device go on this one topic, so that no stop overtakes
-what it ends.
+A command without an id is foreign. All commands of a device go on this one topic, so that no stop overtakes
+the command that it ends.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .status import command_id
 
 
 def write(command: Command, *, copied: bool = False) -> str:
-    """The text of a command; `copied`: a copy without its id comes on its plain topic."""
+    """The text of a command; `copied`: a copy without the id comes on the plain topic."""
     fields: dict[str, object] = {"id": command.id} if command.id else {}
     if isinstance(command, VerbCall):
         fields |= {"verb": command.verb, "values": dict(command.values)}
@@ -30,7 +30,8 @@ def write(command: Command, *, copied: bool = False) -> str:
     else:
         raise TypeError(f"{type(command).__name__} is no command of a device")
     text = fields | ({"copied": 1} if copied else {})
-    # Never longer than the message to the board; half a pair of surrogates is no letter, and stays an escape.
+    # Escapes could make the text longer than a message to a board may be. Only half a pair of surrogates,
+    # which is no letter, stays an escape.
     return strict.to_json(text).encode(errors="backslashreplace").decode()
 
 

@@ -32,7 +32,7 @@ from .values import (
 __all__ = [
     "DEVICE",
     "DEVICE_REFUSALS",
-    "FAILURES_KEPT",
+    "MOST_FAILURES",
     "REFUSALS",
     "Beat",
     "EffectorGoal",
@@ -56,7 +56,7 @@ REFUSALS = frozenset({"viejo", "retenido", "tarde", "formato", "limite", "sin_re
 DEVICE_REFUSALS = frozenset({"viejo", "retenido", "tarde", "formato", "paro", "ocupado", "condicion"})
 """The words that a device of a declared kind may give as `rechazo`."""
 DEVICE = 0  # `axes` of a device of a declared kind: it has facts instead
-FAILURES_KEPT = 3  # of a device; as many may end unseen before telemetry arrives again
+MOST_FAILURES = 3  # in one message; so many commands may fail before telemetry arrives again
 
 TOKENS = frozenset({"ficha", "ficha_ack", "ficha_hecho"})
 
@@ -69,10 +69,10 @@ _LAST_STATE = MotionState.STOP_LATCHED.value
 
 
 def decode(channel: Channel, raw: bytes, *, axes: int | None) -> Payload:
-    """The message `raw` on `channel` of an arm with `axes` joints (None: a mobile, 0: a device of a declared
-    kind), else PayloadError.
+    """The message `raw` on `channel`; PayloadError if it breaks the contract.
 
-    Unknown extra keys are allowed: a newer board may say more.
+    `axes` is the number of joints of an arm, None for a mobile robot, 0 for a device of a declared kind.
+    Unknown keys are allowed: a newer board may say more.
     """
     if channel is Channel.PRESENCE:
         return _presence(raw)
@@ -101,13 +101,13 @@ def encode(payload: Payload) -> bytes:
 def angles(q: tuple[float, ...]) -> bytes:
     """The beginning of an arm's telemetry, up to its last joint."""
     if not all(map(MAX_ANGLE_DEG.__ge__, map(abs, q))):
-        _angles(q)  # names the one
+        _angles(q)  # raises PayloadError, which names the joint
     rows = zip(_joint_keys(len(q), "_mov"), q, strict=True)
     return ("{" + ",".join([f'"{key}":{round(value, _DECIMALS) + 0.0}' for key, value in rows])).encode()
 
 
 def read_angles(raw: bytes, axes: int) -> tuple[tuple[float, ...], int] | None:
-    """The joints at the begin of telemetry, and their bytes; None unless `angles` writes the same."""
+    """The joints at the begin of telemetry, and how many bytes they take; None if `angles` writes others."""
     begin = _angles_pattern(axes).match(raw)
     if begin is None:
         return None
@@ -177,7 +177,7 @@ def _order(fields: strict.Fields, axes: int | None) -> OrderGoal:
 
 @lru_cache(maxsize=64)
 def _beat(raw: bytes) -> Beat:
-    """Parses a heartbeat, which each sender repeats four times a second."""
+    """The heartbeat in these bytes, which each sender repeats four times a second."""
     return Beat(epoch=strict.read(raw).integer("epoca"))
 
 
@@ -228,7 +228,7 @@ def _telemetry_of_device(fields: strict.Fields) -> Telemetry:
         facts=fields.facts("datos", strict.shown_fact),
         answer=fields.shown_fact("respuesta"),
         answered_seq=fields.optional("respuesta_seq"),
-        failures=fields.named("fallos", FAILURES_KEPT),
+        failures=fields.named("fallos", MOST_FAILURES),
         ack_token=fields.token("ficha_ack"),
         done_token=fields.token("ficha_hecho"),
     )

@@ -12,7 +12,7 @@ from .forms import BEYOND, ELSEWHERE, NODES, ON_THE_GRID, UNDONE, form_of
 from .hop import shown
 
 FOREIGN = "foreign"  # the word that refuses a command of another node
-OTHER_BRIDGE = "other_bridge"  # the one that refuses what is for the board of another bridge
+OTHER_BRIDGE = "other_bridge"  # the word that refuses a command to a board of another bridge
 SOMEBODY = Phrase("foreign.somebody", "another node")
 REJECTED = Phrase("rejection", "{robot}: {command} was refused ({word}): {why}")
 REJECTED_OF = Phrase("rejection_of", "{robot}: {command} of {sender} was refused ({word}): {why}")
@@ -60,9 +60,9 @@ WHY = {
 
 @dataclass(frozen=True, kw_only=True)
 class Rejection:
-    """Command refused by the bridge or by the board.
+    """Command that the bridge or the board refused.
 
-    `command` is the plain topic and, if it is a single number, the value; `id` is "" if it had none.
+    `command` is its plain topic, with the value if that is a single number; `id` is "" for a foreign command.
     """
 
     at: float
@@ -75,7 +75,7 @@ class Rejection:
 
 @dataclass(frozen=True, kw_only=True)
 class ForeignCommand:
-    """Command of somebody else that was carried out while a plant commands the robot."""
+    """Foreign command that was carried out while a plant commands the robot."""
 
     at: float
     robot: str
@@ -101,12 +101,12 @@ def unreadable(robot: Robot, topic: str, why: Sentence) -> Sentence:
 
 
 def obeyed(robot: Robot, command: Command, sender: str) -> Sentence:
-    """The sentence for a command of somebody else that was carried out."""
+    """The sentence for a foreign command that was carried out."""
     return OBEYED(robot=robot.name, command=shown(command), sender=sender or SOMEBODY())
 
 
 def overheard(command: Command, sender: str) -> Sentence:
-    """The sentence for a command of somebody else to a robot that hears everybody."""
+    """The sentence for a foreign command to a robot that takes commands of all nodes."""
     return OVERHEARD(robot=command.robot, command=shown(command), sender=sender or SOMEBODY())
 
 
@@ -148,4 +148,4 @@ FOREIGN_PHRASES = {
         *WHY.values(),
     )
 }
-"""The phrases of a bridge on commands of others, by key."""
+"""The phrases of a bridge on foreign commands, by key."""

@@ -1,6 +1,6 @@
-"""Detector of telemetry that repeats the one before under another number, by its bytes, without parsing.
+"""Detects by its bytes, without parsing, telemetry that repeats the last one under another number.
 
-That of a moving arm may have other joints.
+The joints of a moving arm may be others.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ LONGEST = len(str(UINT32))
 
 
 @dataclass(frozen=True, slots=True)
-class Words:
-    """Accepted message, split at its number; `after` is None if it has no number.
+class SplitTelemetry:
+    """Accepted telemetry, split at its number; `after` is None if it has no number.
 
-    `joints` is the number of bytes that hold joints, which may change; 0 if none may.
+    `joints` is the number of bytes with joints that may change; 0 if none may.
     """
 
     before: bytes
@@ -29,22 +29,22 @@ class Words:
     joints: int = 0
 
     @classmethod
-    def of(cls, raw: bytes, message: Telemetry) -> Words | None:
-        """The split of a message; None if its bytes alone do not show which number is the message's own."""
+    def of(cls, raw: bytes, message: Telemetry) -> SplitTelemetry | None:
+        """The split of a message; None if its bytes do not show which number is that of the message."""
         seq, joints = message.seq, _joints(raw, message)
         if seq is None:
             return cls(raw, None, joints)
-        before, _, rest = raw.partition(KEY)
-        after = rest.lstrip(DIGITS)
-        sure = raw.count(NAME) == 1 and b"\\" not in raw and rest[: len(rest) - len(after)] == b"%d" % seq
+        before, _, behind = raw.partition(KEY)
+        after = behind.lstrip(DIGITS)
+        sure = raw.count(NAME) == 1 and b"\\" not in raw and behind[: len(behind) - len(after)] == b"%d" % seq
         return cls(before + KEY, after, joints) if sure else None
 
-    def turned(self, raw: bytes, joints: int) -> Words:
-        """The words of a message that begins with other `joints` and goes on like this one."""
-        return Words(raw[:joints] + self.before[self.joints :], self.after, joints)
+    def turned(self, raw: bytes, joints: int) -> SplitTelemetry:
+        """The split of a message that begins with other joints and goes on like this one."""
+        return SplitTelemetry(raw[:joints] + self.before[self.joints :], self.after, joints)
 
     def number(self, raw: bytes) -> int | None:
-        """The number of a message with the same meaning, 0 if such have none; None for any other message."""
+        """The number of a message that repeats this one, 0 if these have none; None for any other message."""
         before, after = self.before, self.after
         if len(raw) > LIMIT_BYTES:
             return None

@@ -1,8 +1,8 @@
-"""Others who command one board beside this bridge, and which of two bridges goes on.
+"""Rivals: other bridges and MQTT clients that command one board, and which of two bridges yields.
 
-MQTT carries no sender: another one shows only in the numbers that the board says it has taken. The bridge
-that was there first rises above them, the one that came later yields. A bridge whose plant leads by a lease
-yields to nobody: another process of the plant, whose lease has ended, may rise once more before it ends.
+MQTT carries no sender: a rival shows only in the numbers that the board says it has taken. The bridge that
+was first rises above these numbers, a later bridge yields. A bridge whose plant leads by a lease never
+yields: the rival is a process whose lease has ended, and it may rise once more before it ends.
 """
 
 from __future__ import annotations
@@ -12,21 +12,23 @@ from enum import Enum
 
 from .labels import Labels
 
-NEW_S = 10.0  # a bridge that has led its board for less time came later
+NEW_S = 10.0  # a bridge that has led its board for less time counts as the later one
 MOST, WITHIN_S = 3, 60.0  # limit of rises: a board with false reports would cause them without end
 
 
 class News(Enum):
-    """Trouble with others that a board's telemetry newly shows."""
+    """News of rivals in a board's telemetry."""
 
     BEATEN = "beaten"  # another bridge beats with a higher number
-    YIELDED = "yielded"  # it was there first, so this one yields the board
-    TAKEN = "taken"  # it accepted a command that this bridge did not give
+    YIELDED = "yielded"  # another bridge was there first, so this bridge yields the board
+    TAKEN = "taken"  # the board accepted a command that this bridge did not give
 
 
 class Rivals:
-    """Detector of others; `noticed_at`: when some came, until they are answered; `yielded`: this bridge
-    leaves the board to another one until it restarts; `has_lease`: it never does.
+    """Detector of rivals of one board.
+
+    `noticed_at` is when a rival came, None once it is answered. `yielded`: this bridge leaves the board to
+    another bridge until it restarts. With `has_lease` it never does.
     """
 
     def __init__(self, *, has_lease: bool = False) -> None:
@@ -39,28 +41,28 @@ class Rivals:
         self._risen: deque[float] = deque(maxlen=MOST)
 
     def lose(self) -> None:
-        """Forget when this bridge began to lead: after an absence it does not know who came first."""
+        """Forget since when this bridge leads: after an absence it does not know which bridge was first."""
         self._led_since = None
 
     def hear(self, at: float, labels: Labels) -> News | None:
-        """The news that this telemetry brings of others, None for none; `labels` has taken it in already."""
-        known, self._beaten_by = self._beaten_by, labels.beaten_by
+        """The news of rivals in the telemetry that `labels` has just taken; None where there is none."""
+        beaten_before, self._beaten_by = self._beaten_by, labels.beaten_by
         if labels.leads and self._led_since is None:
             self._led_since = at
         if labels.foreign is not None:
             self.noticed_at, self._moves = at, True
             return News.TAKEN
-        if self._beaten_by in (None, known) or self.yielded:
+        if self._beaten_by in (None, beaten_before) or self.yielded:
             return None
         self.noticed_at = at
         self.yielded = self._beaten_by == labels.epoch + 1 and self._is_new(at)
         return News.YIELDED if self.yielded else News.BEATEN
 
     def answer(self, at: float, labels: Labels, *, in_motion: bool) -> bool:
-        """Rise above the others, if a later word of the plant shows that it still commands; True if the board
-        is to be halted.
+        """Rise above the rivals once a later message shows that the plant still commands.
 
-        Not while a motion goes on that the board would end without heartbeats of its own epoch.
+        True if the board is to be halted. The bridge does not rise during a motion of its own: the board
+        would end the motion without heartbeats of its epoch.
         """
         noticed, moves = self.noticed_at, self._moves
         if noticed is None or at < noticed or self.yielded or (in_motion and not moves):

@@ -23,7 +23,7 @@ AND = Phrase("speaker.and", "{first} and {second}")
 
 
 class Contest:
-    """Contest of several nodes on one topic, with its begin, and those nodes that were reported."""
+    """Contest of several nodes on one topic since a time; `reported` are the nodes that people were told."""
 
     def __init__(self, since: float) -> None:
         self.since = since
@@ -31,8 +31,10 @@ class Contest:
 
 
 class Speaker:
-    """Check of one robot's speakers; nodes of one name count as one: DDS keeps a restarted one for a
-    while."""
+    """Check of the nodes that speak for one robot.
+
+    Nodes of one name count as one node: DDS lists a node for a while after its restart.
+    """
 
     def __init__(self, robot: str) -> None:
         self._robot = robot
@@ -44,7 +46,7 @@ class Speaker:
         return not self._contests and at >= self._until
 
     def publishers(self, at: float, topic: str, nodes: Sequence[str | None]) -> Sentence | None:
-        """Take the publishers of a topic, None for one still without a name; returns the news of others."""
+        """Take the publishers of a topic, None for one without a name yet; a sentence for a new contest."""
         names = frozenset(nodes)
         if len(names) <= 1 and nodes.count(None) <= 1:
             return self._settled(at, topic, alone=len(nodes) <= 1)
@@ -55,7 +57,7 @@ class Speaker:
         return self._sentence(topic, names)
 
     def came_and_went(self, at: float, topic: str) -> Sentence | None:
-        """The sentence on a node that published and has gone already; None if it was reported."""
+        """The sentence on a node that published and is gone; None if a contest was reported."""
         was_believed, self._until = self.believed(at), at + HOLD_S
         return self._contested(topic, GONE()) if was_believed else None
 
@@ -67,9 +69,9 @@ class Speaker:
         return self._contested(topic, GONE()) if alone and not contest.reported else None
 
     def _sentence(self, topic: str, names: frozenset[str | None]) -> Sentence:
-        known = sorted(name for name in names if name is not None)
-        first: str | Sentence = ", ".join(known if None in names else known[:-1])
-        last = NAMELESS() if None in names else known[-1]
+        named = sorted(name for name in names if name is not None)
+        first: str | Sentence = ", ".join(named if None in names else named[:-1])
+        last = NAMELESS() if None in names else named[-1]
         return self._contested(topic, AND(first=first, second=last) if first else last)
 
     def _contested(self, topic: str, nodes: str | Sentence) -> Sentence:

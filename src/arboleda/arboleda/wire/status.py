@@ -1,8 +1,8 @@
 """A Report as `/{robot}/status` carries it, and the label that carries a command id over ROS 2.
 
-The values are strings: integers in decimal, `q` in rad or m separated by commas, flags as true or
-false, facts and answers of devices as JSON; what the robot did not say has no key. Keys this version does
-not know are allowed.
+The values are strings: integers in decimal, `q` in rad or m separated by commas, flags as true or false,
+facts and answers of devices as JSON. A field that the robot did not report has no key. Unknown keys are
+allowed.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
 _LABEL = "id="
 _HEARD = "heard="
 _TOKEN = "token="
-NUMBER = "number"  # the last key of a status, but for those on commands of others
+NUMBER = "number"  # the last key of a status, except for those on foreign commands
 NUMBER_DIGITS = len(str(UINT32))
 _FLOAT = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", re.ASCII)
 _ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
 _COUNT = re.compile(r"\d{1,10}", re.ASCII)
 _LONGEST = 300  # characters of a sentence
-_MOST_DATA = 2000  # characters of what a sentence is made of
-PARTS = "_said"  # ends the key of what a sentence is made of
-_SENTENCES = {"foreign": FOREIGN_PHRASES, "lost": {DENIED.key: DENIED}}  # key: what its sentences are made of
+_MOST_DATA = 2000  # characters of the data of a sentence
+PARTS = "_said"  # ends the key for the data of a sentence
+_SENTENCES = {"foreign": FOREIGN_PHRASES, "lost": {DENIED.key: DENIED}}  # phrases by key of the status
 _FLAGS = {"true": True, "false": False}
 _LEVELS = {
     MotionState.STOPPED: (OK, "stopped"),
@@ -61,7 +61,7 @@ class Status:
 
 
 def to_status(robot: Robot, report: Report) -> Status:
-    """The status to publish for a report; one without a state reports refused or foreign commands."""
+    """The status to publish for a report; a report without a state is on refused or foreign commands."""
     level, message = (WARN, "command refused") if report.state is None else _LEVELS[report.state]
     rows = [(key, getattr(report, name), write) for key, (name, _, write) in _ROWS.items()]
     values = {key: write(value) for key, value, write in rows if value is not None}
@@ -102,20 +102,25 @@ def to_heard_label(number: int) -> str:
 
 
 def from_heard_labels(labels: Iterable[str]) -> int | None:
-    """The number in the `heard` label among further ones; None without, PayloadError for an invalid one."""
-    found = next((label for label in labels if label.startswith(_HEARD)), None)
-    return None if found is None else _count("heard", found[len(_HEARD) :])
+    """The number in the `heard` label, None if there is no such label; PayloadError for an invalid number."""
+    number = _after(_HEARD, labels)
+    return None if number is None else _count("heard", number)
 
 
 def to_token_label(token: str) -> str:
-    """The label of what the board is to echo: `token=<token>`."""
+    """The label of the token that the board is to echo: `token=<token>`."""
     return f"{_TOKEN}{token}"
 
 
 def from_token_labels(labels: Iterable[str]) -> str | None:
-    """The token in the `token` label among further ones; None without, PayloadError for an invalid one."""
-    found = next((label for label in labels if label.startswith(_TOKEN)), None)
-    return None if found is None else _token(found[len(_TOKEN) :])
+    """The token in the `token` label, None if there is no such label; PayloadError for an invalid token."""
+    token = _after(_TOKEN, labels)
+    return None if token is None else _token(token)
+
+
+def _after(prefix: str, labels: Iterable[str]) -> str | None:
+    """The text behind this prefix in the first label that has it; None where none has."""
+    return next((label.removeprefix(prefix) for label in labels if label.startswith(prefix)), None)
 
 
 def _name(robot: Robot) -> str:
@@ -152,7 +157,7 @@ def _written(key: str, sentence: Sentence) -> dict[str, str]:
 
 
 def _said(key: str, values: Mapping[str, str]) -> Sentence | None:
-    """A sentence of the status; only its text if its parts give another one."""
+    """A sentence of the status, with its parts; only its text if the parts give another text."""
     if key not in values:
         return None
     text, parts = _sentence(key, values[key]), values.get(f"{key}{PARTS}", "")

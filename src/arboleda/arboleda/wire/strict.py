@@ -88,7 +88,7 @@ def name(key: str, value: object, longest: int = LONGEST) -> str:
 def fact(key: str, value: object) -> Value:
     """A value of a fact, a parameter or an answer: true, false, a number or a short text of any language.
 
-    Boards do not know which letters can be printed, so that is no matter here.
+    The letters need not be printable: boards do not know which are.
     """
     if isinstance(value, bool):
         return value

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Publication(NamedTuple):
-    """Message to publish. It and `Delivery` are tuples, which are made fastest: each telemetry needs both."""
+    """Message to publish. It is a tuple, as `Delivery` is: each telemetry makes both, and tuples are fast."""
 
     topic: str
     payload: bytes

@@ -1,8 +1,8 @@
 """Messages over MQTT: one frozen value for each, angles in degrees as on the wire.
 
-`seq` and `epoch` of a command are both present, or both None for boards that know neither. `heard` is the
-number of the board's last telemetry that whoever commands had heard, None where that is not said; a stop
-needs none, as it is never too late.
+`seq` and `epoch` of a command are both present, or both None for boards without ids. `heard` is the number of
+the last telemetry that the sender of the command had heard, None where it is not given. A stop has none, as
+it is never too late.
 """
 
 from __future__ import annotations
@@ -87,13 +87,13 @@ class Beat:
 
 @dataclass(frozen=True, kw_only=True)
 class Telemetry:
-    """Message `sensores`: `q` of an arm, `node` of a mobile or `facts` of a device; the rest None if not
-    reported.
+    """Message `sensores`: `q` of an arm, `node` of a mobile robot or `facts` of a device.
 
-    `seq` counts telemetry since boot. `least_epoch`, sent if it is above `ack_epoch`, is the oldest epoch
-    whose commands count. `ack`, `done` and `refused_seq` are command seqs of `ack_epoch`; so are
-    `answered_seq`, of the last query that a device answered, and those in `failures`, the last few commands
-    that it gave up, oldest first. `ack_token` and `done_token` are the tokens of `ack` and `done`.
+    Every field that was not reported is None. `seq` counts telemetry since boot. `least_epoch`, which is sent
+    if it is above `ack_epoch`, is the oldest epoch whose commands count. Seqs of commands are of `ack_epoch`:
+    `ack`, `done`, `refused_seq`, `answered_seq` of the last query that a device answered, and those in
+    `failures`, the last few commands that the device gave up, oldest first. `ack_token` and `done_token` are
+    the tokens of `ack` and `done`.
     """
 
     state: MotionState

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from arboleda.model.errors import ArboledaError
-from arboleda.oee.figures import Downtime, KeptFigures, Oee, Run, Shortest, Work, oee
+from arboleda.oee.figures import Downtime, Oee, PastTask, PastTimes, PlantRun, Shortest, oee
 from arboleda.store.task_rows import Database, History
 
 from .api import OeeQuery
 
-NOTHING = KeptFigures(works=[], runs=[], downs=[], shortest={})
+NOTHING = PastTimes(works=[], runs=[], downs=[], shortest={})
 
 
 def figures(history: History, query: OeeQuery, now_s: float, cells: Sequence[str] | None = None) -> list[Oee]:
@@ -26,7 +26,7 @@ def figures(history: History, query: OeeQuery, now_s: float, cells: Sequence[str
     return [oee(cell, found, since_s, until_s) for cell in wanted]
 
 
-def _kept(db: Database, since_s: float, until_s: float) -> KeptFigures:
+def _kept(db: Database, since_s: float, until_s: float) -> PastTimes:
     """The tasks, runs and downtimes that the memory has of this time, in s."""
     begun = "started_s IS NOT NULL AND ended_s > started_s"
     works = db.execute(
@@ -44,13 +44,16 @@ def _kept(db: Database, since_s: float, until_s: float) -> KeptFigures:
         f" WHERE state = 'done' AND attempts <= 1 AND {begun} GROUP BY cell, text"
     )
     try:
-        return KeptFigures(
+        return PastTimes(
             works=[
-                Work(cell=cell, order=text, state=state, accepted_s=0.0 + at, started_s=begin, ended_s=end)
+                PastTask(
+                    cell=cell, order=text, state=state, accepted_s=0.0 + at, started_s=begin, ended_s=end
+                )
                 for cell, text, state, at, begin, end in works
             ],
             runs=[
-                Run(since_s=0.0 + since, seen_s=0.0 + end_s, ended=bool(end)) for since, end_s, end in runs
+                PlantRun(since_s=0.0 + since, seen_s=0.0 + end_s, ended=bool(end))
+                for since, end_s, end in runs
             ],
             downs=[Downtime(cell=cell, since_s=0.0 + since, until_s=until) for cell, since, until in downs],
             shortest={

@@ -14,7 +14,7 @@ from arboleda.model.errors import StartError
 from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.changes import changes
-from arboleda.plant_file.draft_check import CheckResult
+from arboleda.plant_file.draft_check import DraftCheck
 from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.versions import Version, Versions, version_of
@@ -35,13 +35,13 @@ NO_TREES = "{file} is no file of trees of this plant"
 OURS = "these files are your own already, and can be changed"
 MEANWHILE = "the draft was changed while it was checked; try again"
 SINCE = "the draft has changed since its check, and nothing was set; check it again"
-WorkBy = Callable[[Version, CheckResult, str], State]
+WorkBy = Callable[[Version, DraftCheck, str], State]
 
 
 class Checker(Protocol):
     """Process that checks files as if they were in a folder, until `stop`."""
 
-    def check(self, files: PlantFiles, plant_file: Path) -> CheckResult: ...
+    def check(self, files: PlantFiles, plant_file: Path) -> DraftCheck: ...
     def stop(self) -> None: ...
 
 
@@ -190,7 +190,7 @@ class DraftDesk(DraftApi):
             self._open.close()
             return self._shown()
 
-    def _checked_and_kept(self, editor: str, note: str) -> tuple[CheckResult, Version | None]:
+    def _checked_and_kept(self, editor: str, note: str) -> tuple[DraftCheck, Version | None]:
         """The verdict on the draft, and the version that it is now; None where there are problems."""
         with self._turns:
             self._must_edit(editor)

@@ -16,7 +16,7 @@ from arboleda.host.limits import give_way
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import draft_check
-from arboleda.plant_file.draft_check import CheckResult
+from arboleda.plant_file.draft_check import DraftCheck
 from arboleda.plant_file.recipe_trial import PATH
 from arboleda.plant_file.unstated import Unstated
 
@@ -38,7 +38,7 @@ class CheckProcess:
         self._waiting = 0
         self._ended = False
 
-    def check(self, files: PlantFiles, plant_file: Path) -> CheckResult:
+    def check(self, files: PlantFiles, plant_file: Path) -> DraftCheck:
         """The same as `draft_check.check`, without the plant. It waits; ArboledaError if no answer comes."""
         request = {"plant_file": str(plant_file), "plant": files.plant, "contents": texts(files.contents)}
         run = self._start()
@@ -89,12 +89,12 @@ def main() -> None:
     os._exit(0)  # whatever threads the plant's Python has started
 
 
-def _answer(output: bytes, plant: str) -> CheckResult:
+def _answer(output: bytes, plant: str) -> DraftCheck:
     """The verdict on the last line of the process's output; ArboledaError if there is none."""
     try:
         found: dict[str, Any] = json.loads(output.splitlines()[-1])
         read = found["read"]
-        return CheckResult(
+        return DraftCheck(
             problems=tuple(found["problems"]),
             warnings=tuple(found["warnings"]),
             unstated=tuple(map(_lack, found["unstated"])),

@@ -14,7 +14,7 @@ from typing import cast
 from py_trees import common, composites
 from py_trees.behaviour import Behaviour
 
-from arboleda.bt_xml import choices, reading, target_groups, writing
+from arboleda.bt_xml import listed_values, reading, target_groups, writing
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.forest import Forest
 from arboleda.bt_xml.recipe import tree_recipe
@@ -234,12 +234,12 @@ def _metadata(cell: Cell, recipe: WrittenRecipe) -> Iterator[tuple[str, str]]:
         )
         if group is not None:
             groups[parameter.name] = group
-        elif choices.can_be_listed(words):
+        elif listed_values.can_be_listed(words):
             lists[parameter.name] = ", ".join(words)
         else:
             raise refusal(parameter.name, "one of its values has a comma, a semicolon or a blank at its end")
     yield target_groups.KEY, "; ".join(f"{name}: {group}" for name, group in groups.items())
-    yield choices.KEY, "; ".join(f"{name}: {listed}" for name, listed in lists.items())
+    yield listed_values.KEY, "; ".join(f"{name}: {listed}" for name, listed in lists.items())
 
 
 def _ending(value: Value) -> str:

@@ -154,7 +154,7 @@ class _DrawingHandle:
         kind = self._kinds.get(f"{self._role}_{verb}")
         if kind is None:
             raise refusal(name, NO_NODE)
-        ports = [port.name for port in (kind.ports or {}).values() if port.way is not PortDirection.OUT]
+        ports = [port.name for port in (kind.ports or {}).values() if port.direction is not PortDirection.OUT]
 
         def step(*in_order: Any, **by_name: Any) -> Step:
             around = verb == "visit"  # the first value is the target, all others are steps there

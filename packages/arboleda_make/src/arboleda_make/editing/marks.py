@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from arboleda.bt_xml import checking, parameters, reading, runnable
-from arboleda.bt_xml.findings import Finding, Findings, Mark
+from arboleda.bt_xml.findings import Findings, Mark, TreeFinding
 from arboleda.bt_xml.nodes import Kind
 from arboleda.bt_xml.reading import Fetch, MissingInclude
 
@@ -43,7 +43,7 @@ def marks(
     return [_row(each, nodes, file) for each in findings.entries]
 
 
-def _row(finding: Finding, nodes: Nodes, file: str) -> Row:
+def _row(finding: TreeFinding, nodes: Nodes, file: str) -> Row:
     mark, is_here = finding.place.mark, finding.place.file == file
     tree, path, attribute = nodes.get(mark, (None, None, None)) if is_here else (None, None, None)
     where = "" if is_here else f"{finding.place}: "

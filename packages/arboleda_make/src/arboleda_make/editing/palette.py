@@ -68,7 +68,7 @@ def _port(port: Port, words: Mapping[str, str]) -> Row:
     return {
         "name": port.name,
         "type": port.type,
-        "way": port.way.value.removesuffix("_port"),
+        "way": port.direction.value.removesuffix("_port"),
         "default": port.default,
         "needed": port.is_needed,
         "words": list(port.words),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.plant_file.findings import Finding
+from arboleda.plant_file.findings import PlantFinding
 
 WORD = re.compile(r"[A-Za-z_]\w*")
 NUMBER = re.compile(r"(?<![\w.])\d[\d,]*(?:\.\d+)?(?![\w])")
@@ -25,7 +25,7 @@ def words_of(text: str) -> frozenset[str]:
 class Clues:
     """Clues of some findings, the first of which counts most: the text of all, names of the plant in it."""
 
-    first: Finding
+    first: PlantFinding
     text: str
     names: frozenset[str]
 
@@ -53,7 +53,7 @@ class Clues:
         return tuple(dict.fromkeys(float(each.replace(",", "")) for each in NUMBER.findall(self.text)))
 
 
-def clues_of(findings: Iterable[Finding], model: PlantModel | None) -> Clues:
+def clues_of(findings: Iterable[PlantFinding], model: PlantModel | None) -> Clues:
     """The clues of findings, the first of which are the ones to mend."""
     listed = list(findings)
     alike = [each for each in listed if each.source is listed[0].source][:4]

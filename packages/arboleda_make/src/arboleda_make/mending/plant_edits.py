@@ -17,7 +17,7 @@ from arboleda.plant_file import yaml_edit
 from arboleda.plant_file.document import Place
 from arboleda.plant_file.mend import cut_between
 from arboleda.plant_file.yaml_edit import EditRefused
-from arboleda.plant_file.yaml_marks import Node, YamlFault, parse
+from arboleda.plant_file.yaml_marks import YamlFault, YamlNode, parse
 
 from .candidate import Candidate
 from .clues import Clues
@@ -44,7 +44,7 @@ def _set(file: str, text: str, place: Place, value: Any, sentence: str, score: f
         yield Candidate(cuts=(cut_between(file, text, changed),), sentence=sentence, score=score)
 
 
-def _zones(file: str, text: str, root: Node, model: PlantModel, clues: Clues) -> Iterator[Candidate]:
+def _zones(file: str, text: str, root: YamlNode, model: PlantModel, clues: Clues) -> Iterator[Candidate]:
     zones = root.children.get("zones")
     there = dict(zones.value) if zones is not None else {}
     for cell in model.cells:
@@ -89,7 +89,7 @@ def _zone(
         yield from _set(file, text, place, free, f"zone {name} {words}", score)
 
 
-def _sets(file: str, text: str, root: Node, model: PlantModel, clues: Clues) -> Iterator[Candidate]:
+def _sets(file: str, text: str, root: YamlNode, model: PlantModel, clues: Clues) -> Iterator[Candidate]:
     """Facts that two verbs of a kind set alike, while no verb sets what findings miss."""
     kinds = {device.kind.name: device.kind for device in _devices(model)}
     for kind in kinds.values():
@@ -112,8 +112,8 @@ def _devices(model: PlantModel) -> Iterator[Any]:
     yield from (robot for robot in model.robots.values() if robot.verb_names)
 
 
-def _has(root: Node, place: Place) -> bool:
-    node: Node | None = root
+def _has(root: YamlNode, place: Place) -> bool:
+    node: YamlNode | None = root
     for key in place:
         node = None if node is None else node.children.get(key)
     return node is not None

@@ -18,7 +18,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.plant_file.draft_check import shaded
-from arboleda.plant_file.findings import Checked, Finding, Source, checked
+from arboleda.plant_file.findings import Checked, PlantFinding, Source, checked
 from arboleda.plant_file.mend import Mend, Texts, edit_of, edited
 from arboleda.plant_file.yaml_marks import YamlFault, parse
 from arboleda_proofs.campaigns.plants import Plant
@@ -42,7 +42,7 @@ PYTHON, TREES = ".py", ".xml"
 class Sight:
     """Sight of a plant: what is found of it."""
 
-    findings: tuple[Finding, ...]
+    findings: tuple[PlantFinding, ...]
 
     def count(self, source: Source) -> int:
         return sum(each.source is source for each in self.findings)
@@ -61,7 +61,7 @@ class Search:
     """
 
     file: Path
-    found: Sequence[Finding]  # what is wrong, the worst first
+    found: Sequence[PlantFinding]  # what is wrong, the worst first
     most: int = MOST_TRIED
     within_s: float = math.inf
     tried: int = 0
@@ -124,7 +124,7 @@ class Search:
                 return Sight(findings=look.findings)
             return Sight(findings=tuple(self._runs(look, before)))
 
-    def _runs(self, look: Checked, before: Sight) -> Iterator[Finding]:
+    def _runs(self, look: Checked, before: Sight) -> Iterator[PlantFinding]:
         """The findings of runs without faults: of the tasks that failed, or of the recipes that are named."""
         assert look.model is not None
         model = Plant(declared=look.model).model
@@ -186,7 +186,7 @@ def _cells(model: PlantModel, clues: Clues) -> Sequence[Cell]:
     return named or model.cells
 
 
-def _scenarios(model: PlantModel, findings: Iterable[Finding]) -> Iterator[Scenario]:
+def _scenarios(model: PlantModel, findings: Iterable[PlantFinding]) -> Iterator[Scenario]:
     """The tasks of runs that found something; else some of each recipe that findings name, or of any."""
     listed = list(findings)
     text = "\n".join(each.sentence for each in listed)
@@ -204,6 +204,6 @@ def _recipes(model: PlantModel) -> Iterator[str]:
     yield from (each.name for cell in model.cells for each in cell.recipes)
 
 
-def mend_of(file: Path, findings: tuple[Finding, ...], *, within_s: float = math.inf) -> Mend | None:
+def mend_of(file: Path, findings: tuple[PlantFinding, ...], *, within_s: float = math.inf) -> Mend | None:
     """A mend for findings of a plant, looked for so long; None where nothing that was tried is better."""
     return Search(file=file, found=findings, within_s=within_s).mend()

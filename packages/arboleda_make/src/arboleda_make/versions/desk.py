@@ -18,7 +18,7 @@ from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.plant_file.changes import Change, changes
-from arboleda.plant_file.draft_check import CheckResult
+from arboleda.plant_file.draft_check import DraftCheck
 from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.versions import Version, Versions, version_of, whole
 from arboleda.runtime import at_work
@@ -43,7 +43,7 @@ OUTDATED = "it was made for another version of the plant than the one at work; i
 SAME = "the files are as they are at work"
 NOW, AFTER_TASK, AT_REST = "now", "when task {task} has ended", "when it rests"
 AFTER_TEACHING = "when nobody teaches it any more; `automatic {cell}` ends that"
-Check = Callable[[PlantFiles, Path], CheckResult]
+Check = Callable[[PlantFiles, Path], DraftCheck]
 
 
 class VersionDesk(VersionsApi):
@@ -122,7 +122,7 @@ class VersionDesk(VersionsApi):
                 return _refused(found)
             return self._put(found, found.read, by, "")
 
-    def _put(self, found: CheckResult, read: PlantFiles, by: str, note: str) -> State:
+    def _put(self, found: DraftCheck, read: PlantFiles, by: str, note: str) -> State:
         """Keep as a version what was checked and is in its place, and put it to work."""
         started = self.at_work()
         fresh = version_of(read, at=_now(), by=by, note=note)
@@ -201,12 +201,12 @@ class VersionDesk(VersionsApi):
             raise
         return version
 
-    def work_by(self, version: Version, found: CheckResult, by: str) -> State:
+    def work_by(self, version: Version, found: DraftCheck, by: str) -> State:
         """Put a version to work whose files are in their place; as `put`."""
         with self._turns:
             return self._work_by(version, found, changes(whole(self.at_work()), whole(version)), by)
 
-    def _work_by(self, version: Version, found: CheckResult, differences: Sequence[Change], by: str) -> State:
+    def _work_by(self, version: Version, found: DraftCheck, differences: Sequence[Change], by: str) -> State:
         """Tell the plant of a version that is kept and whose files are in their place."""
         answer: State = {"version": version.number, "problems": (), "warnings": found.warnings, "cells": {}}
         restart = needing_restart(differences)
@@ -243,7 +243,7 @@ class VersionDesk(VersionsApi):
             raise ArboledaError(f"{file} cannot be read: {error.strerror}") from error
 
 
-def _refused(found: CheckResult) -> State:
+def _refused(found: DraftCheck) -> State:
     problems = found.problems or (MEANWHILE,)
     empty: dict[str, Any] = {"version": None, "cells": {}, "cancelled": (), "restart": ()}
     return empty | {"problems": problems, "warnings": found.warnings}

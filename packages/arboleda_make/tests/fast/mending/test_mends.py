@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
-from arboleda.plant_file.answer import check_answer
+from arboleda.plant_file.check_answer import check_answer
 from arboleda.plant_file.findings import Source, checked
 from arboleda.plant_file.mend import Cut, Edit, MendRefused, cut_between, edit_of, edited
 from arboleda_make.mending.clues import clues_of

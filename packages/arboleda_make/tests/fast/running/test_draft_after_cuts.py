@@ -13,7 +13,7 @@ from tests.cuts import End, each_cut
 
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import versions
-from arboleda.plant_file.draft_check import CheckResult
+from arboleda.plant_file.draft_check import DraftCheck
 from arboleda.plant_file.versions import Version, Versions, version_of
 from arboleda.runtime import at_work
 from arboleda_make.drafts.desk import DraftDesk
@@ -45,7 +45,7 @@ class Plant:
         there = [self.file, *self.folder.glob("*.xml")]
         return PlantFiles(plant=self.file.name, contents={each.name: each.read_bytes() for each in there})
 
-    def _work_by(self, version: Version, found: CheckResult, by: str) -> dict[str, Any]:
+    def _work_by(self, version: Version, found: DraftCheck, by: str) -> dict[str, Any]:
         at_work.keep(self.state, version.files, AT)
         return {"version": version.number}
 
@@ -53,8 +53,8 @@ class Plant:
 class Checker:
     """Finds every draft good."""
 
-    def check(self, files: PlantFiles, plant_file: Path) -> CheckResult:
-        return CheckResult(read=files)
+    def check(self, files: PlantFiles, plant_file: Path) -> DraftCheck:
+        return DraftCheck(read=files)
 
     def stop(self) -> None: ...
 

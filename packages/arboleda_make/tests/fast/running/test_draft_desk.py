@@ -10,7 +10,7 @@ import pytest
 
 from arboleda.model.errors import StartError
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file.draft_check import CheckResult
+from arboleda.plant_file.draft_check import DraftCheck
 from arboleda.plant_file.unstated import Unstated
 from arboleda.plant_file.versions import Version, Versions
 from arboleda.runtime import at_work
@@ -25,18 +25,18 @@ DWELL = ("timing", "dwell_s")
 Open = Callable[..., DraftDesk]
 
 
-def good(files: PlantFiles, plant_file: Path) -> CheckResult:
-    return CheckResult(read=files, warnings=("careful",))
+def good(files: PlantFiles, plant_file: Path) -> DraftCheck:
+    return DraftCheck(read=files, warnings=("careful",))
 
 
-def bad(files: PlantFiles, plant_file: Path) -> CheckResult:
-    return CheckResult(problems=(f"{plant_file}:2:1: no",))
+def bad(files: PlantFiles, plant_file: Path) -> DraftCheck:
+    return DraftCheck(problems=(f"{plant_file}:2:1: no",))
 
 
 class Checker:
     """Checks files as it is told to."""
 
-    def __init__(self, check: Callable[[PlantFiles, Path], CheckResult]) -> None:
+    def __init__(self, check: Callable[[PlantFiles, Path], DraftCheck]) -> None:
         self.check = check
 
     def stop(self) -> None: ...
@@ -127,8 +127,8 @@ def test_a_kept_draft_is_in_the_files_and_a_version_and_waits_for_the_next_start
     assert (kept.by, kept.note, kept.changes) == ("ana", "slower", ("timing.dwell_s: from 1 to 2",))
 
 
-def unsaid(files: PlantFiles, plant_file: Path) -> CheckResult:
-    return CheckResult(
+def unsaid(files: PlantFiles, plant_file: Path) -> DraftCheck:
+    return DraftCheck(
         read=files, unstated=(Unstated(unknown="nobody knows", place=DWELL, values=({"s": 2},)),)
     )
 
@@ -201,7 +201,7 @@ def test_a_draft_that_changes_nothing_goes_on_with_what_somebody_wrote_meanwhile
 
 
 def test_a_draft_that_is_changed_while_it_is_checked_is_not_kept(open_desk: Open, plant: Path) -> None:
-    def slow(files: PlantFiles, plant_file: Path) -> CheckResult:
+    def slow(files: PlantFiles, plant_file: Path) -> DraftCheck:
         desk.set(ANA, DWELL, 3)
         return good(files, plant_file)
 
@@ -269,7 +269,7 @@ def test_what_only_a_restart_takes_is_said_before_it_is_kept(open_desk: Open) ->
 def test_a_draft_is_put_to_work_as_the_version_that_it_is_kept_as(plant: Path) -> None:
     put: list[tuple[int, str]] = []
 
-    def work_by(version: Version, found: CheckResult, by: str) -> dict[str, Any]:
+    def work_by(version: Version, found: DraftCheck, by: str) -> dict[str, Any]:
         put.append((version.number, by))
         return {"version": version.number}
 

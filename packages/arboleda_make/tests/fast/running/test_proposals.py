@@ -15,7 +15,7 @@ import pytest
 from arboleda.model.assistants import AssistantLimits, Assistants, hours
 from arboleda.model.messages import RevisionAnswer
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file.draft_check import CheckResult
+from arboleda.plant_file.draft_check import DraftCheck
 from arboleda.plant_file.versions import Versions
 from arboleda.runtime import at_work
 from arboleda.store.task_rows import ASSISTANT
@@ -127,12 +127,12 @@ class Bench:
             plant="plant.yaml", contents={name: (self.folder / name).read_bytes() for name in sorted(names)}
         )
 
-    def check(self, files: PlantFiles, plant_file: Path) -> CheckResult:
+    def check(self, files: PlantFiles, plant_file: Path) -> DraftCheck:
         self.meanwhile()
         if self.problems:
-            return CheckResult(problems=self.problems)
+            return DraftCheck(problems=self.problems)
         whole = {**self.on_disk().contents, **files.contents}
-        return CheckResult(read=replace(files, contents=whole), warnings=("careful",))
+        return DraftCheck(read=replace(files, contents=whole), warnings=("careful",))
 
     def propose(self, **wanted: Any) -> dict[str, Any]:
         usual: dict[str, Any] = {

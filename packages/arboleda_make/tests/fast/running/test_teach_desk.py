@@ -16,7 +16,7 @@ from arboleda.core.plant import Plant
 from arboleda.geometry import bodies, kinematics
 from arboleda.model.messages import Jog, Verb
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file.draft_check import CheckResult
+from arboleda.plant_file.draft_check import DraftCheck
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.runtime import at_work, tool_path
@@ -61,8 +61,8 @@ OF_SIX |= {"deg: [60, 20], mm: 80, approach_mm: 40": "deg: [60, 20, 0, 0, 0, 0]"
 class Unchecked:
     """Finds nothing wrong with any files."""
 
-    def check(self, files: PlantFiles, plant_file: Path) -> CheckResult:
-        return CheckResult(read=files)
+    def check(self, files: PlantFiles, plant_file: Path) -> DraftCheck:
+        return DraftCheck(read=files)
 
     def stop(self) -> None: ...
 

@@ -58,7 +58,7 @@ class FloorPlan:
         if q is None or not body:
             return []
         frames = kinematics.place(body, q, kinematics.floor(drawn["at"]))
-        return [_rounded(kinematics.at(frames[link["link"]])) for link in bodies.way(body)]
+        return [_rounded(kinematics.at(frames[link["link"]])) for link in bodies.tool_chain(body)]
 
     def scene(self, watched: JudgedWorld) -> Scene:
         """The devices of the cell as they truly are in a world of this plant, whatever the plant believes."""

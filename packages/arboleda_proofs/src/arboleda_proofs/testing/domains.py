@@ -8,7 +8,7 @@ from itertools import count
 from pathlib import Path
 
 from arboleda.host.locks import lock
-from arboleda.host.users import own_mark
+from arboleda.host.machine import own_mark
 from arboleda.model.errors import StartError
 
 LAST = 101  # the DDS ports of higher ROS domains lie among the ports that Linux hands out

@@ -1,4 +1,4 @@
-"""Builder of running nodes, with their variables, from a tree of a file; it knows nothing of leaves."""
+"""Builder of running nodes, with their variables, from a tree of a file; `devices` makes the leaves."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .ports import NodePorts
 from .scripts import Script
 
 Leaf = Callable[[Written, "list[Node]", Scope], "Node | None"]
-"""Factory of a user's own node, around the nodes below it; None if there is no such node."""
+"""Makes the node of a user's own kind, around the nodes below it; None for an unknown kind."""
 Make = Callable[[str, "list[Node]", NodePorts], Node]
 
 
@@ -33,7 +33,7 @@ class Builder:
     leaf: Leaf
     time: Clock
     kinds: Mapping[str, Kind] = field(default_factory=dict)  # of the leaves
-    controls: Mapping[str, Make] = field(default_factory=dict)  # instead of those of the table
+    controls: Mapping[str, Make] = field(default_factory=dict)  # by kind: used in place of MAKERS
     written: list[tuple[Scope, str]] = field(default_factory=list)  # every variable that may get a value
 
     def tree(self, name: str, scope: Scope) -> Node:
@@ -57,16 +57,15 @@ class Builder:
         if make is not None:
             texts = {name: attribute.value for name, attribute in node.ports.items()}
             return make(_said(node) or node.kind, below, NodePorts(node.kind, texts))
-        found = self.leaf(node, below, scope)
-        if found is None:
+        leaf = self.leaf(node, below, scope)
+        if leaf is None:
             raise TreeError(f"Arboleda does not run {node.kind}", node.place)
-        return found
+        return leaf
 
     def _subtree(self, node: Written, scope: Scope) -> Node:
-        name = node.own["ID"].value
+        name = node.subtree
         passed: dict[str, Value | Variable] = {}
-        model = None if node.shares_names else self.forest.models.get(name)
-        for port in (model.ports or {}).values() if model is not None else ():
+        for port in () if node.shares_names else self.forest.declared_ports(name).values():
             if port.default is not None:
                 passed[port.name] = values.read(port.name, port.default)
         for port_name, attribute in node.ports.items():
@@ -81,7 +80,7 @@ class Builder:
 
     def _writes(self, node: Written) -> set[str]:
         """The variables that a node may set."""
-        found: set[str] = set()
+        variables: set[str] = set()
         scripts = [node.own[name].value for name in names.SCRIPTS if name in node.own]
         kind = nodes.built_in(node.kind) or self.kinds.get(node.kind)
         for port in (kind.ports or {}).values() if kind is not None else ():
@@ -90,10 +89,10 @@ class Builder:
             text = node.ports[port.name].value
             if port.type == "script":
                 scripts.append(text)
-            elif port.way is not PortDirection.IN or node.kind == "UnsetBlackboard":
+            elif port.direction is not PortDirection.IN or node.kind == "UnsetBlackboard":
                 value = values.read(port.name, text)
-                found.add(value.name if isinstance(value, Variable) else value)
-        return found.union(*(script.writes(script.parse(text)) for text in scripts))
+                variables.add(value.name if isinstance(value, Variable) else value)
+        return variables.union(*(script.writes(script.parse(text)) for text in scripts))
 
 
 def _typed(value: Value) -> Value:
@@ -125,7 +124,7 @@ def _loop(name: str, below: list[Node], ports: NodePorts) -> Node:
 
 
 def _said(node: Written) -> str:
-    """The name of a node, if it has one; else the note of a node that fails by itself, which says why."""
+    """The name of a node; for an AlwaysFailure without a name, its note, which says why it fails."""
     note = node.own.get("_description") if node.kind == "AlwaysFailure" else None
     return node.name or (note.value if note is not None else "")
 

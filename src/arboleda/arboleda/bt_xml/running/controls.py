@@ -182,9 +182,9 @@ class ReactiveFallback(Reactive):
 
 
 def _threshold(ports: NodePorts, port: str, number: float, many: int) -> int:
-    """The number of children that a threshold means; a negative one counts down from all of them.
+    """The number of children that a threshold means; a negative number counts down from all children.
 
-    BehaviorTree.CPP refuses one that cannot be reached, though the node might end all the same.
+    BehaviorTree.CPP refuses a threshold that cannot be reached, even where the node would end.
     """
     if number > many:
         raise ScriptError(THRESHOLD(port=port, node=ports.node, number=int(number), many=many))
@@ -208,7 +208,7 @@ class Parallel(Node):
         self.done = self.failed = 0
 
     def needs_all(self, scope: Scope) -> bool:
-        """True if it succeeds only where all children do."""
+        """True if the node succeeds only where all children do."""
         many = len(self.below)
         return _threshold(self.ports, "success_count", self._success(scope), many) == many
 
@@ -271,7 +271,7 @@ class ParallelAll(Node):
         self.failed = 0
 
     def needs_all(self, scope: Scope) -> bool:
-        """True if it succeeds only where all children do."""
+        """True if the node succeeds only where all children do."""
         most = self.ports.number("max_failures", scope, "1")
         return _threshold(self.ports, "max_failures", most, len(self.below)) <= 1
 
@@ -382,7 +382,7 @@ class Switch(Node):
 
     def chosen(self, scope: Scope) -> int:
         """The number of the child that the present value of the variable means."""
-        variable = self.ports.found("variable", scope)
+        variable = self.ports.value_if_set("variable", scope)
         for number in range(len(self.below) - 1):
             case = self.ports.text(f"case_{number + 1}", scope)
             if str(case) == str(variable) or same_number(case, variable):

@@ -22,7 +22,7 @@ NO_RATE = Phrase("xml.no_rate", "hz of {node} must be more than 0")
 
 
 class ResultDecorator(Decorator):
-    """Decorator that turns each end of its child into the one that `ends` names."""
+    """Decorator that turns each result of its child into another one, by `ends`."""
 
     def __init__(self, name: str, child: Node, ends: Mapping[Result, Result]) -> None:
         super().__init__(name, [child])
@@ -56,9 +56,9 @@ class KeepRunningUntilFailure(Decorator):
 
 
 class Loop(Decorator):
-    """Decorator that repeats its child while it ends as `goes_on` says, at most `times`; -1: without end.
+    """Decorator that repeats its child while its result is `goes_on`, for so many rounds; -1: without end.
 
-    A round that has taken no time is followed by a pause, as a tree is ticked only so often at one instant.
+    A pause follows a round that took no time: a tree may be ticked only so often at one instant.
     """
 
     counts = ("rounds",)
@@ -164,7 +164,7 @@ class Delay(TimedDecorator):
 
 
 class RunOnce(Decorator):
-    """Decorator that runs its child once; then it is skipped, or ends as its child did."""
+    """Decorator that runs its child once. After that it is skipped, or has its child's result again."""
 
     counts = ("ended_as",)
 
@@ -302,7 +302,7 @@ class RateController(Decorator):
 
 
 class SubTree(Decorator):
-    """Decorator around a tree with variables of its own, which are kept with it."""
+    """Decorator around a tree with variables of its own, whose values are kept with it."""
 
     def work(self) -> Result:
         self.begin()

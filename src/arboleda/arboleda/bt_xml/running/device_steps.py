@@ -1,4 +1,4 @@
-"""Steps of the plant that take values from variables, and those that set variables."""
+"""Steps of the plant that take values from variables or store answers and facts in variables."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ MADE_OF: Mapping[type[Behaviour], tuple[str, ...]] = {
     Require: ("obstacle", "name", "title"),
     Await: ("arrived", "seconds", "otherwise", "name", "title"),
 }
-"""The attributes of each class of step that depend on the values it was made with."""
+"""By class of a step: its attributes that depend on the values of its ports."""
 
 
 def value_of(kind: str, port: Port, text: str) -> Value:
-    """The value that a text means for a port of a device; raises ScriptError if it is none."""
+    """The value that a text means for a port of a device; ScriptError if the port takes no such value."""
     quote = quoted(text)
     if values.objection(port.type, text) is not None:
         raise ScriptError(WANTED(port=port.name, node=kind, wanted=TYPES[port.type](), value=quote))
@@ -64,7 +64,7 @@ def example_of(port: Port) -> Value:
 
 
 def can_be_renewed(step: Behaviour) -> bool:
-    """True if a step can be given other values than those it was made with."""
+    """True if `renew` can give a step other values."""
     return isinstance(step, tuple(MADE_OF))
 
 
@@ -84,7 +84,7 @@ def as_variable(value: Value) -> memory.Value:
 class Order:
     """Order of a node to a device: constant values, and variables that are looked up.
 
-    `make` makes the step with its values; ArboledaError where the device cannot be told so.
+    `make` makes the step with these values; ArboledaError where the device takes no such command.
     """
 
     kind: str
@@ -94,32 +94,43 @@ class Order:
     ports: Mapping[str, Port] = field(default_factory=dict)
 
     def values(self, scope: Scope) -> dict[str, Value]:
-        """All values of the command, with the present ones of variables."""
+        """All values of the command, with the present values of variables; ScriptError where one has none."""
+        return {name: self._value_of(name, scope) for name in self._given}
+
+    def values_or_examples(self, scope: Scope) -> dict[str, Value]:
+        """All values of the command, with any fitting value for a variable that has none yet."""
+        unset = {name for name, variable in self.variables.items() if scope.get(variable) is None}
         return {
-            name: self.written[name] if name in self.written else self._found(name, scope)
-            for name in self.ports
-            if name in self.written or name in self.variables
+            name: example_of(self.ports[name]) if name in unset else self._value_of(name, scope)
+            for name in self._given
         }
 
-    def words(self, known: Mapping[str, Value], unknown: Collection[str]) -> list[str]:
+    def words(self, values: Mapping[str, Value], unknown: Collection[str]) -> list[str]:
         """The values for a title, with the names of variables that have no value yet."""
         return [
             f"{{{self.variables[name]}}}" if self.variables.get(name) in unknown else shown(value)
-            for name, value in known.items()
+            for name, value in values.items()
         ]
 
-    def _found(self, name: str, scope: Scope) -> Value:
-        found = scope.get(self.variables[name])
-        if found is None:
+    @property
+    def _given(self) -> list[str]:
+        """The ports for which the node has a constant or a variable, in the order of its kind."""
+        return [name for name in self.ports if name in self.written or name in self.variables]
+
+    def _value_of(self, name: str, scope: Scope) -> Value:
+        if name in self.written:
+            return self.written[name]
+        value = scope.get(self.variables[name])
+        if value is None:
             raise ScriptError(UNSET_AT(port=name, node=self.kind, variable=self.variables[name]))
-        text = found if isinstance(found, str) else spelled(found)
+        text = value if isinstance(value, str) else spelled(value)
         return value_of(self.kind, self.ports[name], text)
 
 
 class DeviceStep(Forgiving):
-    """Step of a device, `built` with some values; those of variables are looked up when it begins.
+    """Step of a device. When it begins, it gets the present values of its variables.
 
-    `anew` are the values that it has been given since.
+    `built` are the values that the step was made with, `anew` the values that it has been given since.
     """
 
     counts = (*Forgiving.counts, "anew")
@@ -139,23 +150,23 @@ class DeviceStep(Forgiving):
         self.anew: dict[str, Value] = {}
 
     def prepare(self) -> None:
-        if self.order.variables and (found := self.order.values(self.scope)) != (self.anew or self.built):
-            self._take(found)
+        if self.order.variables and (values := self.order.values(self.scope)) != (self.anew or self.built):
+            self._take(values)
 
     def restore(self, state: Mapping[str, Any]) -> None:
         super().restore(state)
         if "anew" in state:
             self._take(state["anew"])
 
-    def _take(self, found: dict[str, Value]) -> None:
+    def _take(self, values: dict[str, Value]) -> None:
         try:
-            fresh = self.order.make(dict(found))
+            fresh = self.order.make(dict(values))
         except ArboledaError as error:
             raise ScriptError(error.sentence) from error
         if type(fresh) is not type(self.step):
             raise ScriptError(NEEDS_ZONE(node=self.order.kind))
         renew(self.step, fresh)
-        self.anew = found
+        self.anew = values
 
 
 class QuestionStep(DeviceStep):
@@ -202,6 +213,6 @@ class FactStep(Forgiving):
     def work(self) -> Result:
         result = super().work()
         for variable, fact in self.facts.items() if result is SUCCESS else ():
-            if (found := self.read(*fact)) is not None:
-                self.scope.set(variable, as_variable(found))
+            if (value := self.read(*fact)) is not None:
+                self.scope.set(variable, as_variable(value))
         return result

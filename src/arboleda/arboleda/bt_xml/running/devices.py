@@ -23,13 +23,13 @@ from arboleda.recipes.handles import Handle, PersonHandle, RobotHandle, Step, ha
 from arboleda.recipes.nodes import WrittenNode
 
 from . import place_steps
-from .device_steps import DeviceStep, FactStep, Order, QuestionStep, can_be_renewed, example_of, value_of
+from .device_steps import DeviceStep, FactStep, Order, QuestionStep, can_be_renewed, value_of
 from .errors import TreeError
 from .memory import Scope
 from .node import Node
-from .own import FunctionNode, WrapperNode
+from .python_nodes import FunctionNode, WrapperNode
 from .root import Forgiving
-from .scripts import ScriptError, spelled
+from .scripts import ScriptError
 
 ANSWER = leaves.ANSWER
 UNSAID = Phrase("xml.unsaid", "{robot} has said nothing of {fact}")
@@ -39,15 +39,15 @@ UNSAID = Phrase("xml.unsaid", "{robot} has said nothing of {fact}")
 class Devices:
     """Factory of the leaves of a tree in a cell.
 
-    Where a robot goes has to be known when the tree is built, for its way is planned then: a value that
-    stands in the file, or a parameter of the recipe. What else a device is told may be any variable.
+    The target of a robot must be known when the tree is built, for its path is planned then. So it stands in
+    the file, or is a parameter of the recipe. All other values may be any variable.
     """
 
     context: Context
     causes: list[Failure]
     own: Mapping[str, WrittenNode] = field(default_factory=dict)
     kinds: Mapping[str, Kind] = field(init=False)
-    roles: Mapping[str, str] = field(init=False)  # of each kind
+    roles: Mapping[str, str] = field(init=False)  # by kind: the role of its device
     fixed: list[tuple[Scope, str, forest.Node]] = field(
         default_factory=list
     )  # variables that must not change
@@ -58,7 +58,7 @@ class Devices:
         self.roles = leaves.roles(cell)
 
     def make(self, node: forest.Node, below: list[Node], scope: Scope) -> Node | None:
-        """The leaf for a node; None if no device makes it. TreeError if its device has no such command."""
+        """The leaf for a node; None for a kind that no device has. TreeError for a wrong command."""
         kind = self.kinds.get(node.kind)
         if kind is None:
             return None
@@ -86,10 +86,10 @@ class Devices:
         make: Callable[[dict[str, Value]], Step],
         words: str = "",
     ) -> Node:
-        """The leaf whose step is made of the node's values; `words`: the name of a command without them."""
+        """The leaf whose step is made of the node's values; `words` name its command without values."""
         name = node.name or node.kind
         order = self._order(node, kind, scope, make)
-        built = self._now(order, scope)
+        built = order.values_or_examples(scope)
         step = order.make(dict(built))
         unknown = [each for each in order.variables.values() if scope.get(each) is None]
         if unknown and type(step) is Act:
@@ -107,7 +107,7 @@ class Devices:
     def _written(
         self, node: forest.Node, kind: Kind, written: WrittenNode, below: list[Node], scope: Scope
     ) -> Node:
-        """A node in Python; an error of its function gets the place of the node."""
+        """A node in Python; an error of its ports gets the place of the node."""
         name = node.name or node.kind
         inner = [WrapperNode(each, self.context.failures, self.causes) for each in below]
         with _placed(node):
@@ -116,13 +116,15 @@ class Devices:
                 outs = {port: _variable(node, port) for port in written.gives if port in node.ports}
                 return FunctionNode(name, written, order, outs)
             self._fix(order, node, scope)
-            now = self._now(order, scope)
-        return Forgiving(name, framed(order.make(now)), self.context.failures, self.causes)
+            arguments = order.values_or_examples(scope)
+        return Forgiving(name, framed(order.make(arguments)), self.context.failures, self.causes)
 
     def _order(
         self, node: forest.Node, kind: Kind, scope: Scope, make: Callable[[dict[str, Value]], Step]
     ) -> Order:
-        ports = {name: port for name, port in (kind.ports or {}).items() if port.way is not PortDirection.OUT}
+        ports = {
+            name: port for name, port in (kind.ports or {}).items() if port.direction is not PortDirection.OUT
+        }
         attributes = {name: values.read(name, node.ports[name].value) for name in ports if name in node.ports}
         written = {
             name: value_of(node.kind, ports[name], each)
@@ -131,19 +133,6 @@ class Devices:
         }
         variables = {name: each.name for name, each in attributes.items() if isinstance(each, Variable)}
         return Order(kind=node.kind, make=make, written=written, variables=variables, ports=ports)
-
-    def _now(self, order: Order, scope: Scope) -> dict[str, Value]:
-        """The node's values; unknown variables are replaced by examples."""
-        found: dict[str, Value] = {}
-        for name, port in order.ports.items():
-            known = scope.get(order.variables[name]) if name in order.variables else None
-            if name in order.written:
-                found[name] = order.written[name]
-            elif known is not None:
-                found[name] = value_of(order.kind, port, known if isinstance(known, str) else spelled(known))
-            elif name in order.variables:
-                found[name] = example_of(port)
-        return found
 
     def _fix(self, order: Order, node: forest.Node, scope: Scope) -> None:
         """Fix the variables, which must not change; raises RecipeError if one has no value yet."""
@@ -175,7 +164,7 @@ def _has_verb(robot: Robot, verb: str) -> bool:
 
 @contextmanager
 def _placed(node: forest.Node) -> Iterator[None]:
-    """Add the place of the node to an error that its text raises."""
+    """Context in which an error gets the place of the node."""
     try:
         yield
     except (RecipeError, ScriptError) as error:

@@ -1,4 +1,4 @@
-"""Nodes without children: those of BehaviorTree.CPP, and a step of the plant."""
+"""Nodes without children: leaves of BehaviorTree.CPP, and a step of the plant."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class Sleep(Leaf):
 
     def work(self) -> Result:
         if self.status is Status.FAILURE:
-            return FAILURE  # by a condition that stands at it; it stays so until it is reset
+            return FAILURE  # its condition made it fail, until the node is reset
         if self.begin():
             self.begin_anew()
         return SUCCESS if self.time.now >= self.until else RUNNING
@@ -128,7 +128,7 @@ class Step(Leaf):
     def work(self) -> Result:
         was_running = self.status is Status.RUNNING
         self.begin()
-        if not was_running:  # an ended node may be ticked again without a reset
+        if not was_running:  # a parent may tick a node that has ended without a reset
             self.turn += 1
             self.prepare()
         self.step.tick_once()

@@ -15,9 +15,9 @@ Value = float | int | str
 class Scope:
     """Variables of one tree.
 
-    `names`: variables that stand for one of the tree around it, by name. `shares`: all others do so, too,
-    except private ones and those that have a value here. `changes`: the number of times that each was set, if
-    a node asks for that.
+    `names` has by its name here each variable that is one of the tree around this one. With `shares` all
+    variables are, except private ones and those with a value here. `changes` counts how often each variable
+    was set, if a node asks for that.
     """
 
     around: Scope | None = None

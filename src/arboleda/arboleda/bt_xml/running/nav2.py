@@ -14,10 +14,10 @@ AT = "current_child_idx"
 
 
 class RecoveryNode(Node):
-    """Node that runs its first child; if that fails, the second and then the first again, so many times.
+    """Node that runs its first child; if it fails, the second child and then the first again, so many times.
 
-    A round of several ticks that has taken no time is followed by a pause, as a tree is ticked only so often
-    at one instant.
+    A pause follows a round of several ticks that took no time: a tree may be ticked only so often at one
+    instant.
     """
 
     counts = ("recovers", "retries")
@@ -52,7 +52,7 @@ class RecoveryNode(Node):
                 self.recovers, self.retries = False, self.retries + 1
                 if goes_on and self.round_began == self.time.now:
                     return self.again()
-            elif result is SKIPPED:  # no recovery is possible; this counts as no retry
+            elif result is SKIPPED:  # no recovery is possible, so this is no retry
                 self.below[1].reset()
                 self.recovers = False
                 return FAILURE

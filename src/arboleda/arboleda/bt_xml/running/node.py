@@ -1,7 +1,7 @@
 """Base of every node: conditions before its tick, scripts after it, halting, and the state that is kept.
 
-A node's status is that of py_trees, where INVALID is what BehaviorTree.CPP calls IDLE. A tick also may come
-to SKIPPED, which no status shows: the parent is told, and the node stays as it is.
+A node's status is that of py_trees; INVALID is IDLE in BehaviorTree.CPP. The result of a tick may also be
+SKIPPED, which is no status: the parent gets the result, and the node's status does not change.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ class Result(Enum):
 RUNNING, SUCCESS, FAILURE, SKIPPED = Result
 STATUSES = {RUNNING: Status.RUNNING, SUCCESS: Status.SUCCESS, FAILURE: Status.FAILURE}
 ENDED = (SUCCESS, FAILURE)
-TICK_S = 0.01  # until the next tick, as BehaviorTree.CPP's own loops have it
-PAUSE_S = 0.1  # pause before an endless repetition of something that may take no time
+TICK_S = 0.01  # until the next tick, as in the loops of BehaviorTree.CPP
+PAUSE_S = 0.1  # before a child that may take no time is repeated without end
 
 
 class Clock(Protocol):
@@ -55,16 +55,16 @@ class NoClock:
 
 
 class Node(Keeps, Behaviour):
-    """Base of nodes; `counts` are the attributes that hold its progress, which is kept for the next start.
+    """Base of nodes; `counts` are the attributes with the node's progress, which is kept for the next start.
 
-    `forget_failures`: called once it has succeeded, where steps in it have failed, for that is answered then.
-    `place`: where it stands in a file. `writes`: the variables that it may give a value, or take it from.
-    `said`: its name in the file, or what else stands there for people. `blamed`: the leaf for which it fails.
+    `forget_failures` is called when the node succeeds although a step in it has failed. `place` is in the
+    file. `writes` are the variables that the node may set or remove. `said` is its name or note in the file.
+    `blamed` is the leaf by whose failure the node fails.
     """
 
     counts: ClassVar[tuple[str, ...]] = ()
-    sign: ClassVar[str] = "step"  # the word of drawings and of the page for it
-    frame = True  # screens name the step in it while it runs
+    sign: ClassVar[str] = "step"  # its kind in drawings and on the page
+    frame = True  # while the node runs, screens name the step inside it
     is_leaf: ClassVar[bool] = False
 
     def __init__(self, name: str, children: Sequence[Node] = ()) -> None:
@@ -116,7 +116,7 @@ class Node(Keeps, Behaviour):
         return result
 
     def blame(self, leaf: Node | None) -> None:
-        """Name to the parent the leaf for which it fails too, unless it has an answer to that."""
+        """Tell the parent which leaf failed. A parent that handles the failure may override this."""
         if isinstance(self.parent, Node):
             self.parent.blamed = leaf
 
@@ -139,8 +139,9 @@ class Node(Keeps, Behaviour):
         self.status = Status.INVALID
 
     def again(self, *, after_s: float = TICK_S) -> Result:
-        """Returns RUNNING, and asks for another tick after `after_s`; until the next tick of the original's
-        own loops it does nothing, however often the plant ticks in one step.
+        """Returns RUNNING, and asks for another tick after `after_s`.
+
+        The node rests for TICK_S, however often the plant ticks in one step, as in BehaviorTree.CPP.
         """
         self.rests_until = self.time.now + TICK_S
         self.time.wake_at(self.time.now + after_s)
@@ -180,7 +181,7 @@ class Node(Keeps, Behaviour):
             setattr(self, name, value)
 
     def _by_condition(self) -> Result | None:
-        """The result that a condition decides; None if the node ticks. Running, only `_while` counts."""
+        """The result by a condition; None if the node is to tick. For a running node only `_while` counts."""
         if self.status is Status.RUNNING:
             script = self.before.get("_while")
             if script is None or script.holds(self.scope):

@@ -38,33 +38,33 @@ class NodePorts:
     texts: Mapping[str, str]
 
     def text(self, name: str, scope: Scope, default: str | None = None) -> Value:
-        """The value of a port; raises ScriptError if there is none."""
+        """The value of a port; ScriptError if the node has none, or its variable."""
         written = self.texts.get(name, default)
         if written is None:
             raise ScriptError(NEEDED(node=self.node, port=name))
         value = values.read(name, written)
         if not isinstance(value, Variable):
             return value
-        found = scope.get(value.name)
-        if found is None:
+        present = scope.get(value.name)
+        if present is None:
             raise ScriptError(UNSET_AT(port=name, node=self.node, variable=value.name))
-        return found
+        return present
 
-    def found(self, name: str, scope: Scope) -> Value | None:
-        """The value of a port; None if its variable has none."""
+    def value_if_set(self, name: str, scope: Scope) -> Value | None:
+        """The value of a port; None if its variable has no value."""
         value = values.read(name, self.texts.get(name, ""))
         return scope.get(value.name) if isinstance(value, Variable) else value
 
     def number(self, name: str, scope: Scope, default: str | None = None) -> float:
-        """The value of a port as a number; raises ScriptError if it is none."""
-        found = self.text(name, scope, default)
-        if not isinstance(found, str):
-            return float(found)
-        if values.objection("double", found) and values.objection("int", found):
+        """The value of a port as a number; ScriptError if the value is no number."""
+        value = self.text(name, scope, default)
+        if not isinstance(value, str):
+            return float(value)
+        if values.objection("double", value) and values.objection("int", value):
             raise ScriptError(
-                WANTED(port=name, node=self.node, wanted=TYPES["double"](), value=quoted(found))
+                WANTED(port=name, node=self.node, wanted=TYPES["double"](), value=quoted(value))
             )
-        return values.number(found.strip())
+        return values.number(value.strip())
 
     def is_set(self, name: str, scope: Scope, default: str) -> bool:
         return is_true(self.text(name, scope, default))

@@ -28,7 +28,7 @@ FAILED_AT = Phrase("xml.failed_at", "the tree {tree} has failed: {leaf}")
 
 
 def generic(tree: str, leaf: Node | None) -> Failure:
-    """The failure of a tree that fails as it is written: by a leaf whose name, if it has one, says why."""
+    """The failure of a tree without a failed step: the name of the leaf, if it has one, says why."""
     said = leaf.said if leaf is not None else ""
     sentence = FAILED_AT(tree=tree, leaf=said) if said else FAILED(tree=tree)
     return Failure(reason=Reason.REJECTED, sentence=sentence)
@@ -37,7 +37,7 @@ def generic(tree: str, leaf: Node | None) -> Failure:
 class Forgiving(Step):
     """Step of the plant in a tree that may recover from its failure.
 
-    The cause is kept until the whole tree fails; a cause that no recipe may recover from ends the tree.
+    The cause is kept until the whole tree fails. A cause from which no recipe may recover ends the tree.
     """
 
     def __init__(self, name: str, step: Behaviour, failures: Failures, causes: list[Failure]) -> None:
@@ -57,7 +57,7 @@ class Forgiving(Step):
         return result
 
     def _note(self, cause: Failure) -> None:
-        """Keep the cause, until a node around this one has succeeded all the same."""
+        """Keep the cause until a node around this one succeeds."""
         before = self.causes[:]
         self.causes[:] = [cause]
         node = self.parent
@@ -72,7 +72,7 @@ def _bring_back(causes: list[Failure], before: list[Failure]) -> None:
 
 
 class Rescue(TryCatch):
-    """TryCatch of a plant: the cause for which a child failed stays, whatever becomes of the last one."""
+    """TryCatch of a plant: the cause of a child's failure stays, whatever the result of the last child."""
 
     def __init__(
         self, name: str, children: Sequence[Node], failures: Failures, causes: list[Failure]
@@ -82,10 +82,10 @@ class Rescue(TryCatch):
         self.causes = causes
         self.cause: Failure | None = None
         self.ends_tree = False  # with its cause
-        self.leaf: Node | None = None  # for which the child failed
+        self.leaf: Node | None = None  # by whose failure the child failed
 
     def caught(self) -> None:
-        """Put the cause aside, unless the task may not go on at all."""
+        """Put the cause aside, unless no part of the task may go on after it."""
         first = self.failures.first
         if first is not None and first.reason in NO_RESCUE:
             return
@@ -95,7 +95,7 @@ class Rescue(TryCatch):
         self._forget()
 
     def rescued(self) -> None:
-        """Bring the cause back, with that for which the last child failed, too."""
+        """Bring the cause back, with the cause of the last child's failure, if it failed."""
         if self.cause is None:
             return
         failed = self.below[-1].status is Status.FAILURE
@@ -103,7 +103,7 @@ class Rescue(TryCatch):
         self._bring_back(with_second(self.cause, second))
 
     def halt(self) -> None:
-        """Bring back the cause of the node that is left: it came first."""
+        """Bring back the first cause, as the rescue does not end."""
         super().halt()
         if self.cause is not None:
             self.blame(self.leaf)
@@ -173,10 +173,10 @@ class Main(Node):
         return self._first_use() is None
 
     def take_late(self, take: Take) -> None:
-        """Have shared devices taken before the first use of one, in the sequence where that is."""
-        found = self._first_use()
-        assert found is not None
-        sequence, index = found
+        """Insert the taking of shared devices before their first use, into the sequence of that use."""
+        first_use = self._first_use()
+        assert first_use is not None
+        sequence, index = first_use
         step = take()
         taking = Forgiving(step.name, step, self.failures, self.causes)
         taking.time = sequence.time
@@ -184,23 +184,24 @@ class Main(Node):
         sequence.children.insert(index, taking)
 
     def _first_use(self) -> tuple[Node, int] | None:
-        """The innermost sequence that has all that comes before the first use, and the place of that in it;
-        None where nothing comes before.
+        """The innermost sequence with steps before the first use of a shared device, and the use's index.
+
+        None where no step comes before the first use.
         """
-        found: tuple[Node, int] | None = None
+        innermost: tuple[Node, int] | None = None
         node: Node = self.below[0]
         while isinstance(node, InSequence | SubTree):
             index = next((n for n, child in enumerate(node.below) if any(used(child))), 0)
             if isinstance(node, InSequence) and index:
-                found = (node, index)
+                innermost = (node, index)
             node = node.below[index]
-        return found
+        return innermost
 
     def _halt_all(self) -> None:
-        """Halt whatever runs, also below nodes that have ended: an error comes in the middle of a tick.
+        """Halt all running nodes, also those below ended ones: an error comes in the middle of a tick.
 
-        A script that breaks while its node is halted keeps nothing else from being halted: what that left
-        is halted from the innermost node on.
+        A script may break while its node is halted, which leaves nodes below it running. So all nodes are
+        halted a second time, from the innermost on.
         """
         nodes = list(self.below[0].iterate())
         for node in (*nodes, *reversed(nodes)):

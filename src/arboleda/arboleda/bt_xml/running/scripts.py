@@ -30,7 +30,7 @@ NOT_WHOLE = Phrase("script.not_whole", "{number} is no whole number")
 
 
 class ScriptError(ArboledaError):
-    """Error of a script while the tree runs."""
+    """Error of a script, or of a port, while the tree runs."""
 
 
 @dataclass(frozen=True)
@@ -46,10 +46,10 @@ class Script:
 
     def run(self, scope: Scope) -> Value:
         """Run the script; returns the value of the last statement."""
-        found: Value = 0
+        value: Value = 0
         for statement in self.statements:
-            found = evaluate(statement, scope)
-        return found
+            value = evaluate(statement, scope)
+        return value
 
     def holds(self, scope: Scope) -> bool:
         return is_true(self.run(scope))
@@ -71,24 +71,24 @@ def evaluate(expression: Expression, scope: Scope) -> Value:
     if isinstance(expression, script.Value):
         return expression.value
     if isinstance(expression, Name):
-        return _known(expression.name, scope)
+        return _value_of(expression.name, scope)
     if isinstance(expression, Prefix):
         return _prefix(expression.sign, evaluate(expression.operand, scope))
     if isinstance(expression, Comparison):
         return _compared(expression, scope)
     if isinstance(expression, Choice):
-        way = expression.then if is_true(evaluate(expression.condition, scope)) else expression.otherwise
-        return evaluate(way, scope)
+        branch = expression.then if is_true(evaluate(expression.condition, scope)) else expression.otherwise
+        return evaluate(branch, scope)
     if isinstance(expression, Assignment):
         return _assigned(expression, scope)
     return _infix(expression, scope)
 
 
-def _known(name: str, scope: Scope) -> Value:
-    found = scope.get(name)
-    if found is None:
+def _value_of(name: str, scope: Scope) -> Value:
+    value = scope.get(name)
+    if value is None:
         raise ScriptError(UNSET(variable=name))
-    return found
+    return value
 
 
 def _prefix(sign: str, value: Value) -> Value:
@@ -150,7 +150,7 @@ def _compare(left: Value, sign: str, right: Value) -> bool:
 def _assigned(expression: Assignment, scope: Scope) -> Value:
     value = evaluate(expression.value, scope)
     if expression.sign != ":=":
-        there = _known(expression.name, scope)
+        there = _value_of(expression.name, scope)
         if expression.sign != "=":
             value = _joined(there, expression.sign[0], value)
         elif isinstance(there, str) is not isinstance(value, str):

@@ -31,7 +31,7 @@ class WasEntryUpdated(Leaf):
 
 
 class WhenUpdated(Decorator):
-    """Decorator that runs its child if the variable was set since its last look; else `otherwise`."""
+    """Decorator that runs its child if its variable was set since the last check; else `otherwise`."""
 
     counts = ("seen", "is_under_way")
 
@@ -67,7 +67,7 @@ class BlackboardCheck(Decorator):
 
     def work(self) -> Result:
         self.begin()
-        one, other = (self.ports.found(port, self.scope) for port in ("value_A", "value_B"))
+        one, other = (self.ports.value_if_set(port, self.scope) for port in ("value_A", "value_B"))
         if one is not None and other is not None and self.same(one, other):
             return self.child.execute()
         self.child.reset()
@@ -116,7 +116,7 @@ class GoalUpdatedController(Decorator):
         self.is_new = False
 
     def work(self) -> Result:
-        goals = [self.ports.found(port, self.scope) for port in ("goal", "goals")]
+        goals = [self.ports.value_if_set(port, self.scope) for port in ("goal", "goals")]
         if self.begin() or goals != self.goals:
             self.goals, self.is_new = goals, True
         if self.child.status is Status.RUNNING or self.is_new:

@@ -7,7 +7,7 @@ import re
 import socket
 from dataclasses import dataclass
 
-from arboleda.host.addresses import interface_addresses
+from arboleda.host.machine import interface_addresses
 from arboleda.model.errors import StartError
 
 LOCAL = "127.0.0.1"

@@ -12,7 +12,7 @@ from arboleda.model.commands import Command, Question
 from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, TaskChanged
 from arboleda.model.plant_model import PlantModel
-from arboleda.plant_file.findings import Finding, Source
+from arboleda.plant_file.findings import PlantFinding, Source
 from arboleda_proofs.simulator.plant_process import Fuse, Side
 
 from .end_state import EndState
@@ -150,11 +150,11 @@ def calm_runs(model: PlantModel, scenarios: Iterable[Scenario]) -> Iterator[Calm
                 tried |= {each.answers for each in others}
 
 
-def run_findings(calm: Calm) -> Iterator[Finding]:
+def run_findings(calm: Calm) -> Iterator[PlantFinding]:
     """The findings of a run without faults, and of the same task once more."""
     outcome, task = calm.run.outcome, calm.scenario.name
     if not calm.is_sound:
         words = ": ".join(outcome.broken) if outcome.broken else calm.finding or outcome.words
-        yield Finding(source=Source.RUN, sentence=f"{task}: {words}", task=task)
+        yield PlantFinding(source=Source.RUN, sentence=f"{task}: {words}", task=task)
     elif calm.again:
-        yield Finding(source=Source.RUN, sentence=f"{task}, once more: {calm.again}", task=task)
+        yield PlantFinding(source=Source.RUN, sentence=f"{task}, once more: {calm.again}", task=task)

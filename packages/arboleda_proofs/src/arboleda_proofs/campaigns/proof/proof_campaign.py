@@ -13,7 +13,7 @@ from rich.text import Text
 from arboleda.host.packages import extra
 from arboleda.model.counting import counted
 from arboleda.model.packages import MAKE
-from arboleda.plant_file.answer import Answer
+from arboleda.plant_file.check_answer import CheckAnswer
 
 from ..campaign import Campaign, Runs
 from ..plants import notes
@@ -194,19 +194,19 @@ class ProofCampaign:
             self._say(f"would mend it: {answer.mend.words}", "green")
         self._write(breaches, answer, complete=complete)
 
-    def _answer(self) -> Answer:
+    def _answer(self) -> CheckAnswer:
         """The findings of the runs without faults; where it is wanted, with what would mend them, or notice
         what nobody notices."""
         findings = tuple(each for calm in self._calm for each in run_findings(calm))
         plant = self._request.plant
         if plant is None or not self._request.mend:
-            return Answer(findings=findings)
+            return CheckAnswer(findings=findings)
         with progress(self._console, "looking for a mend", None):
             if findings:
                 mend = extra("mend", MAKE, "--mend")(plant, findings, within_s=MEND_S)
             else:
                 mend = extra("notice", MAKE, "--mend")(plant, self._tally, within_s=MEND_S)
-            return Answer(findings=findings, mend=mend)
+            return CheckAnswer(findings=findings, mend=mend)
 
     def _try_checks(self) -> None:
         """Try the checks of all that nobody notices and that will be named; a check takes a few runs."""
@@ -235,7 +235,7 @@ class ProofCampaign:
         most = self._tally.most_acts
         return f", after all others with at most {counted(most, 'act')} of one" if most else ""
 
-    def _write(self, breaches: list[Breach], mended: Answer, *, complete: bool) -> None:
+    def _write(self, breaches: list[Breach], mended: CheckAnswer, *, complete: bool) -> None:
         request = self._request
         answer = proof_summary.summary(
             request.plant,

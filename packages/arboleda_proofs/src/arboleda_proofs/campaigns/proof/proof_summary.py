@@ -10,7 +10,7 @@ from typing import Any
 
 from arboleda import __version__
 from arboleda.model.errors import ArboledaError
-from arboleda.plant_file.answer import Answer
+from arboleda.plant_file.check_answer import CheckAnswer
 from arboleda.plant_file.unstated import unknowns
 
 from .calm import Calm
@@ -42,7 +42,7 @@ def summary(
     total: int,
     *,
     complete: bool,
-    mended: Answer,
+    mended: CheckAnswer,
     pairs: PairTally | None = None,
 ) -> dict[str, Any]:
     """The whole answer; `mended` has what the runs without faults found, and what would mend it."""

@@ -58,7 +58,7 @@ def _bridge(look: Look) -> Iterator[Row]:
     boards = bridge._boards.items() if bridge is not None else ()  # what it keeps is no part of its interface
     for name, board in boards:
         yield f"labels of {name}", len(board.labels._issued), REMEMBERED
-        yield f"known ids of {name}", len(board.labels._known), REMEMBERED
+        yield f"known ids of {name}", len(board.labels._ids), REMEMBERED
 
 
 def _network(look: Look) -> Iterator[Row]:

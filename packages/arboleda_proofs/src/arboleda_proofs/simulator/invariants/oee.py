@@ -8,7 +8,7 @@ from itertools import pairwise
 from operator import attrgetter
 
 from arboleda.model.messages import ENDED, TaskState
-from arboleda.oee.figures import ENOUGH, LATE_S, TIMES, KeptFigures, Oee, Run, Shortest, Work, oee
+from arboleda.oee.figures import ENOUGH, LATE_S, TIMES, Oee, PastTask, PastTimes, PlantRun, Shortest, oee
 
 from ..recorded.tasks import KnownTask
 from .invariant import Look, Trigger, invariant
@@ -29,13 +29,13 @@ def oee_is_as_seen(look: Look) -> Iterator[str]:
         for ended, until_s in ((False, now), (True, now + 1.0), (False, now + LATE_S + 1.0)):
             runs = record.times.runs(now, ended=ended)
             begin = runs[0].since_s
-            kept = KeptFigures(works=works, runs=runs, downs=record.times.downs, shortest=_shortest(works))
+            kept = PastTimes(works=works, runs=runs, downs=record.times.downs, shortest=_shortest(works))
             for since_s in (begin - 1.0, begin + (now - begin) / 3.0):
                 yield from _unlike(oee(cell, kept, since_s, until_s), _Interval(kept, cell, until_s))
 
 
-def _work(task: KnownTask) -> Work:
-    return Work(
+def _work(task: KnownTask) -> PastTask:
+    return PastTask(
         cell=task.cell,
         order=task.message.text.partition(" #")[0],
         state=task.state.value,
@@ -45,7 +45,7 @@ def _work(task: KnownTask) -> Work:
     )
 
 
-def _shortest(works: list[Work]) -> dict[tuple[str, str], Shortest]:
+def _shortest(works: list[PastTask]) -> dict[tuple[str, str], Shortest]:
     took: dict[tuple[str, str], list[float]] = {}
     for work in works:
         if work.state == TaskState.DONE and work.started_s is not None and work.ended_s is not None:
@@ -56,7 +56,7 @@ def _shortest(works: list[Work]) -> dict[tuple[str, str], Shortest]:
 class _Interval:
     """Sums of what was seen of a cell: its state at an instant, and for how many seconds a state lasted."""
 
-    def __init__(self, kept: KeptFigures, cell: str, until_s: float) -> None:
+    def __init__(self, kept: PastTimes, cell: str, until_s: float) -> None:
         self._runs, self._until_s = kept.runs, until_s
         self._downs = [each for each in kept.downs if each.cell == cell]
         self._works = kept.works
@@ -72,15 +72,15 @@ class _Interval:
     def since_s(self) -> float:
         return self._runs[0].since_s
 
-    def items(self, since_s: float) -> list[Work]:
+    def items(self, since_s: float) -> list[PastTask]:
         """The tasks that began after that time and were done or failed."""
         over = [each for each in self._works if each.state in ITEMS and each.started_s is not None]
         return [each for each in over if since_s <= (each.ended_s or 0.0) < self._until_s]
 
-    def best_s(self, work: Work) -> float | None:
+    def best_s(self, work: PastTask) -> float | None:
         return self._best.get((work.cell, work.order))
 
-    def took_s(self, work: Work) -> float:
+    def took_s(self, work: PastTask) -> float:
         pieces = self.pieces(work.started_s or 0.0, work.ended_s or 0.0)
         return sum([seconds for at, seconds in pieces if self.is_up(at)])
 
@@ -107,7 +107,7 @@ class _Interval:
         last = [each for each in begun if each.ended_s is None or at < each.ended_s]
         return bool(last) and self.is_up(at)
 
-    def _run_at(self, at: float) -> tuple[Run, bool]:
+    def _run_at(self, at: float) -> tuple[PlantRun, bool]:
         """The last start of the plant before that time, and whether it still ran."""
         run = max([each for each in self._runs if each.since_s < at], key=attrgetter("since_s"))
         lasts = run is self._runs[-1] and not run.ended and self._until_s - run.seen_s <= LATE_S

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from arboleda.model.cell_states import CellState
-from arboleda.oee.figures import Downtime, Run
+from arboleda.oee.figures import Downtime, PlantRun
 
 from .cells import KnownCell
 
@@ -36,10 +36,10 @@ class Times:
             elif cell.name in self._stands:
                 self._stand_no_more(cell.name, now)
 
-    def runs(self, now: float, *, ended: bool) -> list[Run]:
+    def runs(self, now: float, *, ended: bool) -> list[PlantRun]:
         """All starts; `ended`: the last one ends now, and was not killed."""
         return [
-            Run(since_s=since, seen_s=end, ended=ended and number == len(self._ends))
+            PlantRun(since_s=since, seen_s=end, ended=ended and number == len(self._ends))
             for number, (since, end) in enumerate(zip(self._starts, [*self._ends, now], strict=True))
         ]
 

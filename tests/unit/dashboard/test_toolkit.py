@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from arboleda.host.imports import without
+from arboleda.dashboard.toolkit import without
 
 
 def test_a_module_is_missing_meanwhile_and_there_afterwards(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import keyword
 from collections.abc import Mapping, Sequence
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from arboleda.kinds import rules
 from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType, Slot
@@ -15,8 +15,8 @@ from arboleda.recipes.handles import DeviceHandle
 from arboleda.wire import mqtt_limits
 
 from .document import Document, Place, choice, nearest, shown
-from .registry import RESERVED
 from .shapes import MAPPING, NAME_RULE, KindShape, VerbShape, is_name
+from .shipped_kinds import RESERVED
 
 T = TypeVar("T")
 Types = Mapping[str, "FactType | None"]
@@ -26,16 +26,21 @@ WITH_LIMITS = "; a number with limits is of a kind in Python: Number(1, 60)"
 OF_STEPS = tuple(
     name for name, _ in inspect.getmembers(DeviceHandle, inspect.isfunction) if not name.startswith("_")
 )
-OF_FACTS = ("self", "at_most_s")  # keys of those steps beside facts
+OF_FACTS = ("self", "at_most_s")  # parameters of these steps beside facts
 
 
 def kinds(document: Document) -> dict[str, DeviceKind]:
-    """Every correct kind of the file by name; the problems of the others are kept."""
+    """Every correct kind of the file by name; problems of the other kinds are kept."""
     if not document.has(SECTION):
         return {}
     document.read_plain(MAPPING, SECTION)
-    found = {name: _kind(document, name) for name in document.keys(SECTION)}
-    return {name: kind for name, kind in found.items() if kind is not None}
+    declared = {name: _kind(document, name) for name in document.keys(SECTION)}
+    return {name: kind for name, kind in declared.items() if kind is not None}
+
+
+def verbs_of(device: Any) -> Mapping[str, DeviceVerb]:
+    """The verbs of a device by name; empty for a robot whose kind has no verbs."""
+    return device.kind.verbs if device.verb_names else {}
 
 
 def _kind(document: Document, name: str) -> DeviceKind | None:
@@ -183,7 +188,7 @@ def _listed(document: Document, place: Place) -> FactType | None:
 def _facts(
     document: Document, place: Place, facts: Types, slots: Types | None
 ) -> tuple[tuple[str, Value | Slot], ...] | None:
-    """The facts with their values; `slots` are parameters that a value may stand for, None to allow none."""
+    """The facts with their values, None if one is wrong; `slots` are the parameters that a value may name."""
     if not document.has(place):
         return ()
     mapping = document.read_plain(MAPPING, place)
@@ -196,7 +201,7 @@ def _facts(
             there = f"facts: {', '.join(facts)}" if facts else "this kind has none"
             document.problem(place, f"there is no fact {shown(name)}{nearest(name, facts)}; {there}", at=here)
         if type is None:
-            values[name] = None  # its mistakes are reported there
+            values[name] = None  # the problem is reported at the fact
         elif slots is not None and isinstance(value, str) and value.startswith(SLOT):
             values[name] = _slot(document, here, type, slots)
         else:
@@ -235,7 +240,7 @@ def _value(document: Document, place: Place, type: FactType) -> Value | None:
 
 
 def _is_named(document: Document, place: Place, what: str, taken: Sequence[str]) -> bool:
-    """True if the last key of `place` can be a name in a recipe, as `mill.run(program=1)` has three."""
+    """True if the last key of `place` can be a name in a recipe, such as each in `mill.run(program=1)`."""
     objection = name_objection(str(place[-1]), what, taken)
     if objection is not None:
         document.problem(place, objection, at=place)

@@ -18,7 +18,7 @@ from .root import generic
 
 
 class WrapperNode(Node):
-    """Node below a step in Python, which finds the cause of the node's failure in `failures`."""
+    """Node below a step in Python; the step reads the cause of the node's failure from `failures`."""
 
     frame = True
 
@@ -41,18 +41,18 @@ class WrapperNode(Node):
 
 
 class FunctionNode(Leaf):
-    """Leaf that calls a function of values at each tick; an exception in it counts as the tree's."""
+    """Leaf that calls a function of values at each tick; an exception in the function ends the tree."""
 
     def __init__(self, name: str, written: WrittenNode, order: Order, outs: Mapping[str, str]) -> None:
         super().__init__(name)
         self.written = written
         self.order = order
-        self.outs = outs  # by what it gives, the variables
+        self.outs = outs  # by the name of a value that the function gives: its variable
 
     def work(self) -> Result:
-        found = self.written.calculate(self.order.values(self.scope))
-        if found is None:
+        results = self.written.calculate(self.order.values(self.scope))
+        if results is None:
             return FAILURE
         for name, variable in self.outs.items():
-            self.scope.set(variable, as_variable(found[name]))
+            self.scope.set(variable, as_variable(results[name]))
         return SUCCESS

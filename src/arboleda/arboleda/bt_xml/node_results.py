@@ -1,4 +1,4 @@
-"""Possible results of nodes, as far as they show without running; and children that are never reached."""
+"""Possible results of nodes, as far as a file shows them, and children that are never reached."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ CONDITIONS = {"_failureIf": FAILED, "_successIf": DONE, "_skipIf": SKIPPED, "_wh
 
 def unreached(root: Node) -> list[Node]:
     """The nodes that can never be reached; nodes below such a node are left out."""
-    found: list[Node] = []
-    _ends(root, found)
-    return found
+    nodes: list[Node] = []
+    _ends(root, nodes)
+    return nodes
 
 
 def _ends(node: Node, unreached: list[Node]) -> Ends:
-    """The possible results of a node with its conditions; unreached children are added to `unreached`."""
-    known = ENDS.get(node.kind)
-    if known is not None:
-        own = known
+    """The possible results of a node with its conditions; appends unreached children to `unreached`."""
+    certain = ENDS.get(node.kind)
+    if certain is not None:
+        own = certain
     elif node.children and node.kind in OF_CHILDREN:
         own = OF_CHILDREN[node.kind](node, unreached)
     else:
@@ -37,34 +37,34 @@ def _ends(node: Node, unreached: list[Node]) -> Ends:
 
 
 def _in_order(stops: str) -> Callable[[Node, list[Node]], Ends]:
-    """The ends of children that run one after the other, until one ends as `stops` says."""
+    """The results of a node whose children run one after the other, until one has the result `stops`."""
     goes_on = DONE if stops == FAILED else FAILED
 
     def ends(node: Node, unreached: list[Node]) -> Ends:
-        found: set[str] = set()
+        results: set[str] = set()
         all_skip = True
         for number, child in enumerate(node.children):
             below = _ends(child, unreached)
             all_skip = all_skip and SKIPPED in below
             if stops in below:
-                found.add(stops)
+                results.add(stops)
             if not below - {stops}:
                 unreached += node.children[number + 1 : number + 2]
-                return frozenset(found)
-        return frozenset(found | {goes_on} | ({SKIPPED} if all_skip else set()))
+                return frozenset(results)
+        return frozenset(results | {goes_on} | ({SKIPPED} if all_skip else set()))
 
     return ends
 
 
 def _if_then_else(node: Node, unreached: list[Node]) -> Ends:
-    first, *ways = (_ends(child, unreached) for child in node.children)
-    found: set[str] = set()
+    first, *branches = (_ends(child, unreached) for child in node.children)
+    results: set[str] = set()
     for needed, number in ((DONE, 1), (FAILED, 2)):
         if number < len(node.children) and needed in first:
-            found |= ways[number - 1]
+            results |= branches[number - 1]
         elif number < len(node.children):
             unreached.append(node.children[number])
-    return frozenset(found | ({FAILED} if FAILED in first and len(node.children) < 3 else set()))
+    return frozenset(results | ({FAILED} if FAILED in first and len(node.children) < 3 else set()))
 
 
 def _alone(node: Node, unreached: list[Node]) -> Ends:
@@ -79,13 +79,13 @@ def _turned(rows: Mapping[str, Iterable[str]]) -> Callable[[Node, list[Node]], E
     return ends
 
 
-def _for_ever(port: str, kept: str) -> Callable[[Node, list[Node]], Ends]:
-    """The ends of a node that repeats; with -1 times without end, only one of them is left."""
+def _for_ever(port: str, remaining: str) -> Callable[[Node, list[Node]], Ends]:
+    """The results of a node that repeats; with -1 rounds it never ends by itself, so one result remains."""
 
     def ends(node: Node, unreached: list[Node]) -> Ends:
         below = _alone(node, unreached)
         value = values.read(port, node.port(port) or "")
-        return below & {kept, SKIPPED} if value == "-1" else ANY
+        return below & {remaining, SKIPPED} if value == "-1" else ANY
 
     return ends
 

@@ -1,4 +1,4 @@
-"""Names of a plant that must differ: one name, one thing, on ROS 2, on MQTT and in operators' words."""
+"""Check of names: one name is one thing, on ROS 2, on MQTT and in the words of operators."""
 
 from __future__ import annotations
 
@@ -37,19 +37,19 @@ def check_names(document: Document, has_twin: Callable[[Place], bool]) -> None:
 
 
 def _names(document: Document, robots: list[Place], key: str) -> list[tuple[str, Place]]:
-    """The name of each robot under `key`, else its own name, which for a device may be its role."""
-    found = []
+    """The name of each robot under `key`, else its `name`, else the role of a device."""
+    rows = []
     for robot in robots:
         places = [(*robot, each) for each in (key, "name") if document.has((*robot, each))]
         if places and isinstance(name := document.value(places[0]), str):
-            found.append((name, places[0]))
+            rows.append((name, places[0]))
         elif not places and _is_role(robot):
-            found.append((str(robot[-1]), robot))
-    return found
+            rows.append((str(robot[-1]), robot))
+    return rows
 
 
 def _is_role(place: Place) -> bool:
-    """True if a place is that of a device, which may have the name of its role, or of a shared one."""
+    """True if a place is that of a device in a role, or of a shared device: its key may be its name."""
     return (len(place) == 4 and place[2] == "devices") or (len(place) == 2 and place[0] == "shared")
 
 

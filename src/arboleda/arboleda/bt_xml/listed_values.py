@@ -1,4 +1,4 @@
-"""Values that a parameter of a tree can have at most, as the metadata of its model list them."""
+"""Values of a parameter of a tree, as the metadata `values` of its model list them."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ PAIR = re.compile(r"\s*([^\s:]+)\s*:\s*([^,]*[^\s,][^,]*(?:,[^,]*[^\s,][^,]*)*)"
 
 
 def of_tree(forest: Forest, tree: str) -> dict[str, tuple[str, ...]]:
-    """The values by parameter; what cannot be read is left out, `check` finds it."""
-    found = pairs(forest, tree, KEY, PAIR)
-    return {name: tuple(each.strip() for each in listed.split(",")) for name, listed in found}
+    """The values by parameter; a part that cannot be read is left out, `check` reports it."""
+    rows = pairs(forest, tree, KEY, PAIR)
+    return {name: tuple(each.strip() for each in listed.split(",")) for name, listed in rows}
 
 
 def check(forest: Forest, findings: Findings) -> None:
-    """Keep a finding for each part that cannot be read, or names what is no parameter of its tree."""
+    """Keep a finding for each part that cannot be read, or that names no parameter of its tree."""
     check_pairs(forest, findings, KEY, PAIR, HOW)
 
 

@@ -1,4 +1,4 @@
-"""The pose of one robot at one target."""
+"""Pose of one robot at one target of a cell of devices."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from .shapes import NodeShape
 START = "home"  # the target where each robot waits
 
 
-def spot(document: Document, place: Place, robot: Robot, name: str) -> Pose | None:
-    """The pose that the file has there for a target of this name; else None, with the problem kept."""
+def target_pose(document: Document, place: Place, robot: Robot, name: str) -> Pose | None:
+    """The pose of the robot that the file has there for a target; None, with the problem kept, if wrong."""
     if robot.floor_grid:
         shape = document.read(NodeShape, place)
         if shape is not None and shape.node >= robot.floor_grid.size:

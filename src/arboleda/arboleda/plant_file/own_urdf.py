@@ -1,4 +1,4 @@
-"""The URDF of a model of the plant's own: from the link `base_link` on the floor to the link `tool0`."""
+"""URDF of a model of the plant's own: from the link `base_link` on the floor to the link `tool0`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ UPRIGHT = 0.999  # how vertical a sliding joint is that lifts
 def drawing(chain: Chain, mount: OffsetShape | None = None, tool: OffsetShape | None = None) -> str:
     """The URDF of the chain from its mounting to its tool point; a chain without any shape gets stand-ins.
 
-    A link of the file that has one of the two names but stands elsewhere is called `tool0_of_model`.
+    A link of the file that is called `base_link` or `tool0`, but stands elsewhere, is renamed, as
+    `tool0_of_model`.
     """
     robot = chain.robot
     names: dict[str, str] = {}
@@ -43,9 +44,9 @@ def lifts(urdf: str, joints: Sequence[Joint]) -> list[int]:
     """The direction in which each joint lifts the tool: -1 for smaller values, 1 for greater ones, else 0."""
     body = bodies.read(urdf)
     frames = kinematics.place(body, (0.0,) * len(joints))
-    found = [0] * len(joints)
+    directions = [0] * len(joints)
     level = True  # every joint that turned so far turns about a vertical axis
-    for link in bodies.way(body):
+    for link in bodies.tool_chain(body):
         moves = link["moves"]
         if moves is None:
             continue
@@ -53,8 +54,8 @@ def lifts(urdf: str, joints: Sequence[Joint]) -> list[int]:
         if moves["type"] == "turn":
             level = level and abs(up) > UPRIGHT
         elif level and abs(up) > UPRIGHT:
-            found[moves["index"]] = 1 if up > 0 else -1
-    return found
+            directions[moves["index"]] = 1 if up > 0 else -1
+    return directions
 
 
 def _free(robot: Element, kind: str, name: str) -> str:
@@ -73,7 +74,7 @@ def _rename(robot: Element, names: dict[str, str]) -> None:
 
 
 def _fix(robot: Element, new: str, ends: tuple[str, str], offset: OffsetShape | None) -> None:
-    """Add a fixed joint between two links, of which one is new."""
+    """Add the link `new`, and a fixed joint between the two links `ends`."""
     offset = offset or OffsetShape()
     xyz, rpy = map(millimetres, offset.xyz_mm), map(math.radians, offset.rpy_deg)
     SubElement(robot, "link", {"name": new})
@@ -108,7 +109,7 @@ def _xyz(joint: Element) -> list[float]:
 
 
 def _rail(joint: Element, axis: Axis) -> tuple[list[float], list[float]]:
-    """The way along which a sliding joint brings what it carries."""
+    """The two ends of the path along which a sliding joint moves the links that it carries."""
     turned = _numbers(joint.find("origin"), "rpy", "0 0 0")
     along = _numbers(joint.find("axis"), "xyz", "1 0 0")
     length = math.hypot(*along) or 1.0

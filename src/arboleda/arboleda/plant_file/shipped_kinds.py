@@ -1,4 +1,4 @@
-"""The kinds of devices in Python that come with Arboleda; those of packages and files stand beside them."""
+"""Kinds of devices in Python that come with Arboleda, beside those of packages and of a plant's files."""
 
 from __future__ import annotations
 
