@@ -13,14 +13,12 @@ SOURCES = (ROOT / "src/arboleda", ROOT / "src/arboleda_ros", *sorted((ROOT / "pa
 MOST = 25
 LARGER: Mapping[str, int] = {
     "arboleda_proofs.testing.rig.Rig": 52,
-    "arboleda_drivers.ur.machine.Machine": 51,
     "arboleda_proofs.simulator.record.Record": 47,
     "arboleda.runtime.parts.orchestrator.Orchestrator": 46,
     "arboleda.client.plant.AsyncPlant": 45,
     "arboleda.client.plant.Plant": 45,
     "arboleda_proofs.simulator.truth.arm.ArmTruth": 44,
     "arboleda_fleet.postgres.memory.PostgresMemory": 42,
-    "arboleda_drivers.dobot.machine.Machine": 42,
     "arboleda_drivers.gcode.moonraker.MoonrakerMachine": 41,
     "arboleda_proofs.simulator.world.World": 41,
     "arboleda_drivers.gcode.grbl.GrblMachine": 40,
@@ -39,7 +37,6 @@ LARGER: Mapping[str, int] = {
     "arboleda.sim.arm.ArmBody": 32,
     "arboleda.sim.arm.AxesBody": 32,
     "arboleda.sim.board.Board": 32,
-    "arboleda_drivers.connections.tcp_arm.TcpArm": 32,
     "arboleda.adapters.mqtt_broker.client.Client": 31,
     "arboleda_proofs.simulator.plant_process.PlantProcess": 31,
     "arboleda_proofs.simulator.truth.mobile.MobileTruth": 31,

@@ -9,6 +9,7 @@ from arboleda.kinds.joints.joint import Joint
 
 from .rtde import beat_name
 
+LAST_NUMBER = 2**31 - 2  # of a register of 32 bits
 WATCH_HZ = 1  # the controller ends our program without a heartbeat in that time
 OUTPUTS = (("standard", 8), ("configurable", 8), ("tool", 2))  # by the bits of actual_digital_output_bits
 OUTPUT_COUNT = sum(count for _, count in OUTPUTS)

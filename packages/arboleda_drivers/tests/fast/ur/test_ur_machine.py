@@ -9,8 +9,8 @@ import pytest
 from arboleda.drivers import Home, MotionState, Report, SetEffector, Stop, StopMode
 from arboleda.model.facts import HEALTH
 from arboleda_drivers.connections.link import CommandRequest, Open, Opened
-from arboleda_drivers.ur.machine import RTDE, Machine
-from arboleda_drivers.ur.port_data import Send
+from arboleda_drivers.ur.machine import Machine
+from arboleda_drivers.ur.port_data import RTDE, Send
 from arboleda_drivers.ur.settings import SLIDER, Settings
 
 from .ur_rig import ARM, GO, GOAL, Loopback

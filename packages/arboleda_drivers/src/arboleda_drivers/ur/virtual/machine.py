@@ -8,7 +8,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from arboleda_drivers.ur.arm_state import NORMAL, Mode, Runtime
-from arboleda_drivers.ur.machine import DASHBOARD, GREETING, PRIMARY, RTDE
+from arboleda_drivers.ur.dashboard import GREETING
+from arboleda_drivers.ur.port_data import DASHBOARD, PRIMARY, RTDE
 from arboleda_drivers.ur.primary import READ_ONLY, packed_code, packed_exception
 from arboleda_drivers.ur.rtde import NotRtde
 from arboleda_drivers.virtual.joint_path import Joints, Path, between
