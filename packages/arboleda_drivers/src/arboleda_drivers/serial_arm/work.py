@@ -1,12 +1,12 @@
-"""Work of the arm: a move, the way to readiness, and a switch of the gripper, judged by what servos show."""
+"""Work of the arm, a move or the way to readiness, judged by what servos show."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from .servos import Reading
-from .settings import ServoGripper
 
 TAKE_S = 0.2  # a servo shows its new goal within this time
 SETTLE_S = 0.2  # an arm that stands for so long has come to rest
@@ -16,6 +16,22 @@ READY_S = 5.0
 TORQUE_OFF = "torque_off"
 STANDS_STILL = "stands_still"  # it should move, and tells the same position again and again
 NOT_TAKEN = "goal_not_taken"
+REST_TICKS = 3  # less than this is no motion
+
+
+@dataclass(kw_only=True)
+class Rest:
+    """Positions that stand still, and since when."""
+
+    since: float = -math.inf
+    positions: tuple[int, ...] = ()
+
+    def see(self, now: float, positions: tuple[int, ...]) -> float:
+        """Take the positions read now; returns how long they have stood, s."""
+        pairs = zip(self.positions, positions, strict=False)
+        if not self.positions or any(abs(a - b) > REST_TICKS for a, b in pairs):
+            self.since, self.positions = now, positions
+        return now - self.since
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,23 +130,3 @@ class Readying:
         found = [id for id in unready if now - self.tried.get(id, -READY_S) >= STEP_S]
         self.tried.update(dict.fromkeys(found, now))
         return found
-
-
-@dataclass(frozen=True, kw_only=True)
-class Switching:
-    """Switch of the gripper that is under way."""
-
-    id: str
-    on: bool
-    began_at: float
-
-
-def hand(gripper: ServoGripper, reading: Reading, rest_s: float) -> str:
-    """The gripper's state: open, part (it has closed on one), empty (closed to its end), or moving."""
-    if not reading.torque or rest_s < SETTLE_S:
-        return "moving"
-    if reading.goal == gripper.open and abs(reading.position - gripper.open) <= gripper.near:
-        return "open"
-    if reading.goal != gripper.closed or abs(reading.position - gripper.open) <= gripper.near:
-        return "moving"
-    return "empty" if abs(reading.position - gripper.closed) <= gripper.near else "part"
