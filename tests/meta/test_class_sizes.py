@@ -43,7 +43,6 @@ LARGER: Mapping[str, int] = {
     "arboleda.kinds.arm.robot.Arm": 28,
     "arboleda.kinds.joints.robot.Jointed": 28,
     "arboleda_class.playground.session.Session": 28,
-    "arboleda_drivers.ros_action.machine.Machine": 28,
     "arboleda_ros.bridge.BridgePort": 28,
     "arboleda.bt_xml.running.root.Main": 26,
     "arboleda.client.plant.AsyncDraft": 26,
@@ -52,7 +51,6 @@ LARGER: Mapping[str, int] = {
     "arboleda.kinds.person.Person": 26,
     "arboleda.plant_file.foresight.Foresight": 26,
     "arboleda.recorder.tape.TapedPlant": 26,
-    "arboleda_drivers.pylabrobot.machine.Machine": 26,
 }
 """Classes with more, and how many they have: none may grow, and none may come."""
 
