@@ -24,7 +24,6 @@ LARGER: Mapping[str, int] = {
     "arboleda_drivers.vda5050.machine.Vehicle": 39,
     "arboleda_proofs.simulator.truth.machine.MachineTruth": 37,
     "arboleda_class.notebook.world.World": 36,
-    "arboleda_drivers.ur.virtual.machine.VirtualUr": 36,
     "arboleda_proofs.simulator.plants.devices.blocks.Blocks": 36,
     "arboleda_ros.orchestrator.OrchestratorPort": 35,
     "arboleda_proofs.simulator.plants.devices.xml_spellings.SpellingWriter": 34,

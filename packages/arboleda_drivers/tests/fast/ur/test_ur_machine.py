@@ -324,7 +324,7 @@ def test_the_controller_ends_our_program_where_no_heartbeat_comes() -> None:
     for _ in range(30):  # the driver's process is gone
         joined.now += 0.1
         joined.ur.step(joined.now, [])
-    assert 0 < joined.ur.joints[0] < GOAL[0] * 0.8
+    assert 0 < joined.ur.run.drive.joints[0] < GOAL[0] * 0.8
 
 
 def test_who_only_listens_writes_nothing_to_the_controller() -> None:
