@@ -21,7 +21,6 @@ LARGER: Mapping[str, int] = {
     "arboleda_fleet.postgres.memory.PostgresMemory": 42,
     "arboleda_proofs.simulator.world.World": 41,
     "arboleda.store.sqlite.Store": 39,
-    "arboleda_drivers.vda5050.machine.Vehicle": 39,
     "arboleda_proofs.simulator.truth.machine.MachineTruth": 37,
     "arboleda_class.notebook.world.World": 36,
     "arboleda_proofs.simulator.plants.devices.blocks.Blocks": 36,
