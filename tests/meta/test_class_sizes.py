@@ -39,7 +39,6 @@ LARGER: Mapping[str, int] = {
     "arboleda_proofs.simulator.truth.robot.RobotTruth": 29,
     "arboleda.kinds.arm.robot.Arm": 28,
     "arboleda.kinds.joints.robot.Jointed": 28,
-    "arboleda_class.playground.session.Session": 28,
     "arboleda_ros.bridge.BridgePort": 28,
     "arboleda.bt_xml.running.root.Main": 26,
     "arboleda.client.plant.AsyncDraft": 26,
