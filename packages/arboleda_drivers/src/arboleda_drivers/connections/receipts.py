@@ -6,6 +6,8 @@ import math
 
 from arboleda.model.messages import Report
 
+from .look import Look
+
 
 class Receipts:
     """Ends of commands by the fields of a report, which each report repeats; `news`: one is due at once."""
@@ -23,6 +25,17 @@ class Receipts:
     def reject(self, id: str, word: str) -> None:
         if id:
             self.tell(rejected=id, refusal=word)
+
+    def take(self, id: str, look: Look) -> None:
+        """Note what a look at the work of a command shows."""
+        if look.accepted:
+            self.tell(accepted=id)
+        if look.done:
+            self.tell(done=id)
+        elif look.refused:
+            self.reject(id, look.refused)
+        elif look.failed:
+            self.tell(failed=id, failure=look.failed)
 
     def forget(self) -> None:
         """The device began anew, and knows of no command."""

@@ -13,6 +13,7 @@ from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import Robot
 from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
+from arboleda_drivers.connections.look import Look
 from arboleda_drivers.connections.tcp_arm import SILENT_S, ArmController
 
 from .alarms import named
@@ -21,7 +22,7 @@ from .frames import Feedback, FrameReader, Mode
 from .replies import NotAReply, Reply
 from .settings import Settings
 from .tool_output import ToolOutput
-from .work import ALARM, BROKEN, Look, Move, Readying, Work
+from .work import ALARM, BROKEN, Move, Readying, Work
 
 REST_DEG = 0.01  # less than this is no motion
 UNKNOWN = -10000
@@ -198,13 +199,13 @@ class DobotController(ArmController):
         self.effector.ask(now)
 
     def _go_on(self, now: float, work: Work, look: Look) -> None:
-        if look.done:
-            self._work = None
-            self.receipts.tell(done=work.id)
-        elif look.failed is not None:
+        for line in look.lines:
+            self.dashboard.say(now, line)
+        if look.failed:
             self._fail(now, work, look.failed)
-        elif look.say is not None:
-            self.dashboard.say(now, look.say)
+        elif look.done:
+            self._work = None
+            self.receipts.take(work.id, look)
 
     def _fail(self, now: float, work: Work, word: str) -> None:
         """Fail the work: stop the arm, ask for the controller's alarms, and report them with the reason."""

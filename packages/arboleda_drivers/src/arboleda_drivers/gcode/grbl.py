@@ -26,7 +26,7 @@ from .grbl_lines import (
     parsed,
 )
 from .grbl_stop import SILENT_S, GrblStop, Step
-from .grbl_work import Homing, LastAlarm, Look, Move, Work
+from .grbl_work import GrblLook, Homing, LastAlarm, Move, Work
 from .lines import LineReader, written
 
 BOOT_S = 3.0  # an Arduino boots when its line is opened
@@ -141,7 +141,7 @@ class Grbl(GcodeController):
         self.heard_at, self.receipts.news = now, True
         self.book.lose()
         self.alarm.take(alarm, self._firmware)
-        self._go_on(now, Look(failed=alarm.word))
+        self._go_on(now, GrblLook(failed=alarm.word))
         if alarm.code in CRITICAL:
             self._patience_s = BOOT_S
             self.stops.lead_out(now)
@@ -199,31 +199,23 @@ class Grbl(GcodeController):
         if isinstance(self._work, Homing):
             self.book.skip()
         elif self.book.look(now, status, at_work=self.is_busy) and isinstance(self._work, Move):
-            self._go_on(now, Look(failed=JUMPED, halts=True))
+            self._go_on(now, GrblLook(failed=JUMPED, halts=True))
 
-    def _go_on(self, now: float, look: Look) -> None:
+    def _go_on(self, now: float, look: GrblLook) -> None:
         """Go on with the work, or end it; without one nothing is done."""
         work = self._work
         if work is None:
             return
-        if look.accepted:
-            self.receipts.tell(accepted=work.id)
-        if look.done or look.refused or look.failed:
+        self.receipts.take(work.id, look)
+        if look.is_end:
             self._work = None
-        if look.done:
-            if isinstance(work, Homing):
-                self.book.trust()
-            self.receipts.tell(done=work.id)
-        elif look.refused:
-            self.receipts.reject(work.id, look.refused)
-        elif look.failed:
-            self.receipts.tell(failed=work.id, failure=look.failed)
+        if look.done and isinstance(work, Homing):
+            self.book.trust()
         if look.halts:
             self.halt(now)
         elif look.resets:
             self.stops.reset(now)
-        elif look.line:
-            self.out.append(written(look.line))
+        self.out.extend(map(written, look.lines))
 
     # What the plant hears.
 

@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from arboleda_drivers.connections.look import Look
+
 from .grbl_lines import LOCKS, Alarm, Answer, State, Status
 from .grbl_stop import IDLE_ENOUGH, RESETTABLE, SETTLE_S
 
@@ -44,19 +46,14 @@ class LastAlarm:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Look:
-    """Progress of a work; `halts`: the machine is to be stopped, or `resets`: reset, or sent a `line`."""
+class GrblLook(Look):
+    """Progress of a work; `halts`: the machine is to be stopped, or `resets`: reset."""
 
-    accepted: bool = False
-    done: bool = False
-    refused: str = ""
-    failed: str = ""
     halts: bool = False
     resets: bool = False
-    line: str = ""
 
 
-NOTHING = Look()
+NOTHING = GrblLook()
 
 
 @dataclass(kw_only=True)
@@ -69,25 +66,25 @@ class Move:
     taken_at: float = math.inf
     idle_since: float | None = None
 
-    def take(self, now: float, answer: Answer) -> Look:
+    def take(self, now: float, answer: Answer) -> GrblLook:
         if self.taken_at < math.inf:
             return NOTHING
         if answer.error:
-            return Look(refused=answer.word)
+            return GrblLook(refused=answer.word)
         self.taken_at = now
-        return Look(accepted=True)
+        return GrblLook(accepted=True)
 
-    def look(self, now: float, status: Status, alarm: LastAlarm) -> Look:
+    def look(self, now: float, status: Status, alarm: LastAlarm) -> GrblLook:
         trouble = alarm.trouble(status)
         if trouble is not None:
             # A held one would go on once the door is closed, or somebody says so.
-            return Look(failed=trouble, halts=status.state in RESETTABLE)
+            return GrblLook(failed=trouble, halts=status.state in RESETTABLE)
         if now <= self.taken_at or status.state is not State.IDLE:
             self.idle_since = None
             return NOTHING
         self.idle_since = now if self.idle_since is None else self.idle_since
         # Idle away from the goal may be the moment before the begin: only one that stays so has ended.
-        return Look(done=self.is_there(status) or now - self.idle_since > SETTLE_S)
+        return GrblLook(done=self.is_there(status) or now - self.idle_since > SETTLE_S)
 
 
 @dataclass(kw_only=True)
@@ -105,25 +102,25 @@ class Homing:
     def is_under_way(self) -> bool:
         return self.sent and not self.answered
 
-    def take(self, now: float, answer: Answer) -> Look:
+    def take(self, now: float, answer: Answer) -> GrblLook:
         if not self.is_under_way:
             return NOTHING
         self.answered = True
-        return Look(failed=answer.word) if answer.error else NOTHING
+        return GrblLook(failed=answer.word) if answer.error else NOTHING
 
-    def look(self, now: float, status: Status, alarm: LastAlarm) -> Look:
+    def look(self, now: float, status: Status, alarm: LastAlarm) -> GrblLook:
         if status.state is State.IDLE and (self.answered or not self.has_switches):
-            return Look(done=True)
+            return GrblLook(done=True)
         if self.sent or status.state is State.RUN:
             return NOTHING
         if alarm.word is not None and not self.was_reset:
             self.was_reset = True  # some alarms are over only with one
-            return Look(resets=True)
+            return GrblLook(resets=True)
         if status.state in (State.IDLE, State.ALARM):
             self.sent, self.answered = True, False
-            return Look(line="$H" if self.has_switches else "$X")
+            return GrblLook(lines=("$H" if self.has_switches else "$X",))
         stands = status.part in RESETTABLE.get(status.state, ()) or status.state in IDLE_ENOUGH
-        return Look(resets=stands)
+        return GrblLook(resets=stands)
 
 
 Work = Move | Homing

@@ -76,7 +76,7 @@ class Machine:
         if not self._open:
             return min(self._open_at, self._open_until)
         overdue_at = math.inf if self._is_overdue else self._looking_since + self._settings.timeout_s
-        ends = [task.until for task in self._tasks if self._up and task.over is None]
+        ends = [task.until for task in self._tasks.values() if self._up and task.over is None]
         beat_at = self._reported_at + BEAT_S if self._up else math.inf
         return min(overdue_at if self._is_looking else self._look_at, beat_at, *ends)
 
@@ -180,11 +180,11 @@ class Machine:
         if self._tasks.late(now) is not None:
             return  # the event loop runs, and a call hangs
         self._up, self._look_at = True, now + self._settings.poll_s
-        for task in self._tasks:
+        for task in list(self._tasks.values()):
             if task.over is not None and self._is_full_look and task.first_look <= event.number:
-                del self._tasks.by_number[task.number]
+                del self._tasks[task.number]
                 self._settle(task, task.over)
-        if self._tasks.by_number and not self._tasks.are_disturbed:
+        if self._tasks and not self._tasks.are_disturbed:
             self._look_at = now  # it ended after this look had begun
         self._report(now)
 
@@ -228,7 +228,7 @@ class Machine:
         until = now + min(allowed, self._settings.call_s or math.inf)
         if isinstance(command, Stop):
             until = now + self._settings.timeout_s
-        self._tasks.by_number[self._numbers] = Task(
+        self._tasks[self._numbers] = Task(
             number=self._numbers,
             began_at=now,
             until=until,
@@ -242,11 +242,11 @@ class Machine:
     def _stop(self, now: float, command: Stop) -> None:
         if command.mode is not StopMode.HALT:
             self._latched = command.mode is StopMode.LATCH
-        if command.mode is not StopMode.CLEAR and any(task.finishes for task in self._tasks):
+        if command.mode is not StopMode.CLEAR and any(task.finishes for task in self._tasks.values()):
             self._tell(now, accepted=command.id)  # it goes on to its own end
             return
         if command.mode is not StopMode.CLEAR:
-            for task in self._tasks:
+            for task in self._tasks.values():
                 self._drop(task)
         if self._tasks.stops:
             self._stops.append(command)
@@ -273,7 +273,7 @@ class Machine:
     # Calls.
 
     def _call_changed(self, now: float, event: Begun | Returned | Raised) -> None:
-        task = self._tasks.by_number.get(event.number)
+        task = self._tasks.get(event.number)
         if task is None or task.over is not None:
             return
         if isinstance(event, Begun):
@@ -288,7 +288,7 @@ class Machine:
         self._look_at = now
 
     def _stop_ended(self, now: float, task: Task, stop: Stop, event: Returned | Raised) -> None:
-        del self._tasks.by_number[task.number]
+        del self._tasks[task.number]
         if isinstance(event, Raised):
             self._lose(now, f"its stop was not taken: {event.name}: {event.text}")
             return

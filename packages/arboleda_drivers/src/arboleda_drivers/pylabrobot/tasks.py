@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 from arboleda.kinds.declared import VerbCall
@@ -30,40 +29,37 @@ class Task:
         return works and isinstance(self.command, Work) and self.command.on_stop is OnStop.FINISH
 
 
-class Tasks:
-    """Tasks of one machine; `side_by_side`: its backend takes questions beside a work."""
+class Tasks(dict[int, Task]):
+    """Tasks of one machine, by number; `side_by_side`: its backend takes questions beside a work."""
 
     def __init__(self, *, side_by_side: bool) -> None:
-        self.by_number: dict[int, Task] = {}
+        super().__init__()
         self._side_by_side = side_by_side
-
-    def __iter__(self) -> Iterator[Task]:
-        return iter(list(self.by_number.values()))
 
     @property
     def are_disturbed(self) -> bool:
         """True where a question might disturb what is under way."""
-        return not self._side_by_side and any(task.over is None for task in self)
+        return not self._side_by_side and any(task.over is None for task in self.values())
 
     @property
     def stops(self) -> bool:
-        return any(isinstance(task.command, Stop) for task in self)
+        return any(isinstance(task.command, Stop) for task in self.values())
 
     @property
     def works(self) -> bool:
-        return any(task.is_work for task in self)
+        return any(task.is_work for task in self.values())
 
     def takes(self, command: Command) -> bool:
         """True where a call may begin now: one at a time, or one work beside questions."""
         if self._side_by_side:
             return not isinstance(command, Work) or not (self.works or self.stops)
-        return not self.by_number
+        return not self
 
     def late(self, now: float) -> Task | None:
         """A task that should have ended by now."""
-        return next((task for task in self if task.over is None and task.until <= now), None)
+        return next((task for task in self.values() if task.over is None and task.until <= now), None)
 
     def disown(self) -> None:
         """Nobody waits for any end any more."""
-        for task in self:
+        for task in self.values():
             task.command = None

@@ -17,6 +17,7 @@ from arboleda.model.plant_model import Robot
 from arboleda_drivers.connections.controller import Controller
 from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.link import LinkBroken
+from arboleda_drivers.connections.look import Look
 from arboleda_drivers.connections.stream import Received, Write
 
 from .bus import Bus
@@ -24,7 +25,7 @@ from .gripper import Gripper
 from .joint_goals import JointGoals
 from .servos import MAKERS, TICKS, Reading
 from .settings import GRIPPER, Settings
-from .work import SETTLE_S, TAKE_S, Look, Move, Picture, Readying, Rest
+from .work import SETTLE_S, TAKE_S, Move, Picture, Readying, Rest
 
 BOOT_S = 2.0  # a servo that boots is silent for a while
 
@@ -184,16 +185,10 @@ class ServoController(Controller):
             self._stopping_at, self.receipts.news = None, True
 
     def _go_on(self, now: float, work: Move | Readying, look: Look, picture: Picture) -> None:
-        if look.accepted:
-            self.receipts.tell(accepted=work.id)
+        self.receipts.take(work.id, look)
         if look.done:
             self._work = None
-            self.receipts.tell(done=work.id)
-        elif look.refused is not None:
-            self.receipts.reject(work.id, look.refused)
-            self._halt(now)
-        elif look.failed is not None:
-            self.receipts.tell(failed=work.id, failure=look.failed)
+        elif look.is_end:
             self._halt(now)
         elif isinstance(work, Readying):
             self.goals.make_ready(work.due(now, picture), picture)

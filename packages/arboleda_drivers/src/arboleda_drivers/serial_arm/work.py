@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from arboleda_drivers.connections.look import NOTHING, Look
+
 from .servos import Reading
 
 TAKE_S = 0.2  # a servo shows its new goal within this time
@@ -69,16 +71,6 @@ class Picture:
         return next((self.names[id] for id, goal in goals.items() if self.readings[id].goal != goal), None)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Look:
-    """Progress of a work by one picture."""
-
-    accepted: bool = False
-    done: bool = False
-    refused: str | None = None
-    failed: str | None = None
-
-
 @dataclass(kw_only=True)
 class Move:
     """Move of the joints: taken when every servo shows its goal, over when all have come to rest."""
@@ -91,7 +83,7 @@ class Move:
 
     def look(self, now: float, picture: Picture) -> Look:
         if picture.since <= self.began_at:
-            return Look()  # a reading is of before
+            return NOTHING  # a reading is of before
         trouble, other = picture.trouble, picture.other_goal(self.goals)
         accepted = not self.taken and other is None
         self.taken = self.taken or accepted
@@ -100,7 +92,7 @@ class Move:
         if other is not None and self.taken:
             return Look(failed=f"another_goal of {other}")
         if other is not None:
-            return Look(refused=f"{NOT_TAKEN} by {other}") if now - self.began_at > TAKE_S else Look()
+            return Look(refused=f"{NOT_TAKEN} by {other}") if now - self.began_at > TAKE_S else NOTHING
         if accepted:
             return Look(accepted=True)
         # One that stands away from its goal gets no further: the plant finds it there, and the move failed.
@@ -121,7 +113,7 @@ class Readying:
     def look(self, now: float, picture: Picture) -> Look:
         if picture.trouble is None:
             return Look(done=True)
-        return Look(failed=picture.trouble) if now - self.began_at > READY_S else Look()
+        return Look(failed=picture.trouble) if now - self.began_at > READY_S else NOTHING
 
     def due(self, now: float, picture: Picture) -> list[int]:
         """The servos that are to be made ready now."""

@@ -11,6 +11,7 @@ from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import Robot
 from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.link import Close, CommandNotSent, Open
+from arboleda_drivers.connections.look import Look
 from arboleda_drivers.connections.tcp_arm import SILENT_S, ArmController
 from arboleda_drivers.ur.port_data import DASHBOARD, RTDE, Received, Send
 
@@ -19,13 +20,12 @@ from .arm_state import Runtime, hindrance, motion_state
 from .dashboard import LOCAL, Dashboard
 from .output import Output
 from .primary import READ_ONLY, PackageReader, ScriptError
-from .program_port import ProgramPort
-from .programs import LAST_NUMBER
+from .programs import LAST_NUMBER, ProgramPort
 from .rtde import Frame
 from .rtde_client import RtdeClient
 from .settings import SLIDER, Settings
 from .stop_program import StopProgram
-from .work import Look, Move, Readying, Work
+from .work import Move, Readying, Work
 
 REST_RAD = 2e-4  # less than this is no motion
 BOOT_S = 10  # boots are told apart by ten seconds: two clocks run apart
@@ -55,13 +55,7 @@ class UrController(ArmController):
         super().forget(now)
         self.dashboard = Dashboard(self.out, self.receipts, now)
         self.rtde = RtdeClient(self.out, self._settings.registers_from, now, only_listens=self._only_listens)
-        self.stops = StopProgram(
-            settings=self._settings,
-            port=self.port,
-            dashboard=self.dashboard,
-            braking=self.braking,
-            receipts=self.receipts,
-        )
+        self.stops = StopProgram(self._settings, self.port, self.dashboard, self.braking, self.receipts)
         self.effector: Output = Output(self._settings.output, self.port, self.dashboard, self.receipts)
         self._packages = PackageReader()
         self._work: Work | None = None
@@ -162,23 +156,13 @@ class UrController(ArmController):
     def _go_on(self, now: float, work: Work, look: Look) -> None:
         for line in look.lines:
             self.dashboard.say(now, line, lambda now, reply: _note(work, reply))
-        if look.accepted:
-            self.receipts.tell(accepted=work.id)
-        if look.done:
+        if look.failed and not work.begun:
+            look = Look(refused=LOCAL if self.dashboard.is_read_only else look.failed)
+        self.receipts.take(work.id, look)
+        if look.is_end:
             self._work = None
-            self.receipts.tell(done=work.id)
-        elif look.failed:
-            self._fail(now, work, look.failed)
-
-    def _fail(self, now: float, work: Work, word: str) -> None:
-        """Give the work up, with the reason, and stop what may be left of it."""
-        self._work = None
-        if work.begun:
-            self.receipts.tell(failed=work.id, failure=word)
-        else:
-            self.receipts.reject(work.id, LOCAL if self.dashboard.is_read_only else word)
-        if isinstance(work, Move):
-            self.stops.run(now, "", self._frame)
+        if look.is_end and not look.done and isinstance(work, Move):
+            self.stops.run(now, "", self._frame)  # what may be left of it
 
     # What the plant hears.
 

@@ -9,7 +9,7 @@ from arboleda_drivers.connections.receipts import Receipts
 from . import programs
 from .dashboard import LOCAL, Dashboard
 from .primary import READ_ONLY, ScriptError
-from .program_port import ProgramPort
+from .programs import ProgramPort
 from .rtde import Frame
 
 SWITCH_S = 1.0  # an output that has not followed by then does not

@@ -10,7 +10,7 @@ from arboleda_drivers.connections.tcp_arm import Braking
 from . import programs
 from .arm_state import Runtime, hindrance
 from .dashboard import LOCAL, Dashboard
-from .program_port import ProgramPort
+from .programs import ProgramPort
 from .rtde import Frame
 from .settings import Settings
 
@@ -26,7 +26,7 @@ class Sent:
     at: float
 
 
-@dataclass(kw_only=True)
+@dataclass
 class StopProgram:
     """Stops over one connection."""
 

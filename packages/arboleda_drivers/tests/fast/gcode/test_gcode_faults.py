@@ -24,9 +24,10 @@ from arboleda_driver_faults.gcode import (
     MoonrakerRig,
 )
 from arboleda_driver_faults.rig import TASKS, Rig, run
-from arboleda_drivers.gcode import grbl_work, marlin, moonraker_work
+from arboleda_drivers.gcode import marlin, moonraker_work
 from arboleda_drivers.gcode.grbl_book import Book
 from arboleda_drivers.gcode.grbl_lines import Status
+from arboleda_drivers.gcode.grbl_work import GrblLook, LastAlarm, Move
 from arboleda_drivers.gcode.virtual.faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
 
 EXAMPLES = ROOT / "examples/gantry"
@@ -79,10 +80,10 @@ def test_a_place_that_is_believed_after_a_boot_would_be_found(monkeypatch: pytes
 
 
 def test_an_ok_that_is_an_end_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    def look(self: grbl_work.Move, now: float, status: Status, alarm: grbl_work.LastAlarm) -> grbl_work.Look:
-        return grbl_work.Look(done=now > self.taken_at)
+    def look(self: Move, now: float, status: Status, alarm: LastAlarm) -> GrblLook:
+        return GrblLook(done=now > self.taken_at)
 
-    monkeypatch.setattr(grbl_work.Move, "look", look)
+    monkeypatch.setattr(Move, "look", look)
     assert any("wrong cause" in each for each in breaches(3, "late_start", tasks=2))
 
 
