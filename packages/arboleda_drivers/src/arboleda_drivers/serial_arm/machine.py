@@ -46,7 +46,7 @@ class ServoController(Controller):
             raise ValueError("an arm of servos is one robot of joints")
         for _, problem in settings.problems(devices[0]):
             raise ValueError(problem)
-        super().__init__(devices[0], peer=settings.peer, kind="an arm")
+        super().__init__(devices[0], peer=settings.peer, kind="an arm of servos")
         self._settings, self._maker = settings, MAKERS[settings.protocol]
         self._joints = [servo.id for servo in settings.joints]
         self._near = dict(zip(self._joints, map(_ticks, self.robot.tolerances), strict=True))

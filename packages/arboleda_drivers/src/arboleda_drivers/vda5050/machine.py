@@ -157,8 +157,8 @@ class Vehicle:
             raise NotSent(f"VDA 5050 has no word for {type(command).__name__}")
         if command.verb not in self._settings.instant:
             if not at:
-                where = "the vehicle says of no node that it stands there"
-                raise NotSent(f"{where}, so it cannot {command.verb} there")
+                verb = command.verb
+                raise NotSent(f"the vehicle says of no node that it stands there, so it cannot {verb} there")
             return self._begin(command, (at,), verb=command)
         action = self._actions.new("NONE", command.verb, command.values)
         self._instants[action.id] = command
