@@ -62,13 +62,13 @@ class Watched(VirtualDobot):
         if moves and self._ended_at and self._frame_at and now - self._ended_at < LONGEST_S:
             self.waits.append((now - self._ended_at, now - self._frame_at))
         out = super().step(now, events)
-        if self._was is Mode.RUNNING and self.mode is Mode.IDLE:
+        if self._was is Mode.RUNNING and self.arm.mode is Mode.IDLE:
             self._ended_at, self._frame_at = now, 0.0
-        if self.mode is not Mode.IDLE:
+        if self.arm.mode is not Mode.IDLE:
             self._ended_at = 0.0
         elif self._ended_at and not self._frame_at and any(isinstance(each, Frame) for each in out):
             self._frame_at = now
-        self._was = self.mode
+        self._was = self.arm.mode
         return out
 
 

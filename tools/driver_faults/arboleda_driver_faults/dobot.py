@@ -65,7 +65,7 @@ class DobotRig(StorageRig):
 
     @property
     def shows(self) -> tuple[Sequence[float], bool]:
-        return tuple(map(math.radians, self._dobot.joints_deg)), bool(self._dobot.outputs & 1)
+        return tuple(map(math.radians, self._dobot.arm.drive.joints)), bool(self._dobot.arm.outputs & 1)
 
     def moves(self) -> tuple[int, int]:
         if self._driver is None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from arboleda.model.plant_model import Robot
 from arboleda_drivers.connections.link import Close, Closed, Open, Opened
-from arboleda_drivers.dobot.machine import DashboardReply, Event, FeedbackData, Machine, Message, SendLine
+from arboleda_drivers.dobot.dashboard import SendLine
+from arboleda_drivers.dobot.machine import DashboardReply, Event, FeedbackData, Machine, Message
 from arboleda_drivers.dobot.settings import Settings
 from arboleda_drivers.dobot.virtual.machine import Answer, ClientText, Disconnect, Frame, VirtualDobot
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.link import Close, Closed, Open, Opened
-from arboleda_drivers.connections.stream import Event, Message, Received, StreamMachine, Write
+from arboleda_drivers.connections.stream import Event, Message, Received, Write
 from arboleda_drivers.virtual.pty_line import LineMachine
 
 from . import loopback
@@ -13,7 +14,7 @@ from .rig import Hear
 class Loopback(loopback.Loopback[Event, bytes]):
     """Driver and virtual device at a line; `written` keeps what the driver wrote."""
 
-    def __init__(self, driver: StreamMachine, far: LineMachine, hear: Hear, now: float) -> None:
+    def __init__(self, driver: ControllerMachine, far: LineMachine, hear: Hear, now: float) -> None:
         super().__init__(driver, far, hear, now)
         self.far = far
         self.written: list[bytes] = []

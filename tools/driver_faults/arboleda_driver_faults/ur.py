@@ -77,7 +77,8 @@ class UrRig(StorageRig):
     @property
     def shows(self) -> tuple[Sequence[float], bool]:
         output = Settings(host="ur").output
-        return self._ur.joints, bool(output is not None and self._ur.outputs >> output & 1)
+        run = self._ur.run
+        return run.drive.joints, bool(output is not None and run.outputs >> output & 1)
 
     def moves(self) -> tuple[int, int]:
         if self._driver is None:

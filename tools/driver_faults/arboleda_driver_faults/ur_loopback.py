@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from arboleda.model.plant_model import Robot
 from arboleda_drivers.connections.link import Close, Closed, Open, Opened
-from arboleda_drivers.ur.machine import DASHBOARD, PRIMARY, RTDE, Machine, Message
-from arboleda_drivers.ur.port_data import Received, Send
+from arboleda_drivers.ur.machine import Machine, Message
+from arboleda_drivers.ur.port_data import DASHBOARD, PRIMARY, RTDE, Received, Send
 from arboleda_drivers.ur.settings import Settings
 from arboleda_drivers.ur.virtual.machine import ClientData, Disconnect, Event, Joined, ToClient, VirtualUr
 

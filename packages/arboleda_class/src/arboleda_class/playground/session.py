@@ -8,12 +8,11 @@ from typing import Any
 
 from arboleda.dashboard import outcomes
 from arboleda.dashboard.faces import Face
-from arboleda.dashboard.outcomes import Said
 from arboleda.dashboard.twin.twin import Twin
 from arboleda.dashboard.wording import words
 from arboleda.geometry.bodies import Body
 from arboleda.model.advice import Hand
-from arboleda.model.messages import OperatorAnswer, Outcome, TaskChanged, Verb
+from arboleda.model.messages import Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.views import view
 from arboleda.views.changes import changed
@@ -23,6 +22,7 @@ from arboleda_proofs.simulator.mishaps import MISHAPS
 
 from .acts import Act, HandLent, MishapBegun, TaskAsked, VerbAsked
 from .film import Film, FilmRun
+from .requests import Requests
 from .run import LOOK_TICKS, TICK_S, Run
 
 LONGEST_STEP_S = 60.0  # in which nothing happens
@@ -60,9 +60,7 @@ class Session:
         self._climate = Climate.draw(model, seed, level)
         self._began_unix_s = began_unix_s
         self._acts: list[Act] = []
-        self._awaited: dict[str, VerbAsked | TaskAsked] = {}
-        self._followed: dict[int, dict[str, str]] = {}  # acts that devices carry out, by number
-        self._lines: list[Said] = []
+        self._requests = Requests(self._words)
         self._looks = False
         self._drawn: Row = {}
         self.forget()
@@ -125,12 +123,12 @@ class Session:
         tick = self._run.tick
         if act == SUBMIT:
             task = TaskAsked(tick=tick, text=of)
-            self._awaited[self._do(task)] = task
+            self._requests.awaited[self._do(task)] = task
         elif act in VERBS:
             verb = Verb(act)
             arguments = outcomes.arguments_of(verb, more)
             request = VerbAsked(tick=tick, verb=verb, scope=of, by_hand=more is True, arguments=arguments)
-            self._awaited[self._do(request)] = request
+            self._requests.awaited[self._do(request)] = request
         elif act == HAND:
             do, _, scope = of.partition(" ")
             if do in HANDS:
@@ -144,7 +142,7 @@ class Session:
     def _refused(self) -> bool:
         """Say so where nothing can be asked, as all has happened already."""
         if self._film is not None:
-            self._lines.append((texts(self._words.language, "playground")["story_is_over"], False))
+            self._requests.lines.append((texts(self._words.language, "playground")["story_is_over"], False))
         return self._film is not None
 
     def task_face(self, id: str) -> Face:
@@ -162,7 +160,7 @@ class Session:
         return {
             "face": patch,
             "twin": self._twin_patch(),
-            "said": self._taken_lines(),
+            "said": self._requests.taken_lines(),
             "clock": {
                 "tick": run.tick,
                 "latest": self.latest,
@@ -176,8 +174,7 @@ class Session:
         self._run = self._first_moment()
         self._twin = Twin(self.layout["places"], self._drawings) if self._drawings else None
         self._next = 0  # of the acts
-        self._awaited.clear()
-        self._followed.clear()
+        self._requests.forget()
 
     def _first_moment(self) -> Run | FilmRun:
         if self._film is not None:
@@ -201,7 +198,7 @@ class Session:
             self._next += 1
         self._run.advance()
         self.latest = max(self.latest, self._run.tick)
-        self._hear()
+        self._requests.hear(self._run)
 
     def _do(self, act: Act) -> str:
         """Have an act happen with the next tick, and nothing of what once came after it; return its token."""
@@ -209,35 +206,6 @@ class Session:
         self._acts.append(act)
         self.latest = act.tick
         return str(len(self._acts) - 1)
-
-    def _hear(self) -> None:
-        """Say what became of what this person asked for."""
-        for token in [each for each in self._awaited if each in self._run.answers]:
-            act, answer = self._awaited.pop(token), self._run.answers[token]
-            if isinstance(answer, TaskChanged):
-                self._lines.append(outcomes.of_task(self._words, view.change(answer)))
-            elif isinstance(act, VerbAsked):
-                self._answered(act, answer)
-        for number in [*self._followed]:
-            self._follow(number)
-
-    def _answered(self, act: VerbAsked, answer: OperatorAnswer) -> None:
-        named = outcomes.act(self._words, act.verb, act.scope, act.arguments, by_hand=act.by_hand)
-        self._lines.append(outcomes.of_answer(self._words, answer, named))
-        if answer.outcome is Outcome.UNDER_WAY and answer.act is not None:
-            self._followed[answer.act] = named
-
-    def _follow(self, number: int) -> None:
-        row = self._run.outcome(number)
-        if row is None or row["outcome"] != Outcome.UNDER_WAY.value:
-            named = self._followed.pop(number)
-            if row is not None:
-                outcome = Outcome(row["outcome"])
-                self._lines.append(outcomes.of_outcome(self._words, outcome, row["why"], named))
-
-    def _taken_lines(self) -> list[Said]:
-        lines, self._lines = self._lines, []
-        return lines
 
     def _twin_patch(self) -> Row:
         if self._twin is None or not self._looks:

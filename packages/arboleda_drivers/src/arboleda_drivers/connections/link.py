@@ -7,6 +7,10 @@ from dataclasses import dataclass
 from arboleda.model.commands import Command
 
 
+class LinkBroken(ValueError):
+    """Error: what came over the connections, or did not come, makes them useless; the sentence says why."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Opened:
     """Event: all connections are open."""

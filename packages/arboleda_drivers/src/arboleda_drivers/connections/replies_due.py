@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
+from .link import LinkBroken
+
 REPLY_S = 2.0  # a controller answers in milliseconds
 
 R = TypeVar("R")
@@ -44,7 +46,7 @@ class RepliesDue(Generic[R]):
         """The line that the next reply answers, which is not waited for any more; None if none was said."""
         return self._dues.popleft() if self._dues else None
 
-    def overdue(self, now: float) -> str:
-        """The sentence on a line that is not answered in time; "" while all may still be."""
-        late = now >= self.deadline
-        return f"it has not answered {self._dues[0].name} for {REPLY_S:g} s" if late else ""
+    def check(self, now: float) -> None:
+        """Raises LinkBroken where a line is not answered in time."""
+        if now >= self.deadline:
+            raise LinkBroken(f"it has not answered {self._dues[0].name} for {REPLY_S:g} s")

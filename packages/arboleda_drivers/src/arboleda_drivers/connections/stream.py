@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 from arboleda.drivers.port import DriverError
 from arboleda.model.messages import Report
@@ -51,14 +49,3 @@ class Write:
 
 Event = Opened | Closed | Received | CommandRequest
 Message = Open | Close | Write | CommandNotSent | Report
-
-
-class StreamMachine(Protocol):
-    """State machine at one stream; it reads no clock and opens nothing."""
-
-    @property
-    def next_deadline(self) -> float:
-        """The time (s) at which `step` is due even without events."""
-
-    def step(self, now: float, events: Sequence[Event]) -> list[Message]:
-        """Take events and the time, and return messages to act on."""

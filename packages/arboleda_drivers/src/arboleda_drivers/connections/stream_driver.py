@@ -8,15 +8,16 @@ import threading
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from typing import Any, Protocol
+from typing import Protocol
 
 from arboleda.drivers.port import Clock, DriverError, Hear, NotSent
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
+from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.device_feed import taking
 from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
-from arboleda_drivers.connections.stream import Received, StreamAddress, StreamMachine, Write
+from arboleda_drivers.connections.stream import Received, StreamAddress, Write
 
 CONNECT_S, WRITE_S = 0.5, 0.5
 AT_ONCE = 65536  # bytes
@@ -101,7 +102,7 @@ class MachineDriver(ABC):
         self._streams: Streams = {}
 
     @abstractmethod
-    def machine(self, devices: Sequence[Robot]) -> Any:
+    def machine(self, devices: Sequence[Robot]) -> ControllerMachine:
         """The machine of these devices; raises an exception, with the reason, if they do not fit."""
 
     @abstractmethod
@@ -205,9 +206,6 @@ class StreamDriver(MachineDriver):
         super().__init__()
         self._address = settings
         self._stream: Stream | None = None
-
-    @abstractmethod
-    def machine(self, devices: Sequence[Robot]) -> StreamMachine: ...
 
     def open(self) -> Stream:
         """The stream, open; raises OSError if it is not there."""

@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from arboleda.model.plant_model import Robot
+from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.link import Opened
-from arboleda_drivers.connections.tcp_arm import TcpArm
 
 from .stream_driver import Event, MachineDriver, Streams, TcpStream
 
-Make = Callable[[Sequence[Robot]], TcpArm]
+Make = Callable[[Sequence[Robot]], ControllerMachine]
 
 
 class TcpPorts(MachineDriver):
@@ -25,7 +25,7 @@ class TcpPorts(MachineDriver):
         self._make, self._host, self._ports = make, host, ports
         self._open: dict[int, TcpStream] = {}
 
-    def machine(self, devices: Sequence[Robot]) -> TcpArm:
+    def machine(self, devices: Sequence[Robot]) -> ControllerMachine:
         return self._make(devices)
 
     def connect(self) -> tuple[Opened, Streams]:

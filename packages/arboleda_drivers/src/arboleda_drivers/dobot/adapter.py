@@ -9,7 +9,8 @@ from typing import Any
 from arboleda.drivers.port import Clock, Hear, driver
 from arboleda.model.plant_model import Robot
 from arboleda_drivers.connections.tcp_ports import TcpPorts
-from arboleda_drivers.dobot.machine import DashboardReply, FeedbackData, Machine, SendLine
+from arboleda_drivers.dobot.dashboard import SendLine
+from arboleda_drivers.dobot.machine import DashboardReply, FeedbackData, Machine
 from arboleda_drivers.dobot.settings import Settings
 
 

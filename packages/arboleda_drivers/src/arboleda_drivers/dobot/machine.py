@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Home
 from arboleda.model.facts import HEALTH, WELL
 from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import Robot
+from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
-from arboleda_drivers.connections.replies_due import RepliesDue
-from arboleda_drivers.connections.tcp_arm import CLOCK_S, TcpArm
+from arboleda_drivers.connections.look import Look
+from arboleda_drivers.connections.tcp_arm import SILENT_S, ArmController
 
 from .alarms import named
+from .dashboard import Dashboard, SendLine
 from .frames import Feedback, FrameReader, Mode
-from .replies import NotAReply, Reply, ReplyReader
+from .replies import NotAReply, Reply
 from .settings import Settings
-from .work import ALARM, BROKEN, Look, Move, Readying, Work
+from .tool_output import ToolOutput
+from .work import ALARM, BROKEN, Move, Readying, Work
 
-ASK_S = 1.0  # period of queries of the output
 REST_DEG = 0.01  # less than this is no motion
 UNKNOWN = -10000
 GIVES_CONTROL = (Mode.POWER_OFF, Mode.DISABLED)  # where RequestControl is allowed: README_V4.pdf, 3.132
@@ -56,60 +57,54 @@ class FeedbackData:
     data: bytes
 
 
-@dataclass(frozen=True, kw_only=True)
-class SendLine:
-    """Message: send this text to the dashboard."""
-
-    text: str
-
-
 Event = Opened | Closed | DashboardReply | FeedbackData | CommandRequest
 Message = Open | Close | SendLine | CommandNotSent | Report
-Take = Callable[[float, Reply], None]
 
 
-class Machine(TcpArm):
+class Machine(ControllerMachine):
     """State machine of one arm behind one controller of Dobot."""
 
     def __init__(self, devices: Sequence[Robot], settings: Settings) -> None:
         """Raises ValueError unless the device is one arm of six joints."""
-        self._settings = settings
-        self._boot: tuple[int, int] | None = None  # time of switching on, s; time it has run, ms
+        super().__init__(DobotController(devices, settings))
+
+
+class DobotController(ArmController):
+    """Controller of Dobot: what its frames show, and the work that it does."""
+
+    def __init__(self, devices: Sequence[Robot], settings: Settings) -> None:
         super().__init__(devices, host=settings.host, kind="a Dobot of the CR series")
+        self._settings = settings
+
+    def forget(self, now: float) -> None:
+        super().forget(now)
+        self.dashboard = Dashboard(self.out)
+        self.effector: ToolOutput = ToolOutput(self._settings.tool_output, self.dashboard, self.receipts, now)
+        self._frames = FrameReader()
+        self._work: Work | None = None
+        self._failing: str | None = None
+        self._feedback: Feedback | None = None
+        self._lacks_control = False
 
     @property
-    def _link_deadline(self) -> float:
-        return min(self._due.deadline, self._polled_at + ASK_S)
+    def next_deadline(self) -> float:
+        return min(self.dashboard.due.deadline, self.effector.next_deadline, self.frame_at + SILENT_S)
 
     @property
-    def _is_known(self) -> bool:
+    def is_known(self) -> bool:
         return self._feedback is not None
 
     @property
-    def _is_at_work(self) -> bool:
+    def is_busy(self) -> bool:
         return self._work is not None
 
-    def _hear(self, now: float, event: Event) -> None:
-        if isinstance(event, DashboardReply):
-            self._answered(now, event.data)
-        elif isinstance(event, FeedbackData):
-            for feedback in self._frames.feed(event.data):
-                self._look(now, feedback)
-
-    def _overdue(self, now: float) -> str:
-        return self._due.overdue(now)
-
-    def _poll(self, now: float) -> None:
-        if now >= self._polled_at + ASK_S:
-            self._ask_output(now)
-
-    # The link.
-
-    def _greet(self, now: float) -> None:
+    def greet(self, now: float) -> None:
         if self._settings.request_control:
             self._ask_control(now)
-        self._stop_what_was_left(now)
-        self._ask_output(now)
+        if self.has_leftover:
+            self._brake(now)
+        self.has_leftover = False
+        self.effector.ask(now)
 
     def _ask_control(self, now: float) -> None:
         """Ask for control; an enabled controller refuses it, so one that does is asked again when it is not.
@@ -120,48 +115,28 @@ class Machine(TcpArm):
         def take(now: float, reply: Reply) -> None:
             self._lacks_control = reply.error not in (0, UNKNOWN)
 
-        self._say(now, "RequestControl()", take)
+        self.dashboard.say(now, "RequestControl()", take)
 
-    def _forget_link(self, now: float) -> None:
-        self._frames, self._replies = FrameReader(), ReplyReader()
-        self._due = RepliesDue[Reply]()
-        self._work: Work | None = None
-        self._failing: str | None = None
-        self._feedback: Feedback | None = None
-        self._effector: bool | None = None
-        self._lacks_control = False
-        self._polled_at = now
+    def hear(self, now: float, event: Event) -> None:
+        if isinstance(event, DashboardReply):
+            self.dashboard.hear(now, event.data)
+        elif isinstance(event, FeedbackData):
+            for feedback in self._frames.feed(event.data):
+                self._look(now, feedback)
 
-    def _say(self, now: float, text: str, take: Take) -> None:
-        self._due.add(now, text.partition("(")[0], take)
-        self._out.append(SendLine(text=text))
-
-    def _answered(self, now: float, data: bytes) -> None:
-        try:
-            for reply in self._replies.feed(data):
-                first = self._due.pop()
-                if first is None:
-                    raise NotAReply(f"nobody asked for an answer to {reply.command}")
-                if reply.command and reply.command.lower() != first.name.lower():
-                    raise NotAReply(self._out_of_turn(first.name, reply.command))
-                first.take(now, reply)
-        except NotAReply as error:
-            self._close(now, str(error))
-
-    def _out_of_turn(self, first: str, answered: str) -> str:
-        """The objection to an answer that is not to the first line without one."""
-        if answered.lower() in (each.lower() for each in self._due.names):
-            return f"it has not answered {first}, and has answered {answered}, which it was told later"
-        return f"it answers {answered} where {first} was said"
+    def pass_time(self, now: float) -> None:
+        self.dashboard.due.check(now)
+        self.check_silence(now)
+        self.effector.pass_time(now)
 
     # Commands.
 
-    def _ready(self, now: float, command: Home) -> None:
+    def home(self, now: float, command: Home) -> None:
         self._work = Readying(command.id, now)
-        self._tell(accepted=command.id)
+        self.receipts.tell(accepted=command.id)
 
-    def _move(self, now: float, command: MoveJoints) -> None:
-        move = Move(command.id, lambda feedback: self._arm.motion.stands_at(_radians(feedback), command.q))
+    def move(self, now: float, command: MoveJoints) -> None:
+        move = Move(command.id, lambda feedback: self.robot.motion.stands_at(_radians(feedback), command.q))
         self._work = move
 
         def take(now: float, reply: Reply) -> None:
@@ -169,65 +144,34 @@ class Machine(TcpArm):
                 raise NotAReply(f"it has taken {reply.command} without a number")
             if reply.error == 0 and reply.number is not None:
                 move.taken(now, reply.number)
-                self._tell(accepted=command.id)
+                self.receipts.tell(accepted=command.id)
             elif self._work is move:
                 self._work = None
-                self._reject(command.id, reply.word)
+                self.receipts.reject(command.id, reply.word)
 
-        self._say(now, self._settings.joint_move(command.q), take)
+        self.dashboard.say(now, self._settings.joint_move(command.q), take)
 
-    def _switch(self, now: float, command: SetEffector) -> None:
-        output = self._settings.tool_output
-        if output is None:
-            self._out.append(CommandNotSent(why="it has no tool_output in the plant file"))
-            return
-
-        def take(now: float, reply: Reply) -> None:
-            if reply.error == 0:
-                self._ask_output(now, command)  # accepted once it has been read back
-            else:
-                self._reject(command.id, reply.word)
-
-        self._say(now, f"ToolDOInstant({output},{int(command.on)})", take)
-
-    def _drop_work(self) -> None:
+    def stop(self, now: float, id: str) -> None:
         self._work = self._failing = None
+        self._brake(now, id)
 
-    def _clear(self, now: float, id: str) -> None:
+    def clear(self, now: float, id: str) -> None:
         if self._feedback is not None and STATES[self._feedback.mode] is MotionState.FAULT:
-            self._say(now, "ClearError()", lambda now, reply: self._tell(accepted=id))
+            self.dashboard.say(now, "ClearError()", lambda now, reply: self.receipts.tell(accepted=id))
         else:
-            self._tell(accepted=id)
+            self.receipts.tell(accepted=id)
 
-    def _stop(self, now: float, id: str = "") -> None:
-        self._stopping_since = math.inf
+    def _brake(self, now: float, id: str = "") -> None:
+        self.braking.begin()
 
         def take(now: float, reply: Reply) -> None:
-            self._stopping_since = now
+            self.braking.begin(now)
             if reply.error in UNABLE:
-                self._tell(accepted=id)
+                self.receipts.tell(accepted=id)
             else:
-                self._reject(id, reply.word)
+                self.receipts.reject(id, reply.word)
 
-        self._say(now, "Stop()", take)
-
-    def _ask_output(self, now: float, switched: SetEffector | None = None) -> None:
-        self._polled_at = now
-        output = self._settings.tool_output
-        if output is None:
-            return
-
-        def take(now: float, reply: Reply) -> None:
-            on = reply.number == 1 if reply.error == 0 and reply.number in (0, 1) else None
-            self._news = self._news or on is not self._effector
-            self._effector = on
-            if switched is not None and on is switched.on:
-                self._tell(accepted=switched.id)
-            elif switched is not None:
-                unread = f"output_not_read_back {reply.word}"
-                self._reject(switched.id, "output_does_not_follow" if reply.error == 0 else unread)
-
-        self._say(now, f"GetToolDO({output})", take)
+        self.dashboard.say(now, "Stop()", take)
 
     # What its frames show.
 
@@ -235,84 +179,69 @@ class Machine(TcpArm):
         before = self._feedback
         if before is not None and (feedback.run_ms, feedback.time_ms) == (before.run_ms, before.time_ms):
             return  # the same frame again is no news from the arm
-        self._see_boot(now, feedback)
-        self._last_data_at, self._feedback = now, feedback
+        switched_on = max(0, (feedback.time_ms - feedback.run_ms) // 1000)
+        if self.boot.see(switched_on, feedback.run_ms, after_silence=before is None):
+            self._forget_work(now)
+        self.frame_at, self._feedback = now, feedback
         still = before is not None and feedback.mode is not Mode.RUNNING and not _moved(before, feedback)
-        self._see_rest(now, still=still, broken=feedback.mode in BROKEN)
+        rests = self.braking.see(now, still=still, broken=feedback.mode in BROKEN)
         if self._work is not None and self._failing is None:
             self._go_on(now, self._work, self._work.look(now, feedback))
         changes = before is None or before.mode is not feedback.mode
         if changes and self._lacks_control and feedback.mode in GIVES_CONTROL:
             self._ask_control(now)
-        self._news = self._news or changes
+        self.receipts.news = self.receipts.news or rests or changes
 
-    def _see_boot(self, now: float, feedback: Feedback) -> None:
-        switched_on = max(0, (feedback.time_ms - feedback.run_ms) // 1000)
-        known = self._boot
-        self._boot = (switched_on, feedback.run_ms)
-        if known is None:
-            return
-        booted = feedback.run_ms < known[1]
-        if self._feedback is None:  # after a silence it may have run longer than before
-            booted = booted or abs(switched_on - known[0]) > CLOCK_S
-        if booted:
-            self._forget_work()
-            self._ask_output(now)
-        else:
-            self._boot = (known[0], feedback.run_ms)
-
-    def _forget_work(self) -> None:
-        self._ids, self._work, self._failing, self._effector = {}, None, None, None
-        self._left_at_work, self._news = False, True
+    def _forget_work(self, now: float) -> None:
+        self.receipts.forget()
+        self._work, self._failing, self.effector.is_on = None, None, None
+        self.has_leftover = False
+        self.effector.ask(now)
 
     def _go_on(self, now: float, work: Work, look: Look) -> None:
-        if look.done:
-            self._work = None
-            self._tell(done=work.id)
-        elif look.failed is not None:
+        for line in look.lines:
+            self.dashboard.say(now, line)
+        if look.failed:
             self._fail(now, work, look.failed)
-        elif look.say is not None:
-            self._say(now, look.say, _nothing)
+        elif look.done:
+            self._work = None
+            self.receipts.take(work.id, look)
 
     def _fail(self, now: float, work: Work, word: str) -> None:
         """Fail the work: stop the arm, ask for the controller's alarms, and report them with the reason."""
         self._failing = word
-        self._stop(now)
+        self._brake(now)
 
         def take(now: float, reply: Reply) -> None:
             if self._work is work:
                 alarms = named(reply.alarms)
-                self._tell(
+                self.receipts.tell(
                     failed=work.id, failure=alarms if alarms and word == ALARM else f"{word} {alarms}".strip()
                 )
                 self._work = self._failing = None
 
-        self._say(now, "GetErrorID()", take)
+        self.dashboard.say(now, "GetErrorID()", take)
 
     # What the plant hears.
 
-    def _report(self, now: float) -> Report:
-        assert self._feedback is not None and self._boot is not None
+    def report(self, now: float) -> Report:
+        assert self._feedback is not None
         state = STATES[self._feedback.mode]
         readies = isinstance(self._work, Readying)
         # Readiness is proved by an arm that was not ready and then is.
         is_ready = state is not MotionState.NOT_HOMED and not readies
         # A failure counts once its reason is there.
-        shown = MotionState.MOVING if self._failing is not None else self._shown(state, readies=readies)
+        shown = MotionState.MOVING if self._failing is not None else self.shown(state, readies=readies)
         return Report(
             at=now,
-            robot=self._arm.name,
-            boot_id=self._boot[0],
+            robot=self.robot.name,
+            boot_id=int(self.boot.at),
             state=shown,
             homed=is_ready,
             q=_radians(self._feedback),
-            effector=self._effector,
+            effector=self.effector.is_on,
             facts=((HEALTH, BROKEN.get(self._feedback.mode, WELL)),),
         )
-
-
-def _nothing(now: float, reply: Reply) -> None:
-    """Does nothing with a reply: the next frames show its effect."""
 
 
 def _radians(feedback: Feedback) -> tuple[float, ...]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from arboleda_drivers.connections.link import LinkBroken
+
 LONGEST = 8192  # characters without an end
 REPLY = re.compile(r"\s*(0|-?[1-9]\d{0,8}),\{(.*?)\},(\w{1,40})\((.*)\)\s*", re.DOTALL)
 # The example in the maker's README_V4.pdf, 3.40, lacks the brace that ends the values.
@@ -69,7 +71,7 @@ NOT_TCP = Reply(error=-1, values="", command="")
 """Stands for the text, in no form of a reply, by which the controller says that it is not in its TCP mode."""
 
 
-class NotAReply(ValueError):
+class NotAReply(LinkBroken):
     """Line that is no reply; after it nobody knows to which command the next reply belongs."""
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
+from arboleda_drivers.connections.look import NOTHING, Look
 from arboleda_drivers.connections.tcp_arm import SETTLE_S
 
 from .frames import Feedback, Mode
@@ -25,25 +25,13 @@ BROKEN = {
 }
 """Modes in which work has broken off, each with the word for the plant."""
 
-STEPS = {
-    Mode.ERROR: "ClearError()",
-    Mode.COLLISION: "ClearError()",
-    Mode.POWER_OFF: "PowerOn()",
-    Mode.DISABLED: "EnableRobot()",
+STEPS: dict[Mode, tuple[str, ...]] = {
+    Mode.ERROR: ("ClearError()",),
+    Mode.COLLISION: ("ClearError()",),
+    Mode.POWER_OFF: ("PowerOn()",),
+    Mode.DISABLED: ("EnableRobot()",),
 }
-"""The command that leaves a mode, on the way to one in which the arm can move."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Look:
-    """Progress of a work by one frame: over, or the next line to send to the controller."""
-
-    done: bool = False
-    failed: str | None = None
-    say: str | None = None
-
-
-NOTHING = Look()
+"""The lines that lead out of a mode, on the way to one in which the arm can move."""
 
 
 class Move:
@@ -90,7 +78,7 @@ class Readying:
             return Look(done=True)
         if feedback.mode is not self._mode:
             self._mode, self._since = feedback.mode, now
-            return Look(say=STEPS.get(feedback.mode))
+            return Look(lines=STEPS.get(feedback.mode, ()))
         if now - self._since > STEP_S:
             return Look(failed=BROKEN.get(feedback.mode, "not_ready"))
         return NOTHING

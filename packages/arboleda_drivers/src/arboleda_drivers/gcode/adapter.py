@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 from arboleda.drivers.port import driver
 from arboleda.model.plant_model import Robot
+from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.stream_driver import Stream, StreamDriver
 from arboleda_drivers.gcode.dialects import machine
-from arboleda_drivers.gcode.machine import Machine
 from arboleda_drivers.gcode.settings import Settings
 
 KEY = "ARBOLEDA_MOONRAKER_KEY"
@@ -24,7 +24,7 @@ class Gcode(StreamDriver):
         super().__init__(settings)
         self._settings = settings
 
-    def machine(self, devices: Sequence[Robot]) -> Machine:
+    def machine(self, devices: Sequence[Robot]) -> ControllerMachine:
         return machine(devices, self._settings)
 
     def open(self) -> Stream:

@@ -5,20 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from arboleda.model.plant_model import Robot
+from arboleda_drivers.connections.controller_machine import ControllerMachine
 
-from .grbl import GrblMachine
-from .machine import Machine
-from .marlin import MarlinMachine
-from .moonraker import MoonrakerMachine
+from .controller import GcodeController
+from .grbl import Grbl
+from .marlin import Marlin
+from .moonraker import Moonraker
 from .settings import Settings
 
-MACHINES: Mapping[str, Callable[[Sequence[Robot], Settings], Machine]] = {
-    "grbl": GrblMachine,
-    "marlin": MarlinMachine,
-    "moonraker": MoonrakerMachine,
+DIALECTS: Mapping[str, Callable[[Sequence[Robot], Settings], GcodeController]] = {
+    "grbl": Grbl,
+    "marlin": Marlin,
+    "moonraker": Moonraker,
 }
 
 
-def machine(devices: Sequence[Robot], settings: Settings) -> Machine:
-    """The machine of axes that speaks the dialect of its settings."""
-    return MACHINES[settings.dialect](devices, settings)
+def machine(devices: Sequence[Robot], settings: Settings) -> ControllerMachine:
+    """The machine of axes that speaks the dialect of its settings; raises ValueError for other devices."""
+    return ControllerMachine(DIALECTS[settings.dialect](devices, settings), report_s=settings.poll_s)

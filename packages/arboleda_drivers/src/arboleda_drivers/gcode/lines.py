@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Generic, TypeVar
 
+from arboleda_drivers.connections.stream import Write
+
 LONGEST = 512  # bytes of a line; GRBL and Marlin send fewer
 FARTHEST_MM = 100_000.0
 NUMBER = r"-?\d{1,6}\.\d{1,4}"
@@ -31,3 +33,8 @@ def millimetres(texts: Sequence[str]) -> tuple[float, ...] | None:
     """The numbers of a position, each as `NUMBER`; None where a machine cannot be."""
     numbers = tuple(map(float, texts))
     return numbers if all(abs(each) < FARTHEST_MM for each in numbers) else None
+
+
+def written(line: str) -> Write:
+    """The message that writes a line to the controller."""
+    return Write(data=line.encode("ascii") + b"\n")

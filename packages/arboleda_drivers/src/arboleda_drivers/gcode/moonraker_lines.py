@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -70,6 +70,9 @@ class Motion:
     def stands(self) -> bool:
         """True where all that was planned is over."""
         return self.ahead_s <= 0 and self.speed < STILL_MM_S and near(self.place, self.planned)
+
+    def has_homed(self, axes: Iterable[str]) -> bool:
+        return all(letter in self.homed_axes for letter in axes)
 
     def allows(self, goal: Place) -> bool:
         """True where no axis is led beyond its travel; one that stays may be anywhere."""

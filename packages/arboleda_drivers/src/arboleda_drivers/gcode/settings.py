@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -81,6 +82,20 @@ class Settings(StreamAddress):
         """The words of G-code for the axes at `q`, m."""
         rows = zip(self.axes, q, self.zeros, strict=True)
         return "".join(f"{letter}{at * MM + zero:.3f}" for letter, at, zero in rows)
+
+    def place(self, q: tuple[float, ...], before: tuple[float, ...]) -> tuple[float, ...]:
+        """The place of the machine, mm, with its axes at `q`, m; others stay where they were before."""
+        place = list(before)
+        for letter, at, zero in zip(self.axes, q, self.zeros, strict=True):
+            place[LETTERS.index(letter)] = round(at * MM + zero, 4)
+        return tuple(place)
+
+    def feed(self, robot: Jointed, start: Sequence[float], goal: Sequence[float]) -> float:
+        """The speed of a straight move, mm/min, at which no axis is faster than it may be."""
+        ways = [abs(there - here) for here, there in zip(start, goal, strict=True)]
+        rows = zip(ways, robot.joints, strict=True)
+        time_s = max(way / (joint.speed * self.model_speed_share) for way, joint in rows)
+        return max(math.hypot(*ways) * MM / time_s * 60 if time_s > 0 else 60.0, 1.0)
 
     def problems(self, device: Robot) -> Iterable[tuple[tuple[str | int, ...], str]]:
         """Settings that do not fit a device, each as its keys and a sentence."""

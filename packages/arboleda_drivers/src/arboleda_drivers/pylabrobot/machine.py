@@ -10,11 +10,10 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from arboleda.drivers.port import lost
 from arboleda.kinds.declared import Device, Effect, VerbCall
-from arboleda.model.commands import Command, OnStop, Stop, StopMode, Work
+from arboleda.model.commands import Command, Stop, StopMode, Work
 from arboleda.model.facts import Facts
 from arboleda.model.messages import MotionState, Report
 from arboleda.model.outside import plain
@@ -36,23 +35,11 @@ from .messages import (
 )
 from .reading import UnreadableValue
 from .settings import Call, MachineMapping
+from .tasks import Task, Tasks
 
 AGAIN_S = 2.0  # between two tries to set a machine up, or to read one that could not be read
 BEAT_S = 0.5  # period of reports while a look takes its time
 LONGEST = 160  # characters of an exception
-
-
-@dataclass(kw_only=True)
-class Task:
-    """Calls under way; `command` None: nobody waits for their end any more. `over`: they have ended so."""
-
-    number: int
-    began_at: float
-    until: float
-    command: VerbCall | Stop | None
-    is_work: bool = False
-    over: Returned | Raised | None = None
-    first_look: int = 0  # the first look that began after the end
 
 
 class Machine:
@@ -76,7 +63,7 @@ class Machine:
 
     def _forget(self, now: float) -> None:
         """Forget the machine: its calls end with it."""
-        self._tasks: dict[int, Task] = {}
+        self._tasks = Tasks(side_by_side=self._settings.side_by_side)
         self._stops: deque[Stop] = deque()  # that wait for the end of another
         self._up = False
         self._look_at, self._looking_since = now, math.inf
@@ -127,7 +114,7 @@ class Machine:
                 self._out.append(Close())
                 self._shut(now, f"its setup has not come back for {self._settings.setup_s:g} s")
             return
-        late = next((each for each in self._tasks.values() if each.over is None and each.until <= now), None)
+        late = self._tasks.late(now)
         if late is not None and self._up:
             self._lose(now, f"a call has not come back for {now - late.began_at:.0f} s")
         elif not self._is_overdue and now >= self._looking_since + self._settings.timeout_s:
@@ -135,7 +122,7 @@ class Machine:
             self._lose(now, f"it has not been read for {self._settings.timeout_s:g} s")
         if self._open and not self._is_looking and now >= self._look_at:
             self._looks += 1
-            self._looking_since, self._is_full_look = now, self._may_read
+            self._looking_since, self._is_full_look = now, not self._tasks.are_disturbed
             self._out.append(Look(number=self._looks, paths=self._paths if self._is_full_look else ()))
         if self._up and now >= self._reported_at + BEAT_S:
             self._report(now)
@@ -150,11 +137,6 @@ class Machine:
     @property
     def _is_looking(self) -> bool:
         return self._looking_since < math.inf
-
-    @property
-    def _may_read(self) -> bool:
-        """True where nothing is under way that a question might disturb."""
-        return self._settings.side_by_side or all(task.over is not None for task in self._tasks.values())
 
     def _shut(self, now: float, why: str) -> None:
         """Note that the machine could not be set up, or is gone."""
@@ -172,8 +154,7 @@ class Machine:
         """Report silence; a machine that is gone is made anew where that is allowed."""
         self._up = False
         self._stops.clear()
-        for task in self._tasks.values():
-            task.command = None
+        self._tasks.disown()
         if gone and self._settings.setup_again:
             self._out.append(Close())
             self._shut(now, why)
@@ -196,14 +177,14 @@ class Machine:
         except UnreadableValue as error:
             self._lose(now, str(error), gone=False)
             return
-        if any(task.over is None and task.until <= now for task in self._tasks.values()):
+        if self._tasks.late(now) is not None:
             return  # the event loop runs, and a call hangs
         self._up, self._look_at = True, now + self._settings.poll_s
-        for number, task in list(self._tasks.items()):
+        for task in list(self._tasks.values()):
             if task.over is not None and self._is_full_look and task.first_look <= event.number:
-                del self._tasks[number]
+                del self._tasks[task.number]
                 self._settle(task, task.over)
-        if self._may_read and self._tasks:
+        if self._tasks and not self._tasks.are_disturbed:
             self._look_at = now  # it ended after this look had begun
         self._report(now)
 
@@ -219,8 +200,7 @@ class Machine:
             self._boot += 1
             self._receipts = {}
             self._stops.clear()
-            for task in self._tasks.values():
-                task.command = None
+            self._tasks.disown()
         self._boot_shown = boot
 
     # Commands.
@@ -234,21 +214,12 @@ class Machine:
             self._stop(now, command)
         elif not isinstance(command, VerbCall) or command.verb not in self._settings.verbs:
             self._out.append(CommandNotSent(why=f"nothing is called for {command.word or 'this'}"))
-        elif not self._is_free(command):
+        elif not self._tasks.takes(command):
             self._tell(now, rejected=command.id, refusal="busy")
         else:
             verb = self._settings.verbs[command.verb]
             calls = tuple(call.filled(dict(command.values)) for call in verb.calls)
             self._begin(now, command, calls, "" if verb.answer is None else verb.answer.read)
-
-    def _is_free(self, command: Command) -> bool:
-        """True where a call may begin now: one at a time, or one work beside questions."""
-        if self._settings.side_by_side and not isinstance(command, Work):
-            return True
-        return not any(
-            task.is_work or isinstance(task.command, Stop) or not self._settings.side_by_side
-            for task in self._tasks.values()
-        )
 
     def _begin(self, now: float, command: VerbCall | Stop, calls: Sequence[Call], result: str = "") -> None:
         self._numbers += 1
@@ -271,14 +242,13 @@ class Machine:
     def _stop(self, now: float, command: Stop) -> None:
         if command.mode is not StopMode.HALT:
             self._latched = command.mode is StopMode.LATCH
-        works = [task for task in self._tasks.values() if task.is_work and task.over is None]
-        if command.mode is not StopMode.CLEAR and any(map(_finishes, works)):
+        if command.mode is not StopMode.CLEAR and any(task.finishes for task in self._tasks.values()):
             self._tell(now, accepted=command.id)  # it goes on to its own end
             return
         if command.mode is not StopMode.CLEAR:
             for task in self._tasks.values():
                 self._drop(task)
-        if any(isinstance(task.command, Stop) for task in self._tasks.values()):
+        if self._tasks.stops:
             self._stops.append(command)
         else:
             self._call_stop(now, command)
@@ -359,7 +329,7 @@ class Machine:
             self._report(now)
 
     def _state(self) -> MotionState:
-        if any(task.is_work or isinstance(task.command, Stop) for task in self._tasks.values()):
+        if self._tasks.works or self._tasks.stops:
             return MotionState.MOVING
         return MotionState.STOP_LATCHED if self._latched else MotionState.STOPPED
 
@@ -367,7 +337,3 @@ class Machine:
         self._reported_at = now
         report = Report(at=now, robot=self._device.name, boot_id=self._boot, state=self._state())
         self._out.append(report.again(now, facts=self._facts, **self._receipts))
-
-
-def _finishes(task: Task) -> bool:
-    return isinstance(task.command, Work) and task.command.on_stop is OnStop.FINISH

@@ -9,6 +9,7 @@ from arboleda.drivers.port import lost
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import MotionState, Report
 from arboleda.model.outside import plain
+from arboleda_drivers.connections.receipts import Receipts
 
 from .events import (
     CancelAll,
@@ -19,7 +20,6 @@ from .events import (
     GoalAnswer,
     GoalList,
     GoalResult,
-    MakeCall,
     Measurement,
     Message,
     SendGoal,
@@ -29,14 +29,14 @@ from .events import (
 )
 from .goal import SETTLE_S, Goal
 from .goal_history import GoalHistory
-from .health import Call, CallAnswer, Health, HealthReading, HealthWatch
+from .health import CallAnswer, Health, HealthReading, HealthWatch
+from .homing import LONGEST_WORD, Homing
 from .mover import Mover, NoGoal
 
 ANSWER_S = 2.0  # a server answers a goal or a cancel in milliseconds
 SPARE_S = 0.5  # the plant's own deadline comes first
 GONE_S = 1.0  # a restarted server is away for a moment, and discovery takes another
 REPORT_S = 0.1  # a report at least so often
-LONGEST_WORD = 120
 
 
 class Machine:
@@ -47,20 +47,18 @@ class Machine:
         self._health = HealthWatch(health)
         self._history = GoalHistory(mover.name)
         self._out: list[Message] = []
+        self._receipts = Receipts()
+        self._homing = Homing(self._health, self._out, self._receipts)
         self._servers: tuple[int, ...] = ()
         self._server: int | None = None  # the last one that was there alone
         self._alone_at = -math.inf  # the time at which it was
         self._why = ""  # the reported reason for a missing link
         self._goal: Goal | None = None
-        self._homing: str | None = None
         self._cancel_at: float | None = None  # time since which a cancel is unanswered
         self._cancelled_at = -math.inf  # time of the last cancel
         self._stop_id = ""
         self._latched = False
-        self._ids: dict[str, str] = {}
         self._measured_at = math.inf  # time of the first measurement
-        self._news = False
-        self._reported_at = -math.inf
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
         """Take events and the time, and return the messages to act on; at most one of them is a report."""
@@ -71,10 +69,11 @@ class Machine:
             self._lose(now, why)
         else:
             self._pass_time(now)
-            due = self._news or now >= self._reported_at + REPORT_S
+            due = self._receipts.is_due(now, REPORT_S)
             if due and now >= self._measured_at + SETTLE_S:  # before, nobody knows whether the device rests
-                self._out.append(self._report(now))
-        out, self._out = self._out, []
+                self._out.append(self._receipts.on(now, self._report(now)))
+        out = self._out.copy()
+        self._out.clear()
         return out
 
     def _take(self, now: float, event: Event) -> None:
@@ -93,7 +92,7 @@ class Machine:
         elif isinstance(event, HealthReading):
             self._see_health(now, event)
         elif isinstance(event, CallAnswer):
-            self._hear_call(now, event)
+            self._homing.hear(now, event)
         elif isinstance(event, UnusableMessage):
             self._lose(now, event.why)
         else:
@@ -103,8 +102,7 @@ class Machine:
         goal = self._goal
         if self._cancel_at is not None and now >= self._cancel_at + ANSWER_S:
             self._cancel(now)
-        if self._homing is not None and not self._health.is_well and (why := self._health.overdue(now)):
-            self._end_homing(failure=why)
+        self._homing.pass_time(now)
         if goal is None:
             return
         if not goal.accepted and not goal.stopped and now >= goal.sent_at + ANSWER_S:
@@ -166,66 +164,40 @@ class Machine:
             return
         if self._server is not None:  # it was started anew, and knows of no goal
             self._forget()
-        self._server, self._news = servers[0], True
+        self._server, self._receipts.news = servers[0], True
 
     def _lose(self, now: float, why: str) -> None:
         """Lose the link, and open work; a goal that still runs is cancelled once the server is back."""
         if self._goal is not None:
             self._goal.stopped, self._goal.succeeded_at = True, None
             self._cancel_at = -math.inf  # at once, where it is back
-        self._homing, self._stop_id = None, ""
+        self._homing.id = self._stop_id = ""
         if why != self._why:
             self._why = why
             self._out.append(lost(self._mover.name, at=now, why=why))
 
     def _forget(self) -> None:
-        self._goal = self._homing = self._cancel_at = None
+        self._goal = self._cancel_at = None
         self._history.forget()
-        self._stop_id, self._ids = "", {}
+        self._homing.id = self._stop_id = ""
+        self._receipts.forget()
         self._mover.settle(None)
 
     def _see(self, now: float, measurement: Measurement) -> None:
         if not self._mover.see(now, measurement):
             return
         self._measured_at = min(self._measured_at, now)
-        if self._homing is not None and self._health.is_well:
-            self._end_homing()
+        self._homing.see()
 
     # Its health.
 
     def _see_health(self, now: float, reading: HealthReading) -> None:
         if not self._health.see(reading.value):
             return
-        self._news = True
+        self._receipts.news = True
         if self._goal is not None and not self._health.is_well:
             self._drop(failed=self._goal.id, failure=self._health.word)
             self._cancel(now)
-
-    def _hear_call(self, now: float, answer: CallAnswer) -> None:
-        if self._homing is None:
-            return
-        following = self._health.answered(now, answer)
-        if isinstance(following, Call):
-            self._out.append(MakeCall(call=following))
-        elif following is not None:
-            self._end_homing(failure=following)
-
-    def _begin_homing(self, now: float, id: str) -> None:
-        """Begin homing, which moves nothing: the device has to be heard, and to be out of a stop."""
-        if not self._health.is_well and not self._health.can_clear:
-            self._reject(id, self._health.word)
-            return
-        self._homing = id
-        self._tell(accepted=id)
-        if not self._health.is_well:
-            self._out.append(MakeCall(call=self._health.clear(now)))
-
-    def _end_homing(self, *, failure: str = "") -> None:
-        id, self._homing = self._homing or "", None
-        if failure:
-            self._tell(failed=id, failure=plain(failure, LONGEST_WORD))
-        else:
-            self._tell(done=id)
 
     # Commands.
 
@@ -235,12 +207,12 @@ class Machine:
             self._out.append(CommandNotSent(why=why))
         elif isinstance(command, Stop):
             self._ask_stop(now, command)
-        elif self._homing is not None or (self._goal is not None and not self._mover.replaces):
-            self._reject(command.id, "busy")
+        elif self._homing.id or (self._goal is not None and not self._mover.replaces):
+            self._receipts.reject(command.id, "busy")
         elif isinstance(command, Home):
-            self._begin_homing(now, command.id)
+            self._homing.begin(now, command.id)
         elif not self._health.is_well:
-            self._reject(command.id, self._health.word)
+            self._receipts.reject(command.id, self._health.word)
         else:
             self._begin(now, command)
 
@@ -259,23 +231,23 @@ class Machine:
 
     def _send(self, goal: Goal) -> None:
         self._out.append(SendGoal(id=goal.key, uuid=self._history.send(goal), goal=goal.what))
-        self._news = True
+        self._receipts.news = True
 
     def _ask_stop(self, now: float, command: Stop) -> None:
         if command.mode is not StopMode.HALT:
             self._latched = command.mode is StopMode.LATCH
-        self._news = True
+        self._receipts.news = True
         if command.mode is StopMode.CLEAR:
-            self._tell(accepted=command.id)
+            self._receipts.tell(accepted=command.id)
             return
-        self._homing = None
+        self._homing.id = ""
         if self._goal is not None:
             self._goal.stopped, self._goal.succeeded_at = True, None
         self._stop_id = command.id
         self._cancel(now)
 
     def _cancel(self, now: float) -> None:
-        self._cancel_at, self._news = now, True
+        self._cancel_at, self._receipts.news = now, True
         self._out.append(CancelAll())
 
     # Answers of the server.
@@ -293,7 +265,7 @@ class Machine:
             if goal.stopped:  # a cancel that came before it cannot have included it
                 self._cancel(now)
             else:
-                self._tell(accepted=goal.id)
+                self._receipts.tell(accepted=goal.id)
 
     def _hear_end(self, now: float, end: GoalResult) -> None:
         goal = self._goal
@@ -313,12 +285,12 @@ class Machine:
         if self._cancel_at is None:
             return
         if answer.refused and self._goal is not None:
-            self._reject(self._stop_id, "cancel_refused")
+            self._receipts.reject(self._stop_id, "cancel_refused")
             self._stop_id = ""
             return  # repeated after ANSWER_S
         self._cancel_at, self._cancelled_at = None, now
         self._history.leave_behind()
-        self._tell(accepted=self._stop_id)
+        self._receipts.tell(accepted=self._stop_id)
         self._stop_id = ""
 
     # What the plant hears.
@@ -330,15 +302,7 @@ class Machine:
 
     def _end(self, *, failure: str = "", **ids: str) -> None:
         self._goal = None
-        self._tell(**ids, failure=plain(failure, LONGEST_WORD))
-
-    def _tell(self, **ids: str) -> None:
-        self._ids |= {name: id for name, id in ids.items() if id}
-        self._news = True
-
-    def _reject(self, id: str, word: str) -> None:
-        if id:
-            self._tell(rejected=id, refusal=word)
+        self._receipts.tell(**ids, failure=plain(failure, LONGEST_WORD))
 
     def _state(self, now: float) -> MotionState:
         at_work = self._goal is not None or self._cancel_at is not None
@@ -349,19 +313,18 @@ class Machine:
         if self._latched:
             return MotionState.STOP_LATCHED
         if not self._health.is_well:
-            return MotionState.FAULT if self._homing is None else MotionState.NOT_HOMED
+            return MotionState.FAULT if not self._homing.id else MotionState.NOT_HOMED
         return MotionState.STOPPED
 
     def _report(self, now: float) -> Report:
-        self._news, self._reported_at, self._why = False, now, ""
-        report = Report(
+        self._why = ""
+        return Report(
             at=now,
             robot=self._mover.name,
             boot_id=self._server,
             state=self._state(now),
-            homed=self._homing is None,
+            homed=not self._homing.id,
             receipt=self._history.receipt,
             tokens=self._history.tokens,
             **self._mover.shows(busy=self._goal is not None) | self._health.shows,
         )
-        return report.again(now, **self._ids)

@@ -1,12 +1,14 @@
-"""Work of the arm: a move, the way to readiness, and a switch of the gripper, judged by what servos show."""
+"""Work of the arm, a move or the way to readiness, judged by what servos show."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from arboleda_drivers.connections.look import NOTHING, Look
+
 from .servos import Reading
-from .settings import ServoGripper
 
 TAKE_S = 0.2  # a servo shows its new goal within this time
 SETTLE_S = 0.2  # an arm that stands for so long has come to rest
@@ -16,6 +18,22 @@ READY_S = 5.0
 TORQUE_OFF = "torque_off"
 STANDS_STILL = "stands_still"  # it should move, and tells the same position again and again
 NOT_TAKEN = "goal_not_taken"
+REST_TICKS = 3  # less than this is no motion
+
+
+@dataclass(kw_only=True)
+class Rest:
+    """Positions that stand still, and since when."""
+
+    since: float = -math.inf
+    positions: tuple[int, ...] = ()
+
+    def see(self, now: float, positions: tuple[int, ...]) -> float:
+        """Take the positions read now; returns how long they have stood, s."""
+        pairs = zip(self.positions, positions, strict=False)
+        if not self.positions or any(abs(a - b) > REST_TICKS for a, b in pairs):
+            self.since, self.positions = now, positions
+        return now - self.since
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,16 +71,6 @@ class Picture:
         return next((self.names[id] for id, goal in goals.items() if self.readings[id].goal != goal), None)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Look:
-    """Progress of a work by one picture."""
-
-    accepted: bool = False
-    done: bool = False
-    refused: str | None = None
-    failed: str | None = None
-
-
 @dataclass(kw_only=True)
 class Move:
     """Move of the joints: taken when every servo shows its goal, over when all have come to rest."""
@@ -75,7 +83,7 @@ class Move:
 
     def look(self, now: float, picture: Picture) -> Look:
         if picture.since <= self.began_at:
-            return Look()  # a reading is of before
+            return NOTHING  # a reading is of before
         trouble, other = picture.trouble, picture.other_goal(self.goals)
         accepted = not self.taken and other is None
         self.taken = self.taken or accepted
@@ -84,7 +92,7 @@ class Move:
         if other is not None and self.taken:
             return Look(failed=f"another_goal of {other}")
         if other is not None:
-            return Look(refused=f"{NOT_TAKEN} by {other}") if now - self.began_at > TAKE_S else Look()
+            return Look(refused=f"{NOT_TAKEN} by {other}") if now - self.began_at > TAKE_S else NOTHING
         if accepted:
             return Look(accepted=True)
         # One that stands away from its goal gets no further: the plant finds it there, and the move failed.
@@ -105,7 +113,7 @@ class Readying:
     def look(self, now: float, picture: Picture) -> Look:
         if picture.trouble is None:
             return Look(done=True)
-        return Look(failed=picture.trouble) if now - self.began_at > READY_S else Look()
+        return Look(failed=picture.trouble) if now - self.began_at > READY_S else NOTHING
 
     def due(self, now: float, picture: Picture) -> list[int]:
         """The servos that are to be made ready now."""
@@ -114,23 +122,3 @@ class Readying:
         found = [id for id in unready if now - self.tried.get(id, -READY_S) >= STEP_S]
         self.tried.update(dict.fromkeys(found, now))
         return found
-
-
-@dataclass(frozen=True, kw_only=True)
-class Switching:
-    """Switch of the gripper that is under way."""
-
-    id: str
-    on: bool
-    began_at: float
-
-
-def hand(gripper: ServoGripper, reading: Reading, rest_s: float) -> str:
-    """The gripper's state: open, part (it has closed on one), empty (closed to its end), or moving."""
-    if not reading.torque or rest_s < SETTLE_S:
-        return "moving"
-    if reading.goal == gripper.open and abs(reading.position - gripper.open) <= gripper.near:
-        return "open"
-    if reading.goal != gripper.closed or abs(reading.position - gripper.open) <= gripper.near:
-        return "moving"
-    return "empty" if abs(reading.position - gripper.closed) <= gripper.near else "part"

@@ -9,8 +9,8 @@ from typing import Any
 from arboleda.drivers.port import Clock, Hear, driver
 from arboleda.model.plant_model import Robot
 from arboleda_drivers.connections.tcp_ports import TcpPorts
-from arboleda_drivers.ur.machine import DASHBOARD, PRIMARY, RTDE, Machine
-from arboleda_drivers.ur.port_data import Received, Send
+from arboleda_drivers.ur.machine import Machine
+from arboleda_drivers.ur.port_data import DASHBOARD, PRIMARY, RTDE, Received, Send
 from arboleda_drivers.ur.settings import Settings
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+DASHBOARD, RTDE, PRIMARY = "dashboard", "rtde", "primary"  # ports
+
 
 @dataclass(frozen=True, kw_only=True)
 class Received:

@@ -6,6 +6,7 @@ import struct
 from dataclasses import dataclass
 
 from arboleda.model.outside import plain
+from arboleda_drivers.connections.link import LinkBroken
 
 HEADER = struct.Struct(">iB")
 MESSAGE = struct.Struct(">QbB")  # time, source, type
@@ -31,12 +32,12 @@ class PackageReader:
         self._rest = b""
 
     def feed(self, data: bytes) -> list[ScriptError]:
-        """The errors in the packages that are complete now; raises ValueError for a length that none has."""
+        """The errors in the packages that are complete now; raises LinkBroken for a length that none has."""
         rest, found = self._rest + data, []
         while len(rest) >= HEADER.size:
             size, kind = HEADER.unpack_from(rest)
             if not HEADER.size <= size <= LONGEST:
-                raise ValueError(f"its primary interface sends a package of {size} bytes")
+                raise LinkBroken(f"its primary interface sends a package of {size} bytes")
             if len(rest) < size:
                 break
             if kind == ROBOT_MESSAGE and (error := _error(rest[HEADER.size : size])) is not None:

@@ -1,17 +1,39 @@
-"""Programs in URScript that the driver sends; each names itself by a number as it begins and as it ends."""
+"""Programs in URScript, and their port; each names itself by a number as it begins and as it ends."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from arboleda.kinds.joints.joint import Joint
 
-from .rtde import beat_name
+from .port_data import PRIMARY, Send
+from .rtde import Frame, beat_name
 
+LAST_NUMBER = 2**31 - 2  # of a register of 32 bits
 WATCH_HZ = 1  # the controller ends our program without a heartbeat in that time
 OUTPUTS = (("standard", 8), ("configurable", 8), ("tool", 2))  # by the bits of actual_digital_output_bits
 OUTPUT_COUNT = sum(count for _, count in OUTPUTS)
+
+
+class ProgramPort:
+    """Port to which programs are sent, whatever connection there is."""
+
+    def __init__(self, out: list[Any]) -> None:
+        self._out = out
+        self._number = 0  # of the last program
+
+    def run(self, program: str) -> None:
+        self._out.append(Send(port=PRIMARY, data=program.encode()))
+
+    def next_number(self, frame: Frame | None) -> int:
+        """A number that no driver has given since the controller was switched on; `frame` is its last one."""
+        if frame is None:
+            self._number += 1
+        else:
+            self._number = max(self._number, frame.begun, frame.done, 0) % LAST_NUMBER + 1
+        return self._number
 
 
 def move(number: int, q: Sequence[float], *, speed: float, acceleration: float, register: int) -> str:

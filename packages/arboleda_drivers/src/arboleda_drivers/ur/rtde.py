@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
+from arboleda_drivers.connections.link import LinkBroken
+
 HEADER = struct.Struct(">HB")
 VERSION = 2
 RATE_HZ = 125.0  # the highest of a CB3; an e-Series has up to 500
@@ -34,7 +36,7 @@ class Packet(IntEnum):
 KINDS = frozenset(Packet)
 
 
-class NotRtde(ValueError):
+class NotRtde(LinkBroken):
     """Error: what came is not RTDE, or not the answer that was due."""
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
+from arboleda_drivers.connections.look import NOTHING, Look
 from arboleda_drivers.connections.tcp_arm import SETTLE_S
 
 from .arm_state import PROTECTIVE_STOP, Mode, Runtime, hindrance, safety_word
@@ -16,19 +16,6 @@ AGAIN_S = 1.0  # between two tries to unlock a protective stop
 UNLOCK = ("stop", "close safety popup", "unlock protective stop")  # stopped, so that nothing is resumed
 STEPS: dict[int, tuple[str, ...]] = {Mode.POWER_OFF: ("power on",), Mode.IDLE: ("brake release",)}
 """The lines to the dashboard that lead out of a mode, on the way to one in which the arm can move."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Look:
-    """Progress of a work by one frame: accepted, over, or the next lines to the dashboard."""
-
-    accepted: bool = False
-    done: bool = False
-    failed: str = ""
-    lines: tuple[str, ...] = ()
-
-
-NOTHING = Look()
 
 
 class Move:

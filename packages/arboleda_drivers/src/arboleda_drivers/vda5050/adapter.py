@@ -99,7 +99,7 @@ class Vda5050:
         whose, _, topic = delivery.topic.rpartition("/")
         if whose != settings.topics:
             _, version, maker, serial = whose.split("/")
-            self._vehicle.neighbour(plain(f"{maker}/{serial} ({version})", 60))
+            self._vehicle.link.neighbour(plain(f"{maker}/{serial} ({version})", 60))
             return
         if topic == "state" and delivery.retain:
             return  # a retained message is of unknown age
@@ -112,7 +112,7 @@ class Vda5050:
         except SchemaMismatch as error:
             self._warn(f"a message on {delivery.topic} is refused: {error}")
             if topic == "state":
-                self._vehicle.refused(str(error))
+                self._vehicle.link.refuse(str(error))
             return
         self._try(HANDLERS[topic](self._vehicle, self._clock(), body))
 

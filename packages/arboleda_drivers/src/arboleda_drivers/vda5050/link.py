@@ -11,6 +11,7 @@ from .state import VehicleState
 
 BROKEN = {"CONNECTIONBROKEN", "CONNECTION_BROKEN"}
 LONGEST_WHY = 200  # characters
+NEIGHBOURS = 20  # that a sentence may name
 WRAP = 2**31  # headers count to 2**32, then from 0
 
 
@@ -28,7 +29,7 @@ class Link:
         self._first = True  # the next state begins a row of headers
         self.boots = 1
         self.has_booted = False
-        self.neighbours: set[str] = set()
+        self._neighbours: set[str] = set()
 
     @property
     def is_online(self) -> bool:
@@ -58,9 +59,14 @@ class Link:
         return f": {self._refused}" if self._refused else ""
 
     def _others(self) -> str:
-        if not self.neighbours:
+        if not self._neighbours:
             return f" (on {plain(self._settings.topics, 80)})"
-        return f"; those that have: {plain(', '.join(sorted(self.neighbours)), 120)}"
+        return f"; those that have: {plain(', '.join(sorted(self._neighbours)), 120)}"
+
+    def neighbour(self, vehicle: str) -> None:
+        """Note another vehicle at the broker, or this one by another version."""
+        if len(self._neighbours) < NEIGHBOURS:
+            self._neighbours.add(vehicle)
 
     def broker(self, *, up: bool) -> None:
         self._broker, self._word = up, None
@@ -92,7 +98,7 @@ class Link:
         return True
 
     def refuse(self, why: str) -> None:
-        """Note a state that does not count."""
+        """Note a state that does not count; the reason is reported while no state does."""
         self._refused = plain(why, LONGEST_WHY)
 
     def lose(self, why: str) -> None:

@@ -16,32 +16,25 @@ from typing import Any
 from arboleda.drivers.port import NotSent, lost
 from arboleda.kinds.declared import Device, VerbCall
 from arboleda.kinds.mobile import FollowPath, Mobile
-from arboleda.model.commands import Command, Query, Stop, StopMode
-from arboleda.model.facts import Facts, Value, shown
+from arboleda.model.commands import Command, Stop
+from arboleda.model.facts import Facts
 from arboleda.model.messages import MotionState, Report
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import Robot
 
 from . import factsheet
+from .answers import Answers
 from .link import Link
 from .map import GridMap
-from .orders import Action, Order, action_of, instant
+from .orders import Action, Actions, Order, instant
 from .settings import Settings
-from .state import ENDS_ORDER, FACTS, Body, VehicleState, read
+from .state import FACTS, Body, VehicleState, read
+from .stops import AGAIN_S, Stops
 
 BEAT_S = 0.3
-AGAIN_S = 2.0  # after this time an unanswered stop or request is sent again
-PAUSES = 3  # requests, where a vehicle has ended a pause and says that it is not paused
 FACTSHEET_TRIES = 3  # factsheet requests; not all vehicles have one
-NEIGHBOURS = 20  # that a sentence may name
 LONGEST_COMMAND = "1800000000-99999"  # an id as the plant makes them, by its start and a number
 OURS = "arboleda-"  # prefix of the ids of all orders of plants
-STOPS = {
-    StopMode.HALT: ("cancelOrder",),
-    StopMode.LATCH: ("startPause", "cancelOrder"),
-    StopMode.CLEAR: ("stopPause",),
-}
-OPPOSITE = {"startPause": "stopPause", "stopPause": "startPause"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,40 +65,37 @@ class Vehicle:
         self._devices = {device.name: device for device in devices}
         self._settings, self._mark = settings, mark
         self._map = GridMap(mobiles[0] if mobiles else None, settings)
-        self._link = Link(settings)
+        self.link = Link(settings)
         self._state: VehicleState | None = None
         self._order: Order | None = None
         self._instants: dict[str, Command] = {}  # commands beside its order, by action
-        self._stops: dict[
-            str, list[str]
-        ] = {}  # types of stops, each with all its actions, while none of them is over
-        self._stops_at = -math.inf  # time of the last stop
-        self._pauses_left = 0  # so often it is told again to pause, where it has said that it did and has not
-        self._count = 0  # of actions
+        self._stops = Stops()
+        self._actions = Actions(mark)
         self._most_nodes: int | None = None  # of an order
         self._has_sheet, self._sheet_requests, self._ask_at = False, 0, -math.inf
-        self._answers: dict[str, dict[str, Any]] = {name: {} for name in self._devices}
+        self._answers = Answers(self._devices)
         self.next_deadline = 0.0
 
     def step(self, now: float) -> list[Message]:
         """Report the known state, if that is due."""
         if now < self.next_deadline:
             return []
-        self._lose_what_is_silent(now)
+        if self.link.falls_silent(now):
+            self._forget()
         return [*self._ask(now), *self._say_stops_again(now), *self._reports(now)]
 
     def connected(self, now: float, *, up: bool) -> list[Message]:
         """Note that the broker is connected, or is lost."""
-        self._link.broker(up=up)
+        self.link.broker(up=up)
         if not up:
             self._forget()
         return list(self._reports(now))
 
     def connection(self, now: float, body: Body) -> list[Message]:
         """Take a message of the topic `connection`."""
-        was_online = self._link.is_online
-        self._link.connection(now, body["connectionState"])
-        if not self._link.is_online:
+        was_online = self.link.is_online
+        self.link.connection(now, body["connectionState"])
+        if not self.link.is_online:
             self._forget()
         elif not was_online:
             self._ask_at, self._sheet_requests = now, 0
@@ -113,40 +103,31 @@ class Vehicle:
 
     def _ask(self, now: float) -> list[Message]:
         """Ask for messages still missing; a vehicle may begin to listen only a while after it is online."""
-        if not self._link.is_online or now < self._ask_at:
+        if not self.link.is_online or now < self._ask_at:
             return []
         self._ask_at = now + AGAIN_S
         missing = [] if self._state is not None else ["stateRequest"]
         if not self._has_sheet and self._sheet_requests < FACTSHEET_TRIES:
             self._sheet_requests += 1
             missing.append("factsheetRequest")
-        return [*self._request(*missing)]
-
-    def neighbour(self, vehicle: str) -> None:
-        """Note another vehicle at the broker, or this one by another version."""
-        if len(self._link.neighbours) < NEIGHBOURS:
-            self._link.neighbours.add(vehicle)
+        return self._instantly(self._actions.of_types(*missing))
 
     def state(self, now: float, body: Body) -> list[Message]:
         """Take a state that fits the schema; one not newer than the last is ignored."""
         state = read(body)
-        if not self._link.takes(now, state):
+        if not self.link.takes(now, state):
             return []
-        if self._link.has_booted:
+        if self.link.has_booted:
             self._forget()
         self._state = state
-        self._stops = {type: ids for type, ids in self._stops.items() if not any(map(state.is_over, ids))}
+        self._stops.see(state)
         messages = [*self._judge_order(now, state), *self._left_over(now, state)]
         self._judge_instants(state)
         return [*messages, *self._reports(now)]
 
-    def refused(self, why: str) -> None:
-        """Note a state that does not fit the schema; `why` is reported while no state fits."""
-        self._link.refuse(why)
-
     def lose(self, now: float, why: str) -> list[Message]:
         """Lose the link, and open work, after a message that caused an error; the next state restores it."""
-        self._link.lose(why)
+        self.link.lose(why)
         self._forget()
         return [*self._reports(now)]
 
@@ -165,30 +146,23 @@ class Vehicle:
 
     def command(self, now: float, command: Command) -> list[Message]:
         """The messages that carry out a command; raises NotSent if that is impossible."""
-        if (why := self._link.trouble) is not None:
+        if (why := self.link.trouble) is not None:
             raise NotSent(why)
         if isinstance(command, Stop):
-            if command.mode is not StopMode.HALT:  # a halt takes nothing back of a latching stop
-                self._pauses_left = PAUSES if command.mode is StopMode.LATCH else 0
-            return self._stop(now, *STOPS[command.mode])
+            return self._stop(now, *self._stops.types(command.mode))
+        at = self._state.node if self._state is not None else ""
         if isinstance(command, FollowPath):
-            return self._begin(command, self._map.way(self._at, command.nodes))
+            return self._begin(command, self._map.way(at, command.nodes))
         if not isinstance(command, VerbCall):
             raise NotSent(f"VDA 5050 has no word for {type(command).__name__}")
         if command.verb not in self._settings.instant:
-            return self._begin(command, (self._place(command),), verb=command)
-        action = self._new("NONE", command.verb, command.values)
+            if not at:
+                verb = command.verb
+                raise NotSent(f"the vehicle says of no node that it stands there, so it cannot {verb} there")
+            return self._begin(command, (at,), verb=command)
+        action = self._actions.new("NONE", command.verb, command.values)
         self._instants[action.id] = command
-        return [Publish(topic="instantActions", body=instant([action], self._settings.version))]
-
-    @property
-    def _at(self) -> str:
-        return self._state.node if self._state is not None else ""
-
-    def _place(self, call: VerbCall) -> str:
-        if not self._at:
-            raise NotSent(f"the vehicle says of no node that it stands there, so it cannot {call.verb} there")
-        return self._at
+        return self._instantly([action])
 
     def _begin(self, command: Command, nodes: tuple[str, ...], verb: VerbCall | None = None) -> list[Message]:
         state = self._state
@@ -197,14 +171,21 @@ class Vehicle:
         if state is not None and state.ahead:
             other = plain(state.order, 60)
             raise NotSent(f"the vehicle is at the order {other} of somebody else; stop it, then clear")
-        actions = () if verb is None else (self._new("HARD", verb.verb, verb.values),)
+        actions = () if verb is None else (self._actions.new("HARD", verb.verb, verb.values),)
         self._order = Order(
             id=f"{OURS}{self._mark}-{command.id}",
             command=command,
             nodes=nodes,
             released=min(len(nodes), 1 + self._base) if self._base else len(nodes),
             actions=actions,
-            passing={step: self._on_edge({*ends}) for step, ends in enumerate(pairwise(nodes))},
+            passing={
+                step: tuple(
+                    self._actions.new(edge.blocking, edge.action, tuple(edge.values.items()))
+                    for edge in self._settings.edges
+                    if {*edge.between} == {*ends}
+                )
+                for step, ends in enumerate(pairwise(nodes))
+            },
         )
         return [self._sent(self._order)]
 
@@ -216,48 +197,28 @@ class Vehicle:
             min(self._settings.base, limit) if self._settings.base and limit else self._settings.base or limit
         )
 
-    def _on_edge(self, ends: set[str]) -> tuple[Action, ...]:
-        here = (edge for edge in self._settings.edges if {*edge.between} == ends)
-        return tuple(self._new(edge.blocking, edge.action, tuple(edge.values.items())) for edge in here)
-
-    def _new(self, blocking: str, verb: str, values: Facts) -> Action:
-        return action_of(self._new_action(), verb, values, blocking=blocking)
-
     def _sent(self, order: Order, first: int = 0) -> Publish:
         body = order.message(self._map.position, self._settings.map, first, self._most_nodes)
         return Publish(topic="order", body=body)
 
     def _stop(self, now: float, *types: str) -> list[Message]:
         """Send instant actions that must end before the vehicle counts as standing."""
-        messages, self._stops_at = self._request(*types), now
-        for action in (each for message in messages for each in message.body["actions"]):
-            self._stops.pop(OPPOSITE.get(action["actionType"], ""), None)
-            self._stops.setdefault(action["actionType"], []).append(action["actionId"])
+        actions = self._actions.of_types(*types)
+        self._stops.sent(now, actions)
         if self._order is not None and "cancelOrder" in types:
             self._order.cancelled = True
-        return [*messages]
+        return self._instantly(actions)
 
     def _say_stops_again(self, now: float) -> list[Message]:
-        """Send stops again until they have ended: a message may be lost, or a vehicle deaf for a while."""
-        if now - self._stops_at < AGAIN_S or self._link.trouble is not None:
+        if not self._stops.are_due(now) or self.link.trouble is not None:
             return []
-        if self._stops:
-            return self._stop(now, *self._stops)
-        if not self._pauses_left or self._state is None or self._state.paused:
-            self._pauses_left = 0
-            return []
-        self._pauses_left -= 1
-        return self._stop(now, "startPause")
+        types = self._stops.again(self._state)
+        return self._stop(now, *types) if types else []
 
-    def _request(self, *types: str) -> list[Publish]:
+    def _instantly(self, actions: Sequence[Action]) -> list[Message]:
         """A message for each action: some vehicles lose the second action of a message."""
-        actions = [Action(id=self._new_action(), type=type, blocking="NONE") for type in types]
         version = self._settings.version
         return [Publish(topic="instantActions", body=instant([action], version)) for action in actions]
-
-    def _new_action(self) -> str:
-        self._count += 1
-        return f"{self._mark}-a{self._count}"
 
     def unsent(self, command: Command) -> None:
         """Forget a command whose message could not leave."""
@@ -272,20 +233,20 @@ class Vehicle:
         if order is None:
             return []
         if order.cancelled:
-            if not state.driving and "cancelOrder" not in self._stops:
+            if not state.driving and "cancelOrder" not in self._stops.open:
                 self._order = None
             return []
         if state.order != order.id:
             return self._judge_strange(now, order, state)
         if not order.taken:
             order.taken = True
-            self._say(order.command, "accepted")
-        word = self._end_of(order, state)
+            self._answers.say(order.command, "accepted")
+        word = order.failure(state, is_known=self._map.number(state.node) is not None)
         if word is not None:
             return self._fail(now, order, word, state)
-        if self._is_done(order, state):
+        if order.is_done(state):
             found = next((state.actions.get(action.id) for action in order.actions), None)
-            self._end(order.command, found.result if found is not None else None)
+            self._answers.end(order.command, found.result if found is not None else None)
             self._order = None
             return []
         first = order.extend(state.node, state.sequence, self._base)
@@ -295,53 +256,19 @@ class Vehicle:
         """Judge a state that names another order than ours, or none."""
         word = next((each.word for each in state.troubles if order.id in dict(each.about).values()), None)
         if order.taken:
-            self._say(order.command, "failed", "order_lost")
+            self._answers.say(order.command, "failed", "order_lost")
             self._order = None
         elif word is not None:
-            self._say(order.command, "rejected", word)
+            self._answers.say(order.command, "rejected", word)
             self._order = None
         elif state.hindrance is not None:
-            self._say(order.command, "rejected", state.hindrance)
+            self._answers.say(order.command, "rejected", state.hindrance)
             return self._stop(now, "cancelOrder")
         return []
 
-    def _end_of(self, order: Order, state: VehicleState) -> str | None:
-        """The word for the reason why the vehicle will not finish its order; None if it will."""
-        if state.hindrance is not None:
-            return state.hindrance
-        for trouble in state.troubles:
-            refused = state.update < order.update and order.id in dict(trouble.about).values()
-            if trouble.level in ENDS_ORDER or refused:
-                return trouble.word
-        for action in order.all_actions:
-            found = state.actions.get(action.id)
-            if found is not None and found.status == "FAILED":
-                return self._trouble_with(action.id, state) or f"{action.type}_failed"
-        if state.ahead or state.driving or state.update < order.update:
-            return None
-        return self._short(order, state)
-
-    def _short(self, order: Order, state: VehicleState) -> str | None:
-        """The word for the part of its order that a vehicle with nothing ahead has left; None for none."""
-        if order.released < len(order.nodes):
-            return "ended_at_its_base"
-        if state.node == order.nodes[-1]:
-            return None if state.sequence == order.last_sequence else "ended_on_its_way"
-        known = isinstance(order.command, FollowPath) and self._map.number(state.node) is not None
-        return None if known else f"at_node_{state.node}"
-
-    def _is_done(self, order: Order, state: VehicleState) -> bool:
-        """True if the vehicle has ended the order; the plant itself compares place and facts."""
-        return (
-            not state.ahead
-            and not state.driving
-            and state.update >= order.update
-            and all(state.is_over(action.id) for action in order.all_actions)
-        )
-
     def _fail(self, now: float, order: Order, word: str, state: VehicleState) -> list[Message]:
         """Report a failed command, and cancel the rest of its order."""
-        self._say(order.command, "failed", word)
+        self._answers.say(order.command, "failed", word)
         if state.ahead or state.driving:
             return self._stop(now, "cancelOrder")
         self._order = None
@@ -354,45 +281,30 @@ class Vehicle:
         AGAIN_S, not with each state.
         """
         ours = state.order.startswith(OURS) and state.ahead
-        if not ours or self._order is not None or now - self._stops_at < AGAIN_S:
+        if not ours or self._order is not None or not self._stops.are_due(now):
             return []
         return self._stop(now, "cancelOrder")
 
     def _judge_instants(self, state: VehicleState) -> None:
         for action, command in list(self._instants.items()):
             found = state.actions.get(action)
-            trouble = self._trouble_with(action, state)
+            trouble = state.trouble_with(action)
             if found is None and trouble is not None:
-                self._say(command, "rejected", trouble)
+                self._answers.say(command, "rejected", trouble)
             elif found is not None:
-                self._say(command, "accepted")
+                self._answers.say(command, "accepted")
                 if found.status == "FAILED":
-                    self._say(command, "failed", trouble or "action_failed")
+                    self._answers.say(command, "failed", trouble or "action_failed")
                 elif found.status == "FINISHED":
-                    self._end(command, found.result)
+                    self._answers.end(command, found.result)
             if state.is_over(action) or (found is None and trouble is not None):
                 del self._instants[action]
 
-    def _end(self, command: Command, result: str | None) -> None:
-        if isinstance(command, Query):
-            self._say(command, "answered", _answer(command, result))
-        else:
-            self._say(command, "done")
-
-    def _trouble_with(self, action: str, state: VehicleState) -> str | None:
-        return next((each.word for each in state.troubles if action in dict(each.about).values()), None)
-
     # --- reports for the plant ---
-
-    def _say(self, command: Command, what: str, word: Value | None = None) -> None:
-        answers = self._answers[command.robot]
-        answers[what] = command.id
-        if word is not None:
-            answers[WORDS[what]] = plain(word, 100) if isinstance(word, str) else word
 
     def _reports(self, now: float) -> Iterator[Report]:
         self.next_deadline = now + BEAT_S
-        why = self._link.trouble
+        why = self.link.trouble
         for device in self._devices.values():
             if why is not None:
                 yield lost(device.name, at=now, why=why)
@@ -404,12 +316,12 @@ class Vehicle:
         return Report(
             at=now,
             robot=device.name,
-            boot_id=self._link.boots,
+            boot_id=self.link.boots,
             state=self._motion(state),
             node=self._map.number(state.node) if mobile else None,
             homed=state.homed if mobile else None,
             facts=_facts(device, state),
-            **self._answers[device.name],
+            **self._answers.of(device.name),
         )
 
     def _motion(self, state: VehicleState) -> MotionState | None:
@@ -420,33 +332,18 @@ class Vehicle:
             return MotionState.MOVING
         if self._order is not None:
             return MotionState.MOVING if self._order.taken and not self._order.cancelled else None
-        if self._stops:
+        if self._stops.open:
             return None
         if state.ahead:
             return MotionState.MOVING
         return MotionState.STOP_LATCHED if state.paused else MotionState.STOPPED
 
-    # --- its link ---
-
-    def _lose_what_is_silent(self, now: float) -> None:
-        if self._link.falls_silent(now):
-            self._forget()
-
     def _forget(self) -> None:
         """Forget open work; an order that the vehicle still has is cancelled when it is back."""
-        self._state, self._order, self._stops, self._stops_at = None, None, {}, -math.inf
+        self._state, self._order = None, None
+        self._stops.forget()
         self._instants.clear()
-        for answers in self._answers.values():
-            answers.clear()
-
-
-WORDS = {"rejected": "refusal", "failed": "failure", "answered": "answer"}
-
-
-def _answer(command: Query, result: str | None) -> Value:
-    """The answer of the kind that these words mean, else the words."""
-    known = command.definition.answers if isinstance(command, VerbCall) else ()
-    return next((each for each in known if shown(each) == result), result or "")
+        self._answers.forget()
 
 
 def _facts(device: Robot, state: VehicleState) -> Facts:

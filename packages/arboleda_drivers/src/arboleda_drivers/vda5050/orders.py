@@ -6,8 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
 from arboleda.model.facts import Facts
+
+from .state import ENDS_ORDER, VehicleState
 
 Place = Callable[[str], tuple[float, float] | None]
 """The position of a node on the vehicle's map, m; None if unknown."""
@@ -29,6 +32,25 @@ class Action:
             "blockingType": self.blocking,
             "actionParameters": [{"key": key, "value": value} for key, value in self.values],
         }
+
+
+class Actions:
+    """Actions of one start of the plant, whose `mark` sets their ids apart from those of any other."""
+
+    def __init__(self, mark: str) -> None:
+        self._mark, self._count = mark, 0
+
+    def new(self, blocking: str, verb: str, values: Facts) -> Action:
+        """The action of a verb: `startCharging` for `start_charging`, its values as parameters so named."""
+        parameters = tuple((as_the_standard_writes(name), value) for name, value in values)
+        return self._of(as_the_standard_writes(verb), parameters, blocking)
+
+    def of_types(self, *types: str) -> list[Action]:
+        return [self._of(type, (), "NONE") for type in types]
+
+    def _of(self, type: str, values: tuple[tuple[str, Any], ...], blocking: str) -> Action:
+        self._count += 1
+        return Action(id=f"{self._mark}-a{self._count}", type=type, values=values, blocking=blocking)
 
 
 @dataclass(kw_only=True)
@@ -66,6 +88,42 @@ class Order:
             return None
         first, self.released, self.update = self.released - 1, released, self.update + 1
         return first
+
+    def failure(self, state: VehicleState, *, is_known: bool) -> str | None:
+        """The word for the reason why the vehicle will not finish it; None if it will.
+
+        `is_known`: the plant knows the node where the vehicle is.
+        """
+        if state.hindrance is not None:
+            return state.hindrance
+        for trouble in state.troubles:
+            refused = state.update < self.update and self.id in dict(trouble.about).values()
+            if trouble.level in ENDS_ORDER or refused:
+                return trouble.word
+        for action in self.all_actions:
+            found = state.actions.get(action.id)
+            if found is not None and found.status == "FAILED":
+                return state.trouble_with(action.id) or f"{action.type}_failed"
+        if state.ahead or state.driving or state.update < self.update:
+            return None
+        return self._missing(state, is_known=is_known)
+
+    def _missing(self, state: VehicleState, *, is_known: bool) -> str | None:
+        """The word for the part of it that a vehicle with nothing ahead has not done; None for none."""
+        if self.released < len(self.nodes):
+            return "ended_at_its_base"
+        if state.node == self.nodes[-1]:
+            return None if state.sequence == self.last_sequence else "ended_on_its_way"
+        return None if isinstance(self.command, FollowPath) and is_known else f"at_node_{state.node}"
+
+    def is_done(self, state: VehicleState) -> bool:
+        """True if the vehicle has ended it; the plant itself compares place and facts."""
+        return (
+            not state.ahead
+            and not state.driving
+            and state.update >= self.update
+            and all(state.is_over(action.id) for action in self.all_actions)
+        )
 
     def message(
         self, place: Place, map: str, first: int = 0, most_nodes: int | None = None
@@ -107,12 +165,6 @@ class Order:
 def edge_id(start: str, end: str) -> str:
     """The name of an edge, by its nodes."""
     return f"{start}_{end}"
-
-
-def action_of(id: str, verb: str, values: Facts, *, blocking: str) -> Action:
-    """The action of a verb: `startCharging` for `start_charging`, its values as parameters so named."""
-    parameters = tuple((as_the_standard_writes(name), value) for name, value in values)
-    return Action(id=id, type=as_the_standard_writes(verb), values=parameters, blocking=blocking)
 
 
 def as_the_standard_writes(name: str) -> str:

@@ -68,6 +68,10 @@ class VehicleState:
             return f"mode_{self.mode}"
         return next((each.word for each in self.troubles if each.level in BROKEN), None)
 
+    def trouble_with(self, id: str) -> str | None:
+        """The word for an error that names this order or action; None for none."""
+        return next((each.word for each in self.troubles if id in dict(each.about).values()), None)
+
     def is_over(self, action: str) -> bool:
         found = self.actions.get(action)
         return found is not None and found.status in OVER

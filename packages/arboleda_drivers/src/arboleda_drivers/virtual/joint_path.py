@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 Joints = tuple[float, ...]
@@ -32,6 +33,11 @@ class Path:
             return self.goal
         part = self._travelled(max(0.0, min(now, self.ends_at) - self.began_at)) / self.length
         return tuple(a + (b - a) * part for a, b in zip(self.start, self.goal, strict=True))
+
+    def part(self, now: float) -> float:
+        """The part of its time that has passed."""
+        whole_s = self.ends_at - self.began_at
+        return 1.0 if whole_s <= 0 else (now - self.began_at) / whole_s
 
     def braked(self, now: float) -> Path:
         """The path after a stop that is given now."""
@@ -75,3 +81,35 @@ def between(
         speed=min(speed, fastest),
         acceleration=acceleration,
     )
+
+
+class Drive:
+    """Drive of a virtual arm: its joints, and the path that they are on; the fault `stall` is its own."""
+
+    def __init__(self, joints: Joints, faults: Collection[str]) -> None:
+        self.joints = joints
+        self.path: Path | None = None
+        self._faults = faults
+
+    @property
+    def next_deadline(self) -> float:
+        return self.path.ends_at if self.path is not None else math.inf
+
+    def is_half_way(self, now: float) -> bool:
+        """True on the second half of a path that is not braked."""
+        path = self.path
+        return path is not None and path.braked_s == math.inf and path.part(now) >= 0.5
+
+    def travel(self, now: float) -> bool:
+        """Go on; True where the path has ended."""
+        path = self.path
+        if path is None or ("stall" in self._faults and path.part(now) >= 0.5):
+            return False
+        self.joints = path.at(now)
+        if path.ends_at <= now:
+            self.path = None
+        return self.path is None
+
+    def brake(self, now: float) -> None:
+        if self.path is not None:
+            self.path = self.path.braked(now)

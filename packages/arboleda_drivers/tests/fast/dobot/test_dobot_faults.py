@@ -8,6 +8,7 @@ from tests.lengths import sample
 from arboleda.kinds.joints.motion import JointMotion
 from arboleda_driver_faults.dobot import CAUSES, DobotRig
 from arboleda_driver_faults.rig import TASKS, run
+from arboleda_drivers.connections.look import Look
 from arboleda_drivers.dobot import work
 from arboleda_drivers.dobot.frames import Feedback, Mode
 from arboleda_drivers.dobot.virtual.faults import FAULTS
@@ -39,8 +40,8 @@ def test_an_arm_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.Mon
 
 
 def test_an_end_without_its_number_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    def idle(self: work.Move, now: float, feedback: Feedback) -> work.Look:
-        return work.Look(done=self.number is not None and feedback.mode is Mode.IDLE)
+    def idle(self: work.Move, now: float, feedback: Feedback) -> Look:
+        return Look(done=self.number is not None and feedback.mode is Mode.IDLE)
 
     monkeypatch.setattr(work.Move, "look", idle)
     assert any("wrong cause" in each for each in breaches(0, "late_start"))

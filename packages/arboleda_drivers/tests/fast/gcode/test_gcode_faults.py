@@ -24,9 +24,10 @@ from arboleda_driver_faults.gcode import (
     MoonrakerRig,
 )
 from arboleda_driver_faults.rig import TASKS, Rig, run
-from arboleda_drivers.gcode import grbl, marlin, moonraker, moonraker_work
+from arboleda_drivers.gcode import marlin, moonraker_work
 from arboleda_drivers.gcode.grbl_book import Book
 from arboleda_drivers.gcode.grbl_lines import Status
+from arboleda_drivers.gcode.grbl_work import GrblLook, LastAlarm, Move
 from arboleda_drivers.gcode.virtual.faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
 
 EXAMPLES = ROOT / "examples/gantry"
@@ -79,31 +80,29 @@ def test_a_place_that_is_believed_after_a_boot_would_be_found(monkeypatch: pytes
 
 
 def test_an_ok_that_is_an_end_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    def done(self: grbl.GrblMachine, now: float, move: grbl.Move, status: Status) -> None:
-        if now > move.taken_at:
-            self._work = None
-            self._tell(done=move.id)
+    def look(self: Move, now: float, status: Status, alarm: LastAlarm) -> GrblLook:
+        return GrblLook(done=now > self.taken_at)
 
-    monkeypatch.setattr(grbl.GrblMachine, "_go_on", done)
+    monkeypatch.setattr(Move, "look", look)
     assert any("wrong cause" in each for each in breaches(3, "late_start", tasks=2))
 
 
 def test_a_switch_at_an_end_that_is_not_heard_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(marlin.MarlinMachine, "_take_trouble", lambda self, now, word: None)
+    monkeypatch.setattr(marlin.Marlin, "_take_trouble", lambda self, now, word: None)
     assert any(
         "false success" in each for seed in range(3) for each in breaches(seed, "endstop_hit", rig=MARLIN)
     )
 
 
 def test_pieces_that_are_sent_twice_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    send = moonraker.MoonrakerMachine._script
+    send = moonraker_work.Requests.script
 
-    def twice(self: moonraker.MoonrakerMachine, ask: moonraker_work.Ask, *lines: str) -> None:
+    def twice(self: moonraker_work.Requests, ask: moonraker_work.Ask, *lines: str) -> None:
         send(self, ask, *lines)
         if ask is moonraker_work.Ask.PIECE:
             send(self, ask, *lines)
 
-    monkeypatch.setattr(moonraker.MoonrakerMachine, "_script", twice)
+    monkeypatch.setattr(moonraker_work.Requests, "script", twice)
     assert any("moves were said" in each for each in breaches(3, "noise", tasks=2, rig=MOONRAKER))
 
 

@@ -9,9 +9,8 @@ import pytest
 from arboleda.drivers.port import DriverError
 from arboleda.model.commands import StopMode
 from arboleda.model.messages import MotionState
-from arboleda_drivers.gcode.moonraker import AHEAD_S, STOP_S
 from arboleda_drivers.gcode.moonraker_lines import parsed
-from arboleda_drivers.gcode.moonraker_work import PIECE_S, Move
+from arboleda_drivers.gcode.moonraker_work import AHEAD_S, PIECE_S, STOP_S, Move
 from arboleda_drivers.gcode.settings import Settings
 
 from .gcode_rig import MoonrakerRig

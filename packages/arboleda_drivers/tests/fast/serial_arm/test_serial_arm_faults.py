@@ -12,6 +12,7 @@ from arboleda.kinds.joints.motion import JointMotion
 from arboleda.plant_file.loader import load
 from arboleda_driver_faults.rig import TASKS, run
 from arboleda_driver_faults.serial_arm import CAUSES, ServoRig
+from arboleda_drivers.connections.look import Look
 from arboleda_drivers.serial_arm import work
 from arboleda_drivers.serial_arm.position_watch import PositionWatch
 from arboleda_drivers.serial_arm.virtual.faults import FAULTS
@@ -48,8 +49,8 @@ def test_an_arm_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.Mon
 
 
 def test_a_move_that_is_done_at_once_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    def done(self: work.Move, now: float, picture: work.Picture) -> work.Look:
-        return work.Look(accepted=True, done=True)
+    def done(self: work.Move, now: float, picture: work.Picture) -> Look:
+        return Look(accepted=True, done=True)
 
     monkeypatch.setattr(work.Move, "look", done)
     assert breaches(1, "part", tasks=FEW) != []

@@ -8,6 +8,7 @@ from tests.lengths import sample
 from arboleda.kinds.joints.motion import JointMotion
 from arboleda_driver_faults.rig import TASKS, run
 from arboleda_driver_faults.ur import CAUSES, UrRig
+from arboleda_drivers.connections.look import Look
 from arboleda_drivers.ur import work
 from arboleda_drivers.ur.arm_state import Runtime
 from arboleda_drivers.ur.rtde import Frame
@@ -41,8 +42,8 @@ def test_an_arm_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.Mon
 
 
 def test_an_end_without_its_number_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    def stopped(self: work.Move, now: float, frame: Frame) -> work.Look:
-        return work.Look(accepted=True, done=frame.runtime == Runtime.STOPPED)
+    def stopped(self: work.Move, now: float, frame: Frame) -> Look:
+        return Look(accepted=True, done=frame.runtime == Runtime.STOPPED)
 
     monkeypatch.setattr(work.Move, "look", stopped)
     assert any("wrong cause" in each for each in breaches(0, "late_start"))

@@ -9,8 +9,8 @@ import pytest
 from arboleda.drivers import Home, MotionState, Report, SetEffector, Stop, StopMode
 from arboleda.model.facts import HEALTH
 from arboleda_drivers.connections.link import CommandRequest, Open, Opened
-from arboleda_drivers.ur.machine import RTDE, Machine
-from arboleda_drivers.ur.port_data import Send
+from arboleda_drivers.ur.machine import Machine
+from arboleda_drivers.ur.port_data import RTDE, Send
 from arboleda_drivers.ur.settings import SLIDER, Settings
 
 from .ur_rig import ARM, GO, GOAL, Loopback
@@ -324,7 +324,7 @@ def test_the_controller_ends_our_program_where_no_heartbeat_comes() -> None:
     for _ in range(30):  # the driver's process is gone
         joined.now += 0.1
         joined.ur.step(joined.now, [])
-    assert 0 < joined.ur.joints[0] < GOAL[0] * 0.8
+    assert 0 < joined.ur.run.drive.joints[0] < GOAL[0] * 0.8
 
 
 def test_who_only_listens_writes_nothing_to_the_controller() -> None:

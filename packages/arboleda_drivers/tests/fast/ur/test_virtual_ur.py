@@ -7,7 +7,8 @@ import struct
 
 import pytest
 
-from arboleda_drivers.ur.machine import DASHBOARD, GREETING, PRIMARY, RTDE
+from arboleda_drivers.ur.dashboard import GREETING
+from arboleda_drivers.ur.port_data import DASHBOARD, PRIMARY, RTDE
 from arboleda_drivers.ur.primary import PackageReader
 from arboleda_drivers.ur.rtde import Packet, PacketReader, packed
 from arboleda_drivers.ur.virtual.faults import FAULTS, SEVERING

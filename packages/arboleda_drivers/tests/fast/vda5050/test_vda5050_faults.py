@@ -12,7 +12,7 @@ from arboleda.kinds.mobile.motion import GridMotion
 from arboleda.plant_file.loader import load
 from arboleda_driver_faults.rig import TASKS, run
 from arboleda_driver_faults.vda5050 import CAUSES, AgvRig
-from arboleda_drivers.vda5050 import machine
+from arboleda_drivers.vda5050 import stops
 from arboleda_drivers.vda5050.virtual.faults import FAULTS
 
 EXAMPLE = load(ROOT / "examples/agv/plant.yaml")
@@ -43,7 +43,7 @@ def test_a_cancel_that_is_never_begun_is_said_again_until_it_is() -> None:
 
 
 def test_a_cancel_that_is_said_once_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(machine, "AGAIN_S", math.inf)
+    monkeypatch.setattr(stops, "AGAIN_S", math.inf)
     assert any("hang" in each for each in breaches(DEAF_AND_REFUSED))
 
 

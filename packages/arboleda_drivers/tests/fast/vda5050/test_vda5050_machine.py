@@ -8,9 +8,9 @@ import pytest
 
 from arboleda.drivers import MotionState, NotSent, Report, Stop, StopMode
 from arboleda.kinds.mobile import FollowPath
-from arboleda_drivers.vda5050.machine import AGAIN_S
 from arboleda_drivers.vda5050.messages import Headers
 from arboleda_drivers.vda5050.settings import EdgeAction, Settings
+from arboleda_drivers.vda5050.stops import AGAIN_S
 from arboleda_drivers.vda5050.virtual.faults import FAULTS
 from arboleda_drivers.vda5050.virtual.machine import VirtualAgv
 from arboleda_drivers.vda5050.virtual.words import state_of
@@ -271,7 +271,7 @@ def test_what_is_left_of_an_order_is_cancelled_when_the_vehicle_is_back(rig: Rig
 def test_no_vehicle_of_that_name_is_told_with_those_that_there_are() -> None:
     rig = Rig()
     rig.faults.switch("vanish", on=True)
-    rig.vehicle.neighbour("arboleda/agv2 (v2)")
+    rig.vehicle.link.neighbour("arboleda/agv2 (v2)")
     rig.run(1)
     assert "no vehicle arboleda/agv1 has said" in str(rig.reports["cart"].lost)
     assert "those that have: arboleda/agv2 (v2)" in str(rig.reports["cart"].lost)
@@ -392,7 +392,7 @@ def test_states_that_never_become_newer_are_named_where_the_vehicle_counts_as_si
 def test_a_state_that_is_refused_is_named_while_there_is_no_other() -> None:
     rig = Rig()
     rig.vehicle.connection(0.0, {"connectionState": "ONLINE"})
-    rig.vehicle.refused("lastNodeSequenceId must be integer; it is 'two'")
+    rig.vehicle.link.refuse("lastNodeSequenceId must be integer; it is 'two'")
     (report, *_) = (
         each
         for each in rig.vehicle.connection(0.0, {"connectionState": "ONLINE"})

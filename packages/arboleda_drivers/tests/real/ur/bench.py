@@ -17,7 +17,7 @@ from arboleda.plant_file.loader import load
 from arboleda.runtime.build import App, Options, build
 from arboleda_drivers.ur import primary, rtde
 from arboleda_drivers.ur.arm_state import Mode, Runtime
-from arboleda_drivers.ur.machine import GREETING
+from arboleda_drivers.ur.dashboard import GREETING
 from arboleda_drivers.ur.rtde import Frame, Packet, PacketReader, packed, packed_frame
 
 from ..contract.bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref

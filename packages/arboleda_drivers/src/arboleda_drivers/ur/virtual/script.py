@@ -43,6 +43,10 @@ class Program:
     calls: tuple[Call, ...]
     is_secondary: bool = False
 
+    @property
+    def moves(self) -> bool:
+        return any(call.function == "movej" for call in self.calls)
+
 
 class ScriptError(ValueError):
     """Error in a program: the line, and what is wrong there."""

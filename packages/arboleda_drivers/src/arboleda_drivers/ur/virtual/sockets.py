@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from arboleda_drivers.ur.machine import DASHBOARD, PRIMARY, RTDE
+from arboleda_drivers.ur.port_data import DASHBOARD, PRIMARY, RTDE
 from arboleda_drivers.virtual.tcp_server import TcpServer
 
 from .machine import ClientData, Disconnect, Drop, Event, Joined, Message, VirtualUr

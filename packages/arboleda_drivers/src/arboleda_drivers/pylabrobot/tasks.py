@@ -1,0 +1,65 @@
+"""Calls of a machine that are under way, or that have ended and were not told yet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from arboleda.kinds.declared import VerbCall
+from arboleda.model.commands import Command, OnStop, Stop, Work
+
+from .messages import Raised, Returned
+
+
+@dataclass(kw_only=True)
+class Task:
+    """Calls under way; `command` None: nobody waits for their end any more. `over`: they have ended so."""
+
+    number: int
+    began_at: float
+    until: float
+    command: VerbCall | Stop | None
+    is_work: bool = False
+    over: Returned | Raised | None = None
+    first_look: int = 0  # the first look that began after the end
+
+    @property
+    def finishes(self) -> bool:
+        """True for a work that goes on to its own end when it is stopped."""
+        works = self.is_work and self.over is None
+        return works and isinstance(self.command, Work) and self.command.on_stop is OnStop.FINISH
+
+
+class Tasks(dict[int, Task]):
+    """Tasks of one machine, by number; `side_by_side`: its backend takes questions beside a work."""
+
+    def __init__(self, *, side_by_side: bool) -> None:
+        super().__init__()
+        self._side_by_side = side_by_side
+
+    @property
+    def are_disturbed(self) -> bool:
+        """True where a question might disturb what is under way."""
+        return not self._side_by_side and any(task.over is None for task in self.values())
+
+    @property
+    def stops(self) -> bool:
+        return any(isinstance(task.command, Stop) for task in self.values())
+
+    @property
+    def works(self) -> bool:
+        return any(task.is_work for task in self.values())
+
+    def takes(self, command: Command) -> bool:
+        """True where a call may begin now: one at a time, or one work beside questions."""
+        if self._side_by_side:
+            return not isinstance(command, Work) or not (self.works or self.stops)
+        return not self
+
+    def late(self, now: float) -> Task | None:
+        """A task that should have ended by now."""
+        return next((task for task in self.values() if task.over is None and task.until <= now), None)
+
+    def disown(self) -> None:
+        """Nobody waits for any end any more."""
+        for task in self.values():
+            task.command = None
