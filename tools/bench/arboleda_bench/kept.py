@@ -117,7 +117,7 @@ def _acceptance(scene: Scene, tasks: int) -> list[Figure]:
     with Store(scene.folder / "ours.sqlite") as store, Store(scene.folder / "store.sqlite") as only:
         plant = Orchestrator(model, 1, _raise, store)
         plant.connect(Deaf())
-        plant.durability.start()
+        plant.keeping.durability.start()
         plant.loop.start()
         times: list[list[float]] = [[], [], [], []]
         for number in range(tasks):
@@ -134,7 +134,7 @@ def _acceptance(scene: Scene, tasks: int) -> list[Figure]:
                 known.append(_seconds(deed))
                 time.sleep(PAUSE_S)
         plant.loop.stop()
-        plant.durability.stop()
+        plant.keeping.durability.stop()
     floor.end()
     alone.close()
     asked, bare_asked, commits, bare_commits = times

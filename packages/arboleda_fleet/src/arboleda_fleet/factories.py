@@ -82,7 +82,7 @@ def opcua_view(assembly: Assembly) -> Iterator[Part]:
     assembly.offer(OpcUaView, part)
     assembly.notes.append(lambda: part.notes)
     plant.listeners.append(part.changed)
-    plant.watchers.append(part.saw)
+    plant.screens.watchers.append(part.saw)
     yield part
 
 

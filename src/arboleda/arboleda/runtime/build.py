@@ -193,7 +193,7 @@ class App:
 
     def watch(self, watcher: Callable[[dict[str, Any]], None]) -> None:
         """Call back with snapshots if more than a position changed; in the plant's thread, before `start`."""
-        self.plant.watchers.append(watcher)
+        self.plant.screens.watchers.append(watcher)
 
     def links(self) -> dict[str, Any]:
         """Broker, ROS 2, refused messages, standbys, the memory's pace, as `PageApi` has them; from any

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from concurrent.futures import Future
 from itertools import count
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -27,6 +28,7 @@ class Plant:
         self.states = states
         self.said: list[tuple[Verb, str]] = []
         self.looks = 0
+        self.screens = SimpleNamespace(snapshot=self._snapshot)
 
     def operate(self, verb: Verb, scope: str = "") -> Future[OperatorAnswer]:
         self.said.append((verb, scope))
@@ -39,7 +41,7 @@ class Plant:
         answer.set_result(OperatorAnswer(request="", verb=verb, scope=scope, refusal=refusal))
         return answer
 
-    def snapshot(self) -> dict[str, Any]:
+    def _snapshot(self) -> dict[str, Any]:
         self.looks += 1
         if self.looks > 3:
             self.states = {

@@ -18,10 +18,11 @@ from ..parts.alarms import alarms_part
 from ..parts.bridge import BridgePart
 from ..parts.drivers import DriversPart
 from ..parts.local_plant import LocalPlant
-from ..parts.orchestrator import FlightRecorder, Orchestrator
+from ..parts.orchestrator import Orchestrator
 from ..parts.part import Broker, PageAddress, Part
 from ..parts.periodic import Periodic
 from ..parts.router import PlantPort, Router
+from ..parts.screens import FlightRecorder
 from ..registry import Assembly
 
 LOG = logging.getLogger(__name__)
@@ -44,7 +45,7 @@ def plant(assembly: Assembly) -> Iterable[Part]:
             drops_waiting=not assembly.options.keeps_waiting,
             leave_out_raiser=assembly.leave_out_raiser,
         )
-        made.diagnoses.append(held.pace.diagnosis)
+        made.screens.diagnoses.append(held.pace.diagnosis)
         assembly.offer(Orchestrator, made)
         assembly.offer(LocalPlant, LocalPlant(made, held.history, assembly))
         assembly.links.add(lambda: {"memory": asdict(held.pace.pace)})
@@ -127,7 +128,7 @@ def _record(assembly: Assembly, made: Orchestrator) -> None:
     logs = [RosLog(assembly.model)]
     folder = assembly.holdings.state.path / FOLDER
     recorder = Recorder(Writing(folder, beginning, wanted.limits, logs, view=view))
-    made.recorder = recorder
+    made.screens.recorder = recorder
     assembly.offer(RecordPart, recorder)
 
 
