@@ -129,13 +129,12 @@ def test_whoever_asks_a_plant_that_is_free_hears_that_the_stop_is_kept(plant, ro
 def states(plant: Orchestrator, task: str) -> tuple[str | None, list[str]]:
     """A task as a client finds it, and as it is in a snapshot."""
     found = plant.screens.find(task)
-    return found and found["state"], [
-        row["state"] for row in plant.screens.snapshot()["tasks"] if row["id"] == task
-    ]
+    rows = plant.screens.snapshot()["tasks"]
+    return found and found["state"], [row["state"] for row in rows if row["id"] == task]
 
 
-@pytest.mark.parametrize("method", ["task", "keep"])
-def test_nobody_is_told_what_is_not_kept_yet(plant, gate, robots, store, monkeypatch, method) -> None:
+@pytest.mark.parametrize("kept", ["task", "fact"])
+def test_nobody_is_told_what_is_not_kept_yet(plant, gate, robots, store, monkeypatch, kept) -> None:
     views: list[dict[str, Any]] = []
     shown = threading.Condition()
 
@@ -149,9 +148,9 @@ def test_nobody_is_told_what_is_not_kept_yet(plant, gate, robots, store, monkeyp
     assert plant.submit("sis_a 0B 1 #a").result(SOON_S).state is TaskState.QUEUED
     with shown:
         assert shown.wait_for(lambda: views and views[-1]["tasks"], SOON_S)
-    hang_before(gate, store, method, monkeypatch)
+    hang_before(gate, store.tasks if kept == "task" else store, "keep", monkeypatch)
     gate.shut = True
-    plant.operate(Verb.CANCEL, "a") if method == "task" else plant.operate(Verb.STOP, "sis_b")
+    plant.operate(Verb.CANCEL, "a") if kept == "task" else plant.operate(Verb.STOP, "sis_b")
     assert gate.reached.wait(SOON_S)
     assert states(plant, "a") == ("queued", ["queued"])
     assert all(robot["latched"] is False for robot in plant.screens.snapshot()["robots"])
@@ -176,8 +175,8 @@ def test_once_something_cannot_be_kept_screens_see_what_was_kept_last(
     plant.start()
     plant.submit("sis_a 0B 1 #a").result(SOON_S)
     assert plant.screens.snapshot()["tasks"]
-    for name in ("task", "keep", "journal"):
-        monkeypatch.setattr(store, name, fail)
+    for table in (store, store.tasks, store.acts):
+        monkeypatch.setattr(table, "keep", fail)
     plant.observers.append(lambda each: seen_by_observers.append(each.intake.tasks["a"].state.value))
     with pytest.raises(ArboledaError, match="The disk is full"):
         plant.operate(Verb.CANCEL, "a").result(SOON_S)
@@ -191,4 +190,4 @@ def test_once_something_cannot_be_kept_screens_see_what_was_kept_last(
     assert [each.state for each in changes] == [TaskState.QUEUED]
     assert views[-1]["ending"] and published[-1]["ending"]
     assert seen_by_observers == []
-    assert [row.state for row in store.tasks(TaskQuery())] == ["queued"]
+    assert [row.state for row in store.tasks.select(TaskQuery())] == ["queued"]

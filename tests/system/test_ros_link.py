@@ -486,7 +486,7 @@ def test_a_service_stops_robots_while_the_plant_waits_for_its_disk(links, tmp_pa
         for publisher in port._labelled.values():
             eventually(publisher.get_subscription_count)
         hang = lambda *_: (reached.set(), let_go.wait(PATIENCE_S))  # noqa: E731
-        monkeypatch.setattr(store, "task", hang)
+        monkeypatch.setattr(store.tasks, "keep", hang)
         plant.start()
         try:
             plant.submit("sis_a 0B 1")

@@ -99,7 +99,7 @@ def hang_before(gate: Gate, owner: Any, name: str, monkeypatch: pytest.MonkeyPat
 
 
 def commit_of_a_task(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
-    hang_before(gate, plant.keeping.store, "task", monkeypatch)
+    hang_before(gate, plant.keeping.store.tasks, "keep", monkeypatch)
 
 
 def log(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:

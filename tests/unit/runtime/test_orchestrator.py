@@ -41,7 +41,7 @@ from arboleda.runtime.parts.bridge import BridgePart
 from arboleda.runtime.parts.broker import OtherBroker
 from arboleda.runtime.parts.orchestrator import Orchestrator
 from arboleda.runtime.parts.slices import PAUSE_S, SLICE_S
-from arboleda.store.plant_memory import Superseded
+from arboleda.store.lead import Superseded
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskQuery, answers_of
 from arboleda.wire import status
@@ -111,8 +111,8 @@ def break_disk(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
         raise ArboledaError("The disk is full.")
 
     monkeypatch.setattr(store, "keep", fail)
-    monkeypatch.setattr(store, "journal", fail)
-    monkeypatch.setattr(store, "task", fail)
+    monkeypatch.setattr(store.acts, "keep", fail)
+    monkeypatch.setattr(store.tasks, "keep", fail)
 
 
 def test_a_fact_is_kept_before_the_next_message_leaves(plant):
@@ -143,7 +143,7 @@ def test_a_plant_is_told_what_the_one_before_it_kept(plant, store):
 def test_an_operators_act_is_journalled_with_the_time_of_day(plant, store, monkeypatch):
     monkeypatch.setattr(orchestrator.time, "time", lambda: 1_700_000_000.5)
     turn(plant, ACT)
-    [entry] = store.entries()
+    [entry] = store.acts.last()
     assert (entry.unix_s, entry.verb, entry.sentence) == (1_700_000_000.5, "stop", "everything stopped")
 
 
@@ -575,7 +575,7 @@ def test_an_absence_is_one_line_in_the_log(plant, caplog):
 def test_a_task_is_kept_before_whoever_asked_hears_that_it_is_queued(plant, store):
     kept = []
     answer = plant.submit("sis_a 0B 1")
-    answer.add_done_callback(lambda _: kept.extend(row.id for row in store.tasks(TaskQuery())))
+    answer.add_done_callback(lambda _: kept.extend(row.id for row in store.tasks.select(TaskQuery())))
     plant.plant.says = lambda events: [replace(TASK, request=events[0].request)]
     plant.loop.turn()
     assert kept == ["a"]
@@ -588,7 +588,7 @@ def test_it_is_kept_by_which_way_a_task_came(plant, store):
         plant.plant.says = lambda events, id=id: [replace(TASK, task=id, request=events[0].request)]
         plant.loop.turn()
     turn(plant, replace(TASK, task="c"))  # of a topic, where nobody waits for an answer
-    kept = {row.id: row.asked_by for row in store.tasks(TaskQuery())}
+    kept = {row.id: row.asked_by for row in store.tasks.select(TaskQuery())}
     assert kept == {"a": "page", "b": "command", "c": "ros2"}
 
 
@@ -599,7 +599,7 @@ def test_a_retry_is_an_attempt_that_is_kept(plant, store, cell):
     task.attempts = 2
     plant.plant.cells["sis_a"].task = task
     turn(plant, replace(ACT, verb=Verb.RETRY, cell=cell))
-    assert [row.attempts for row in store.tasks(TaskQuery())] == [2]
+    assert [row.attempts for row in store.tasks.select(TaskQuery())] == [2]
 
 
 def test_the_end_of_a_task_is_kept_with_what_was_answered(plant, store):
@@ -608,7 +608,7 @@ def test_the_end_of_a_task_is_kept_with_what_was_answered(plant, store):
     task.answers = [TaskAnswer(by="eye", asked="look", answer="good")]
     plant.plant.intake.tasks["a"] = task
     turn(plant, replace(TASK, state=TaskState.DONE))
-    (row,) = store.tasks(TaskQuery())
+    (row,) = store.tasks.select(TaskQuery())
     assert answers_of(row) == (TaskAnswer(by="eye", asked="look", answer="good"),)
 
 
@@ -629,7 +629,7 @@ def test_a_plant_that_another_process_leads_sends_nothing_not_even_a_stop(
         raise Superseded("Another process leads.")
 
     monkeypatch.setattr(store, "confirm", superseded)
-    monkeypatch.setattr(type(store), "leads_for_certain", False)
+    monkeypatch.setattr(type(store.lead), "is_certain", False)
     turn(plant, message, message)
     turn(plant, Heartbeat(epoch=7), Stop(id="", robot="ra1", mode=StopMode.HALT))
     assert plant.robots.messages == []
@@ -646,7 +646,7 @@ def test_a_plant_that_cannot_find_out_whether_it_leads_stops_robots_and_nothing_
         raise ArboledaError("The server is away.")
 
     monkeypatch.setattr(store, "confirm", away)
-    monkeypatch.setattr(type(store), "leads_for_certain", False)
+    monkeypatch.setattr(type(store.lead), "is_certain", False)
     stop = Stop(id="", robot="ra1", mode=StopMode.HALT)
     turn(plant, ON, stop, Heartbeat(epoch=7))
     assert plant.robots.messages == [stop, Heartbeat(epoch=7)]
@@ -680,7 +680,7 @@ def test_a_leader_before_that_is_still_on_ros_keeps_no_other_from_leading(
 ):
     topics, started = Topics(store, watched=False, diagnosed=False), []
     monkeypatch.setattr(topics, "check_alone", lambda: refuse("another node already commands"), raising=False)
-    monkeypatch.setattr(store, "renew_s", renew_s, raising=False)
+    monkeypatch.setattr(store.lead, "renew_s", renew_s, raising=False)
     monkeypatch.setattr(plant.loop, "start", lambda: started.append(plant))
     monkeypatch.setattr(plant.stops.loop, "start", lambda: None)
     monkeypatch.setattr(plant.keeping.durability, "start", lambda: None)

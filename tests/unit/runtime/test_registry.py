@@ -217,7 +217,7 @@ def test_a_shared_memory_is_refused_where_nothing_keeps_the_lead(
 
     def leased(*about: Any) -> Any:
         memory = memory_of(*about)
-        memory.renew_s = 1.0
+        memory.lead.renew_s = 1.0
         return memory
 
     monkeypatch.setattr(holdings, "memory_of", leased)

@@ -24,7 +24,7 @@ from arboleda.model.messages import (
 )
 from arboleda.runtime.parts import orchestrator
 from arboleda.runtime.parts.orchestrator import Orchestrator
-from arboleda.store.plant_memory import Superseded
+from arboleda.store.lead import Superseded
 from arboleda.store.sqlite import Store
 
 from .hanging import Robots, commit_of_a_task, fail, hang_before, log, made
@@ -189,7 +189,7 @@ def test_what_is_made_after_a_stop_is_not_overtaken_by_it(scripted, robots) -> N
 
 
 def test_a_plant_whose_lease_is_over_asks_before_it_stops(scripted, robots, store, monkeypatch) -> None:
-    monkeypatch.setattr(type(store), "leads_for_certain", False)
+    monkeypatch.setattr(type(store.lead), "is_certain", False)
     monkeypatch.setattr(scripted.loop, "busy", True)
     scripted.operate(Verb.STOP)
     scripted.stops.loop.turn()

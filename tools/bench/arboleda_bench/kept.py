@@ -127,7 +127,7 @@ def _acceptance(scene: Scene, tasks: int) -> list[Figure]:
             deeds: Sequence[Callable[[], object]] = (
                 partial(_result, plant.submit, f"{text} #{row[0]}"),
                 partial(_result, floor.ask, row),
-                partial(only.task, queued, "storage", 1.0),
+                partial(only.tasks.keep, queued, "storage", 1.0),
                 partial(alone.execute, INSERT, row),
             )
             for deed, known in zip(deeds, times, strict=True):
@@ -153,7 +153,7 @@ def _pruning(scene: Scene, tasks: int) -> list[Figure]:
     pruned, commits = [], []
     with Store(file) as store:
         for _ in range(tasks):
-            pruned.append(_seconds(partial(store.forget_tasks, time.time())))
+            pruned.append(_seconds(partial(store.tasks.forget, time.time())))
             commits.append(_seconds(partial(alone.execute, INSERT, row)))
             time.sleep(PAUSE_S)
     alone.close()

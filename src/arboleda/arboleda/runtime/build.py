@@ -17,7 +17,7 @@ from arboleda.engine import Plant
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import TaskChanged
 from arboleda.model.plant_model import PlantModel
-from arboleda.store.plant_memory import Superseded
+from arboleda.store.lead import Superseded
 from arboleda.web.offers import Offers
 
 from . import at_work

@@ -32,11 +32,11 @@ class Holdings:
         """Take both; StartError where another process has them, or they cannot be used."""
         self.state.open()
         self.memory.open()
-        self.past_acts = past_acts.of(self.memory)
+        self.past_acts = past_acts.of(self.memory.acts)
 
     def lead(self, now: int) -> int:
         """The number of this start, higher than that of any start before, on any host."""
-        return self.memory.lead(self.state.next_epoch(now))
+        return self.memory.lead.take(self.state.next_epoch(now))
 
     def close(self) -> None:
         """Give back everything that only one process may have; idempotent."""

@@ -7,14 +7,14 @@ from typing import Any
 
 from arboleda.engine import ACTS_TOLD
 from arboleda.model.sentence import OWN, Sentence, from_data, retold
-from arboleda.store.plant_memory import JournalEntry, PlantMemory
+from arboleda.store.act_table import ActTable, JournalEntry
 
 
-def of(store: PlantMemory) -> list[dict[str, Any]]:
+def of(acts: ActTable) -> list[dict[str, Any]]:
     """The acts of operators before this start, oldest first."""
     return [
         {"at": each.unix_s, "scope": each.scope, "cell": each.cell, "sentence": _sentence_of(each)}
-        for each in reversed(store.entries())
+        for each in reversed(acts.last())
     ]
 
 

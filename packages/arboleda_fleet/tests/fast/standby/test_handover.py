@@ -14,7 +14,8 @@ from arboleda.adapters import clock
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import OWN
-from arboleda.store.plant_memory import PlantMemory, Superseded
+from arboleda.store.lead import Superseded
+from arboleda.store.plant_memory import PlantMemory
 from arboleda_fleet.standby import handover
 from arboleda_fleet.standby import lease as lease_part
 from arboleda_fleet.standby.handover import CellResumption, hold_all
@@ -97,8 +98,9 @@ class Memory:
     def __init__(self, *answers: bool | ArboledaError) -> None:
         self._answers = list(answers)
         self.closed = False
+        self.lead = SimpleNamespace(renew=self._renew)
 
-    def renew(self) -> bool:
+    def _renew(self) -> bool:
         answer = self._answers.pop(0) if len(self._answers) > 1 else self._answers[0]
         if isinstance(answer, ArboledaError):
             raise answer

@@ -61,13 +61,13 @@ class _Announcement:
     def __call__(self, port: int, *, host: str, guarded: bool, certificate: str) -> None:
         self._held.state.announce(port, host=host, guarded=guarded, certificate=certificate)
         try:
-            self._held.memory.announce(self._web.origin(port, self._own_address))
+            self._held.memory.lead.announce(self._web.origin(port, self._own_address))
         except ArboledaError as error:
             LOG.warning("standbys are not told where the page is: %s", error)
 
     def _own_address(self) -> str:
         """The address of this host that hosts which reach the memory may reach it by."""
-        return self._held.memory.own_address() or other_address()
+        return self._held.memory.lead.own_address() or other_address()
 
 
 def groot2(assembly: Assembly) -> Iterator[Part]:

@@ -12,7 +12,8 @@ from arboleda.engine import Plant
 from arboleda.model.commands import Command
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import ENDED, Journal, Notice, Remember, TaskChanged, Verb
-from arboleda.store.plant_memory import PlantMemory, Superseded
+from arboleda.store.lead import Superseded
+from arboleda.store.plant_memory import PlantMemory
 
 from .durability import Durability
 from .part import Crash
@@ -46,7 +47,7 @@ class Keeping:
         """True if a stop may leave without asking the store, which may hang."""
         if self.store is None or self.failure is not None:
             return self.standing is not Standing.SUPERSEDED
-        return self.store.leads_for_certain
+        return self.store.lead.is_certain
 
     def lets_leave(self, message: Command | Notice) -> bool:
         """True if this plant may send a message: once another process has taken it over it sends nothing, not
@@ -79,13 +80,13 @@ class Keeping:
         """Keep an operator's act, and how often it has had tasks begun."""
         if self.store is None or self.failure is not None:
             return
-        self.store.journal(message, time.time())
+        self.store.acts.keep(message, time.time())
         self._wrote(message)
         if message.verb is Verb.RETRY and message.outcome is None:
             for name in [message.cell] if message.cell else self._plant.cells:
                 task = self._plant.cells[name].task
                 if task is not None:
-                    self.store.attempted(task.id, task.attempts)
+                    self.store.tasks.attempted(task.id, task.attempts)
 
     def keep_facts(self, facts: Sequence[Remember]) -> None:
         """Keep facts before what comes after them leaves; what need not be durable then is only noted."""
@@ -112,9 +113,9 @@ class Keeping:
             return
         known, unix_s = self._plant.intake.tasks.get(change.task), time.time()
         recipe, answers = (known.order.recipe, known.answers) if known else ("", [])
-        self.store.task(change, recipe, unix_s, asked_by, answers)
+        self.store.tasks.keep(change, recipe, unix_s, asked_by, answers)
         if change.state in ENDED:
-            self.store.forget_tasks(unix_s - self._plant.model.history_days * DAY_S)
+            self.store.tasks.forget(unix_s - self._plant.model.history_days * DAY_S)
         self._wrote(change)
 
     def _wrote(self, *changes: Remember | Journal | TaskChanged) -> None:

@@ -193,7 +193,7 @@ class Orchestrator:
         before, which ends or was cut off, and nobody obeys it.
         """
         store, ros = self.keeping.store, self.screens.ros
-        if ros is not None and (store is None or store.renew_s is None):
+        if ros is not None and (store is None or store.lead.renew_s is None):
             ros.check_alone()
         for run in self.plant.cells.values():
             if reasons.of_earlier_task(run) is not None:
