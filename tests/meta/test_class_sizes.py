@@ -42,17 +42,11 @@ LARGER: Mapping[str, int] = {
     "arboleda.sim.machine.MachineBody": 30,
     "arboleda_proofs.testing.sim.Sim": 30,
     "arboleda_proofs.simulator.truth.robot.RobotTruth": 29,
-    "arboleda.kinds.arm.robot.Arm": 28,
-    "arboleda.kinds.joints.robot.Jointed": 28,
     "arboleda_class.playground.session.Session": 28,
     "arboleda_drivers.ros_action.machine.Machine": 28,
-    "arboleda.bt_xml.running.root.Main": 26,
     "arboleda.client.plant.AsyncDraft": 26,
     "arboleda.client.plant.Draft": 26,
-    "arboleda.kinds.mobile.robot.Mobile": 26,
-    "arboleda.kinds.person.Person": 26,
     "arboleda.plant_file.foresight.Foresight": 26,
-    "arboleda.recorder.tape.TapedPlant": 26,
     "arboleda_drivers.pylabrobot.machine.Machine": 26,
 }
 """Classes with more, and how many they have: none may grow, and none may come."""

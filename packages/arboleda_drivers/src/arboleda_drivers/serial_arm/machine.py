@@ -86,7 +86,7 @@ class Machine:
         self._maker = MAKERS[settings.protocol]
         self._joints = [servo.id for servo in settings.joints]
         self._ids = [servo.id for servo in settings.servos]
-        self._near = dict(zip(self._joints, map(_ticks, self._arm.tolerances), strict=True))
+        self._near = dict(zip(self._joints, map(_ticks, self._arm.motion.tolerances), strict=True))
         names = [joint.name for joint in self._arm.joints]
         self._names = dict(zip(self._ids, [*names, GRIPPER], strict=False))
         self._out: list[Message] = []

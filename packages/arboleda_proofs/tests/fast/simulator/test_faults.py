@@ -407,7 +407,7 @@ def test_a_joint_is_told_off_by_more_than_its_tolerance(world):
     begin(world, fault("lying_telemetry", "ra_1", word="q3_mov", amount=2.0))
     (lie,) = set(told(world, "ra_1", "q3_mov"))
     off_m = abs(lie - truth) * 3.14159265 / 180 * arm.joints[2].pinion_radius_m
-    assert off_m == pytest.approx(2 * arm.tolerances[2], rel=0.01)
+    assert off_m == pytest.approx(2 * arm.motion.tolerances[2], rel=0.01)
 
 
 @pytest.mark.parametrize("word", ["half", "no number", "a truth value", "too long", "incomplete"])

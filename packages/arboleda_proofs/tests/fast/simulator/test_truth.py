@@ -138,7 +138,7 @@ def test_an_arm_stands_at_a_pose_within_its_tolerance(beside, here):
     model = shipped("sis_a")
     (cell,) = model.cells
     arm = cell.roles["arm"]
-    tolerance = (3 * arm.joints[0].step, *arm.tolerances[1:])
+    tolerance = (3 * arm.joints[0].step, *arm.motion.tolerances[1:])
     stage = Stage(replace(model, cells=(with_robot(cell, "arm", tolerance=tolerance),)))
     drive_beside(stage, beside)
     assert stage.arm.here == here
@@ -194,7 +194,7 @@ def test_an_arm_that_is_halted_near_a_pose_on_its_way_is_where_the_way_is():
     space, arm = cell.taker, cell.roles["arm"]
     home, pickup = replace(space.home, q=(0.0, 0.0, 0.0)), replace(space.targets["pickup"], q=(1.0, 0.0, 0.0))
     between = replace(cell.stations[4], q=(0.5, 0.0, 0.0), zones=frozenset({"rack"}))
-    cell = with_robot(cell, "arm", tolerance=(0.35, *arm.tolerances[1:]))
+    cell = with_robot(cell, "arm", tolerance=(0.35, *arm.motion.tolerances[1:]))
     cell = with_poses(cell, home=home, pickup=pickup, station_4=between)
     stage = Stage(replace(plant, zones=("rack",), cells=(cell,)))
     stage.ask("sis_a 0B 7")

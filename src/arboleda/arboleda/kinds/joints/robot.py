@@ -52,10 +52,6 @@ class Jointed(Robot):
         names = tuple(f"{self.twin_name}_{joint.name}" for joint in self.joints)
         return JointStates(twin=self.twin_name, joints=names, measured=attrgetter("q"))
 
-    @property
-    def units(self) -> list[str]:
-        return [joint.unit for joint in self.joints]
-
     def objection(self, report: Report) -> str | None:
         for key in self.unsaid:
             if getattr(report, key) is not None:
@@ -67,7 +63,8 @@ class Jointed(Robot):
 
     @cached_property
     def motion(self) -> JointMotion:
-        return JointMotion(self.joints, self.tolerances)
+        held = tuple(joint.step / 2 + 1e-5 for joint in self.joints)
+        return JointMotion(self.joints, self.tolerance or held)
 
     def go(self, *, id: str, way: Sequence[Position]) -> MoveJoints:
         goal = way[-1]
@@ -78,14 +75,6 @@ class Jointed(Robot):
     def reference(self) -> tuple[float, ...]:
         """The joints at the end of the homing routine, from which the counters begin."""
         return (0.0,) * len(self.joints)
-
-    @cached_property
-    def tolerances(self) -> tuple[float, ...]:
-        return self.tolerance or tuple(joint.step / 2 + 1e-5 for joint in self.joints)
-
-    def quantised(self, q: tuple[float, ...]) -> tuple[float, ...]:
-        """The joints as their motors can hold them."""
-        return self.motion.quantised(q)
 
     def at_rate(self, rate: float) -> Jointed:
         """The same robot at `rate` times its speed, and its square for accelerations: ramps keep their

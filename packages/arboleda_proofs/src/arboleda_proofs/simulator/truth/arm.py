@@ -59,7 +59,7 @@ class ArmTruth(RobotTruth):
         reference = (0,) * len(robot.joints)  # where homing leads; like home it lies outside all zones
         self._spots.setdefault(reference, frozenset({space.home.name}) if space else NOWHERE)
         self._is_coarse = any(
-            within >= joint.step for joint, within in zip(robot.joints, robot.tolerances, strict=True)
+            within >= joint.step for joint, within in zip(robot.joints, robot.motion.tolerances, strict=True)
         )
         self._between = NOWHERE
         self._free = frozenset(pose.name for pose in self._poses if not pose.zones)
@@ -196,7 +196,7 @@ class ArmTruth(RobotTruth):
         return NOWHERE.union(*(names for there, names in book.items() if self._is_near(place, there)))
 
     def _is_near(self, here: Steps, there: Steps) -> bool:
-        rows = zip(self.arm.joints, here, there, self.arm.tolerances, strict=True)
+        rows = zip(self.arm.joints, here, there, self.arm.motion.tolerances, strict=True)
         return all(abs(a - b) * joint.step <= within for joint, a, b, within in rows)
 
     def _zones_of(self, poses: frozenset[str]) -> frozenset[str]:
