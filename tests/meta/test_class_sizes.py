@@ -36,7 +36,6 @@ LARGER: Mapping[str, int] = {
     "arboleda.sim.arm.AxesBody": 32,
     "arboleda.sim.board.Board": 32,
     "arboleda_drivers.connections.tcp_arm.TcpArm": 32,
-    "arboleda.adapters.mqtt_broker.client.Client": 31,
     "arboleda_proofs.simulator.plant_process.PlantProcess": 31,
     "arboleda_proofs.simulator.truth.mobile.MobileTruth": 31,
     "arboleda.sim.machine.MachineBody": 30,
