@@ -21,10 +21,11 @@ from arboleda.model.task import Order
 from arboleda.recipes.authoring import WrittenRecipe
 from arboleda.recipes.decorators import Again, AtMost
 
-from .foresight import OVER, Foresight, Scene
+from .foresight import Foresight
 from .node_rules import RULES as NODE_RULES
 from .recipe_check import orders
 from .recipe_ends import certain_ends, of_ends
+from .scene import OVER, Scene
 from .scene_variables import first_values
 from .spots import START
 from .step_rules import RULES as STEP_RULES

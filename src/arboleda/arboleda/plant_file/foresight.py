@@ -2,49 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import Any
 
 from arboleda.model.commands import Command, Motion, Switch
 from arboleda.model.facts import Value, shown
-from arboleda.model.plant_model import Cell, Interlock, Place, Pose, Workspace
+from arboleda.model.plant_model import Cell, Place, Workspace
 
-HELD, TAKEN, AT, OVER = "=held", "=taken", "=at", "=over"
-CHANGE, LEAST, MOST = "=change", "=least", "=most"
-"""What is known besides facts: of a hand, whether it holds a part and where it took that; of a robot, at or
-over which target it is; and of a place how many parts came and went."""
-OF_PLACES = (CHANGE, LEAST, MOST)
-Key = tuple[str, str]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Scene:
-    """Scene: what is known at some moment of a way through a recipe; what is not in it is not certain."""
-
-    known: Mapping[Key, Value] = field(default_factory=dict)
-
-    def get(self, name: str, what: str) -> Value | None:
-        return self.known.get((name, what))
-
-    def put(self, changes: Mapping[Key, Value]) -> Scene:
-        return Scene(known={**self.known, **changes})
-
-    def without(self, keys: set[Key]) -> Scene:
-        return Scene(known={key: value for key, value in self.known.items() if key not in keys})
-
-    @cached_property
-    def mark(self) -> frozenset[tuple[Key, Value]]:
-        """The key that tells it from others."""
-        return frozenset(self.known.items())
-
-
-def common(scenes: Sequence[Scene]) -> tuple[Scene, ...]:
-    """One scene with all that these have in common; none of none."""
-    if len(scenes) < 2:
-        return tuple(scenes)
-    return (Scene(known=dict(frozenset.intersection(*(scene.mark for scene in scenes)))),)
+from .foreseen_locks import ForeseenLocks
+from .scene import AT, CHANGE, HELD, LEAST, MOST, OF_PLACES, OVER, TAKEN, Key, Scene
 
 
 class Foresight:
@@ -57,7 +23,7 @@ class Foresight:
         self.cell = cell
         self.back = back
         self.places = {place.target: place for place in cell.places}
-        self._free = [each for each in cell.interlocks if each.free_while and each.device not in cell.shared]
+        self._locks = ForeseenLocks(cell)
 
     @cached_property
     def hands(self) -> dict[str, Workspace]:
@@ -93,7 +59,7 @@ class Foresight:
             yield from self._by_hand(command, scene)
         if isinstance(command, Motion) and command.robot in self.cell.reach:
             yield from self._on_the_way(command, scene)
-        yield from self._closing(command, scene)
+        yield from self._locks.closing(command, scene)
 
     def after(self, command: Command, scene: Scene) -> Scene:
         """The scene once a command is done."""
@@ -133,23 +99,8 @@ class Foresight:
         found = zip(keys, (goal, goal or over), strict=True)
         scene = scene.without(set(keys)).put({key: target for key, target in found if target is not None})
         return scene.put(
-            {key: value for key, value in self._let_in(command.robot, goal) if key not in scene.known}
+            {key: value for key, value in self._locks.let_in(command.robot, goal) if key not in scene.known}
         )
-
-    def _let_in(self, robot: str, target: str | None) -> Iterator[tuple[Key, Value]]:
-        """The facts that let a robot into the zones of a target, so far as nothing but verbs changes them."""
-        for lock in self._locks(robot, target):
-            device: Any = next(each for each in self.cell.robots if each.name == lock.device)
-            verbs = device.kind.verbs.values() if device.verb_names else ()
-            names = {name for verb in verbs for name, _ in verb.sets}
-            for fact, value in lock.free_while:
-                if fact in names:
-                    yield (lock.device, fact), value
-
-    def _locks(self, robot: str, target: str | None) -> Iterator[Interlock]:
-        """The machines that keep a robot out of the zones of a target by their facts."""
-        zones = self.cell.reach[robot].targets[target].zones if target is not None else ()
-        return (lock for lock in self._free if lock.zone in zones and lock.device != robot)
 
     def _moved(self, scene: Scene, place: str, parts: int) -> Scene:
         if scene.get(place, CHANGE) is None:
@@ -219,10 +170,10 @@ class Foresight:
         if here is not None and all(name is not None and scene.get(name, HELD) for name in holding):
             yield f"has {robot} leave {here.target} with a part that {here.device} still holds"
         goal = self._goal(command)
-        for is_so, value in self._locked(robot, goal, scene):
+        for is_so, value in self._locks.locked(robot, goal, scene):
             yield f"has {robot} go to {goal} where {is_so}; it has to be {value}"
         over, back = goal or self._goal(command, is_over=True), self._way_back(space, scene)
-        for is_so, value in self._locked(robot, back, scene) if over is not None else ():
+        for is_so, value in self._locks.locked(robot, back, scene) if over is not None else ():
             carries = f"has {robot} go to {over} with a part that goes back to {back} after a failure"
             yield f"{carries}, where {is_so}; it has to be {value}, or brings_back_to another target"
 
@@ -233,37 +184,3 @@ class Foresight:
             return None
         taken = self.back.get(robot) or scene.get(hand, TAKEN)
         return None if taken is None else str(taken)
-
-    def _locked(self, robot: str, target: str | None, scene: Scene) -> Iterator[tuple[str, str]]:
-        """The facts that keep a robot out of the zones of a target, and what they have to be."""
-        for lock in self._locks(robot, target):
-            yield from _kept(lock, scene)
-
-    def _closing(self, command: Command, scene: Scene) -> Iterator[str]:
-        for lock in self.cell.interlocks_of(command.robot):
-            if lock.is_ended_by(command):
-                for name, pose in self._standing(scene):
-                    if lock.zone in pose.zones and name != command.robot:
-                        yield f"has {command.robot} {command.word} while {name} stands at {pose.name}"
-                yield from self._shut_out(command, lock.zone, scene)
-
-    def _shut_out(self, command: Command, zone: str, scene: Scene) -> Iterator[str]:
-        """The machines that are in a zone which a command takes: a zone has one of them at a time."""
-        for lock in (each for each in self._free if each.zone == zone and each.device != command.robot):
-            for is_so, value in _kept(lock, scene):
-                waits = f"has {command.robot} {command.word} in the zone {zone}, which {lock.device} keeps"
-                yield f"{waits} while {is_so}; it has to be {value}, or each has a zone of its own"
-
-    def _standing(self, scene: Scene) -> Iterator[tuple[str, Pose]]:
-        for space in self.cell.spaces:
-            at = scene.get(space.robot.name, AT)
-            if at is not None:
-                yield space.robot.name, space.targets[str(at)]
-
-
-def _kept(lock: Interlock, scene: Scene) -> Iterator[tuple[str, str]]:
-    """The facts by which a machine keeps its zone for certain, and what they have to be."""
-    for fact, value in lock.free_while:
-        known = scene.get(lock.device, fact)
-        if known not in (None, value):
-            yield f"{fact} of {lock.device} is {shown(known)}", shown(value)

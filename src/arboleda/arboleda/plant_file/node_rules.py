@@ -19,7 +19,7 @@ from arboleda.model.by_class import nearest
 from arboleda.model.errors import ArboledaError
 from arboleda.recipes.handles import question_of
 
-from .foresight import Scene
+from .scene import Scene
 from .scene_variables import after_script, key_of, known_of, ports_in, run
 from .step_rules import at_once, repeated, tried
 from .walkthrough import Outcome, Rule, Walkthrough, few

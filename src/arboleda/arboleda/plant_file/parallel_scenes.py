@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from py_trees.behaviour import Behaviour
 
-from .foresight import CHANGE, LEAST, MOST, OF_PLACES, Key, Scene
+from .scene import CHANGE, LEAST, MOST, OF_PLACES, Key, Scene
 from .walkthrough import Walkthrough
 
 

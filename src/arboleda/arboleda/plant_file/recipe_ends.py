@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from arboleda.model.facts import Value, shown
 from arboleda.model.plant_model import Cell
 
-from .foresight import CHANGE, HELD, LEAST, MOST, OVER, Scene
+from .scene import CHANGE, HELD, LEAST, MOST, OVER, Scene
 
 
 def of_ends(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> Iterator[str]:

@@ -13,7 +13,7 @@ from arboleda.bt_xml.running.ports import NodePorts
 from arboleda.bt_xml.running.scripts import Script, ScriptError
 from arboleda.bt_xml.values import OUTER, Variable
 
-from .foresight import Key, Scene
+from .scene import Key, Scene
 
 
 def key_of(variable: tuple[Scope, str]) -> Key:

@@ -19,8 +19,8 @@ from arboleda.recipes.decorators import Again, AtMost, Forgiven, Inverted, Rescu
 from arboleda.recipes.handles import FactCheck, FactWait
 from arboleda.recipes.place_questions import PlaceQuestion
 
-from .foresight import AT, OVER, Key, Scene, common
 from .parallel_scenes import Branches
+from .scene import AT, OVER, Key, Scene, common
 from .walkthrough import MOST_ROUNDS, Outcome, Rule, Walkthrough, answer_key, few
 
 MOST_MERGED = 64  # scenes of a parallel that are put together one by one

@@ -14,7 +14,8 @@ from arboleda.engine import Act
 from arboleda.model.by_class import nearest
 from arboleda.recipes.place_questions import PlaceQuestion
 
-from .foresight import Foresight, Key, Scene, common
+from .foresight import Foresight
+from .scene import Key, Scene, common
 from .scene_variables import key_of
 
 MOST_SCENES = 256  # that are followed at once
