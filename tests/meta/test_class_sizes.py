@@ -32,8 +32,6 @@ LARGER: Mapping[str, int] = {
     "arboleda_proofs.simulator.plants.devices.blocks.Blocks": 36,
     "arboleda_proofs.simulator.plants.devices.xml_spellings.SpellingWriter": 34,
     "arboleda_proofs.simulator.truth.truth.Truth": 34,
-    "arboleda.sim.arm.ArmBody": 32,
-    "arboleda.sim.arm.AxesBody": 32,
     "arboleda.sim.board.Board": 32,
     "arboleda_drivers.connections.tcp_arm.TcpArm": 32,
     "arboleda_proofs.simulator.plant_process.PlantProcess": 31,
