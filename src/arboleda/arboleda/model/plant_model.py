@@ -184,6 +184,11 @@ class Robot:
         """Its joints on ROS 2."""
         return JointStates(twin=self.name)
 
+    @property
+    def units(self) -> list[str] | None:
+        """The unit of each number of its position; None where that is no list of numbers."""
+        return None
+
     def objection(self, report: Report) -> str | None:
         """The reason why the robot cannot have said this; None where it can."""
         return None

@@ -395,7 +395,7 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
         "state": belief.state.value if belief.state is not None else None,
         "age_s": None if belief.heard_at is None else now - belief.heard_at,
         "q": belief.q,
-        "units": [joint.unit for joint in robot.joints] or None,
+        "units": robot.units,
         "node": belief.node,
         "homed": belief.homed,
         "latched": robot.name in plant.dispatcher.latches.stopped,

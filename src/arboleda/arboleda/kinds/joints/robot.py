@@ -36,21 +36,22 @@ class Jointed(Robot):
 
     kind_name: str = "axes"
     joints: tuple[Joint, ...] = ()
+    twin: str = ""  # the name under which its joints are published, "": its own
     model: str = ""
     description: Description | None = None  # None: the model comes with arboleda_description
     tolerance: tuple[float, ...] | None = None
     position_key: ClassVar[str | None] = "q"
     unsaid: ClassVar[tuple[str, ...]] = ("node", "effector", "piece")  # what no report of it has
 
-    @property
-    def twin_name(self) -> str:
-        """The name under which its joints are published."""
-        return self.name
-
     @cached_property
     def joint_states(self) -> JointStates:
-        names = tuple(f"{self.twin_name}_{joint.name}" for joint in self.joints)
-        return JointStates(twin=self.twin_name, joints=names, measured=attrgetter("q"))
+        twin = self.twin or self.name
+        names = tuple(f"{twin}_{joint.name}" for joint in self.joints)
+        return JointStates(twin=twin, joints=names, measured=attrgetter("q"))
+
+    @property
+    def units(self) -> list[str]:
+        return [joint.unit for joint in self.joints]
 
     def objection(self, report: Report) -> str | None:
         for key in self.unsaid:
