@@ -105,7 +105,7 @@ def running(hooked: Hooked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
 def at(app: App, state: str) -> None:
     """Wait until its cell is in this state."""
     end = time.monotonic() + PATIENCE_S
-    while (cell := app.plant.snapshot()["cells"][0])["state"] != state or cell["not_ready"]:
+    while (cell := app.plant.screens.snapshot()["cells"][0])["state"] != state or cell["not_ready"]:
         assert time.monotonic() < end, (cell["state"], cell["not_ready"])
         time.sleep(0.05)
 

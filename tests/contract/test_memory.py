@@ -25,9 +25,10 @@ from arboleda.model.messages import (
 )
 from arboleda.model.sentence import OWN
 from arboleda.store.package_table import PackageTable
-from arboleda.store.plant_memory import PRUNED, PlantMemory
+from arboleda.store.plant_memory import PlantMemory
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import History, TaskHistory, TaskQuery
+from arboleda.store.task_table import PRUNED
 from arboleda_fleet.oee.api import OeeQuery
 from arboleda_fleet.oee.rows import figures
 from arboleda_fleet.postgres.history import PostgresHistory
@@ -55,15 +56,15 @@ class Places:
 
     def _seen(self, opened: Callable[[], PlantMemory], history: History, deed: Deed) -> dict[str, Any]:
         with opened() as memory:
-            memory.lead(1)
+            memory.lead.take(1)
             deed(memory)
             seen = {"rows": [replace(row, number=0) for row in history.select(TaskQuery())]}
         with opened() as memory:  # as the next start finds it
             return seen | {
                 "facts": [memory.facts(fact) for fact in Fact],
-                "journal": memory.entries(),
+                "journal": memory.acts.last(),
                 "table": PackageTable(memory, "acme").rows(),
-                "tasks": [replace(row, number=0) for row in memory.tasks(TaskQuery(limit=None))],
+                "tasks": [replace(row, number=0) for row in memory.tasks.select(TaskQuery(limit=None))],
                 "figures": figures(history, OeeQuery(since_s=0.0), 1000.0),
             }
 
@@ -100,8 +101,8 @@ def test_the_table_of_a_package(places: Places) -> None:
 def test_the_journal(places: Places) -> None:
     act = Journal(verb=Verb.STOP, scope="ra1", cell="sis_a", sentence=OWN(text=ODD))
     places.hold_the_same(
-        lambda memory: memory.journal(act, 1000.25),
-        lambda memory: memory.journal(replace(act, verb=Verb.OVERRIDE, cell=None), 999.5),
+        lambda memory: memory.acts.keep(act, 1000.25),
+        lambda memory: memory.acts.keep(replace(act, verb=Verb.OVERRIDE, cell=None), 999.5),
     )
 
 
@@ -111,57 +112,57 @@ def test_a_task_from_its_acceptance_to_its_end(places: Places) -> None:
     late = ended("b", TaskState.FAILED, reason=Reason.DEADLINE, sentence=OWN(text="late"))
 
     def begun(memory: PlantMemory) -> None:
-        memory.task(queued("a"), "storage", 5.0, "page")
-        memory.task(queued("a"), "storage", 6.0, "http")  # whoever asks again asks for the same task
-        memory.task(queued("b"), ODD, 7.0, "ros2")
-        memory.task(ended("a", TaskState.RUNNING), "storage", 8.0)
-        memory.attempted("a", 3)
-        memory.task(ended("", TaskState.REFUSED), "", 9.0)
+        memory.tasks.keep(queued("a"), "storage", 5.0, "page")
+        memory.tasks.keep(queued("a"), "storage", 6.0, "http")  # whoever asks again asks for the same task
+        memory.tasks.keep(queued("b"), ODD, 7.0, "ros2")
+        memory.tasks.keep(ended("a", TaskState.RUNNING), "storage", 8.0)
+        memory.tasks.attempted("a", 3)
+        memory.tasks.keep(ended("", TaskState.REFUSED), "", 9.0)
 
     def over(memory: PlantMemory) -> None:
-        memory.task(replace(ended("a"), course=course), "storage", 9.0, answers=answers)
-        memory.task(late, "", 10.0)
-        memory.task(ended("a", TaskState.FAILED), "storage", 11.0)  # it has ended before
+        memory.tasks.keep(replace(ended("a"), course=course), "storage", 9.0, answers=answers)
+        memory.tasks.keep(late, "", 10.0)
+        memory.tasks.keep(ended("a", TaskState.FAILED), "storage", 11.0)  # it has ended before
 
     places.hold_the_same(begun, over)
 
 
 def test_times_of_cells(places: Places) -> None:
     def killed(memory: PlantMemory) -> None:
-        memory.began(10.0, 0.0)
-        memory.task(queued("a"), "storage", 12.0)
-        memory.task(ended("a", TaskState.RUNNING), "storage", 13.0)
-        memory.task(ended("a"), "storage", 19.0)
-        memory.stands("sis_a", "held", 20.0)
-        memory.stands("sis_b", "held", 75.0)
-        memory.note_run(70.0)
+        memory.times.began(10.0, 0.0)
+        memory.tasks.keep(queued("a"), "storage", 12.0)
+        memory.tasks.keep(ended("a", TaskState.RUNNING), "storage", 13.0)
+        memory.tasks.keep(ended("a"), "storage", 19.0)
+        memory.times.stands("sis_a", "held", 20.0)
+        memory.times.stands("sis_b", "held", 75.0)
+        memory.times.note_run(70.0)
 
     def goes_on(memory: PlantMemory) -> None:
-        memory.began(500.0, 0.0)
-        memory.stands("sis_a", "held", 501.0)
-        memory.stands("sis_a", None, 503.0)
-        memory.note_run(560.0, ended=True)
+        memory.times.began(500.0, 0.0)
+        memory.times.stands("sis_a", "held", 501.0)
+        memory.times.stands("sis_a", None, 503.0)
+        memory.times.note_run(560.0, ended=True)
 
-    places.hold_the_same(killed, goes_on, lambda memory: memory.began(600.0, 540.0))
+    places.hold_the_same(killed, goes_on, lambda memory: memory.times.began(600.0, 540.0))
 
 
 def test_tasks_are_forgotten_from_the_oldest_on(places: Places) -> None:
     def many(memory: PlantMemory) -> None:
         for number in range(PRUNED + 5):
-            memory.task(queued(f"n{number}"), "storage", 1.0)
-            memory.task(ended(f"n{number}"), "storage", 2.0 + number)
-        memory.task(queued("open"), "storage", 1.0)
+            memory.tasks.keep(queued(f"n{number}"), "storage", 1.0)
+            memory.tasks.keep(ended(f"n{number}"), "storage", 2.0 + number)
+        memory.tasks.keep(queued("open"), "storage", 1.0)
 
     places.hold_the_same(
         many,
-        lambda memory: memory.forget_tasks(1000.0),
-        lambda memory: memory.forget_tasks(2.0 + PRUNED + 2),
+        lambda memory: memory.tasks.forget(1000.0),
+        lambda memory: memory.tasks.forget(2.0 + PRUNED + 2),
     )
 
 
 def test_tasks_are_found_by_what_is_asked_for(database: str, plant: str) -> None:
     with PostgresMemory(database, plant) as memory, closing(PostgresHistory(database, plant)) as history:
-        memory.lead(1)
+        memory.lead.take(1)
         tell_of_four(memory)
         for select in (memory.tasks, history.select):
             found = [(query, [row.id for row in select(query)]) for query, _ in FOUND]

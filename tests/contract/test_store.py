@@ -21,7 +21,7 @@ store = Store(Path(sys.argv[1]))
 store.open()
 for fact in Fact:
     store.keep(Remember(fact=fact, name="ra1", value="on"))
-store.journal(Journal(verb=Verb.STOP, scope="", cell=None, sentence=OWN(text="everything stopped")), 5.0)
+store.acts.keep(Journal(verb=Verb.STOP, scope="", cell=None, sentence=OWN(text="everything stopped")), 5.0)
 print("kept", flush=True)
 signal.pause()
 """
@@ -39,4 +39,4 @@ def test_what_was_kept_survives_kill_9(tmp_path: Path) -> None:
     assert child.returncode == -signal.SIGKILL
     with Store(path) as store:
         assert [store.facts(fact) for fact in Fact] == [{"ra1": "on"}] * len(Fact)
-        assert [entry.sentence for entry in store.entries()] == ["everything stopped"]
+        assert [entry.sentence for entry in store.acts.last()] == ["everything stopped"]

@@ -11,6 +11,7 @@ from arboleda.kinds.joints.motion import JointMotion
 from arboleda.recipes import storage
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
+from arboleda.sim.motors import Motors
 from arboleda.trees import steps
 from arboleda.trees.cell_zones import CellZones
 from arboleda.trees.failures import Failures
@@ -81,8 +82,8 @@ MOTION = (
         "A board takes an absolute target for a way from where the arm is.",
         edit(
             ArmBody.start,
-            "self._steps(tuple(values))",
-            "tuple(map(sum, zip(self.position, self._steps(tuple(values)))))",
+            "self.motors.steps(tuple(values))",
+            "tuple(map(sum, zip(self.motors.position, self.motors.steps(tuple(values)))))",
         ),
     ),
     mutant(
@@ -171,7 +172,7 @@ STOP = (
     mutant(
         "speed_never_rises_after_stop",
         "A stop leaves out the first axis.",
-        edit(ArmBody.stop, "for axis in self._axes:", "for axis in self._axes[1:]:"),
+        edit(Motors.stop, "for axis in self.axes:", "for axis in self.axes[1:]:"),
         likely=10,
     ),
 )
@@ -181,7 +182,11 @@ PLANTED_PARTS = (
     mutant(
         "nothing_is_dropped",
         "A board that stops switches all its outputs off.",
-        edit(ArmBody.stop, "self._plan(now_us)", "self._plan(now_us); self.switch_effector(False)"),
+        edit(
+            ArmBody.stop,
+            "self.motors.stop(now_us)",
+            "self.motors.stop(now_us); self.switch_effector(False)",
+        ),
         likely=10,
     ),
     mutant(

@@ -221,8 +221,8 @@ XML_BUGS = (
     bug(
         ROOT,
         "A script that breaks halts nothing.",
-        "            first = self._put_aside()\n            self._halt_all()\n",
-        "            first = self._put_aside()\n",
+        "            first = put_aside(self.below[0])\n            self._halt_all()\n",
+        "            first = put_aside(self.below[0])\n",
     ),
     bug(
         ROOT,

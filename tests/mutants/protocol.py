@@ -121,7 +121,7 @@ WIRE = (
     mutant(
         "wire_targets_legal",
         "Joint targets go out as they are, not as motor steps.",
-        edit(forms._wire_joints, "robot.quantised(command.q)", "command.q"),
+        edit(forms._wire_joints, "robot.motion.quantised(command.q)", "command.q"),
         weather="none",
     ),
     mutant(

@@ -9,7 +9,8 @@ import pytest
 from arboleda.runtime import holdings
 from arboleda.runtime.build import Options, build
 from arboleda.runtime.parts.page import PagePlant
-from arboleda.store.plant_memory import OtherLeader, PlantMemory
+from arboleda.store.lead import OtherLeader
+from arboleda.store.plant_memory import PlantMemory
 from arboleda_proofs.testing import shipped
 
 
@@ -20,7 +21,7 @@ def test_it_has_made_no_page_of_which_a_process_has_one(
 
     def led_by_another(*about: object) -> PlantMemory:
         memory: PlantMemory = memory_of(*about)
-        monkeypatch.setattr(memory, "lead", refuse)
+        monkeypatch.setattr(memory.lead, "take", refuse)
         return memory
 
     def refuse(epoch: int) -> int:

@@ -19,7 +19,8 @@ from arboleda.model.messages import (
     TaskState,
     Verb,
 )
-from arboleda.runtime.parts.orchestrator import KeptStateUnknown, Orchestrator
+from arboleda.runtime.parts.orchestrator import Orchestrator
+from arboleda.runtime.parts.screens import KeptStateUnknown
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskQuery
 
@@ -68,7 +69,7 @@ def plant(store: Store, robots: Robots, crashes: list[BaseException], gate: Gate
 
 
 def page(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
-    plant.watchers.append(gate)
+    plant.screens.watchers.append(gate)
 
 
 HANGS = [commit_of_a_task, log, page]
@@ -127,12 +128,13 @@ def test_whoever_asks_a_plant_that_is_free_hears_that_the_stop_is_kept(plant, ro
 
 def states(plant: Orchestrator, task: str) -> tuple[str | None, list[str]]:
     """A task as a client finds it, and as it is in a snapshot."""
-    found = plant.find(task)
-    return found and found["state"], [row["state"] for row in plant.snapshot()["tasks"] if row["id"] == task]
+    found = plant.screens.find(task)
+    rows = plant.screens.snapshot()["tasks"]
+    return found and found["state"], [row["state"] for row in rows if row["id"] == task]
 
 
-@pytest.mark.parametrize("method", ["task", "keep"])
-def test_nobody_is_told_what_is_not_kept_yet(plant, gate, robots, store, monkeypatch, method) -> None:
+@pytest.mark.parametrize("kept", ["task", "fact"])
+def test_nobody_is_told_what_is_not_kept_yet(plant, gate, robots, store, monkeypatch, kept) -> None:
     views: list[dict[str, Any]] = []
     shown = threading.Condition()
 
@@ -141,19 +143,19 @@ def test_nobody_is_told_what_is_not_kept_yet(plant, gate, robots, store, monkeyp
             views.append(snapshot)
             shown.notify_all()
 
-    plant.watchers.append(watch)
+    plant.screens.watchers.append(watch)
     plant.start()
     assert plant.submit("sis_a 0B 1 #a").result(SOON_S).state is TaskState.QUEUED
     with shown:
         assert shown.wait_for(lambda: views and views[-1]["tasks"], SOON_S)
-    hang_before(gate, store, method, monkeypatch)
+    hang_before(gate, store.tasks if kept == "task" else store, "keep", monkeypatch)
     gate.shut = True
-    plant.operate(Verb.CANCEL, "a") if method == "task" else plant.operate(Verb.STOP, "sis_b")
+    plant.operate(Verb.CANCEL, "a") if kept == "task" else plant.operate(Verb.STOP, "sis_b")
     assert gate.reached.wait(SOON_S)
     assert states(plant, "a") == ("queued", ["queued"])
-    assert all(robot["latched"] is False for robot in plant.snapshot()["robots"])
+    assert all(robot["latched"] is False for robot in plant.screens.snapshot()["robots"])
     with pytest.raises(KeptStateUnknown, match="ask again later"):
-        plant.find("of nobody")
+        plant.screens.find("of nobody")
     assert {row["state"] for each in views for row in each["tasks"]} == {"queued"}
     gate.open()
     plant.stop()
@@ -166,20 +168,20 @@ def test_once_something_cannot_be_kept_screens_see_what_was_kept_last(
     views: list[dict[str, Any]] = []
     changes: list[TaskChanged] = []
     seen_by_observers: list[str] = []
-    plant.watchers.append(views.append)
+    plant.screens.watchers.append(views.append)
     plant.listeners.append(changes.append)
     published: list[dict[str, Any]] = []
     robots.publish_view = lambda snapshot: iter(published.append(snapshot) or ())
     plant.start()
     plant.submit("sis_a 0B 1 #a").result(SOON_S)
-    assert plant.snapshot()["tasks"]
-    for name in ("task", "keep", "journal"):
-        monkeypatch.setattr(store, name, fail)
+    assert plant.screens.snapshot()["tasks"]
+    for table in (store, store.tasks, store.acts):
+        monkeypatch.setattr(table, "keep", fail)
     plant.observers.append(lambda each: seen_by_observers.append(each.intake.tasks["a"].state.value))
     with pytest.raises(ArboledaError, match="The disk is full"):
         plant.operate(Verb.CANCEL, "a").result(SOON_S)
     assert crashes
-    found = plant.snapshot()
+    found = plant.screens.snapshot()
     assert found["ending"]
     assert [row["state"] for row in found["tasks"]] in ([], ["queued"])  # as it was published last
     plant.stop()
@@ -188,4 +190,4 @@ def test_once_something_cannot_be_kept_screens_see_what_was_kept_last(
     assert [each.state for each in changes] == [TaskState.QUEUED]
     assert views[-1]["ending"] and published[-1]["ending"]
     assert seen_by_observers == []
-    assert [row.state for row in store.tasks(TaskQuery())] == ["queued"]
+    assert [row.state for row in store.tasks.select(TaskQuery())] == ["queued"]

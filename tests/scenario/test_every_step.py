@@ -183,9 +183,9 @@ def test_hold_then_nothing(scene: Any, evidence: Evidence, step: str) -> None:
     assert here.operate(Verb.HOLD) is None
     here.becomes(CellState.HELD, here.stop_s)
     here.rig.wait(1.0)
-    told, position = len(here.rig.to_boards), here.body.position
+    told, position = len(here.rig.to_boards), here.body.motors.position
     here.rig.wait(20.0)
-    assert (len(here.rig.to_boards), here.body.position) == (told, position)
+    assert (len(here.rig.to_boards), here.body.motors.position) == (told, position)
     assert here.cell.state is CellState.HELD and here.cell.task is not None
     assert here.cell.trouble is None
     here.honest()

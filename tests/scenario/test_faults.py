@@ -118,7 +118,9 @@ def longest_s(rig: Rig) -> float:
     """The longest way between two poses of the arm, s."""
     layout = StorageLayout(rig.model.cell("sis_a"))
     arm, poses = layout.arm, layout.space.poses
-    return max(arm.motion.travel_s(arm.quantised(one.q), [other.q]) for one in poses for other in poses)
+    return max(
+        arm.motion.travel_s(arm.motion.quantised(one.q), [other.q]) for one in poses for other in poses
+    )
 
 
 def rest_s(rig: Rig, outcome: Outcome) -> float:

@@ -599,7 +599,7 @@ def test_the_late_end_of_an_earlier_homing_is_not_that_of_the_next_one(rig: Rig)
     mend(rig)
     assert rig.operate(Verb.HOME, "ra1") is None
     assert rig.wait(2.0, until=lambda: not belief.online) and rig.wait(3.0, until=lambda: belief.online)
-    body.lose_steps(1, 500)
+    body.motors.lose_steps(1, 500)
     assert rig.operate(Verb.HOME, "ra1") is None
     homing = rig.plant.dispatcher.ledger.last_sent["ra1"]
     assert rig.wait(20.0, until=lambda: not homing.open)

@@ -70,7 +70,7 @@ class Glued:
         return due
 
     def _obey(self, move: MoveJoints) -> None:
-        self.goal = StorageLayout(self.plant.model.cells[0]).arm.quantised(move.q)
+        self.goal = StorageLayout(self.plant.model.cells[0]).arm.motion.quantised(move.q)
         way = max(abs(a - b) for a, b in zip(self.goal, self.q, strict=True))
         self.moves_until = self.now + (way / SPEED_RAD_S or self.pulse_s)
 

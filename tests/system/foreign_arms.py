@@ -49,7 +49,7 @@ class Glued:
 
     def goal(self, q: tuple[float, ...]) -> None:
         """Drive there."""
-        self._goal = self.arm.quantised(q)
+        self._goal = self.arm.motion.quantised(q)
         rows = zip(self.arm.joints, self._q, self._goal, strict=True)
         travel_s = max(abs(goal - q) / (joint.speed * SPEED) for joint, q, goal in rows)
         self._moves_until = self._now + (travel_s or (0.0 if self._silent else PERIOD_S))

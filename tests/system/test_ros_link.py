@@ -49,8 +49,8 @@ from arboleda.store.sqlite import Store
 from arboleda.wire.status import STALE, to_status
 from arboleda_proofs.testing import shipped
 from arboleda_ros import convert, statuses
+from arboleda_ros.command_topics import NoBridge
 from arboleda_ros.link import connect
-from arboleda_ros.orchestrator import NoBridge
 
 from ..patience import PATIENCE_S
 
@@ -483,10 +483,10 @@ def test_a_service_stops_robots_while_the_plant_waits_for_its_disk(links, tmp_pa
         plant.connect(port)
         plant.connect_ros(port)
         link.start()
-        for publisher in port._labelled.values():
+        for publisher in port.commands.labelled.values():
             eventually(publisher.get_subscription_count)
         hang = lambda *_: (reached.set(), let_go.wait(PATIENCE_S))  # noqa: E731
-        monkeypatch.setattr(store, "task", hang)
+        monkeypatch.setattr(store.tasks, "keep", hang)
         plant.start()
         try:
             plant.submit("sis_a 0B 1")
@@ -547,7 +547,7 @@ def test_a_second_commander_at_start_is_refused_by_name(links, ros_domain):
         StartError, match="another node already commands /ra1/joint_goals_q: /other_plant; stop"
     ):
         side.port.check_alone(PATIENCE_S)
-    assert side.port._alone.others() == [("/ra1/joint_goals_q", "/other_plant")]
+    assert side.port.topics.alone.others() == [("/ra1/joint_goals_q", "/other_plant")]
     if not host_claim.HAS_ABSTRACT:  # only Linux has names without files
         return
     second = Side(links(), "orchestrator", PLANT)

@@ -65,7 +65,7 @@ def test_each_line_is_said_by_its_node_with_its_level_and_nothing_by_one_that_is
         for word in levels:
             getattr(logging.getLogger("arboleda.tasks"), word)("a line at %s", word)
         logging.getLogger("asyncio").error("a library warns")
-        port._log_once("of the bridge", logging.WARNING)
+        port.topics.log_once("of the bridge", logging.WARNING)
     wanted = [
         (level, "orchestrator.tasks", f"a line at {word}") for word, level in levels.items() if level > 10
     ]

@@ -46,12 +46,12 @@ class BridgePort(Port):
         robots = [robot for robot in model.robots.values() if robot.link is Link.MQTT]
         for robot in robots:
             self._obey(robot)
-        speak = partial(self._speak, profile=qos.COMMAND)
+        speak = partial(self.topics.speak, profile=qos.COMMAND)
         self._voices = {robot.name: RobotPublisher(robot, speak, node.get_clock()) for robot in robots}
         self._rejections = {robot.name: speak(String, f"{robot.name}/rejected") for robot in robots}
         # Discovery keeps the order in which endpoints were made, here and in the orchestrator: a heartbeat
         # that arrives proves that the commands, made before it, arrive too.
-        self._listen(UInt32, HEARTBEAT, self._on_heartbeat, qos.COMMAND)
+        self.topics.listen(UInt32, HEARTBEAT, self._on_heartbeat, qos.COMMAND)
 
     def send(self, report: Report) -> None:
         """Publish one report on every topic that carries a part of it."""
@@ -94,12 +94,12 @@ class BridgePort(Port):
 
     def _obey(self, robot: Robot) -> None:
         kind_of_all, of_all = convert.ordered(robot)
-        self._listen(kind_of_all, of_all, partial(self._on_labelled, robot, of_all), qos.COMMAND)
+        self.topics.listen(kind_of_all, of_all, partial(self._on_labelled, robot, of_all), qos.COMMAND)
         for kind in convert.commands_of(robot):
             if f"{robot.name}/{PLAIN[kind]}" == of_all:
                 continue
             handle = partial(self._on_plain, kind, robot)
-            self._listen(convert.message_type(kind), f"{robot.name}/{PLAIN[kind]}", handle, qos.COMMAND)
+            self.topics.listen(convert.message_type(kind), f"{robot.name}/{PLAIN[kind]}", handle, qos.COMMAND)
 
     def _on_labelled(self, robot: Robot, topic: str, message: Any) -> None:
         with self._telling(robot, topic.rpartition("/")[2]):

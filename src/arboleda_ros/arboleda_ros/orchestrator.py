@@ -11,19 +11,16 @@ from typing import TYPE_CHECKING, Any
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.duration import Duration
 from rclpy.node import Node
-from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Bool, Float32MultiArray, String, UInt8, UInt32
+from std_msgs.msg import Bool, String, UInt8, UInt32
 
-from arboleda.adapters.rate_limit import RateLimit
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device
-from arboleda.model.commands import Command, Stop
-from arboleda.model.errors import ArboledaError, PayloadError
+from arboleda.model.commands import Command
+from arboleda.model.errors import PayloadError
 from arboleda.model.messages import (
     Event,
     Heartbeat,
-    Interference,
     Notice,
     OperatorAnswer,
     Report,
@@ -35,15 +32,13 @@ from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
 from arboleda.model.sentence import in_json
 from arboleda.runtime import view_text
 from arboleda.views import view
-from arboleda.wire import rejections
-from arboleda.wire.hop import HEARTBEAT, PLAIN, kind_of
-from arboleda_ros import convert, qos, statuses
+from arboleda.wire.hop import HEARTBEAT
+from arboleda_ros import qos, statuses
+from arboleda_ros.command_topics import CommandTopics
 from arboleda_ros.diagnostics import Diagnostic, Diagnostics
-from arboleda_ros.overhear import OwnTopic
 from arboleda_ros.plain_reports import PlainReports
 from arboleda_ros.plant_queries import Asker
 from arboleda_ros.port import NAMED, Port
-from arboleda_ros.senders import Senders
 from arboleda_ros.speakers import Speakers
 from arboleda_ros.verbs import VerbServices
 
@@ -58,10 +53,6 @@ TYPES = "arboleda_interfaces"
 STREAM_TYPES = "py_trees_ros_interfaces"
 
 
-class NoBridge(ArboledaError):
-    """Error: a command was not published, and will not be sent later."""
-
-
 class OrchestratorPort(Port):
     """Node `orchestrator`; `on_event` gets every core event, on the link's thread."""
 
@@ -70,39 +61,14 @@ class OrchestratorPort(Port):
     ) -> None:
         super().__init__(node, clock)
         robots = [robot for robot in model.robots.values() if robot.link is not Link.DRIVER]
-        self._robots = {robot.name: robot for robot in robots}
         self._on_event = on_event
-        speak = partial(self._speak, profile=qos.COMMAND, alone=True)
-        self._labelled = {
-            robot.name: speak(*convert.ordered(robot)) for robot in robots if robot.link is Link.MQTT
-        }
-        self._commands = {
-            (robot.name, kind): self._plain(robot, kind, speak)
-            for robot in robots
-            for kind in convert.commands_of(robot)
-        }
-        # Publishing copies a message, and to make one takes longer than to fill it. A stop makes its own: it
-        # may leave in another thread meanwhile.
-        self._forms = {
-            (robot.name, kind): Float32MultiArray()
-            for robot in robots
-            for kind in convert.commands_of(robot)
-            if kind is not Stop
-        }
-        self._senders = Senders(node, clock)
-        self._others = RateLimit()  # a stream of goals is one piece of news
-        self._own = {
-            (robot.name, kind): OwnTopic()
-            for robot in robots
-            if robot.link is Link.ROS
-            for kind in convert.commands_of(robot)
-        }
-        self._heartbeat = speak(UInt32, HEARTBEAT)
-        self._start = self._speak(UInt8, "system/start", qos.COMMAND)
+        self.commands = CommandTopics(node, self.topics, robots, on_event, clock)
+        self._heartbeat = self.topics.speak(UInt32, HEARTBEAT, qos.COMMAND, alone=True)
+        self._start = self.topics.speak(UInt8, "system/start", qos.COMMAND)
         self._unheard = 0
-        self._task_status = self._speak(String, "task_status", qos.TASK_STATUS)
-        self._view = self._speak(String, "plant/view", qos.VIEW)
-        self._listen(String, "task_request", self._on_request, qos.TASK_REQUEST)
+        self._task_status = self.topics.speak(String, "task_status", qos.TASK_STATUS)
+        self._view = self.topics.speak(String, "plant/view", qos.VIEW)
+        self.topics.listen(String, "task_request", self._on_request, qos.TASK_REQUEST)
         self._all = Diagnostics()
         self._asker = Asker(on_event, clock)
         self._verbs = VerbServices(node, self._asker)
@@ -122,7 +88,7 @@ class OrchestratorPort(Port):
         elif isinstance(message, OperatorAnswer):
             self._asker.answered(message)
         elif isinstance(message, Command):
-            self._command(message)
+            self.commands.send(message)
 
     @property
     def watched(self) -> bool:
@@ -172,7 +138,7 @@ class OrchestratorPort(Port):
                 "%s is not built here: no action plant/execute_task, no typed services and topics", TYPES
             )
             return None
-        return Offer(self._node, self._speak, cells, self._asker)
+        return Offer(self._node, self.topics.speak, cells, self._asker)
 
     def _streamed(self, cells: Iterable[str]) -> SnapshotStreams | None:
         """The streams of py_trees_ros; None, with a line in the log, if its types are not installed."""
@@ -200,79 +166,32 @@ class OrchestratorPort(Port):
             self._task_status.wait_for_all_acked(CATCH_UP)
             self._unheard = 0
 
-    def _command(self, command: Command) -> None:
-        """Publish a command: on `command` if our bridge listens, on the plain topic for everybody else."""
-        key = (command.robot, kind_of(command))
-        plain, labelled = self._commands[key], self._labelled.get(command.robot)
-        if labelled is None:
-            self._speak_plainly(command, key)
-            return
-        bridges, listeners = labelled.get_subscription_count(), plain.get_subscription_count()
-        if not bridges and not listeners:
-            raise NoBridge(f"no bridge listens to {labelled.topic_name}")
-        if not bridges:
-            self._speak_plainly(command, key)
-            return
-        copied = listeners > bridges  # a bridge listens to both
-        robot = self._robots[command.robot]
-        labelled.publish(convert.labelled_message(robot, command, copied=copied, into=self._forms.get(key)))
-        if copied:
-            plain.publish(convert.command_message(command, copy=True))
-
-    def _plain(self, robot: Robot, kind: type[Command], speak: Callable[..., Publisher]) -> Publisher:
-        """The publisher of a plain topic; that of a device's orders serves for all its commands."""
-        _, of_all = convert.ordered(robot)
-        topic = f"{robot.name}/{PLAIN[kind]}"
-        if topic == of_all and robot.name in self._labelled:
-            return self._labelled[robot.name]
-        return speak(convert.message_type(kind), topic)
-
-    def _speak_plainly(self, command: Command, key: tuple[str, type[Command]]) -> None:
-        message = convert.command_message(command, into=self._forms.get(key))
-        own = self._own.get(key)
-        if own is not None:
-            own.say(message)
-        self._commands[key].publish(message)
-
     def _hear(self, robot: Robot) -> None:
-        """Subscribe to the topics that a robot's link and evidence provide, and to others' commands to it."""
-        for kind in convert.commands_of(robot) if robot.link is Link.ROS else ():
-            overhear = partial(self._on_command, robot, kind)
-            self._listen(convert.message_type(kind), f"{robot.name}/{PLAIN[kind]}", overhear, qos.BEST_EFFORT)
+        """Subscribe to the topics that a robot's link and evidence provide."""
         if isinstance(robot, Arm):
-            self._listen(UInt8, f"{robot.name}/start", partial(self._on_trigger, robot), qos.COMMAND)
+            self.topics.listen(UInt8, f"{robot.name}/start", partial(self._on_trigger, robot), qos.COMMAND)
         speakers = Speakers(self._node, robot.name, self._clock, self._on_event)
         tells_facts = isinstance(robot, Device) and robot.evidence is not Evidence.STATE
         if robot.link is Link.MQTT or robot.evidence is Evidence.IDS or tells_facts:
             ear = statuses.StatusListener(robot, self._clock, self._on_event)
             topic = f"{robot.name}/status"
             if robot.link is Link.ROS:
-                self._listen_as_offered(DiagnosticStatus, topic, ear, raw=True, speakers=speakers)
+                self.topics.listen_as_offered(DiagnosticStatus, topic, ear, raw=True, speakers=speakers)
             else:
-                self._listen(DiagnosticStatus, topic, ear, qos.COMMAND, raw=True, speakers=speakers)
+                self.topics.listen(DiagnosticStatus, topic, ear, qos.COMMAND, raw=True, speakers=speakers)
             return
         reports = PlainReports(robot)
         on_state = self._reporting(reports.state)
-        self._listen_as_offered(UInt8, f"{robot.name}/motion_state", on_state, speakers=speakers)
+        self.topics.listen_as_offered(UInt8, f"{robot.name}/motion_state", on_state, speakers=speakers)
         if robot.evidence is Evidence.JOINTS:
             on_joints = self._reporting(reports.joints)
-            self._listen(JointState, robot.joint_states.topic, on_joints, qos.SENSOR, speakers=speakers)
+            self.topics.listen(JointState, robot.joint_states.topic, on_joints, qos.SENSOR, speakers=speakers)
         if isinstance(robot, Arm):
             on_piece = self._reporting(reports.piece)
-            self._listen(Bool, f"{robot.name}/piece_detected", on_piece, qos.SENSOR, speakers=speakers)
+            self.topics.listen(Bool, f"{robot.name}/piece_detected", on_piece, qos.SENSOR, speakers=speakers)
 
     def _reporting(self, read: Callable[[float, Any], Report]) -> Callable[[Any], None]:
         return lambda message: self._on_event(read(self._clock(), message))
-
-    def _on_command(self, robot: Robot, kind: type[Command], message: Any) -> None:
-        """Take a command on a topic of a robot that hears everybody: the plant's own, or somebody else's."""
-        if self._own[robot.name, kind].is_own(message):
-            return
-        command = convert.command(kind, robot, message)
-        sentence = rejections.overheard(command, self._senders.of(f"{robot.name}/{PLAIN[kind]}"))
-        if self._others.is_due(sentence, self._clock()):
-            self._log.warning("%s", sentence)
-        self._on_event(Interference(at=self._clock(), robot=robot.name, sentence=sentence))
 
     def _on_request(self, message: String) -> None:
         self._on_event(TaskRequest(at=self._clock(), text=message.data))

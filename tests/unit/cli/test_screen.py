@@ -13,7 +13,7 @@ from rich.text import Text
 from arboleda.cli import screen as shown
 from arboleda.cli.screen import Screen, joints, logged, parting, table
 from arboleda.model.messages import MotionState, Reason, TaskChanged, TaskState, Verb
-from arboleda.runtime.parts.orchestrator import task_line
+from arboleda.runtime.parts.plant_log import task_line
 from arboleda.views import view
 from arboleda_proofs.testing import Rig, shipped
 

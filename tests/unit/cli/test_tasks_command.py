@@ -33,11 +33,11 @@ def state(tmp_path: Path) -> Path:
     with Store(tmp_path / "plant.sqlite") as store:
         for id, text, ago_s in (("a", "sis_a 0B 1", 7200), ("b", "sis_b 0B 2", 60), ("c", "sis_a 1B 3", 30)):
             queued = TaskChanged(task=id, text=text, cell=text.split()[0], state=TaskState.QUEUED)
-            store.task(queued, "storage", NOW - ago_s)
-        store.task(told("a", TaskState.RUNNING), "", NOW - 7200)
-        store.task(told("a", TaskState.DONE), "", NOW - 7190)
+            store.tasks.keep(queued, "storage", NOW - ago_s)
+        store.tasks.keep(told("a", TaskState.RUNNING), "", NOW - 7200)
+        store.tasks.keep(told("a", TaskState.DONE), "", NOW - 7190)
         late = told("b", TaskState.FAILED, reason=Reason.DEADLINE, sentence=OWN(text="ra2: too late"))
-        store.task(late, "", NOW - 50)
+        store.tasks.keep(late, "", NOW - 50)
     return tmp_path
 
 
@@ -65,8 +65,8 @@ def test_an_id_is_whole_in_one_line_of_a_narrow_terminal(
     )
     with Store(tmp_path / "plant.sqlite") as store:
         queued = TaskChanged(task=id, text="sis_b 0B 2", cell="sis_b", state=TaskState.QUEUED)
-        store.task(queued, "storage", NOW)
-        store.task(told(id, TaskState.FAILED, reason=Reason.DEADLINE, sentence=why), "", NOW)
+        store.tasks.keep(queued, "storage", NOW)
+        store.tasks.keep(told(id, TaskState.FAILED, reason=Reason.DEADLINE, sentence=why), "", NOW)
     assert id in said(state=tmp_path)
 
 
@@ -106,7 +106,7 @@ def test_what_was_answered_is_in_the_list_where_anything_was(state: Path) -> Non
             TaskAnswer(by="ana", asked="Is it full?", answer=True),
             TaskAnswer(by="eye", asked="look", answer=2),
         ]
-        store.task(told("c", TaskState.DONE), "", NOW, answers=heard)
+        store.tasks.keep(told("c", TaskState.DONE), "", NOW, answers=heard)
     shown = " ".join(said("--limit", "1", state=state).split())
     assert "why answers" in shown and "full?: yes; eye, look: 2" in shown
     (row,) = [json.loads(line) for line in said("--limit", "1", "--json", state=state).splitlines()]
@@ -118,7 +118,7 @@ def test_what_was_answered_is_in_the_list_where_anything_was(state: Path) -> Non
 def test_why_a_task_is_done_in_its_cell_is_in_the_list(state: Path) -> None:
     why = LATER(cell="sis_b", seconds=12.5)
     with Store(state / "plant.sqlite") as store:
-        store.task(replace(told("d", TaskState.QUEUED), cell="sis_b", choice=why), "storage", NOW)
+        store.tasks.keep(replace(told("d", TaskState.QUEUED), cell="sis_b", choice=why), "storage", NOW)
     assert "sis_b in 12 s" in " ".join(said("--limit", "1", state=state).split())
     (row,) = [json.loads(line) for line in said("--limit", "1", "--json", state=state).splitlines()]
     assert row["choice"]["key"] == "choice.later" and row["choice"]["english"] == "sis_b in 12 s"
@@ -128,7 +128,7 @@ def test_what_of_a_done_task_nobody_confirmed_is_in_the_list(state: Path) -> Non
     with Store(state / "plant.sqlite") as store:
         checks = (Check.GRIP,)
         done = told("c", TaskState.DONE, sentence=UNCHECKED[checks](), unchecked=checks)
-        store.task(done, "", NOW)
+        store.tasks.keep(done, "", NOW)
     why = "not checked: whether the part was gripped"
     assert why in " ".join(said("--limit", "1", state=state).split())
     (row,) = [json.loads(line) for line in said("--limit", "1", "--json", state=state).splitlines()]
@@ -151,12 +151,12 @@ def test_a_backup_is_the_memory_and_a_restore_puts_it_back(state: Path, tmp_path
     copy = tmp_path / "copy.sqlite"
     for command in (["backup", str(copy)], ["restore", str(copy)]):
         with Store(state / "plant.sqlite") as store:
-            store.forget_tasks(NOW if command[0] == "restore" else 0.0)
+            store.tasks.forget(NOW if command[0] == "restore" else 0.0)
         outcome = CliRunner().invoke(cli, [*command, "--state", str(state)], catch_exceptions=False)
         assert outcome.exit_code == 0, outcome.output
     assert ids(state=state) == ["a", "b", "c"]
     with Store(state / "plant.sqlite.before-restore") as store:
-        assert [row.id for row in store.tasks(TaskQuery())] == ["c"]
+        assert [row.id for row in store.tasks.select(TaskQuery())] == ["c"]
 
 
 def test_a_backup_overwrites_nothing(state: Path, tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ from arboleda.model.messages import (
 from arboleda.model.plant_model import Cell, PlantModel, Pose, Retry, Timing
 from arboleda.model.recipe import Recipe
 from arboleda.recorder.replay import plant_of, replayed
-from arboleda.recorder.tape import TapedPlant
+from arboleda.recorder.tape import TapedPlant, recorded
 from arboleda_proofs.simulator.world import World
 from arboleda_proofs.testing import shipped
 from arboleda_proofs.testing.rig import Rig
@@ -210,7 +210,7 @@ def test_a_replay_over_a_change_in_the_middle_is_the_same_to_the_last_bit() -> N
     world.advance(120.0)
     plant = world.plant
     assert isinstance(plant, TapedPlant)
-    steps = [*plant.steps()]
+    steps = [*recorded(plant.tape)]
     again = plant_of(plant.beginning, model, {NEXT.digest: other})
     assert [each.difference for each in replayed(again, steps)] == [None] * len(steps)
     assert again.model.cell("sis_a").stations[0].q == Q

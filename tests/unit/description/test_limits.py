@@ -122,4 +122,4 @@ def driving(body: Any, to: JointsGoal, index: int, clock: Iterator[int]) -> Iter
     body.start(next(clock), to)
     while body.moving:
         body.advance(next(clock))
-        yield body.speeds[index]
+        yield body.motors.speeds[index]

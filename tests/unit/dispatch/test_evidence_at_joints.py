@@ -20,7 +20,7 @@ from arboleda_proofs.testing.storage_layout import StorageLayout
 
 MOVING, STOPPED = MotionState.MOVING, MotionState.STOPPED
 CELL = shipped("sis_a", evidence=Evidence.JOINTS).cell("sis_a")
-HOME, GOAL, HALFWAY = (StorageLayout(CELL).arm.quantised((q1, 0.0, 0.0)) for q1 in (0.0, 0.2, 0.1))
+HOME, GOAL, HALFWAY = (StorageLayout(CELL).arm.motion.quantised((q1, 0.0, 0.0)) for q1 in (0.0, 0.2, 0.1))
 PERIOD_S = 0.1
 
 

@@ -52,7 +52,7 @@ def part_at(arm: Arm, q: Q) -> tuple[kinematics.Point, kinematics.Point, kinemat
 
 
 def held(arm: Arm, pose: Pose) -> tuple[kinematics.Point, kinematics.Point, kinematics.Point]:
-    return part_at(arm, arm.quantised(pose.q))
+    return part_at(arm, arm.motion.quantised(pose.q))
 
 
 def carried(mobile: Mobile, node: int) -> kinematics.Point:
@@ -140,7 +140,9 @@ def test_nothing_of_an_arm_is_below_the_floor_at_a_pose(name: str) -> None:
     cell = CELLS[name]
     layout = StorageLayout(cell)
     for pose in layout.space.poses:
-        assert all(frame[2][3] >= 0 for frame in frames(layout.arm, layout.arm.quantised(pose.q)).values())
+        assert all(
+            frame[2][3] >= 0 for frame in frames(layout.arm, layout.arm.motion.quantised(pose.q)).values()
+        )
 
 
 @pytest.mark.sampled(5)

@@ -37,7 +37,7 @@ class Ear(Port):
 
     def __init__(self, middleware: Any, handle: Callable[[UInt32], None]) -> None:
         super().__init__(middleware, lambda: 0.0)
-        self._listen(UInt32, "beat", handle, qos.COMMAND)
+        self.topics.listen(UInt32, "beat", handle, qos.COMMAND)
 
 
 def test_a_handler_that_raises_is_logged_and_the_next_message_is_handled(

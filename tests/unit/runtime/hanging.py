@@ -13,7 +13,7 @@ import pytest
 from arboleda.departures.leaving import ends_motion
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskChanged
-from arboleda.runtime.parts import orchestrator
+from arboleda.runtime.parts import plant_log
 from arboleda.runtime.parts.orchestrator import Orchestrator
 from arboleda.store.sqlite import Store
 from arboleda_proofs.testing.plants import shipped
@@ -99,12 +99,12 @@ def hang_before(gate: Gate, owner: Any, name: str, monkeypatch: pytest.MonkeyPat
 
 
 def commit_of_a_task(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
-    hang_before(gate, plant._store, "task", monkeypatch)
+    hang_before(gate, plant.keeping.store.tasks, "keep", monkeypatch)
 
 
 def log(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(orchestrator.TASKS, "isEnabledFor", lambda level: True)
-    monkeypatch.setattr(orchestrator.TASKS, "handlers", [HangingHandler(gate)])
+    monkeypatch.setattr(plant_log.TASKS, "isEnabledFor", lambda level: True)
+    monkeypatch.setattr(plant_log.TASKS, "handlers", [HangingHandler(gate)])
 
 
 def fail(*_: object, **__: object) -> None:

@@ -58,10 +58,10 @@ def test_kept_tasks_come_in_their_order_with_times_of_this_start(store: Store) -
         return TaskChanged(task=id, text="sis_a 0B 1", cell="sis_a", state=state, **why)  # type: ignore[arg-type]
 
     late = Phrase("late", "{robot} took {seconds} s")(robot="ra1", seconds=3)
-    store.task(change("a", TaskState.QUEUED), "storage", 1000.0)
-    store.task(change("b", TaskState.QUEUED), "storage", 1001.0)
-    store.task(change("a", TaskState.RUNNING), "storage", 1002.0)
-    store.task(change("a", TaskState.FAILED, reason=Reason.DEADLINE, sentence=late), "storage", 1005.0)
+    store.tasks.keep(change("a", TaskState.QUEUED), "storage", 1000.0)
+    store.tasks.keep(change("b", TaskState.QUEUED), "storage", 1001.0)
+    store.tasks.keep(change("a", TaskState.RUNNING), "storage", 1002.0)
+    store.tasks.keep(change("a", TaskState.FAILED, reason=Reason.DEADLINE, sentence=late), "storage", 1005.0)
     a, b = kept_tasks(store, clock_s=50.0, unix_s=1010.0)
     assert (a.id, a.state, a.started_at, a.ended_at) == ("a", TaskState.FAILED, 42.0, 45.0)
     assert (b.id, b.state, b.started_at, b.failure) == ("b", TaskState.QUEUED, None, None)
@@ -75,21 +75,21 @@ def test_kept_tasks_come_in_their_order_with_times_of_this_start(store: Store) -
 
 def test_a_task_comes_back_with_what_was_answered(store: Store) -> None:
     change = TaskChanged(task="a", text="bench weigh", cell="bench", state=TaskState.QUEUED)
-    store.task(change, "weigh", 1000.0)
+    store.tasks.keep(change, "weigh", 1000.0)
     heard = TaskAnswer(by="scale", asked="weigh", answer="enough")
-    store.task(replace(change, state=TaskState.DONE), "weigh", 1002.0, answers=[heard])
+    store.tasks.keep(replace(change, state=TaskState.DONE), "weigh", 1002.0, answers=[heard])
     (task,) = kept_tasks(store, clock_s=50.0, unix_s=1010.0)
     assert task.answers == (heard,)
 
 
 def test_a_task_comes_back_with_how_it_went_and_without_where_that_is_damaged(store: Store) -> None:
     change = TaskChanged(task="a", text="bench weigh", cell="bench", state=TaskState.QUEUED)
-    store.task(change, "weigh", 1000.0)
+    store.tasks.keep(change, "weigh", 1000.0)
     course = Course(seconds=2.0, begun={"look #1": 0.25})
-    store.task(replace(change, state=TaskState.DONE, course=course), "weigh", 1002.0)
+    store.tasks.keep(replace(change, state=TaskState.DONE, course=course), "weigh", 1002.0)
     (task,) = kept_tasks(store, clock_s=50.0, unix_s=1010.0)
     assert task.course == course
-    (row,) = store.tasks(TaskQuery())
+    (row,) = store.tasks.select(TaskQuery())
     for damaged in (
         "{",
         "[]",
@@ -102,13 +102,13 @@ def test_a_task_comes_back_with_how_it_went_and_without_where_that_is_damaged(st
 
 def test_a_task_comes_back_with_what_was_not_checked_and_without_where_that_is_damaged(store: Store) -> None:
     change = TaskChanged(task="a", text="bench weigh", cell="bench", state=TaskState.QUEUED)
-    store.task(change, "weigh", 1000.0)
+    store.tasks.keep(change, "weigh", 1000.0)
     done = replace(change, state=TaskState.DONE, unchecked=(Check.RELEASE,))
-    store.task(done, "weigh", 1002.0)
+    store.tasks.keep(done, "weigh", 1002.0)
     (task,) = kept_tasks(store, clock_s=50.0, unix_s=1010.0)
     assert task.unchecked == (Check.RELEASE,)
     assert str(Task.of(task).remark) == "not checked: whether the part was let go of"
-    (row,) = store.tasks(TaskQuery())
+    (row,) = store.tasks.select(TaskQuery())
     assert unchecked_of(replace(row, unchecked="grip weight")) == ()
 
 

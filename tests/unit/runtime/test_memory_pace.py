@@ -46,7 +46,7 @@ def test_each_sync_is_timed_and_no_commit(time: Time) -> None:
     with SlowStore(time) as store:
         store.timing, store.takes_s = pace, 0.25
         store.keep(LATCH)
-        store.note_run(5.0)
+        store.times.note_run(5.0)
         assert lengths == []
         store.sync()
         assert lengths == [pytest.approx(0.25)]

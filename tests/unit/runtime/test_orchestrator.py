@@ -36,12 +36,12 @@ from arboleda.model.messages import (
 from arboleda.model.sentence import OWN
 from arboleda.model.task import Order, Task
 from arboleda.runtime.build import Options, build
-from arboleda.runtime.parts import orchestrator
+from arboleda.runtime.parts import orchestrator, screens
 from arboleda.runtime.parts.bridge import BridgePart
 from arboleda.runtime.parts.broker import OtherBroker
 from arboleda.runtime.parts.orchestrator import Orchestrator
 from arboleda.runtime.parts.slices import PAUSE_S, SLICE_S
-from arboleda.store.plant_memory import Superseded
+from arboleda.store.lead import Superseded
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskQuery, answers_of
 from arboleda.wire import status
@@ -111,8 +111,8 @@ def break_disk(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
         raise ArboledaError("The disk is full.")
 
     monkeypatch.setattr(store, "keep", fail)
-    monkeypatch.setattr(store, "journal", fail)
-    monkeypatch.setattr(store, "task", fail)
+    monkeypatch.setattr(store.acts, "keep", fail)
+    monkeypatch.setattr(store.tasks, "keep", fail)
 
 
 def test_a_fact_is_kept_before_the_next_message_leaves(plant):
@@ -143,7 +143,7 @@ def test_a_plant_is_told_what_the_one_before_it_kept(plant, store):
 def test_an_operators_act_is_journalled_with_the_time_of_day(plant, store, monkeypatch):
     monkeypatch.setattr(orchestrator.time, "time", lambda: 1_700_000_000.5)
     turn(plant, ACT)
-    [entry] = store.entries()
+    [entry] = store.acts.last()
     assert (entry.unix_s, entry.verb, entry.sentence) == (1_700_000_000.5, "stop", "everything stopped")
 
 
@@ -258,20 +258,20 @@ def shows(plant, monkeypatch):
     now, shown = [100.0], []
     monkeypatch.setattr(orchestrator.time, "thread_time", lambda: 0.0)
     monkeypatch.setattr(plant.loop, "_clock", lambda: now[0])
-    monkeypatch.setattr(orchestrator.view, "in_parts", at_once)
+    monkeypatch.setattr(screens.view, "in_parts", at_once)
     monkeypatch.setattr(Script, "version", 1, raising=False)
-    plant.watchers.append(shown.append)
+    plant.screens.watchers.append(shown.append)
     return now, shown
 
 
 def test_a_change_is_shown_a_little_later_with_what_followed_at_once(plant, shows, monkeypatch):
     now, shown = shows
     turn(plant, ON)
-    now[0] += orchestrator.SETTLE_S / 2
+    now[0] += screens.SETTLE_S / 2
     monkeypatch.setattr(Script, "version", 2)
     turn(plant)
     assert shown == []
-    now[0] += orchestrator.SETTLE_S
+    now[0] += screens.SETTLE_S
     turn(plant)
     assert shown == [2]
     turn(plant)
@@ -281,9 +281,9 @@ def test_a_change_is_shown_a_little_later_with_what_followed_at_once(plant, show
 def test_without_a_change_it_is_shown_now_and_then(plant, shows):
     now, shown = shows
     for _ in range(2):
-        now[0] += orchestrator.VIEW_S
+        now[0] += screens.VIEW_S
         turn(plant)
-        now[0] += orchestrator.SETTLE_S
+        now[0] += screens.SETTLE_S
         turn(plant)
     assert shown == [1, 1]
 
@@ -318,15 +318,15 @@ def test_topics_on_which_nobody_listens_are_told_changes_only(
     plant, store, shows, monkeypatch, watched, diagnosed, changed, unchanged
 ):
     now, _ = shows
-    plant.watchers.clear()
+    plant.screens.watchers.clear()
     topics = Topics(store, watched=watched, diagnosed=diagnosed)
     plant.connect(topics)
     plant.connect_ros(topics)
-    monkeypatch.setattr(orchestrator.diagnostics, "diagnostics", lambda snapshot: [])
+    monkeypatch.setattr(screens.diagnostics, "diagnostics", lambda snapshot: [])
     for told in (changed, unchanged):
-        now[0] += orchestrator.VIEW_S
+        now[0] += screens.VIEW_S
         turn(plant)
-        now[0] += orchestrator.SETTLE_S
+        now[0] += screens.SETTLE_S
         turn(plant)
         assert topics.told == told
         topics.told.clear()
@@ -339,14 +339,14 @@ def test_a_record_that_has_stopped_is_diagnosed(plant, store, shows):
     topics.publish_diagnostics = lambda statuses: iter(rows.extend(statuses) or ())
     plant.connect(topics)
     plant.connect_ros(topics)
-    plant.recorder = SimpleNamespace(trouble="", stepped=lambda *_: None, saw=lambda *_: None)
+    plant.screens.recorder = SimpleNamespace(trouble="", stepped=lambda *_: None, saw=lambda *_: None)
     told = []
     for trouble in ("", "the disk is full"):
-        plant.recorder.trouble = trouble
+        plant.screens.recorder.trouble = trouble
         rows.clear()
-        now[0] += orchestrator.VIEW_S
+        now[0] += screens.VIEW_S
         turn(plant)
-        now[0] += orchestrator.SETTLE_S
+        now[0] += screens.SETTLE_S
         turn(plant)
         told += [row[2:4] for row in rows if row[0] == "arboleda: record"]
     assert told == [(status.OK, "written"), (status.WARN, "the disk is full")]
@@ -356,12 +356,12 @@ def test_snapshots_that_take_long_come_seldom_and_none_is_owed_in_the_end(plant,
     now, shown = shows
     spent = [0.0]
     monkeypatch.setattr(orchestrator.time, "thread_time", lambda: spent[0])
-    plant.watchers.append(lambda snapshot: spent.append(spent.pop() + 0.05))
+    plant.screens.watchers.append(lambda snapshot: spent.append(spent.pop() + 0.05))
     for version in range(1, 201):  # 2 s in which something changes all the time
         monkeypatch.setattr(Script, "version", version)
         turn(plant)
         now[0] += 0.01
-    assert spent[0] <= 1.2 * orchestrator.SHARE * 2.0
+    assert spent[0] <= 1.2 * screens.SHARE * 2.0
     assert len(shown) >= 4
     now[0] += 1.0
     turn(plant)
@@ -381,7 +381,7 @@ def slow_parts(plant, shows, monkeypatch):
             yield
         return Shown(made[-10:])
 
-    monkeypatch.setattr(orchestrator.view, "in_parts", in_parts)
+    monkeypatch.setattr(screens.view, "in_parts", in_parts)
     return *shows, made
 
 
@@ -389,7 +389,7 @@ def test_a_snapshot_that_takes_long_is_made_between_steps(plant, slow_parts, mon
     now, shown, made = slow_parts
     heard = 0
     turn(plant, ON)
-    now[0] += orchestrator.SETTLE_S
+    now[0] += screens.SETTLE_S
     for step in range(10):
         assert shown == [], "it is shown once it is whole"
         plant.loop.post("an event")
@@ -412,7 +412,7 @@ def test_a_snapshot_that_takes_long_is_made_between_steps(plant, slow_parts, mon
 def test_a_snapshot_that_is_being_made_is_shown_whole_at_the_end(plant, slow_parts):
     now, shown, made = slow_parts
     turn(plant, ON)
-    now[0] += orchestrator.SETTLE_S
+    now[0] += screens.SETTLE_S
     turn(plant)
     assert (shown, len(made)) == ([], 1)
     plant.plant.intake.closed = True
@@ -540,8 +540,8 @@ def test_a_view_that_cannot_be_made_is_logged_once_and_does_not_end_the_plant(pl
     def broken(each, part_of):
         raise KeyError("by design")
 
-    monkeypatch.setattr(orchestrator.view, "in_parts", broken)
-    plant.watchers.append(lambda snapshot: None)
+    monkeypatch.setattr(screens.view, "in_parts", broken)
+    plant.screens.watchers.append(lambda snapshot: None)
     plant.plant.intake.closed = True
     plant.plant.says = lambda events: [Heartbeat(epoch=7)]
     for version in range(3):
@@ -575,7 +575,7 @@ def test_an_absence_is_one_line_in_the_log(plant, caplog):
 def test_a_task_is_kept_before_whoever_asked_hears_that_it_is_queued(plant, store):
     kept = []
     answer = plant.submit("sis_a 0B 1")
-    answer.add_done_callback(lambda _: kept.extend(row.id for row in store.tasks(TaskQuery())))
+    answer.add_done_callback(lambda _: kept.extend(row.id for row in store.tasks.select(TaskQuery())))
     plant.plant.says = lambda events: [replace(TASK, request=events[0].request)]
     plant.loop.turn()
     assert kept == ["a"]
@@ -588,7 +588,7 @@ def test_it_is_kept_by_which_way_a_task_came(plant, store):
         plant.plant.says = lambda events, id=id: [replace(TASK, task=id, request=events[0].request)]
         plant.loop.turn()
     turn(plant, replace(TASK, task="c"))  # of a topic, where nobody waits for an answer
-    kept = {row.id: row.asked_by for row in store.tasks(TaskQuery())}
+    kept = {row.id: row.asked_by for row in store.tasks.select(TaskQuery())}
     assert kept == {"a": "page", "b": "command", "c": "ros2"}
 
 
@@ -599,7 +599,7 @@ def test_a_retry_is_an_attempt_that_is_kept(plant, store, cell):
     task.attempts = 2
     plant.plant.cells["sis_a"].task = task
     turn(plant, replace(ACT, verb=Verb.RETRY, cell=cell))
-    assert [row.attempts for row in store.tasks(TaskQuery())] == [2]
+    assert [row.attempts for row in store.tasks.select(TaskQuery())] == [2]
 
 
 def test_the_end_of_a_task_is_kept_with_what_was_answered(plant, store):
@@ -608,7 +608,7 @@ def test_the_end_of_a_task_is_kept_with_what_was_answered(plant, store):
     task.answers = [TaskAnswer(by="eye", asked="look", answer="good")]
     plant.plant.intake.tasks["a"] = task
     turn(plant, replace(TASK, state=TaskState.DONE))
-    (row,) = store.tasks(TaskQuery())
+    (row,) = store.tasks.select(TaskQuery())
     assert answers_of(row) == (TaskAnswer(by="eye", asked="look", answer="good"),)
 
 
@@ -629,7 +629,7 @@ def test_a_plant_that_another_process_leads_sends_nothing_not_even_a_stop(
         raise Superseded("Another process leads.")
 
     monkeypatch.setattr(store, "confirm", superseded)
-    monkeypatch.setattr(type(store), "leads_for_certain", False)
+    monkeypatch.setattr(type(store.lead), "is_certain", False)
     turn(plant, message, message)
     turn(plant, Heartbeat(epoch=7), Stop(id="", robot="ra1", mode=StopMode.HALT))
     assert plant.robots.messages == []
@@ -646,7 +646,7 @@ def test_a_plant_that_cannot_find_out_whether_it_leads_stops_robots_and_nothing_
         raise ArboledaError("The server is away.")
 
     monkeypatch.setattr(store, "confirm", away)
-    monkeypatch.setattr(type(store), "leads_for_certain", False)
+    monkeypatch.setattr(type(store.lead), "is_certain", False)
     stop = Stop(id="", robot="ra1", mode=StopMode.HALT)
     turn(plant, ON, stop, Heartbeat(epoch=7))
     assert plant.robots.messages == [stop, Heartbeat(epoch=7)]
@@ -680,10 +680,10 @@ def test_a_leader_before_that_is_still_on_ros_keeps_no_other_from_leading(
 ):
     topics, started = Topics(store, watched=False, diagnosed=False), []
     monkeypatch.setattr(topics, "check_alone", lambda: refuse("another node already commands"), raising=False)
-    monkeypatch.setattr(store, "renew_s", renew_s, raising=False)
+    monkeypatch.setattr(store.lead, "renew_s", renew_s, raising=False)
     monkeypatch.setattr(plant.loop, "start", lambda: started.append(plant))
     monkeypatch.setattr(plant.stops.loop, "start", lambda: None)
-    monkeypatch.setattr(plant.durability, "start", lambda: None)
+    monkeypatch.setattr(plant.keeping.durability, "start", lambda: None)
     plant.connect_ros(topics)
     with nullcontext() if begins else pytest.raises(StartError, match="already commands"):
         plant.start()

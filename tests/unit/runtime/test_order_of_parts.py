@@ -137,7 +137,7 @@ def test_who_shares_a_memory_keeps_the_lead_before_a_device_is_reached(
 
     def leased(*about: Any) -> PlantMemory:
         memory = memory_of(*about)
-        memory.renew_s = 1.0
+        memory.lead.renew_s = 1.0
         return memory
 
     monkeypatch.setattr(holdings, "memory_of", leased)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -118,14 +119,14 @@ PARTS = [Factory(phase=Phase.VIEWS, make=make)]
 """
 
 
-@pytest.mark.parametrize("listeners", ["listeners", "observers", "watchers"])
+@pytest.mark.parametrize("listeners", ["listeners", "observers", "screens.watchers"])
 def test_a_listener_of_a_package_that_breaks_is_left_out_once_and_the_plant_goes_on(
     tmp_path: Path, put: Install, listeners: str
 ) -> None:
     put("acme", LISTENS.format(listeners=listeners))
     app = built(tmp_path)
     heard: list[Any] = []
-    getattr(app.plant, listeners).append(heard.append)
+    attrgetter(listeners)(app.plant).append(heard.append)
     try:
         for id in ("lot", "next"):
             asked = app.plant.submit(f"sis_a 0B 7 #{id}")
@@ -216,7 +217,7 @@ def test_a_shared_memory_is_refused_where_nothing_keeps_the_lead(
 
     def leased(*about: Any) -> Any:
         memory = memory_of(*about)
-        memory.renew_s = 1.0
+        memory.lead.renew_s = 1.0
         return memory
 
     monkeypatch.setattr(holdings, "memory_of", leased)

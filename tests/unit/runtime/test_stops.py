@@ -24,6 +24,7 @@ from arboleda.model.messages import (
 )
 from arboleda.runtime.parts import orchestrator
 from arboleda.runtime.parts.orchestrator import Orchestrator
+from arboleda.store.lead import Superseded
 from arboleda.store.sqlite import Store
 
 from .hanging import Robots, commit_of_a_task, fail, hang_before, log, made
@@ -61,11 +62,11 @@ def plant(store: Store, robots: Robots, crashes: list[BaseException]) -> Orchest
 def database_that_is_asked_who_leads(
     plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    hang_before(gate, plant._store, "confirm", monkeypatch)
+    hang_before(gate, plant.keeping.store, "confirm", monkeypatch)
 
 
 def recorder(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
-    plant.recorder = SimpleNamespace(trouble="", stepped=gate, saw=gate)
+    plant.screens.recorder = SimpleNamespace(trouble="", stepped=gate, saw=gate)
 
 
 def listener(plant: Orchestrator, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -188,7 +189,7 @@ def test_what_is_made_after_a_stop_is_not_overtaken_by_it(scripted, robots) -> N
 
 
 def test_a_plant_whose_lease_is_over_asks_before_it_stops(scripted, robots, store, monkeypatch) -> None:
-    monkeypatch.setattr(type(store), "leads_for_certain", False)
+    monkeypatch.setattr(type(store.lead), "is_certain", False)
     monkeypatch.setattr(scripted.loop, "busy", True)
     scripted.operate(Verb.STOP)
     scripted.stops.loop.turn()
@@ -199,7 +200,7 @@ def test_a_plant_that_another_process_leads_sends_no_stop_beside_its_steps(
     scripted, robots, store, crashes, monkeypatch
 ) -> None:
     def superseded() -> None:
-        raise orchestrator.Superseded("Another process leads.")
+        raise Superseded("Another process leads.")
 
     monkeypatch.setattr(store, "confirm", superseded)
     turn(scripted, Heartbeat(epoch=7))

@@ -70,12 +70,12 @@ def nodes_seen(bench):
 def test_targets_are_rounded_to_the_nearest_motor_step(arm, bench):
     arm.go(45.0, 10.0, 50.0)
     assert bench.last(ARM).q == (round(2333 * 0.01929, 4), 9.9, 50.4)
-    assert bench.devices.boards[ARM].body.position == (2333, 11, 56)
+    assert bench.devices.boards[ARM].body.motors.position == (2333, 11, 56)
 
 
 def test_targets_below_zero_are_rounded_alike(arm, bench):
     arm.go(-45.0, -10.0, 0.0)
-    assert bench.devices.boards[ARM].body.position == (-2333, -11, 0)
+    assert bench.devices.boards[ARM].body.motors.position == (-2333, -11, 0)
 
 
 def test_a_move_takes_the_time_of_its_ramp(arm, bench):
@@ -105,7 +105,7 @@ def test_axes_faster_than_the_board_can_step_still_arrive(rate):
     body = ArmBody(replace(six_axes, joints=tuple(fast)), start=(0.0,) * 6, pickups=())
     body.start(10_000_000, JointsGoal(q=(350.0, 10.0, -5.0, 0.01, 0.0, 0.0), seq=1, epoch=1))
     body.advance(body.next_change_us)
-    assert body.position == (35000, 1000, -500, 1, 0, 0)
+    assert body.motors.position == (35000, 1000, -500, 1, 0, 0)
 
 
 def test_a_move_to_where_the_arm_stands_is_moving_once_and_then_done(arm, bench):

@@ -8,8 +8,8 @@ import math
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from arboleda.sim.arm import FASTEST, STEEPEST
 from arboleda.sim.axis import Axis
+from arboleda.sim.motors import FASTEST, STEEPEST
 from arboleda.sim.stepper import Stepper
 
 BOOT_US = 10_000_000

@@ -29,10 +29,10 @@ def go(bench, seq=1, q1=18.0):
 
 def test_a_reboot_forgets_the_position_and_moves_nothing(bench, arm):
     go(bench)
-    stood = arm.body.position
+    stood = arm.body.motors.position
     bench.reboot(ARM)
-    assert arm.body.position == (0, 0, 0) != stood
-    assert arm.body.true_position == stood
+    assert arm.body.motors.position == (0, 0, 0) != stood
+    assert arm.body.motors.true_position == stood
 
 
 def test_homing_finds_the_true_reference_whatever_was_counted(bench, arm):
@@ -41,24 +41,24 @@ def test_homing_finds_the_true_reference_whatever_was_counted(bench, arm):
     bench.send(ARM, Channel.HOME, HomeGoal(seq=2, epoch=50))
     assert arm.body.moving
     bench.run(5)
-    assert arm.body.position == arm.body.true_position == (0, 0, 0)
+    assert arm.body.motors.position == arm.body.motors.true_position == (0, 0, 0)
 
 
 def test_lost_steps_show_in_the_true_position_alone(bench, arm):
     go(bench)
-    stood = arm.body.position
-    arm.body.lose_steps(0, -7)
-    assert arm.body.position == stood
-    assert arm.body.true_position[0] == stood[0] - 7
+    stood = arm.body.motors.position
+    arm.body.motors.lose_steps(0, -7)
+    assert arm.body.motors.position == stood
+    assert arm.body.motors.true_position[0] == stood[0] - 7
 
 
 def test_a_hand_puts_the_robot_at_its_reference_and_has_it_count_from_there(bench, arm, cart):
     go(bench)
-    arm.body.lose_steps(0, 5)
+    arm.body.motors.lose_steps(0, 5)
     arm.body.put_at_reference()
     cart.body.node, cart.body.true_node = 4, 3
     cart.body.put_at_reference()
-    assert arm.body.position == arm.body.true_position == (0, 0, 0)
+    assert arm.body.motors.position == arm.body.motors.true_position == (0, 0, 0)
     assert cart.body.true_node == cart.body.node == 0
 
 
@@ -108,6 +108,6 @@ def test_a_stop_that_is_told_again_does_not_drive_the_arm_further(bench, arm):
         for number in range(stops):
             bench.send(ARM, Channel.STOP, StopGoal(mode=StopMode.HALT, seq=3 + number, epoch=50))
         bench.run(5)
-        return arm.body.position
+        return arm.body.motors.position
 
     assert way(stops=5) == way(stops=1)

@@ -46,5 +46,5 @@ def ended(id: str, state: TaskState = TaskState.DONE, **why: Any) -> TaskChanged
 def tell_of_four(memory: PlantMemory) -> None:
     """Four tasks are accepted one after the other, and one of them is done."""
     for at, (id, text) in enumerate(FOUR.items(), start=1):
-        memory.task(queued(id, text), "palletizing" if "pall" in text else "storage", float(at))
-    memory.task(ended("a"), "storage", 9.0)
+        memory.tasks.keep(queued(id, text), "palletizing" if "pall" in text else "storage", float(at))
+    memory.tasks.keep(ended("a"), "storage", 9.0)

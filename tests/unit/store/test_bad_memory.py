@@ -67,7 +67,7 @@ def fill(path: Path, plant: str = "arboleda") -> None:
         store.keep(LATCH)
         for number in range(50):
             text = f"sis_a 0B {number % 9}"
-            store.task(
+            store.tasks.keep(
                 TaskChanged(task=f"t{number}", text=text, cell="sis_a", state=TaskState.QUEUED),
                 "storage",
                 1.0,

@@ -23,9 +23,9 @@ from arboleda.model.messages import (
 )
 from arboleda.model.sentence import OWN
 from arboleda.store.package_table import PackageTable
-from arboleda.store.plant_memory import PRUNED
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery, answers_of, course_of
+from arboleda.store.task_table import PRUNED
 from arboleda_fleet.oee.api import OeeQuery
 from arboleda_fleet.oee.rows import figures
 
@@ -42,7 +42,7 @@ class Site:
     @contextmanager
     def memory(self) -> Iterator[Store]:
         with Store(self._path) as memory:
-            memory.lead(1)
+            memory.lead.take(1)
             yield memory
 
     def history(self) -> TaskHistory:
@@ -80,7 +80,7 @@ def times(site):
 
 def test_a_new_memory_is_empty(store):
     assert [store.facts(fact) for fact in Fact] == [{}] * len(Fact)
-    assert store.entries() == []
+    assert store.acts.last() == []
 
 
 def test_a_fact_is_kept_replaced_and_forgotten(site):
@@ -115,28 +115,28 @@ def test_the_table_of_a_package_is_there_after_a_restart(site):
 def test_the_journal_is_read_newest_first(site):
     with site.memory() as store:
         stopped = Journal(verb=Verb.STOP, scope="ra1", cell="sis_a", sentence=OWN(text="ra1 stopped"))
-        store.journal(stopped, 1000.25)
-        store.journal(ACT, 999.5)
+        store.acts.keep(stopped, 1000.25)
+        store.acts.keep(ACT, 999.5)
     with site.memory() as store:
-        newest, oldest = store.entries()
+        newest, oldest = store.acts.last()
         assert (newest.id, newest.unix_s, newest.verb) == (2, 999.5, Verb.OVERRIDE)
         assert (newest.scope, newest.cell, newest.sentence) == (ACT.scope, None, str(ACT.sentence))
         assert (oldest.scope, oldest.cell) == ("ra1", "sis_a")
         assert (oldest.id, oldest.unix_s, oldest.verb) == (1, 1000.25, "stop")
-        assert store.entries(limit=1) == [newest]
+        assert store.acts.last(limit=1) == [newest]
 
 
 def test_who_asked_first_and_how_often_a_task_was_tried_are_kept(site):
     with site.memory() as store:
-        store.task(queued("a"), "storage", 5.0, "page")
-        store.task(queued("a"), "storage", 6.0, "http")  # whoever asks again asks for the same task
-        store.task(queued("b"), "storage", 7.0, "ros2")
+        store.tasks.keep(queued("a"), "storage", 5.0, "page")
+        store.tasks.keep(queued("a"), "storage", 6.0, "http")  # whoever asks again asks for the same task
+        store.tasks.keep(queued("b"), "storage", 7.0, "ros2")
         for _ in range(2):  # as it is told anew to whoever asks
-            store.task(ended("a", TaskState.RUNNING), "storage", 8.0)
-        store.attempted("a", 3)
-        store.task(ended("a"), "storage", 9.0)
+            store.tasks.keep(ended("a", TaskState.RUNNING), "storage", 8.0)
+        store.tasks.attempted("a", 3)
+        store.tasks.keep(ended("a"), "storage", 9.0)
     with site.memory() as store:
-        kept = {row.id: (row.asked_by, row.attempts) for row in store.tasks(TaskQuery())}
+        kept = {row.id: (row.asked_by, row.attempts) for row in store.tasks.select(TaskQuery())}
     assert kept == {"a": ("page", 3), "b": ("ros2", 0)}
 
 
@@ -147,10 +147,10 @@ def test_what_was_answered_is_kept_with_the_end_of_a_task(site):
     ]
     with site.memory() as store:
         for id, answers in (("a", heard), ("b", ())):
-            store.task(queued(id), "storage", 5.0)
-            store.task(ended(id), "storage", 9.0, answers=answers)
+            store.tasks.keep(queued(id), "storage", 5.0)
+            store.tasks.keep(ended(id), "storage", 9.0, answers=answers)
     with site.memory() as store:
-        kept = {row.id: answers_of(row) for row in store.tasks(TaskQuery())}
+        kept = {row.id: answers_of(row) for row in store.tasks.select(TaskQuery())}
     assert kept == {"a": tuple(heard), "b": ()}
 
 
@@ -158,35 +158,35 @@ def test_how_a_task_went_is_kept_with_its_end(site):
     course = Course(seconds=31.507, begun={"drive path 0B #1": 0.2, "move to “home” #2": 28.0})
     with site.memory() as store:
         for id, how in (("a", course), ("b", None)):
-            store.task(queued(id), "storage", 5.0)
-            store.task(replace(ended(id), course=how), "storage", 9.0)
+            store.tasks.keep(queued(id), "storage", 5.0)
+            store.tasks.keep(replace(ended(id), course=how), "storage", 9.0)
     with site.memory() as store:
-        assert {row.id: course_of(row) for row in store.tasks(TaskQuery())} == {"a": course, "b": None}
+        assert {row.id: course_of(row) for row in store.tasks.select(TaskQuery())} == {"a": course, "b": None}
 
 
 def test_old_times_of_cells_are_forgotten_at_a_start(site):
     with site.memory() as store:
-        store.began(10.0, 0.0)
-        store.stands("sis_a", "held", 20.0)
-        store.stands("sis_a", None, 30.0)
-        store.note_run(70.0, ended=True)
-        store.began(500.0, 40.0)
+        store.times.began(10.0, 0.0)
+        store.times.stands("sis_a", "held", 20.0)
+        store.times.stands("sis_a", None, 30.0)
+        store.times.note_run(70.0, ended=True)
+        store.times.began(500.0, 40.0)
         assert times(site) == ([(10.0, 70.0, 1), (500.0, 500.0, 0)], [])
-        store.began(600.0, 80.0)
+        store.times.began(600.0, 80.0)
     assert times(site)[0] == [(500.0, 500.0, 0), (600.0, 600.0, 0)]
 
 
 def test_what_stood_when_the_plant_was_killed_stood_until_it_was_seen_last(site):
     with site.memory() as store:
-        store.began(10.0, 0.0)
-        store.stands("sis_a", "held", 20.0)
-        store.stands("sis_b", "held", 75.0)
-        store.note_run(70.0)
-        store.began(500.0, 0.0)
-        store.stands("sis_a", "held", 501.0)
-        store.stands("sis_a", "aborted", 502.0)
-        store.stands("sis_a", None, 503.0)
-        store.note_run(560.0, ended=True)
+        store.times.began(10.0, 0.0)
+        store.times.stands("sis_a", "held", 20.0)
+        store.times.stands("sis_b", "held", 75.0)
+        store.times.note_run(70.0)
+        store.times.began(500.0, 0.0)
+        store.times.stands("sis_a", "held", 501.0)
+        store.times.stands("sis_a", "aborted", 502.0)
+        store.times.stands("sis_a", None, 503.0)
+        store.times.note_run(560.0, ended=True)
     assert times(site) == (
         [(10.0, 70.0, 0), (500.0, 560.0, 1)],
         [
@@ -200,53 +200,55 @@ def test_what_stood_when_the_plant_was_killed_stood_until_it_was_seen_last(site)
 
 def test_a_task_is_kept_from_its_acceptance_to_its_end(site):
     with site.memory() as store:
-        store.task(queued("a"), "storage", 1.0)
-        store.task(ended("a", TaskState.RUNNING), "storage", 2.0)
+        store.tasks.keep(queued("a"), "storage", 1.0)
+        store.tasks.keep(ended("a", TaskState.RUNNING), "storage", 2.0)
     with site.memory() as store:
-        (row,) = store.tasks(TaskQuery())
+        (row,) = store.tasks.select(TaskQuery())
         assert (row.id, row.text, row.cell, row.recipe) == ("a", "sis_a 0B 1", "sis_a", "storage")
         assert (row.state, row.accepted_s, row.started_s, row.ended_s) == ("running", 1.0, 2.0, None)
-        store.task(ended("a", TaskState.FAILED, reason=Reason.DEADLINE, sentence=OWN(text="late")), "", 3.0)
+        store.tasks.keep(
+            ended("a", TaskState.FAILED, reason=Reason.DEADLINE, sentence=OWN(text="late")), "", 3.0
+        )
     with site.memory() as store:
-        (row,) = store.tasks(TaskQuery())
+        (row,) = store.tasks.select(TaskQuery())
         assert (row.state, row.reason, row.sentence, row.ended_s) == ("failed", "deadline", "late", 3.0)
         assert json.loads(row.said) == OWN(text="late").data()
 
 
 def test_a_task_that_is_asked_for_again_stays_as_it_is(store):
     for change, at in [(queued("a"), 1.0), (ended("a", TaskState.RUNNING), 2.0), (ended("a"), 3.0)]:
-        store.task(change, "storage", at)
-    (kept,) = store.tasks(TaskQuery())
+        store.tasks.keep(change, "storage", at)
+    (kept,) = store.tasks.select(TaskQuery())
     for change in (queued("a"), ended("a", TaskState.RUNNING), ended("a", TaskState.FAILED)):
-        store.task(change, "storage", 9.0)
-    assert store.tasks(TaskQuery()) == [kept]
+        store.tasks.keep(change, "storage", 9.0)
+    assert store.tasks.select(TaskQuery()) == [kept]
 
 
 def test_a_task_that_was_refused_is_not_kept(store):
-    store.task(ended("", TaskState.REFUSED), "", 1.0)
-    assert store.tasks(TaskQuery()) == []
+    store.tasks.keep(ended("", TaskState.REFUSED), "", 1.0)
+    assert store.tasks.select(TaskQuery()) == []
 
 
 @pytest.mark.parametrize(("query", "ids"), FOUND)
 def test_tasks_are_found_by_what_is_asked_for(site, query, ids):
     with site.memory() as store:
         tell_of_four(store)
-        assert [row.id for row in store.tasks(query)] == ids
+        assert [row.id for row in store.tasks.select(query)] == ids
         assert [row.id for row in site.history().select(query)] == ids
 
 
 def test_ended_tasks_are_forgotten_from_the_oldest_on_and_open_ones_never(store):
     for number in range(PRUNED + 5):
-        store.task(queued(f"n{number}"), "storage", 1.0)
-        store.task(ended(f"n{number}"), "storage", 2.0 + number)
-    store.task(queued("open"), "storage", 1.0)
-    store.forget_tasks(1000.0)
-    assert [row.id for row in store.tasks(TaskQuery())] == [
+        store.tasks.keep(queued(f"n{number}"), "storage", 1.0)
+        store.tasks.keep(ended(f"n{number}"), "storage", 2.0 + number)
+    store.tasks.keep(queued("open"), "storage", 1.0)
+    store.tasks.forget(1000.0)
+    assert [row.id for row in store.tasks.select(TaskQuery())] == [
         "open",
         *(f"n{PRUNED + n}" for n in (4, 3, 2, 1, 0)),
     ]
-    store.forget_tasks(2.0 + PRUNED + 2)
-    assert len(store.tasks(TaskQuery(is_open=False))) == 3
+    store.tasks.forget(2.0 + PRUNED + 2)
+    assert len(store.tasks.select(TaskQuery(is_open=False))) == 3
 
 
 def test_the_history_of_a_plant_that_kept_nothing_is_empty(site):
@@ -257,7 +259,7 @@ def test_the_history_is_read_while_the_plant_writes(site):
     history = site.history()
     with site.memory() as store:
         for id in ("a", "b"):
-            store.task(queued(id), "storage", 1.0)
+            store.tasks.keep(queued(id), "storage", 1.0)
             assert history.select(TaskQuery())[0].id == id
     history.close()
 
@@ -271,19 +273,19 @@ def test_of_facts_that_are_kept_together_the_last_word_on_each_counts(store):
 
 def test_a_text_may_have_any_character(store):
     store.keep(Remember(fact=Fact.STEP, name=ODD, value=ODD))
-    store.task(queued("a"), ODD, 1.0)
+    store.tasks.keep(queued("a"), ODD, 1.0)
     assert store.facts(Fact.STEP) == {ODD: ODD}
-    assert [row.recipe for row in store.tasks(TaskQuery(recipe=ODD))] == [ODD]
+    assert [row.recipe for row in store.tasks.select(TaskQuery(recipe=ODD))] == [ODD]
 
 
 def test_figures_are_made_of_what_was_kept(site):
     with site.memory() as store:
-        store.began(900.0, 0.0)
-        store.task(queued("a"), "storage", 910.0)
-        store.task(ended("a", TaskState.RUNNING), "storage", 920.0)
-        store.task(ended("a"), "storage", 930.0)
-        store.stands("sis_a", "held", 940.0)
-        store.stands("sis_a", None, 950.0)
-        store.note_run(1000.0, ended=True)
+        store.times.began(900.0, 0.0)
+        store.tasks.keep(queued("a"), "storage", 910.0)
+        store.tasks.keep(ended("a", TaskState.RUNNING), "storage", 920.0)
+        store.tasks.keep(ended("a"), "storage", 930.0)
+        store.times.stands("sis_a", "held", 940.0)
+        store.times.stands("sis_a", None, 950.0)
+        store.times.note_run(1000.0, ended=True)
         (found,) = figures(site.history(), OeeQuery(since_s=900.0, until_s=1000.0), 1000.0)
     assert (found.cell, found.done, found.failed) == ("sis_a", 1, 0)

@@ -65,7 +65,7 @@ def small_disk(on_connect):
 
 def everything(path: Path) -> tuple:
     with Store(path) as store:
-        return [store.facts(fact) for fact in Fact], store.entries()
+        return [store.facts(fact) for fact in Fact], store.acts.last()
 
 
 def refusal(path: Path) -> str:
@@ -173,7 +173,7 @@ def test_a_commit_waits_for_no_disk_and_a_sync_has_the_log_written_to_it(path, m
     monkeypatch.setattr(sqlite, "sync_data", lambda file: synced.append(os.readlink(f"/proc/self/fd/{file}")))
     with Store(path) as store:
         store.keep(LATCH)
-        store.journal(ACT, 5.0)
+        store.acts.keep(ACT, 5.0)
         assert synced == []
         store.sync()
     assert synced == [f"{path}-wal"]
@@ -350,7 +350,7 @@ def test_a_sync_that_fails_is_one_sentence(path, monkeypatch):
 def test_a_file_of_an_older_format_is_brought_up_and_keeps_what_it_has(path, version, later):
     with Store(path) as store:
         store.keep(LATCH)
-        store.journal(ACT, 5.0)
+        store.acts.keep(ACT, 5.0)
     db = of_before_times(path)
     db.execute("DROP TABLE task")
     for column in later:
@@ -359,85 +359,85 @@ def test_a_file_of_an_older_format_is_brought_up_and_keeps_what_it_has(path, ver
     db.close()
     with Store(path) as store:
         assert store.facts(Fact.LATCH) == {"ra1": "on"}
-        (old,) = store.entries()
+        (old,) = store.acts.last()
         assert (old.sentence, old.cell) == (str(ACT.sentence), None)
         assert (old.said is None) is ("said" in later)
-        store.task(queued("a"), "storage", 5.0)
-        assert [row.id for row in store.tasks(TaskQuery())] == ["a"]
-        store.journal(replace(ACT, cell="sis_a"), 6.0)
-        newest = store.entries()[0]
+        store.tasks.keep(queued("a"), "storage", 5.0)
+        assert [row.id for row in store.tasks.select(TaskQuery())] == ["a"]
+        store.acts.keep(replace(ACT, cell="sis_a"), 6.0)
+        newest = store.acts.last()[0]
         assert newest.cell == "sis_a" and json.loads(newest.said) == ACT.sentence.data()
 
 
 def test_tasks_of_an_older_format_have_neither_who_asked_nor_attempts(path):
     with Store(path) as store:
-        store.task(queued("a"), "storage", 5.0, "page")
+        store.tasks.keep(queued("a"), "storage", 5.0, "page")
     db = of_before_times(path)
     for column in ("asked_by", "attempts", "answers"):
         db.execute(f"ALTER TABLE task DROP COLUMN {column}")
     db.execute("PRAGMA user_version = 4")
     db.close()
     with Store(path) as store:
-        (old,) = store.tasks(TaskQuery())
+        (old,) = store.tasks.select(TaskQuery())
         assert (old.id, old.asked_by, old.attempts) == ("a", None, 0)
 
 
 def test_tasks_of_an_older_format_have_no_answers(path):
     with Store(path) as store:
-        store.task(queued("a"), "storage", 5.0)
+        store.tasks.keep(queued("a"), "storage", 5.0)
     db = of_before_times(path)
     db.execute("ALTER TABLE task DROP COLUMN answers")
     db.execute("PRAGMA user_version = 5")
     db.close()
     with Store(path) as store:
-        (old,) = store.tasks(TaskQuery())
+        (old,) = store.tasks.select(TaskQuery())
         assert (old.id, old.answers) == ("a", None)
 
 
 def test_tasks_of_an_older_format_have_no_choice_and_new_ones_have(path):
     with Store(path) as store:
-        store.task(queued("a"), "storage", 5.0)
+        store.tasks.keep(queued("a"), "storage", 5.0)
     of_before_choices(path).close()
     why = LATER(cell="sis_b", seconds=12.5)
     with Store(path) as store:
-        store.task(replace(queued("b"), choice=why), "storage", 6.0)
-        assert [choice_of(row) for row in store.tasks(TaskQuery())] == [why, None]
+        store.tasks.keep(replace(queued("b"), choice=why), "storage", 6.0)
+        assert [choice_of(row) for row in store.tasks.select(TaskQuery())] == [why, None]
 
 
 def test_tasks_of_an_older_format_have_no_course_and_new_ones_have(path):
     with Store(path) as store:
         for name in ("a", "b"):
-            store.task(queued(name), "storage", 5.0)
+            store.tasks.keep(queued(name), "storage", 5.0)
     of_before_courses(path).close()
     course = Course(seconds=31.5, begun={"0.0.1": 0.0, "0.1": 2.25})
     with Store(path) as store:
-        store.task(replace(queued("b"), state=TaskState.DONE, course=course), "storage", 6.0)
-        assert [course_of(row) for row in store.tasks(TaskQuery())] == [course, None]
+        store.tasks.keep(replace(queued("b"), state=TaskState.DONE, course=course), "storage", 6.0)
+        assert [course_of(row) for row in store.tasks.select(TaskQuery())] == [course, None]
 
 
 def test_tasks_of_an_older_format_say_nothing_of_checks_and_new_ones_do(path):
     with Store(path) as store:
         for name in ("a", "b"):
-            store.task(queued(name), "storage", 5.0)
+            store.tasks.keep(queued(name), "storage", 5.0)
     of_before_checks(path).close()
     checks = (Check.GRIP, Check.RELEASE)
     with Store(path) as store:
-        store.task(replace(queued("b"), state=TaskState.DONE, unchecked=checks), "storage", 6.0)
-        assert [unchecked_of(row) for row in store.tasks(TaskQuery())] == [checks, ()]
+        store.tasks.keep(replace(queued("b"), state=TaskState.DONE, unchecked=checks), "storage", 6.0)
+        assert [unchecked_of(row) for row in store.tasks.select(TaskQuery())] == [checks, ()]
     with Store(path) as store:
-        assert [row.unchecked for row in store.tasks(TaskQuery())] == ["grip release", None]
+        assert [row.unchecked for row in store.tasks.select(TaskQuery())] == ["grip release", None]
 
 
 def test_a_file_without_times_of_cells_gets_them(path):
     with Store(path) as store:
-        store.task(queued("a"), "storage", 5.0)
+        store.tasks.keep(queued("a"), "storage", 5.0)
     db = of_before_times(path)
     db.execute("PRAGMA user_version = 6")
     db.close()
     with Store(path) as store:
-        store.began(10.0, 0.0)
-        store.stands("sis_a", "held", 11.0)
-        assert [row.id for row in store.tasks(TaskQuery())] == ["a"]
+        store.times.began(10.0, 0.0)
+        store.times.stands("sis_a", "held", 11.0)
+        assert [row.id for row in store.tasks.select(TaskQuery())] == ["a"]
     assert times(path) == ([(10.0, 10.0, 0)], [("sis_a", "held", 11.0, None)])
 
 
@@ -510,13 +510,13 @@ def long_history(tmp_path_factory):
 @pytest.mark.parametrize(
     "ask",
     [
-        lambda store: store.tasks(TaskQuery(limit=20)),
-        lambda store: store.tasks(TaskQuery(limit=20, before=4_000)),
-        lambda store: store.tasks(TaskQuery(id="n7")),
-        lambda store: store.tasks(TaskQuery(is_open=True, limit=-1)),
-        lambda store: store.tasks(TaskQuery(is_open=False, limit=20)),
-        lambda store: store.forget_tasks(1.0),
-        lambda store: store.forget_tasks(5_000.0),
+        lambda store: store.tasks.select(TaskQuery(limit=20)),
+        lambda store: store.tasks.select(TaskQuery(limit=20, before=4_000)),
+        lambda store: store.tasks.select(TaskQuery(id="n7")),
+        lambda store: store.tasks.select(TaskQuery(is_open=True, limit=-1)),
+        lambda store: store.tasks.select(TaskQuery(is_open=False, limit=20)),
+        lambda store: store.tasks.forget(1.0),
+        lambda store: store.tasks.forget(5_000.0),
     ],
 )
 def test_what_is_asked_all_day_does_not_read_the_whole_history(long_history, path, on_connect, ask):
@@ -527,13 +527,13 @@ def test_what_is_asked_all_day_does_not_read_the_whole_history(long_history, pat
         opened[0].set_progress_handler(lambda: 1, 10_000)  # so many steps of SQLite end what takes more
         ask(store)
         with pytest.raises(ArboledaError, match="interrupted"):
-            store.tasks(TaskQuery(words="no such"))
+            store.tasks.select(TaskQuery(words="no such"))
 
 
 @pytest.mark.parametrize(("column", "value"), [("state", "lost"), ("reason", "bad luck")])
 def test_a_task_that_means_nothing_is_one_sentence(path, column, value):
     with Store(path) as store:
-        store.task(queued("a"), "storage", 1.0)
+        store.tasks.keep(queued("a"), "storage", 1.0)
     db = sqlite3.connect(path)
     row_sums.know(db)
     row_sums.watch(db)
@@ -541,7 +541,7 @@ def test_a_task_that_means_nothing_is_one_sentence(path, column, value):
     db.commit()
     db.close()
     with Store(path) as store, pytest.raises(ArboledaError, match="'a' what means nothing"):
-        store.tasks(TaskQuery())
+        store.tasks.select(TaskQuery())
 
 
 def test_a_history_that_cannot_be_read_is_one_sentence(path):
@@ -570,7 +570,7 @@ def test_another_kind_of_file_is_refused_with_what_its_loss_means(path):
 def test_a_damaged_file_is_found_at_the_start(path):
     with Store(path) as store:
         for n in range(500):
-            store.journal(ACT, float(n))
+            store.acts.keep(ACT, float(n))
     with path.open("r+b") as file:
         file.seek(4096 * 4)
         file.write(b"\xaa" * 4096 * 4)
@@ -609,7 +609,7 @@ def test_something_else_of_that_name_is_refused(path, stuff):
 def changed(path: Path, statement: str, *values: object) -> Store:
     with Store(path) as store:
         store.keep(LATCH)
-        store.journal(ACT, 5.0)
+        store.acts.keep(ACT, 5.0)
     db = sqlite3.connect(path)
     db.execute(statement, values)
     db.commit()
@@ -641,13 +641,13 @@ def written(tmp_path_factory):
         for fact in Fact:
             store.keep(*(Remember(fact=fact, name=name, value="on") for name in ("ra1", "ra2", "mesa ñ")))
         for number in range(60):
-            store.journal(ACT, float(number))
-            store.task(queued(f"t{number}", f"sis_a 0B {number % 9}"), "storage", number + 0.5, "page")
+            store.acts.keep(ACT, float(number))
+            store.tasks.keep(queued(f"t{number}", f"sis_a 0B {number % 9}"), "storage", number + 0.5, "page")
         for number in range(50):
-            store.task(ended(f"t{number}"), "storage", number + 30.25)
+            store.tasks.keep(ended(f"t{number}"), "storage", number + 30.25)
         for number in range(20):
-            store.began(float(number), 0.0)
-            store.stands("sis_a", "held", number + 0.5)
+            store.times.began(float(number), 0.0)
+            store.times.stands("sis_a", "held", number + 0.5)
     return path
 
 
@@ -703,13 +703,13 @@ def test_rows_of_an_older_format_get_their_sums_and_keep_what_they_have(written,
     shutil.copy(written, path)
     of_before_sums(path).close()
     with Store(path) as store:
-        store.task(ended("t55"), "storage", 99.5)
+        store.tasks.keep(ended("t55"), "storage", 99.5)
     changes = rows_of(path)["task"]
     assert [row for row in changes if row[1] != "t55"] == [
         row for row in rows_of(written)["task"] if row[1] != "t55"
     ]
     with Store(path) as store:
-        assert len(store.entries()) == 60
+        assert len(store.acts.last()) == 60
 
 
 @pytest.mark.parametrize("table", row_sums.KEYS)
@@ -775,7 +775,7 @@ def test_a_file_that_is_deleted_while_it_is_open_is_said_by_whatever_comes_next(
         store.keep(LATCH)
         store.confirm()
         path.with_name(lost).unlink()
-        for write in (lambda: store.keep(LATCH), lambda: store.journal(ACT, 5.0), store.confirm):
+        for write in (lambda: store.keep(LATCH), lambda: store.acts.keep(ACT, 5.0), store.confirm):
             with pytest.raises(ArboledaError, match=f"any more.*{lost} was deleted.*ran.: {advice}"):
                 write()
     store.confirm()  # closed, nothing of it can be lost

@@ -117,7 +117,7 @@ def _acceptance(scene: Scene, tasks: int) -> list[Figure]:
     with Store(scene.folder / "ours.sqlite") as store, Store(scene.folder / "store.sqlite") as only:
         plant = Orchestrator(model, 1, _raise, store)
         plant.connect(Deaf())
-        plant.durability.start()
+        plant.keeping.durability.start()
         plant.loop.start()
         times: list[list[float]] = [[], [], [], []]
         for number in range(tasks):
@@ -127,14 +127,14 @@ def _acceptance(scene: Scene, tasks: int) -> list[Figure]:
             deeds: Sequence[Callable[[], object]] = (
                 partial(_result, plant.submit, f"{text} #{row[0]}"),
                 partial(_result, floor.ask, row),
-                partial(only.task, queued, "storage", 1.0),
+                partial(only.tasks.keep, queued, "storage", 1.0),
                 partial(alone.execute, INSERT, row),
             )
             for deed, known in zip(deeds, times, strict=True):
                 known.append(_seconds(deed))
                 time.sleep(PAUSE_S)
         plant.loop.stop()
-        plant.durability.stop()
+        plant.keeping.durability.stop()
     floor.end()
     alone.close()
     asked, bare_asked, commits, bare_commits = times
@@ -153,7 +153,7 @@ def _pruning(scene: Scene, tasks: int) -> list[Figure]:
     pruned, commits = [], []
     with Store(file) as store:
         for _ in range(tasks):
-            pruned.append(_seconds(partial(store.forget_tasks, time.time())))
+            pruned.append(_seconds(partial(store.tasks.forget, time.time())))
             commits.append(_seconds(partial(alone.execute, INSERT, row)))
             time.sleep(PAUSE_S)
     alone.close()

@@ -55,7 +55,7 @@ class Yard:
         if isinstance(command, MoveJoints):
             arm = self.plant.model.robots[command.robot]
             assert isinstance(arm, Arm)
-            words = replace(words, q=arm.quantised(command.q))
+            words = replace(words, q=arm.motion.quantised(command.q))
         elif isinstance(command, FollowPath):
             words = replace(words, node=command.nodes[-1])
         elif isinstance(command, SetEffector):

@@ -69,7 +69,7 @@ class PlayedRobot:
 
     def _goal(self, move: MoveJoints | FollowPath) -> tuple[float, ...]:
         if isinstance(move, MoveJoints):
-            return cast(Jointed, self.robot).quantised(move.q)
+            return cast(Jointed, self.robot).motion.quantised(move.q)
         return (move.nodes[-1],)
 
     def _place(self, now: float) -> tuple[float, ...]:

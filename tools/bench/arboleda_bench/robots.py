@@ -154,7 +154,7 @@ class Body:
     def _state_at(self, place: Sequence[float] | int) -> JointState:
         """The joint states for a place: joints of an arm, or a node of the grid."""
         if isinstance(self._robot, Arm) and not isinstance(place, int):
-            said = Report(at=0.0, robot=self._robot.name, q=self._robot.quantised(tuple(place)))
+            said = Report(at=0.0, robot=self._robot.name, q=self._robot.motion.quantised(tuple(place)))
         else:
             assert isinstance(place, int)
             said = Report(at=0.0, robot=self._robot.name, node=place)

@@ -45,7 +45,7 @@ def end(cell: Cell, step: FollowPath | MoveJoints) -> tuple[float, ...]:
     """The end of a move in the robot's joint states: rad and m."""
     if isinstance(step, FollowPath):
         return StorageLayout(cell).mobile.grid.position(step.nodes[-1])
-    return StorageLayout(cell).arm.quantised(step.q)
+    return StorageLayout(cell).arm.motion.quantised(step.q)
 
 
 def lengths(shortest_s: float, longest_s: float) -> Callable[[], float]:

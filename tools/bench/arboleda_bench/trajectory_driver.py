@@ -53,7 +53,7 @@ def run(scene: Scene) -> Result:
 
 def goal_of(arm: Arm, turn: int) -> tuple[float, ...]:
     """One of several goals; never the same twice in a row."""
-    return arm.quantised((math.radians(1 + turn % 50), 0.0, 0.0, 0.0, 0.0, 0.0))
+    return arm.motion.quantised((math.radians(1 + turn % 50), 0.0, 0.0, 0.0, 0.0, 0.0))
 
 
 def _figure(pairs: list[list[float]], percent: int) -> Figure:

@@ -16,6 +16,7 @@ from arboleda.model.plant_model import Evidence
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.sim.body import BodyReport
+from arboleda.sim.motors import Motors
 from arboleda.wire.payloads import Beat, EffectorGoal, Goal, HomeGoal, JointsGoal, StopGoal, Telemetry
 from arboleda.wire.transport import Delivery
 from arboleda_boards.conformance.judge import CHECKS, Judge
@@ -83,10 +84,10 @@ class Forgetful(Board):
             super()._obey(goal)
 
 
-class Truncating(ArmBody):
+class Truncating(Motors):
     """Cuts targets off to whole motor steps."""
 
-    def _steps(self, q: tuple[float, ...]) -> tuple[int, ...]:
+    def steps(self, q: tuple[float, ...]) -> tuple[int, ...]:
         return tuple(_cut(joint, value) for joint, value in zip(self._joints, q, strict=True))
 
 
@@ -239,7 +240,8 @@ class Muddled(Board):
 
 
 def truncating(robot: Arm, body: ArmBody, **how: Any) -> Board:
-    return Board(robot, Truncating(robot, start=robot.reference, pickups=()), **how)
+    body.motors = Truncating(robot.joints)
+    return Board(robot, body, **how)
 
 
 BAD = [

@@ -11,7 +11,7 @@ from arboleda.runtime.missing import LeadKeeper, OpcUaView
 from arboleda.runtime.parts.orchestrator import Orchestrator
 from arboleda.runtime.parts.part import Part
 from arboleda.runtime.registry import Assembly, Factory, Phase
-from arboleda.store.plant_memory import PlantMemory
+from arboleda.store.lead import Lead
 
 from .oee.api import OeeApi
 
@@ -21,7 +21,8 @@ LOG = logging.getLogger(__name__)
 def lease(assembly: Assembly) -> Iterator[Part]:
     """The part that keeps the lead of a plant whose memory several hosts reach."""
     memory = assembly.holdings.memory
-    if memory.renew_s is None:
+    lead = memory.lead
+    if lead.renew_s is None:
         return
     from arboleda.runtime.leader import way_to
 
@@ -29,25 +30,25 @@ def lease(assembly: Assembly) -> Iterator[Part]:
 
     def standbys() -> dict[str, Any]:
         return {
-            "standbys": [{"host": each.host, "url": way_to(each.host, each.url)} for each in memory.standbys]
+            "standbys": [{"host": each.host, "url": way_to(each.host, each.url)} for each in lead.standbys]
         }
 
     def hand_over() -> None:
-        _hand_over(assembly.need(Orchestrator), memory, assembly.end)
+        _hand_over(assembly.need(Orchestrator), lead, assembly.end)
 
-    part = LeasePart(memory, memory.renew_s, assembly.crash, hand_over)
+    part = LeasePart(memory, lead.renew_s, assembly.crash, hand_over)
     assembly.offer(LeadKeeper, part)
     assembly.links.add(standbys)
     yield part
 
 
-def _hand_over(plant: Orchestrator, memory: PlantMemory, end: Callable[[], None]) -> None:
+def _hand_over(plant: Orchestrator, lead: Lead, end: Callable[[], None]) -> None:
     """Hold the cells that are at work, so that the next leader can go on with them, and end."""
     from .standby.handover import hold_all
 
     LOG.warning("another process is to lead the plant: what is at work is held")
     try:
-        memory.hand_over(hold_all(plant))
+        lead.hand_over(hold_all(plant))
     except (ArboledaError, TimeoutError) as error:
         LOG.warning("the next leader is not told what was at work: %s", error)
     end()
@@ -61,7 +62,7 @@ def cell_times(assembly: Assembly) -> Iterator[Part]:
     from .oee.cell_times import CellTimes
     from .oee.desk import OeeDesk
 
-    part = CellTimes(held.memory, assembly.model.history_days)
+    part = CellTimes(held.memory.times, assembly.model.history_days)
     plant.observers.append(part.stepped)
     assembly.offer(OeeApi, OeeDesk(held.history, [cell.name for cell in assembly.model.cells]))
     yield part
@@ -82,17 +83,17 @@ def opcua_view(assembly: Assembly) -> Iterator[Part]:
     assembly.offer(OpcUaView, part)
     assembly.notes.append(lambda: part.notes)
     plant.listeners.append(part.changed)
-    plant.watchers.append(part.saw)
+    plant.screens.watchers.append(part.saw)
     yield part
 
 
 def resumption(assembly: Assembly) -> Iterator[Part]:
     """The part that goes on with cells which the leader before held for the change alone."""
-    memory, plant = assembly.holdings.memory, assembly.ask(Orchestrator)
-    if plant is not None and memory.renew_s is not None:
+    lead, plant = assembly.holdings.memory.lead, assembly.ask(Orchestrator)
+    if plant is not None and lead.renew_s is not None:
         from .standby.handover import CellResumption
 
-        yield CellResumption(plant, memory.going, assembly.epoch)
+        yield CellResumption(plant, lead.going, assembly.epoch)
 
 
 FACTORIES = (

@@ -55,7 +55,7 @@ def _of_files(assembly: Assembly, local: LocalPlant, recording: Recording) -> li
         lambda: plant,
         as_it_runs=as_it_runs,
         check=process.check,
-        restarts=options.restarts and held.memory.renew_s is None,
+        restarts=options.restarts and held.memory.lead.renew_s is None,
     )
     draft = DraftDesk(folder, state, process, work_by=versions.work_by, writing=versions.writing)
     make = MakeBench(folder, state, draft, assembly.model.driven)

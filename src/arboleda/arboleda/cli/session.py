@@ -84,7 +84,7 @@ class Session:
             lambda: self._log.then(lambda: self._news.put(self._finished)),
             patience_s=patience_s,
         )
-        self._screen = Screen(console, app.plant.snapshot, app.log_file)
+        self._screen = Screen(console, app.plant.screens.snapshot, app.log_file)
         self._stopping = False
 
     def run(self) -> int:
@@ -158,5 +158,5 @@ class Session:
         self._log.flush()
         self._news.put(None)
         self._show()
-        for line in parting(self._app.plant.snapshot()):
+        for line in parting(self._app.plant.screens.snapshot()):
             self._console.print(Text(f"  {line}", style="dim"))

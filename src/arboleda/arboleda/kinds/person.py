@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from arboleda.model.commands import Question
@@ -51,12 +50,6 @@ class Person(Robot):
 
     def objection(self, report: Report) -> str | None:
         return None
-
-    def ask(self, *, id: str, question: str, answers: Sequence[str], at_most_s: float) -> AskPerson:
-        """The command that asks them."""
-        return AskPerson(
-            id=id, robot=self.name, question=question, offered=tuple(answers), patience_s=at_most_s
-        )
 
 
 def person(name: str) -> Person:

@@ -13,7 +13,7 @@ from py_trees.common import Status
 
 from arboleda.engine import Act, Await, Context, Leaf, Require, paths, steps, titled
 from arboleda.kinds.declared import Device, QueryCall, UseError
-from arboleda.kinds.person import PATIENCE_S, Person
+from arboleda.kinds.person import PATIENCE_S, AskPerson, Person
 from arboleda.model import zone_plan
 from arboleda.model.by_class import nearest
 from arboleda.model.facts import Value, shown
@@ -234,10 +234,12 @@ class PersonHandle(Handle):
             allowed = f"different words, each 1 to {LONGEST_ANSWER} characters without /"
             raise RecipeError(f"the answers to {quoted(question)} must be {allowed}")
 
-        def make(id: str) -> Any:
-            return self._device.ask(id=id, question=question, answers=answers, at_most_s=at_most_s)
-
         name = self._device.name
+
+        def make(id: str) -> Any:
+            offered = tuple(answers)
+            return AskPerson(id=id, robot=name, question=question, offered=offered, patience_s=at_most_s)
+
         step = Ask(ASK(person=name), self._context, make, ASKING(person=name))
         step.answers, step.by, step.asked = tuple(answers), name, question
         self._of(step)

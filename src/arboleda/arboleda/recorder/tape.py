@@ -55,11 +55,12 @@ class TapedPlant(RecordingPlant):
         self.tape: list[Step] = []
         super().__init__(model, tell=self.tape.append, files=files, **made_of)
 
-    def steps(self) -> Iterator[RecordedStep]:
-        """All steps, as if read from a file; their Unix time is the plant's own."""
-        for step in self.tape:
-            result = outcome(step.messages, step.state)
-            yield RecordedStep(step.unix_ns, step.now, tuple(step.events), result, hash_of(result))
+
+def recorded(tape: Iterable[Step]) -> Iterator[RecordedStep]:
+    """The steps of a tape, as if read from a file; their Unix time is the plant's own."""
+    for step in tape:
+        result = outcome(step.messages, step.state)
+        yield RecordedStep(step.unix_ns, step.now, tuple(step.events), result, hash_of(result))
 
 
 def _began(model: PlantModel, files: PlantFiles, **made_of: Any) -> Beginning:

@@ -17,7 +17,7 @@ from arboleda.engine import Plant
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import TaskChanged
 from arboleda.model.plant_model import PlantModel
-from arboleda.store.plant_memory import Superseded
+from arboleda.store.lead import Superseded
 from arboleda.web.offers import Offers
 
 from . import at_work
@@ -193,7 +193,7 @@ class App:
 
     def watch(self, watcher: Callable[[dict[str, Any]], None]) -> None:
         """Call back with snapshots if more than a position changed; in the plant's thread, before `start`."""
-        self.plant.watchers.append(watcher)
+        self.plant.screens.watchers.append(watcher)
 
     def links(self) -> dict[str, Any]:
         """Broker, ROS 2, refused messages, standbys, the memory's pace, as `PageApi` has them; from any

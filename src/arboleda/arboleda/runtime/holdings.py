@@ -8,7 +8,7 @@ from typing import Any
 from arboleda.engine import ACTS_TOLD
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import OWN, Sentence, from_data, retold
-from arboleda.store.plant_memory import JournalEntry, PlantMemory
+from arboleda.store.act_table import ActTable, JournalEntry
 
 from .options import Options
 from .parts.memory_pace import MemoryPace
@@ -35,11 +35,11 @@ class Holdings:
         """Take both; StartError where another process has them, or they cannot be used."""
         self.state.open()
         self.memory.open()
-        self.past_acts = _past_acts(self.memory)
+        self.past_acts = _past_acts(self.memory.acts)
 
     def lead(self, now: int) -> int:
         """The number of this start, higher than that of any start before, on any host."""
-        return self.memory.lead(self.state.next_epoch(now))
+        return self.memory.lead.take(self.state.next_epoch(now))
 
     def close(self) -> None:
         """Give back everything that only one process may have; idempotent."""
@@ -49,11 +49,11 @@ class Holdings:
         self.state.close()
 
 
-def _past_acts(memory: PlantMemory) -> list[dict[str, Any]]:
+def _past_acts(acts: ActTable) -> list[dict[str, Any]]:
     """The acts of operators before this start, oldest first."""
     return [
         {"at": each.unix_s, "scope": each.scope, "cell": each.cell, "sentence": _sentence_of(each)}
-        for each in reversed(memory.entries())
+        for each in reversed(acts.last())
     ]
 
 

@@ -57,8 +57,8 @@ def kept_tasks(store: PlantMemory, *, clock_s: float, unix_s: float) -> list[Kep
 
     Their times are on the clock that says `clock_s` at the Unix time `unix_s`.
     """
-    waiting = store.tasks(TaskQuery(is_open=True, limit=None))
-    rows = [*waiting, *store.tasks(TaskQuery(is_open=False, limit=HISTORY))]
+    waiting = store.tasks.select(TaskQuery(is_open=True, limit=None))
+    rows = [*waiting, *store.tasks.select(TaskQuery(is_open=False, limit=HISTORY))]
     in_order = sorted(rows, key=lambda row: row.number)
     return [kept_task(row, clock_s=clock_s, unix_s=unix_s) for row in in_order]
 

@@ -30,7 +30,7 @@ def refuse_missing(assembly: Assembly) -> None:
     """Raise StartError, with the line that installs it, if a package is not there that the plant needs."""
     if "orchestrator" not in assembly.parts:
         return
-    if assembly.holdings.memory.renew_s is not None and assembly.ask(LeadKeeper) is None:
+    if assembly.holdings.memory.lead.renew_s is not None and assembly.ask(LeadKeeper) is None:
         raise StartError(MISSING(what=LEAD(), package=FLEET))
     if assembly.model.opcua_view is not None and assembly.ask(OpcUaView) is None:
         raise StartError(MISSING(what=OPCUA(), package=FLEET))

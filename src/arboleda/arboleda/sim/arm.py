@@ -10,20 +10,18 @@ from arboleda.wire import units
 from arboleda.wire.payloads import JointsGoal
 from arboleda.wire.topics import Channel
 
-from .axis import Axis
 from .body import BodyReport, Robotic
+from .motors import Motors
 
-FASTEST = 1e6  # steps/s: one per microsecond of the board's clock
-STEEPEST = 9e11  # steps/s2: beyond it the ramp's first interval falls below a microsecond
 WIRE_ROUNDING_DEG = 1e-4
 
 
 class ArmBody(Robotic):
-    """Body of an arm: one stepper per joint; `start` and `pickups` are joint positions in rad and m.
+    """Body of an arm: its `motors` and its effector; `start` and `pickups` are joint positions in rad and m.
 
     The piece sensor sees the piece that lies ready at each pick-up, and the one in the effector. `supplied`
     False: no piece lies there; `grips` False: the effector closes beside the piece; `stuck`: the effector
-    does not follow its switch. `true_position` is that of the axes, whatever was counted.
+    does not follow its switch.
     """
 
     channels = frozenset({Channel.JOINTS, Channel.EFFECTOR, Channel.STOP, Channel.HOME, Channel.BEAT})
@@ -34,20 +32,18 @@ class ArmBody(Robotic):
         self.axes: int | None = len(arm.joints)
         self._joints = arm.joints
         self._step_deg = tuple(units.to_wire(joint, joint.step) for joint in arm.joints)
-        self._pickups = {self._steps(pickup) for pickup in pickups}
+        self.motors = Motors(arm.joints)
+        self._pickups = {self.motors.steps(pickup) for pickup in pickups}
         self.supplied = self.grips = True
         self.stuck = False
-        self._axes = tuple(_axis(joint) for joint in arm.joints)
-        self._drift = self._steps(start)  # true position minus counted position, per joint
         self._last_state: tuple[object, ...] = ()  # the values that `_last_report` was made of
         self._last_report = BodyReport()
         self.reset()
-        self._count_anew()
+        self.motors.put_at(self.motors.steps(start))
 
     def reset(self) -> None:
         """Reset as a board comes up: counters 0, effector off; the axes stay where they are."""
-        self._drift = self.true_position
-        self._axes = tuple(_axis(joint) for joint in self._joints)
+        self.motors.restart()
         self.next_change_us: int | None = None
         self.effector = False
         self.holding = False
@@ -57,55 +53,33 @@ class ArmBody(Robotic):
         return self.next_change_us is not None
 
     @property
-    def position(self) -> tuple[int, ...]:
-        """The counted positions, in motor steps per joint."""
-        return tuple([axis.position for axis in self._axes])
-
-    @property
-    def true_position(self) -> tuple[int, ...]:
-        """The true positions of the axes, in motor steps per joint."""
-        return tuple([axis.position + drift for axis, drift in zip(self._axes, self._drift, strict=True)])
-
-    @property
     def true_place(self) -> tuple[float, ...]:
-        rows = zip(self._joints, self.true_position, strict=True)
+        rows = zip(self._joints, self.motors.true_position, strict=True)
         return tuple(joint.step * steps for joint, steps in rows)
 
     @property
     def true_facts(self) -> dict[str, Value]:
         return {"effector": self.effector}
 
-    @property
-    def targets(self) -> tuple[int, ...]:
-        """The goals of the axes, in motor steps per joint."""
-        return tuple(axis.target for axis in self._axes)
-
-    @property
-    def speeds(self) -> tuple[float, ...]:
-        """The speed of each joint, in motor steps/s, without a sign."""
-        return tuple(axis.speed for axis in self._axes)
-
     def admits(self, goal: JointsGoal) -> bool:
         return all(_within(joint, angle) for joint, angle in zip(self._joints, goal.q, strict=True))
 
     def start(self, now_us: int, goal: JointsGoal) -> None:
         values = (units.from_wire(joint, angle) for joint, angle in zip(self._joints, goal.q, strict=True))
-        self._head_for(now_us, self._steps(tuple(values)))
+        self.next_change_us = self.motors.move_to(now_us, self.motors.steps(tuple(values)))
 
     def home(self, now_us: int) -> None:
         """Drive to the switches: each axis gets to its true 0, whatever its counter says."""
-        self._count_anew()
-        self._head_for(now_us, (0,) * len(self._joints))
+        self.motors.count_anew()
+        self.next_change_us = self.motors.move_to(now_us, (0,) * len(self._joints))
 
     def stop(self, now_us: int) -> None:
-        for axis in self._axes:
-            axis.stop(now_us)
-        self._plan(now_us)
+        self.next_change_us = self.motors.stop(now_us)
 
     def advance(self, now_us: int) -> None:
         if self.next_change_us is None:
             return
-        for axis in self._axes:
+        for axis in self.motors.axes:
             axis.advance(now_us)
         if now_us >= self.next_change_us:
             self.next_change_us = None
@@ -127,52 +101,26 @@ class ArmBody(Robotic):
         """Drop the piece; the effector does not notice."""
         self.holding = False
 
-    def lose_steps(self, joint: int, steps: int) -> None:
-        """Slip by so many motor steps; the counter does not notice."""
-        drift = list(self._drift)
-        drift[joint] += steps
-        self._drift = tuple(drift)
-
     def place(self, report: BodyReport, *, holds: bool) -> None:
         if report.q is not None:
-            self.put_at_reference()
-            for axis, steps in zip(self._axes, self._steps(report.q), strict=True):
-                axis.shift(steps)
+            self.motors.put_at(self.motors.steps(report.q))
         self.effector = self.effector if report.effector is None else report.effector
         self.holding = holds
 
     def put_at_reference(self) -> None:
-        self._axes = tuple(_axis(joint) for joint in self._joints)
-        self._drift = (0,) * len(self._joints)
+        self.motors.put_at((0,) * len(self._joints))
 
     def tell(self) -> BodyReport:
-        state = (self.position, self._drift, self.next_change_us, self.effector, self.holding, self.supplied)
+        position, drift = self.motors.position, self.motors.drift
+        state = (position, drift, self.next_change_us, self.effector, self.holding, self.supplied)
         if state != self._last_state:
             self._last_state = state
-            q = tuple([steps * step for steps, step in zip(state[0], self._step_deg, strict=True)])
+            q = tuple([steps * step for steps, step in zip(position, self._step_deg, strict=True)])
             self._last_report = BodyReport(q, None, self.effector, self.holding or self._piece_lies_here())
         return self._last_report
 
-    def _steps(self, q: tuple[float, ...]) -> tuple[int, ...]:
-        return tuple(joint.steps(value) for joint, value in zip(self._joints, q, strict=True))
-
-    def _head_for(self, now_us: int, targets: tuple[int, ...]) -> None:
-        for axis, target in zip(self._axes, targets, strict=True):
-            axis.move_to(now_us, target)
-        self._plan(now_us)
-
-    def _plan(self, now_us: int) -> None:
-        """Find the time at which the slowest axis comes to rest; a move of no length takes a moment, too."""
-        self.next_change_us = max(now_us + 1, *(axis.still_at_us for axis in self._axes))
-
-    def _count_anew(self) -> None:
-        """Set the counters to the true positions."""
-        for axis, drift in zip(self._axes, self._drift, strict=True):
-            axis.shift(drift)
-        self._drift = (0,) * len(self._joints)
-
     def _piece_lies_here(self) -> bool:
-        return self.supplied and not self.moving and self.true_position in self._pickups
+        return self.supplied and not self.moving and self.motors.true_position in self._pickups
 
     def _grip(self) -> None:
         self.holding = self.holding or (self.effector and self.grips and self._piece_lies_here())
@@ -189,13 +137,6 @@ class AxesBody(ArmBody):
 
     def tell(self) -> BodyReport:
         return super().tell()._replace(effector=None, piece=None)
-
-
-def _axis(joint: Joint) -> Axis:
-    return Axis(
-        max_speed=min(joint.speed / joint.step, FASTEST),
-        acceleration=min(joint.acceleration / joint.step, STEEPEST),
-    )
 
 
 def limits_deg(joint: Joint) -> tuple[float, float]:

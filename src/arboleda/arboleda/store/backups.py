@@ -75,7 +75,7 @@ def restore(source: sqlite3.Connection, copy: Path, memory: Path, plant: str = "
         _refuse_other(owner(source), copy, _fold(memory))
         _copy(source, fresh)
         with Store(fresh) as restored:  # raises an error if it is damaged, and brings it up to date
-            restored.tasks(TaskQuery(limit=1))
+            restored.tasks.select(TaskQuery(limit=1))
         with explained(memory, StartError, "cannot be replaced"):
             _set_aside(memory)
             fresh.replace(memory)

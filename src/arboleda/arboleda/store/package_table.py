@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from .plant_memory import PlantMemory, row_of_fact
+from .rows import Rows, row_of_fact
 
 PREFIX = "package."  # no `Fact` begins so
 
@@ -17,7 +17,7 @@ class PackageTable:
     plant the one that ends parts.
     """
 
-    def __init__(self, memory: PlantMemory, name: str) -> None:
+    def __init__(self, memory: Rows, name: str) -> None:
         self._memory = memory
         self._fact = f"{PREFIX}{name}"
 

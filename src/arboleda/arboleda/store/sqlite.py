@@ -38,7 +38,8 @@ from .memory_file import (
     refuse_version,
     version,
 )
-from .plant_memory import PlantMemory, Statement, row_of_fact
+from .plant_memory import PlantMemory
+from .rows import Statement, row_of_fact
 
 TASKS = (
     # `ended_s` is null as long as a task waits or runs; times are Unix times
@@ -103,6 +104,7 @@ class Store(PlantMemory):
     remedy = f"put a copy in its place, or {MOVE_AWAY}"
 
     def __init__(self, path: Path, plant: str = "") -> None:
+        super().__init__()
         self.path = path
         self.name = str(path)
         self._plant = plant
@@ -271,7 +273,7 @@ class Store(PlantMemory):
         if owner(db) is None:
             db.execute("INSERT INTO fact (fact, name, value) VALUES (?, ?, ?)", (*OWNER, self._plant))
 
-    def _damaged(self) -> ArboledaError:
+    def damaged(self) -> ArboledaError:
         return ArboledaError(
             f"The plant's memory {self.path} cannot be used (a row is not as it was written): {MOVE_AWAY}."
         )

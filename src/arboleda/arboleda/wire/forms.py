@@ -143,7 +143,7 @@ def _check_stop(robot: Robot, command: Stop) -> str | None:
 
 
 def _wire_joints(robot: Jointed, command: MoveJoints) -> dict[str, object]:
-    rows = zip(robot.joints, robot.quantised(command.q), strict=True)
+    rows = zip(robot.joints, robot.motion.quantised(command.q), strict=True)
     return {"q": tuple(to_wire(joint, value) for joint, value in rows)}
 
 

@@ -49,7 +49,7 @@ class ServoController(Controller):
         super().__init__(devices[0], peer=settings.peer, kind="an arm of servos")
         self._settings, self._maker = settings, MAKERS[settings.protocol]
         self._joints = [servo.id for servo in settings.joints]
-        self._near = dict(zip(self._joints, map(_ticks, self.robot.tolerances), strict=True))
+        self._near = dict(zip(self._joints, map(_ticks, self.robot.motion.tolerances), strict=True))
         names = [joint.name for joint in self.robot.joints]
         self._names = dict(zip((servo.id for servo in settings.servos), [*names, GRIPPER], strict=False))
         self._boot = 1

@@ -34,7 +34,7 @@ from arboleda_proofs.testing.storage_layout import StorageLayout
 ARM = replace(StorageLayout(shipped("sis_c").cells[0]).arm, link=Link.DRIVER, evidence=Evidence.IDS)
 NAMES = tuple(joint.name for joint in ARM.joints)
 ZERO = (0.0,) * 6
-GOAL = ARM.quantised(tuple(math.radians(each) for each in (10, 20, -30, 0, 5, 0)))
+GOAL = ARM.motion.quantised(tuple(math.radians(each) for each in (10, 20, -30, 0, 5, 0)))
 GO = MoveJoints(id="9-1", robot=ARM.name, q=GOAL)
 AGAIN = MoveJoints(id="9-2", robot=ARM.name, q=ZERO)
 HALT = Stop(id="9-3", robot=ARM.name, mode=StopMode.HALT)

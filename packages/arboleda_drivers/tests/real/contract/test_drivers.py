@@ -19,7 +19,9 @@ from tests.lengths import length
 from tests.patience import PATIENCE_S
 
 from arboleda.model.messages import Reason, TaskState, Verb
+from arboleda.store.act_table import ActTable
 from arboleda.store.plant_memory import PlantMemory
+from arboleda.store.task_table import TaskTable
 
 from .bench import ASK, HALT, LATCH, OTHER, WORK, Shop
 from .benches import BENCHES, SAME_LINK
@@ -279,15 +281,14 @@ def breaks(*_: object) -> None:
 def hung_disk(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Nothing that is written to the plant's memory comes back."""
     goes_on = threading.Event()
-    for name in ("keep", "journal", "task"):
-        write = getattr(PlantMemory, name)
-        monkeypatch.setattr(PlantMemory, name, partialmethod(late, goes_on, write))
+    for owner in (PlantMemory, ActTable, TaskTable):
+        monkeypatch.setattr(owner, "keep", partialmethod(late, goes_on, owner.keep))
     try:
         yield
     finally:
         goes_on.set()
 
 
-def late(memory: PlantMemory, goes_on: threading.Event, write: Any, *values: Any, **named: Any) -> None:
+def late(table: object, goes_on: threading.Event, write: Any, *values: Any, **named: Any) -> None:
     goes_on.wait(PATIENCE_S)
-    write(memory, *values, **named)
+    write(table, *values, **named)

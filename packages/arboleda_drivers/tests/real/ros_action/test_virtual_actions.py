@@ -45,7 +45,7 @@ pytestmark = pytest.mark.system
 
 ARM = StorageLayout(shipped("sis_c").cells[0]).arm
 NAMES = tuple(joint.name for joint in ARM.joints)
-GOAL = ARM.quantised(tuple(math.radians(each) for each in (4, 2, -3, 0, 1, 0)))
+GOAL = ARM.motion.quantised(tuple(math.radians(each) for each in (4, 2, -3, 0, 1, 0)))
 JAW = Device(
     name="jaw",
     mqtt="jaw",

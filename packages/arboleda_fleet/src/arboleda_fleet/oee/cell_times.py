@@ -11,7 +11,7 @@ from arboleda.engine import Plant
 from arboleda.model.cell_states import CellState
 from arboleda.model.errors import ArboledaError
 from arboleda.oee.figures import SEEN_S
-from arboleda.store.plant_memory import PlantMemory
+from arboleda.store.time_table import TimeTable
 
 LOG = logging.getLogger(__name__)
 DAY_S = 86_400.0
@@ -25,10 +25,8 @@ class CellTimes:
     not end a plant.
     """
 
-    def __init__(
-        self, store: PlantMemory, history_days: float, clock: Callable[[], float] = time.time
-    ) -> None:
-        self._store = store
+    def __init__(self, times: TimeTable, history_days: float, clock: Callable[[], float] = time.time) -> None:
+        self._times = times
         self._history_days = history_days
         self._clock = clock
         self._version = -1
@@ -39,7 +37,7 @@ class CellTimes:
     def start(self) -> None:
         self._noted_s = now_s = self._clock()
         self._keeps = True
-        self._kept(lambda store: store.began(now_s, now_s - self._history_days * DAY_S))
+        self._kept(lambda times: times.began(now_s, now_s - self._history_days * DAY_S))
 
     def stepped(self, plant: Plant) -> None:
         """Keep the cells that stand since this step, and now and then that the plant runs."""
@@ -48,7 +46,7 @@ class CellTimes:
         now_s = self._clock()
         if not 0 <= now_s - self._noted_s < SEEN_S:
             self._noted_s = now_s
-            self._kept(lambda store: store.note_run(now_s))
+            self._kept(lambda times: times.note_run(now_s))
         if plant.version == self._version:
             return
         self._version = plant.version
@@ -62,18 +60,18 @@ class CellTimes:
 
     def stop(self) -> None:
         """Keep that the plant was ended on purpose, so that the time after it is not planned; idempotent."""
-        self._kept(lambda store: store.note_run(self._clock(), ended=True))
+        self._kept(lambda times: times.note_run(self._clock(), ended=True))
         self._keeps = False
 
-    def _kept(self, keep: Callable[[PlantMemory], None]) -> None:
+    def _kept(self, keep: Callable[[TimeTable], None]) -> None:
         if not self._keeps:
             return
         try:
-            keep(self._store)
+            keep(self._times)
         except ArboledaError as error:
             self._keeps = False
             LOG.warning("the times of cells are not kept any more, `arboleda oee` lacks them: %s", error)
 
 
-def _stands(cell: str, state: str | None, now_s: float, store: PlantMemory) -> None:
-    store.stands(cell, state, now_s)
+def _stands(cell: str, state: str | None, now_s: float, times: TimeTable) -> None:
+    times.stands(cell, state, now_s)

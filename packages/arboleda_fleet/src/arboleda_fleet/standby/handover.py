@@ -31,7 +31,7 @@ def hold_all(plant: Orchestrator) -> list[str]:
 
 
 def _states(plant: Orchestrator) -> dict[str, str]:
-    return {row["name"]: row["state"] for row in plant.snapshot()["cells"]}
+    return {row["name"]: row["state"] for row in plant.screens.snapshot()["cells"]}
 
 
 class CellResumption:

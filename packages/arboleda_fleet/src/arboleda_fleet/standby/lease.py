@@ -9,7 +9,8 @@ from collections.abc import Callable
 from arboleda.adapters import clock
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime.parts.part import Crash
-from arboleda.store.plant_memory import PlantMemory, Superseded
+from arboleda.store.lead import Superseded
+from arboleda.store.plant_memory import PlantMemory
 
 LOG = logging.getLogger(__name__)
 PATIENCE_S = 3.0
@@ -46,7 +47,7 @@ class LeasePart:
     def _lead(self) -> None:
         while not self._ending.wait(self._renew_s):
             try:
-                wanted = self._memory.renew()
+                wanted = self._memory.lead.renew()
             except Superseded as error:
                 self._crash("lease", error)
                 return

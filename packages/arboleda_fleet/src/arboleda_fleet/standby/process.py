@@ -19,7 +19,7 @@ from arboleda.runtime.interrupts import heed, interruptible
 from arboleda.runtime.leader import LeaderInfo, of_leader
 from arboleda.runtime.standing_by import ReadAgain
 from arboleda.runtime.state import StateDir, default_state
-from arboleda.store.plant_memory import OtherLeader
+from arboleda.store.lead import OtherLeader
 from arboleda.web.access.names import other_address
 from arboleda.wire.status import OK, WARN
 

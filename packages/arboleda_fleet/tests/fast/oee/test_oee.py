@@ -19,6 +19,7 @@ from arboleda.runtime.build import Options, build
 from arboleda.runtime.state import STORE
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery
+from arboleda.store.time_table import TimeTable
 from arboleda_fleet.oee.api import OeeApi, OeeQuery
 from arboleda_fleet.oee.cell_times import CellTimes
 from arboleda_fleet.oee.rows import figures
@@ -39,13 +40,13 @@ def store(tmp_path: Path) -> Store:
 def rig(store: Store) -> Rig:
     """A plant at work whose every step is kept as the orchestrator keeps it."""
     rig = Rig(shipped("sis_a"), now=0.0)
-    times = CellTimes(store, 90.0, lambda: BEGAN + rig.now)
+    times = CellTimes(store.times, 90.0, lambda: BEGAN + rig.now)
     times.start()
 
     def keep() -> None:
         for message in rig.moment.sent:
             if isinstance(message, TaskChanged):
-                store.task(message, "storage", BEGAN + rig.now)
+                store.tasks.keep(message, "storage", BEGAN + rig.now)
         times.stepped(rig.plant)
 
     rig.watchers.append(keep)
@@ -71,7 +72,7 @@ def test_performance_is_the_shortest_of_the_times_that_the_history_has_to_all_of
     for task in "abc":
         done(rig, task)
     found = of_cell(store, rig)
-    took = [row.ended_s - row.started_s for row in store.tasks(TaskQuery())]
+    took = [row.ended_s - row.started_s for row in store.tasks.select(TaskQuery())]
     assert found.done == found.timed == len(took) == 3
     assert found.performance == pytest.approx(3 * min(took) / sum(took), rel=1e-6)
     assert found.availability == pytest.approx(1.0) and found.quality == 1.0
@@ -104,8 +105,8 @@ def test_that_a_plant_runs_is_kept_each_minute_and_that_it_was_ended(rig: Rig, s
     assert runs.execute("SELECT seen_s, ended FROM run").fetchall() == [(BEGAN + rig.now, 1)]
 
 
-class Full(Store):
-    """A store on a disk without room."""
+class Full(TimeTable):
+    """A table on a disk without room."""
 
     def stands(self, cell: str, state: str | None, unix_s: float) -> None:
         raise ArboledaError("no room on the disk")
@@ -115,8 +116,8 @@ def test_figures_that_cannot_be_kept_are_said_once_and_end_no_plant(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     rig = Rig(shipped("sis_a"))
-    with Full(tmp_path / "full.sqlite") as full:
-        times = CellTimes(full, 90.0, lambda: BEGAN + rig.now)
+    with Store(tmp_path / "full.sqlite") as store:
+        times = CellTimes(Full(store), 90.0, lambda: BEGAN + rig.now)
         times.start()
         rig.watchers.append(lambda: times.stepped(rig.plant))
         rig.operate(Verb.STOP)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from concurrent.futures import Future
 from itertools import count
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -13,7 +14,8 @@ from arboleda.adapters import clock
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import OWN
-from arboleda.store.plant_memory import PlantMemory, Superseded
+from arboleda.store.lead import Superseded
+from arboleda.store.plant_memory import PlantMemory
 from arboleda_fleet.standby import handover
 from arboleda_fleet.standby import lease as lease_part
 from arboleda_fleet.standby.handover import CellResumption, hold_all
@@ -27,6 +29,7 @@ class Plant:
         self.states = states
         self.said: list[tuple[Verb, str]] = []
         self.looks = 0
+        self.screens = SimpleNamespace(snapshot=self._snapshot)
 
     def operate(self, verb: Verb, scope: str = "") -> Future[OperatorAnswer]:
         self.said.append((verb, scope))
@@ -39,7 +42,7 @@ class Plant:
         answer.set_result(OperatorAnswer(request="", verb=verb, scope=scope, refusal=refusal))
         return answer
 
-    def snapshot(self) -> dict[str, Any]:
+    def _snapshot(self) -> dict[str, Any]:
         self.looks += 1
         if self.looks > 3:
             self.states = {
@@ -95,8 +98,9 @@ class Memory:
     def __init__(self, *answers: bool | ArboledaError) -> None:
         self._answers = list(answers)
         self.closed = False
+        self.lead = SimpleNamespace(renew=self._renew)
 
-    def renew(self) -> bool:
+    def _renew(self) -> bool:
         answer = self._answers.pop(0) if len(self._answers) > 1 else self._answers[0]
         if isinstance(answer, ArboledaError):
             raise answer

@@ -12,7 +12,7 @@ from tests.postgres import Server
 
 from arboleda.departures.leading import LEASE_S, WANTED_S
 from arboleda.model.messages import Fact, Remember
-from arboleda.store.plant_memory import Superseded
+from arboleda.store.lead import Superseded
 from arboleda_fleet.postgres.leader_row import END_LEASE, LAST_SEEN
 from arboleda_fleet.postgres.leadership import PostgresLeadership
 from arboleda_fleet.postgres.memory import LEAD, PostgresMemory
@@ -47,7 +47,7 @@ class Both:
             return
         memory = PostgresMemory(self._address, self._plant)
         memory.open()
-        assert (memory.lead(proposed), tuple(memory.going)) == expected
+        assert (memory.lead.take(proposed), tuple(memory.lead.going)) == expected
         self.processes.append((memory, expected[0]))
 
     def renew(self, memory: PostgresMemory, epoch: int) -> None:
@@ -55,9 +55,9 @@ class Both:
         expected = self.row.renew(epoch, NOW)
         if expected is None:
             with pytest.raises(Superseded):
-                memory.renew()
+                memory.lead.renew()
         else:
-            assert memory.renew() is expected
+            assert memory.lead.renew() is expected
 
     def write(self, memory: PostgresMemory, epoch: int) -> None:
         said = Remember(fact=Fact.EFFECTOR, name="ra1", value="on")
@@ -68,7 +68,7 @@ class Both:
                 memory.keep(said)
 
     def hand_over(self, memory: PostgresMemory, epoch: int) -> None:
-        memory.hand_over(["sis_a", f"after {epoch}"])
+        memory.lead.hand_over(["sis_a", f"after {epoch}"])
         self.row.hand_over(epoch, ["sis_a", f"after {epoch}"])
 
     def end(self, memory: PostgresMemory, epoch: int) -> None:

@@ -18,8 +18,8 @@ from arboleda.departures.leading import LEASE_S, RENEW_S
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import Fact, Journal, Remember, TaskChanged, TaskState, Verb
 from arboleda.model.sentence import OWN
+from arboleda.store.lead import Standby, Superseded
 from arboleda.store.package_table import PackageTable
-from arboleda.store.plant_memory import Standby, Superseded
 from arboleda.store.task_rows import TaskQuery
 from arboleda_fleet.postgres.history import PostgresHistory
 from arboleda_fleet.postgres.leaders import PostgresLeaders
@@ -34,7 +34,7 @@ ACT = Journal(verb=Verb.STOP, scope="", cell=None, sentence=OWN(text="everything
 @contextmanager
 def leading(address: str, plant: str, epoch: int = 1) -> Iterator[PostgresMemory]:
     with PostgresMemory(address, plant) as memory:
-        memory.lead(epoch)
+        memory.lead.take(epoch)
         yield memory
 
 
@@ -54,15 +54,15 @@ def take_over(server: Server, plant: str) -> None:
 WRITES: dict[str, Callable[[PostgresMemory], object]] = {
     "two facts": lambda memory: memory.keep(LATCH, Remember(fact=Fact.LATCH, name="ra2", value="on")),
     "a fact less": lambda memory: memory.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value=None)),
-    "an entry of the journal": lambda memory: memory.journal(ACT, 2.0),
-    "a task": lambda memory: memory.task(QUEUED, "storage", 2.0),
-    "an attempt": lambda memory: memory.attempted("kept", 5),
-    "old tasks forgotten": lambda memory: memory.forget_tasks(100.0),
-    "a start": lambda memory: memory.began(5.0, 4.0),
-    "an end": lambda memory: memory.note_run(5.0, ended=True),
-    "a cell that stands": lambda memory: memory.stands("sis_a", "held", 5.0),
+    "an entry of the journal": lambda memory: memory.acts.keep(ACT, 2.0),
+    "a task": lambda memory: memory.tasks.keep(QUEUED, "storage", 2.0),
+    "an attempt": lambda memory: memory.tasks.attempted("kept", 5),
+    "old tasks forgotten": lambda memory: memory.tasks.forget(100.0),
+    "a start": lambda memory: memory.times.began(5.0, 4.0),
+    "an end": lambda memory: memory.times.note_run(5.0, ended=True),
+    "a cell that stands": lambda memory: memory.times.stands("sis_a", "held", 5.0),
     "a row of a package": lambda memory: PackageTable(memory, "acme").put({"a": "1"}),
-    "its lease": lambda memory: memory.renew(),
+    "its lease": lambda memory: memory.lead.renew(),
 }
 
 
@@ -75,8 +75,10 @@ def test_who_was_superseded_writes_nothing(postgres: Server, database: str, plan
     written = []
     with leading(database, plant) as memory:
         memory.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="on"))
-        memory.task(TaskChanged(task="kept", text="x", cell="x", state=TaskState.QUEUED), "storage", 1.0)
-        memory.began(1.0, 0.0)
+        memory.tasks.keep(
+            TaskChanged(task="kept", text="x", cell="x", state=TaskState.QUEUED), "storage", 1.0
+        )
+        memory.times.began(1.0, 0.0)
         take_over(postgres, plant)
         before = everything()
         for what, write in WRITES.items():
@@ -97,9 +99,9 @@ def test_a_leader_that_was_away_finds_out_that_it_is_none_any_more(
         memory.confirm()
         take_over(postgres, plant)
         memory.confirm()  # its lease has not ended: nobody can have taken over but by a look into the tables
-        assert memory.leads_for_certain
+        assert memory.lead.is_certain
         now += LEASE_S
-        assert not memory.leads_for_certain
+        assert not memory.lead.is_certain
         with pytest.raises(Superseded):
             memory.confirm()
 
@@ -112,7 +114,7 @@ def test_a_plant_has_one_leader_and_no_other_writes(
         renewing, ended = _renewing(first)
         try:
             with pytest.raises(StartError, match=r"is led by another process \(process \d+ on .*\): end it"):
-                second.lead(1)
+                second.lead.take(1)
             with pytest.raises(ArboledaError, match="is not led"):
                 second.keep(LATCH)
         finally:
@@ -125,7 +127,7 @@ def _renewing(memory: PostgresMemory) -> tuple[threading.Thread, threading.Event
 
     def renew() -> None:
         while not ended.wait(RENEW_S):
-            memory.renew()
+            memory.lead.renew()
 
     thread = threading.Thread(target=renew)
     thread.start()
@@ -136,7 +138,7 @@ def test_who_was_ended_gives_the_plant_back_and_numbers_only_grow(database: str,
     numbers, others = [], PostgresLeadership(database, plant)
     for wanted in (1000, 5, 2000):
         with PostgresMemory(database, plant) as memory:
-            numbers.append(memory.lead(wanted))
+            numbers.append(memory.lead.take(wanted))
         assert not others.leader().leads
     others.close()
     assert numbers == [1000, 1001, 2000]
@@ -147,17 +149,17 @@ def test_plants_that_share_a_database_are_found_and_know_nothing_of_each_other(
 ) -> None:
     second = f"{plant}_b"
     with leading(database, plant) as one, PostgresMemory(database, second) as other:
-        one.announce("http://10.0.0.1:8080")
+        one.lead.announce("http://10.0.0.1:8080")
         leaders = PostgresLeaders(database)
         found = {name: (each.leads, each.url) for name, each in leaders.all().items()}
         leaders.close()
         assert (found[plant], found[second]) == ((True, "http://10.0.0.1:8080"), (False, ""))
-        other.lead(1)
+        other.lead.take(1)
         one.keep(LATCH)
-        one.task(QUEUED, "storage", 1.0)
-        assert other.facts(Fact.LATCH) == {} and other.tasks(TaskQuery()) == []
-        other.task(QUEUED, "palletizing", 1.0)
-        assert [row.recipe for row in one.tasks(TaskQuery())] == ["storage"]
+        one.tasks.keep(QUEUED, "storage", 1.0)
+        assert other.facts(Fact.LATCH) == {} and other.tasks.select(TaskQuery()) == []
+        other.tasks.keep(QUEUED, "palletizing", 1.0)
+        assert [row.recipe for row in one.tasks.select(TaskQuery())] == ["storage"]
 
 
 def test_two_hosts_may_make_it_at_once(database: str, plant: str) -> None:
@@ -231,8 +233,8 @@ def test_tables_of_an_older_arboleda_are_brought_up_with_what_they_have(
     with pytest.raises(ArboledaError, match="of an older Arboleda: start the plant once"):
         history.select(TaskQuery())
     with leading(database, plant) as memory:
-        assert memory.facts(Fact.LATCH) == {"ra1": "on"} and memory.going == ()
-        memory.announce("http://127.0.0.1:8080")
+        assert memory.facts(Fact.LATCH) == {"ra1": "on"} and memory.lead.going == ()
+        memory.lead.announce("http://127.0.0.1:8080")
     assert history.select(TaskQuery()) == []
     history.close()
 
@@ -242,27 +244,27 @@ def test_others_see_who_leads_who_waits_and_what_was_left_at_work(database: str,
     others.prepare()
     assert not others.leader().leads
     with leading(database, plant) as first:
-        assert (first.own_address(), others.own_address()) == ("", ""), "it is the database's host"
-        first.announce("http://host-a:8080")
+        assert (first.lead.own_address(), others.own_address()) == ("", ""), "it is the database's host"
+        first.lead.announce("http://host-a:8080")
         seen = others.leader()
         assert (seen.leads, seen.process, seen.url) == (True, os.getpid(), "http://host-a:8080")
         others.wait_here()
         others.wait_here("http://host-b:8080")
         assert others.leader().standbys == 1
-        assert first.renew() is False
-        assert first.standbys == (Standby(host=socket.gethostname(), url="http://host-b:8080"),)
+        assert first.lead.renew() is False
+        assert first.lead.standbys == (Standby(host=socket.gethostname(), url="http://host-b:8080"),)
         others.wait_no_more()
         assert others.leader().standbys == 0
-        assert first.renew() is False and first.standbys == ()
+        assert first.lead.renew() is False and first.lead.standbys == ()
         others.ask_for_handover()
-        assert first.renew() is True
-        first.hand_over(["sis_a", "sis_b"])
+        assert first.lead.renew() is True
+        first.lead.hand_over(["sis_a", "sis_b"])
     assert not others.leader().leads
     with leading(database, plant) as second:
-        assert second.going == ("sis_a", "sis_b") and others.leader().url == ""
-        assert second.renew() is False  # what was asked of the one before him
+        assert second.lead.going == ("sis_a", "sis_b") and others.leader().url == ""
+        assert second.lead.renew() is False  # what was asked of the one before him
     with leading(database, plant) as third:
-        assert third.going == ()
+        assert third.lead.going == ()
     others.close()
 
 
@@ -271,13 +273,13 @@ def test_a_restart_of_the_server_between_two_writes_is_not_noticed(
 ) -> None:
     history = PostgresHistory(database, plant)
     with leading(database, plant) as memory:
-        memory.task(QUEUED, "storage", 1.0)
+        memory.tasks.keep(QUEUED, "storage", 1.0)
         assert len(history.select(TaskQuery())) == 1
         postgres.stop(signal.SIGINT)
         postgres.start()
         memory.keep(LATCH)
         memory.confirm()
-        memory.renew()
+        memory.lead.renew()
         assert memory.facts(Fact.LATCH) == {"ra1": "on"}
     assert len(history.select(TaskQuery())) == 1
     history.close()
@@ -285,7 +287,7 @@ def test_a_restart_of_the_server_between_two_writes_is_not_noticed(
 
 def test_a_server_that_is_away_is_one_sentence(postgres: Server, database: str, plant: str) -> None:
     with leading(database, plant) as memory:
-        memory.task(QUEUED, "storage", 1.0)
+        memory.tasks.keep(QUEUED, "storage", 1.0)
         postgres.stop()
         try:
             with pytest.raises(ArboledaError, match=r"look whether the server runs .* is not lost") as away:
@@ -293,7 +295,7 @@ def test_a_server_that_is_away_is_one_sentence(postgres: Server, database: str, 
             assert not isinstance(away.value, Superseded)
         finally:
             postgres.start()
-        assert [row.id for row in memory.tasks(TaskQuery())] == ["a"]
+        assert [row.id for row in memory.tasks.select(TaskQuery())] == ["a"]
 
 
 def test_a_server_that_says_nothing_counts_as_away_and_is_heard_again(
@@ -301,7 +303,7 @@ def test_a_server_that_says_nothing_counts_as_away_and_is_heard_again(
 ) -> None:
     others = PostgresLeadership(database, plant)
     with leading(database, plant) as memory, closing(others):
-        memory.renew()
+        memory.lead.renew()
         epoch = others.leader().epoch
         postgres.freeze(on=True)
         try:
@@ -312,14 +314,14 @@ def test_a_server_that_says_nothing_counts_as_away_and_is_heard_again(
                         ask()
         finally:
             postgres.freeze(on=False)
-        memory.renew()
+        memory.lead.renew()
         assert others.leader().epoch == epoch and others.leader().leads
 
 
 def test_who_is_frozen_with_a_lock_keeps_nobody_out(postgres: Server, database: str, plant: str) -> None:
     with leading(database, plant) as memory:
         memory.keep(LATCH)
-        frozen = memory.connect()  # a session as the plant's own, which has begun and never goes on
+        frozen = memory.session.another()  # a session as the plant's own, which has begun and never goes on
         frozen.execute("BEGIN")
         frozen.execute("SELECT fenced(1, true)")
         with postgres.connection() as db:

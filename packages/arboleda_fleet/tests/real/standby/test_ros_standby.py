@@ -61,7 +61,7 @@ def test_a_node_that_waits_says_so_in_the_diagnostics_and_leads_then(
         db.execute(f"DROP SCHEMA IF EXISTS plant_{NAME} CASCADE")
     leader = PostgresMemory(database, NAME)
     leader.open()
-    leader.lead(int(time.time()))
+    leader.lead.take(int(time.time()))
     monkeypatch.setenv("PYTHONPATH", paths())
     values = (
         f"store:={database}",
@@ -75,7 +75,7 @@ def test_a_node_that_waits_says_so_in_the_diagnostics_and_leads_then(
     try:
         name = f"arboleda: standby on {socket.gethostname()}"
         waits = "waits for the end of process"
-        until(lambda: leader.renew() or any(waits in said for level, said in heard(name) if level == 0))
+        until(lambda: leader.lead.renew() or any(waits in said for level, said in heard(name) if level == 0))
         assert not heard("arboleda: orchestrator on ROS 2")
         running = find_running(tmp_path / "state")
         assert running is not None and running.guarded, "other hosts reach it, with a token"

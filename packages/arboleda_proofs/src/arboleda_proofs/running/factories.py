@@ -70,7 +70,7 @@ def demonstration(assembly: Assembly) -> Iterator[Part]:
     assembly.offer(DemonstrationApi, part)
     assembly.links.add(lambda: {"demo": part.is_on})
     assembly.notes.append(lambda: part.notes)
-    plant.watchers.append(part.saw)
+    plant.screens.watchers.append(part.saw)
     yield part
 
 

@@ -78,7 +78,7 @@ def robot(world: World, name: str) -> RobotLook:
     body = world.boards[model.mqtt].body
     if model.joints and isinstance(body, ArmBody):
         true = tuple(
-            joint.step * steps for joint, steps in zip(model.joints, body.true_position, strict=True)
+            joint.step * steps for joint, steps in zip(model.joints, body.motors.true_position, strict=True)
         )
         return look(
             joints=_shown(model, true),

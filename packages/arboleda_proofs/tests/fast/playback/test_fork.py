@@ -14,7 +14,7 @@ from tests.lengths import sample
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.record_text import sentence_of
-from arboleda.recorder.tape import TapedPlant
+from arboleda.recorder.tape import TapedPlant, recorded
 from arboleda_proofs.commands.fork import compared
 from arboleda_proofs.playback.fork.plant_events import Pair
 from arboleda_proofs.playback.fork.run import ForkRequest, ForkResult, forked
@@ -48,7 +48,7 @@ def taped(acts: dict[float, Act], *, model: PlantModel | None = None, s: float =
 def fork(plant: TapedPlant, at: float, **changes: Any) -> ForkResult:
     at_ns = round((START_S + at) * 1e9)
     asked = ForkRequest(**{"at_ns": at_ns, "model": RECORDED, "recorded": RECORDED, **changes})
-    found = forked(plant.beginning, plant.steps(), asked, sentence_of)
+    found = forked(plant.beginning, recorded(plant.tape), asked, sentence_of)
     assert found.difference is None
     return found
 
@@ -138,5 +138,5 @@ def test_an_arm_that_stood_still_goes_on_from_where_it_was_heard() -> None:
 def test_a_plant_of_other_bits_is_not_forked() -> None:
     other = replace(shipped(), timing=replace(shipped().timing, effector_timeout_s=9.0))
     asked = ForkRequest(at_ns=round((START_S + 8.0) * 1e9), model=other, recorded=other)
-    found = forked(run_of("undisturbed").beginning, run_of("undisturbed").steps(), asked, sentence_of)
+    found = forked(run_of("undisturbed").beginning, recorded(run_of("undisturbed").tape), asked, sentence_of)
     assert found.difference is not None and found.world is None

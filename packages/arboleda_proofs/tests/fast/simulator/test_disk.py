@@ -49,7 +49,7 @@ def test_it_has_what_the_store_has_after_the_same_commits() -> None:
             if isinstance(message, Remember):
                 store.keep(message)
             else:
-                store.task(message, "storage", float(number))
+                store.tasks.keep(message, "storage", float(number))
             if is_kept(message):
                 disk.commit(message, float(number))
         found = disk.found()

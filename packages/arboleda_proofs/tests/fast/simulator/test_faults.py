@@ -346,10 +346,10 @@ def test_a_board_without_power_does_not_reboot(world):
 @pytest.mark.parametrize(("amount", "steps"), [(12.4, 12), (-50.0, -50), (0.2, 1)])
 def test_lost_steps_move_the_arm_and_not_its_counter(world, amount, steps):
     body = world.boards["ra_1"].body
-    counted, true = body.position, body.true_position
+    counted, true = body.motors.position, body.motors.true_position
     begin(world, fault("lost_steps", "ra_1", word="q2", amount=amount))
-    assert body.position == counted
-    assert body.true_position == (true[0], true[1] + steps, true[2])
+    assert body.motors.position == counted
+    assert body.motors.true_position == (true[0], true[1] + steps, true[2])
 
 
 def test_a_lost_part_is_gone(world):
@@ -407,7 +407,7 @@ def test_a_joint_is_told_off_by_more_than_its_tolerance(world):
     begin(world, fault("lying_telemetry", "ra_1", word="q3_mov", amount=2.0))
     (lie,) = set(told(world, "ra_1", "q3_mov"))
     off_m = abs(lie - truth) * 3.14159265 / 180 * arm.joints[2].pinion_radius_m
-    assert off_m == pytest.approx(2 * arm.tolerances[2], rel=0.01)
+    assert off_m == pytest.approx(2 * arm.motion.tolerances[2], rel=0.01)
 
 
 @pytest.mark.parametrize("word", ["half", "no number", "a truth value", "too long", "incomplete"])
@@ -606,7 +606,7 @@ def test_a_strangers_halt_stops_a_moving_arm(world):
     body = world.boards["ra_1"].body
     assert world.advance(30.0, until=lambda: body.moving)
     begin(world, fault("foreign_halt", "ra_1"))
-    assert body.targets != (0, 0, 0)
+    assert body.motors.targets != (0, 0, 0)
     assert world.advance(0.6, until=lambda: not body.moving)
 
 

@@ -137,7 +137,7 @@ def test_nothing_is_found_while_all_goes_well(model: Callable[[], PlantModel]) -
 FAULTS: dict[str, Callable[[Watch], None]] = {
     "power": lambda watch: watch.world.crash(ARM),
     "mobile's power": lambda watch: watch.world.crash(MOBILE),
-    "lost steps": lambda watch: watch.body.lose_steps(0, 3),
+    "lost steps": lambda watch: watch.body.motors.lose_steps(0, 3),
     "alarm": lambda watch: watch.world.boards[ARM].fail(round(watch.world.now * 1e6)),
     "bridge": lambda watch: watch.world.crash("bridge"),
     "plant": lambda watch: watch.world.crash(),

@@ -98,14 +98,14 @@ def test_power_takes_the_counters_but_not_the_arm(stage):
     stood = stage.arm.true
     stage.world.crash(ARM)
     stage.world.advance(0.1)
-    assert stage.body.position == (0, 0, 0)
+    assert stage.body.motors.position == (0, 0, 0)
     assert (stage.arm.true, stage.arm.here, stage.arm.homed) == (stood, {"pick-up"}, False)
 
 
 def test_lost_steps_are_told_from_those_that_a_boot_forgets_until_homing_finds_them(stage):
     stage.ask("sis_a palletizing")
     stage.until(lambda: stage.arm.here == {"pick-up"})
-    stage.body.lose_steps(0, 5)
+    stage.body.motors.lose_steps(0, 5)
     stage.world.crash(ARM)
     stage.world.advance(20.0)
     assert (stage.arm.lost, stage.arm.here) == ((5, 0, 0), {"pick-up"})
@@ -115,7 +115,7 @@ def test_lost_steps_are_told_from_those_that_a_boot_forgets_until_homing_finds_t
 
 
 def test_an_arm_that_lost_a_few_steps_counts_as_where_it_would_be(stage):
-    stage.body.lose_steps(1, -2)
+    stage.body.motors.lose_steps(1, -2)
     stage.ask("sis_a palletizing")
     stage.until(lambda: stage.arm.here == {"pick-up"})
     assert stage.arm.true[1] == stage.arm.intended[1] - 2
@@ -138,7 +138,7 @@ def test_an_arm_stands_at_a_pose_within_its_tolerance(beside, here):
     model = shipped("sis_a")
     (cell,) = model.cells
     arm = cell.roles["arm"]
-    tolerance = (3 * arm.joints[0].step, *arm.tolerances[1:])
+    tolerance = (3 * arm.joints[0].step, *arm.motion.tolerances[1:])
     stage = Stage(replace(model, cells=(with_robot(cell, "arm", tolerance=tolerance),)))
     drive_beside(stage, beside)
     assert stage.arm.here == here
@@ -152,7 +152,7 @@ def found_by_parts_conserved(stage: Stage) -> list[str]:
 def test_a_part_is_gripped_where_the_axes_truly_are(stage):
     found = []
     stage.world.watchers.append(lambda: found.extend(found_by_parts_conserved(stage)))
-    stage.body.lose_steps(0, 5)
+    stage.body.motors.lose_steps(0, 5)
     drive_beside(stage, -5)
     stage.body.switch_effector(True)
     stage.world.advance(0.2)
@@ -194,11 +194,11 @@ def test_an_arm_that_is_halted_near_a_pose_on_its_way_is_where_the_way_is():
     space, arm = cell.taker, cell.roles["arm"]
     home, pickup = replace(space.home, q=(0.0, 0.0, 0.0)), replace(space.targets["pickup"], q=(1.0, 0.0, 0.0))
     between = replace(cell.stations[4], q=(0.5, 0.0, 0.0), zones=frozenset({"rack"}))
-    cell = with_robot(cell, "arm", tolerance=(0.35, *arm.tolerances[1:]))
+    cell = with_robot(cell, "arm", tolerance=(0.35, *arm.motion.tolerances[1:]))
     cell = with_poses(cell, home=home, pickup=pickup, station_4=between)
     stage = Stage(replace(plant, zones=("rack",), cells=(cell,)))
     stage.ask("sis_a 0B 7")
-    stage.until(lambda: stage.body.true_position[0] * arm.joints[0].step > 0.2)
+    stage.until(lambda: stage.body.motors.true_position[0] * arm.joints[0].step > 0.2)
     stage.world.request_verb(Verb.HOLD, "sis_a")
     stage.until(lambda: "station 4" in stage.arm.here)
     assert stage.arm.zones == set()

@@ -10,13 +10,14 @@ from collections.abc import Callable
 from . import limits, packets
 from .access import ALLOWED, ClientIdentity
 from .limits import Allowance, Bucket
+from .outbox import Outbox
 from .packets import Answer, Kind, Message, Packet, ProtocolError
 from .router import Router
 from .sessions import Sessions
+from .silence import Silence
 from .topics import is_filter, is_wild
 
 LOG = logging.getLogger(__name__)
-LAST_ID = 65535
 FLUSH_BYTES = 32 * 1024  # bytes of unread answers, beyond which a client's packets have to wait
 SEND_BUFFER_BYTES = 128 * 1024  # buffer in the kernel, where a connection could otherwise have megabytes
 
@@ -24,8 +25,8 @@ SEND_BUFFER_BYTES = 128 * 1024  # buffer in the kernel, where a connection could
 class Client(asyncio.BufferedProtocol):
     """A client of one broker. All that happens to it happens in the event loop's thread.
 
-    What it is sent is gathered, and leaves when `flush` is called. It is cut off (`cut`) for what MQTT or the
-    limits do not allow; its last will goes out then, before anything else is done.
+    It is cut off (`cut`) for what MQTT or the limits do not allow; its last will goes out then, before
+    anything else is done.
     """
 
     def __init__(self, sessions: Sessions, router: Router) -> None:
@@ -38,15 +39,9 @@ class Client(asyncio.BufferedProtocol):
         self._loop = asyncio.get_running_loop()
         self._stream = packets.Stream()
         self._read = bytearray(limits.PACKET_BYTES)
-        self._out: list[bytes] = []
-        self._out_bytes = 0
         self._will: Message | None = None
-        self._last_id = 0
-        self._unacknowledged: set[int] = set()
         self._half_received: set[int] = set()  # ids of QoS 2 between PUBLISH and PUBREL
-        self._silence_s = limits.HELLO_S
-        self._last_data_at = self._loop.time()
-        self._clock: asyncio.TimerHandle | None = None
+        self._silence = Silence(self._loop, self.cut)
         self._rest: asyncio.TimerHandle | None = None
         self._rest_s = 0.0
         self._reads_slowly = False
@@ -64,7 +59,8 @@ class Client(asyncio.BufferedProtocol):
         sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
-        self._watch_silence()
+        self._outbox = Outbox(transport, self.cut)
+        self._silence.watch(limits.HELLO_S)
         self._sessions.came(self)
 
     def connection_lost(self, exc: Exception | None) -> None:
@@ -74,7 +70,7 @@ class Client(asyncio.BufferedProtocol):
         return self._read
 
     def buffer_updated(self, nbytes: int) -> None:
-        self._last_data_at = self._loop.time()
+        self._silence.last_data_at = self._loop.time()
         self._stream.feed(memoryview(self._read)[:nbytes])
         self._work()
 
@@ -85,18 +81,7 @@ class Client(asyncio.BufferedProtocol):
         self._reads_slowly = False
         self._work()
 
-    # --- called by sessions and router ---
-
-    def send(self, message: Message) -> None:
-        """Queue a message for the client; one that leaves too much unread is cut off."""
-        number = self._next_id() if message.qos else 0
-        self._write(packets.publish(message, number))
-
-    def flush(self) -> None:
-        """Hand over the queued bytes to the system."""
-        out, self._out, self._out_bytes = b"".join(self._out), [], 0
-        if out and not self._over:
-            self._transport.write(out)
+    # --- called by sessions ---
 
     def cut(self, why: str) -> None:
         """End the connection at once; idempotent."""
@@ -116,8 +101,8 @@ class Client(asyncio.BufferedProtocol):
                 if packet is None:
                     break
                 self._handle(packet)
-                if self._out_bytes > FLUSH_BYTES:
-                    self.flush()
+                if self._outbox.waiting_bytes > FLUSH_BYTES:
+                    self._outbox.flush()
                 if self._rest_s or self._loop.time() > until:
                     self._rest = self._loop.call_later(self._rest_s, self._go_on)
                     self._rest_s = 0.0
@@ -128,7 +113,7 @@ class Client(asyncio.BufferedProtocol):
                 self._transport.pause_reading()
             else:
                 self._transport.resume_reading()
-        self.flush()
+        self._outbox.flush()
         self._router.flush()
 
     def _go_on(self) -> None:
@@ -149,21 +134,19 @@ class Client(asyncio.BufferedProtocol):
             id = connect.client_id
             if len(id.encode()) > limits.CLIENT_ID_BYTES or not (id or connect.clean):
                 raise packets.ConnectRefused(Answer.CLIENT_ID)
-            who = self._sessions.log_in(self, connect, self._shown)
+            who = self._sessions.log_in(self, connect, shown_name(self._transport))
         except packets.ConnectRefused as refused:
             self._refuse(refused.answer)
             return
         self.who, self._client_id, self._will = who, connect.client_id, connect.will
         self._allowed = ALLOWED.get(who.role)
         self._bucket = self._sessions.bucket(who)
-        self._silence_s = 1.5 * connect.keep_alive_s
-        self._write(packets.connack(Answer.ACCEPTED))
-        self._watch_silence()
+        self._silence.watch(1.5 * connect.keep_alive_s)
+        self._outbox.write(packets.connack(Answer.ACCEPTED))
 
     def _refuse(self, answer: Answer) -> None:
         """Refuse the login after a pause, in which the client waits with those not logged in yet."""
-        self._silence_s = limits.REFUSED_S
-        self._watch_silence(lambda: self._say_no(answer))
+        self._silence.watch(limits.REFUSED_S, lambda: self._say_no(answer))
         self._rest_s = limits.HELLO_S  # further packets are ignored
 
     def _say_no(self, answer: Answer) -> None:
@@ -183,15 +166,15 @@ class Client(asyncio.BufferedProtocol):
             self._router.publish(self._known, message)
         if message.qos:
             answer = Kind.PUBACK if message.qos == 1 else Kind.PUBREC
-            self._write(packets.acknowledge(answer, number))
+            self._outbox.write(packets.acknowledge(answer, number))
 
     def _publish_released(self, packet: Packet) -> None:
         number = packets.read_id(packet.body)
         self._half_received.discard(number)
-        self._write(packets.acknowledge(Kind.PUBCOMP, number))
+        self._outbox.write(packets.acknowledge(Kind.PUBCOMP, number))
 
     def _acknowledged(self, packet: Packet) -> None:
-        self._unacknowledged.discard(packets.read_id(packet.body))
+        self._outbox.acknowledged(packets.read_id(packet.body))
 
     def _subscribe(self, packet: Packet) -> None:
         number, wanted = packets.read_subscribe(packet.body)
@@ -200,13 +183,13 @@ class Client(asyncio.BufferedProtocol):
         for pattern, qos in wanted:
             granted.append(min(qos, 1) if self._may_subscribe(pattern) else packets.FAILED)
             if granted[-1] != packets.FAILED:
-                self._router.subscribe(self, pattern, granted[-1])
+                self._router.subscribe(self._outbox, pattern, granted[-1])
                 self._filters.add(pattern)
             self._use(limits.WILDCARD_COST if is_wild(pattern) else 1.0)
-        self._write(packets.suback(number, granted))
+        self._outbox.write(packets.suback(number, granted))
         for (pattern, _), qos in zip(wanted, granted, strict=True):
             if qos != packets.FAILED and not self._over:
-                self._router.send_retained(self, pattern, qos)
+                self._router.send_retained(self._outbox, pattern, qos)
 
     def _may_subscribe(self, pattern: str) -> bool:
         if not is_filter(pattern):
@@ -222,17 +205,17 @@ class Client(asyncio.BufferedProtocol):
     def _unsubscribe(self, packet: Packet) -> None:
         number, filters = packets.read_unsubscribe(packet.body)
         mine = self._filters.intersection(filters)
-        self._router.unsubscribe(self, mine)
+        self._router.unsubscribe(self._outbox, mine)
         self._filters -= mine
-        self._write(packets.acknowledge(Kind.UNSUBACK, number))
+        self._outbox.write(packets.acknowledge(Kind.UNSUBACK, number))
 
     def _ping(self, packet: Packet) -> None:
         self._use(1.0)
-        self._write(packets.pingresp())
+        self._outbox.write(packets.pingresp())
 
     def _disconnect(self, packet: Packet) -> None:
         self._will = None
-        self.flush()
+        self._outbox.flush()
         self._end()
         if self._transport.get_write_buffer_size():  # closing would wait until all is read
             self._transport.abort()
@@ -240,12 +223,6 @@ class Client(asyncio.BufferedProtocol):
             self._transport.close()
 
     # --- its limits ---
-
-    @property
-    def _shown(self) -> str:
-        """The name in the client's certificate; "" if it has shown none."""
-        subject = (self._transport.get_extra_info("peercert") or {}).get("subject", ())
-        return next((value for part in subject for name, value in part if name == "commonName"), "")
 
     @property
     def _known(self) -> ClientIdentity:
@@ -256,50 +233,26 @@ class Client(asyncio.BufferedProtocol):
         if self._bucket is not None:
             self._rest_s = self._bucket.take(count, self._loop.time())
 
-    def _write(self, data: bytes) -> None:
-        self._out.append(data)
-        self._out_bytes += len(data)
-        if self._out_bytes + self._transport.get_write_buffer_size() > limits.UNSENT_BYTES:
-            self.cut(f"it leaves {limits.UNSENT_BYTES} bytes unread")
-
-    def _next_id(self) -> int:
-        if len(self._unacknowledged) >= limits.UNACKNOWLEDGED:
-            self.cut(f"it leaves {limits.UNACKNOWLEDGED} messages unacknowledged")
-        while True:
-            self._last_id = self._last_id % LAST_ID + 1
-            if self._last_id not in self._unacknowledged:
-                break
-        self._unacknowledged.add(self._last_id)
-        return self._last_id
-
-    def _watch_silence(self, then: Callable[[], None] | None = None) -> None:
-        """Call `then`, or without it cut the client off, once it has been silent for its time."""
-        if self._clock is not None:
-            self._clock.cancel()
-            self._clock = None
-        left = self._last_data_at + self._silence_s - self._loop.time()
-        if self._silence_s == 0.0 or self._over:
-            return
-        if left > 0:
-            self._clock = self._loop.call_later(left, self._watch_silence, then)
-        elif then is not None:
-            then()
-        else:
-            self.cut("it was silent for too long")
-
     def _end(self) -> None:
         if self._over:
             return
         self._over = True
-        for timer in (self._clock, self._rest):
-            if timer is not None:
-                timer.cancel()
+        self._outbox.over = True
+        self._silence.end()
+        if self._rest is not None:
+            self._rest.cancel()
         will, self._will = self._will, None
         self._sessions.went(self)
-        self._router.forget(self, self._filters)
+        self._router.forget(self._outbox, self._filters)
         if will is not None and self.who is not None:
             self._router.publish_will(self.who, will)
         self._router.flush()
+
+
+def shown_name(transport: asyncio.Transport) -> str:
+    """The name in a client's certificate; "" if it has shown none."""
+    subject = (transport.get_extra_info("peercert") or {}).get("subject", ())
+    return next((value for part in subject for name, value in part if name == "commonName"), "")
 
 
 HANDLERS: dict[Kind, Callable[[Client, Packet], None]] = {

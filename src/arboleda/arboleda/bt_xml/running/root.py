@@ -132,6 +132,12 @@ class Rescue(TryCatch):
         super().restore(counts)
 
 
+def put_aside(tree: Node) -> Failure | None:
+    """The cause of the outermost rescue that is under way in a tree."""
+    rescues = [node for node in tree.iterate() if isinstance(node, Rescue)]
+    return next((node.cause for node in reversed(rescues) if node.cause is not None), None)
+
+
 class Main(Node):
     """Whole tree, with the variables of its outermost scope."""
 
@@ -152,7 +158,7 @@ class Main(Node):
             result = self.below[0].execute()
         except ScriptError as error:
             broken = Failure(reason=Reason.REJECTED, sentence=error.sentence)
-            first = self._put_aside()
+            first = put_aside(self.below[0])
             self._halt_all()
             self.causes[:] = [with_second(first, broken) if first is not None else broken]
             result = FAILURE
@@ -163,11 +169,6 @@ class Main(Node):
             cause = self.causes[0] if self.causes else generic(self.name, self.blamed)
             self.failures.add(cause, self.blamed if isinstance(self.blamed, AlwaysFailure) else self)
         return result
-
-    def _put_aside(self) -> Failure | None:
-        """The cause of the outermost rescue that is under way."""
-        rescues = [node for node in self.below[0].iterate() if isinstance(node, Rescue)]
-        return next((node.cause for node in reversed(rescues) if node.cause is not None), None)
 
     def uses_first(self) -> bool:
         return self._first_use() is None

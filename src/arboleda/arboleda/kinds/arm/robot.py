@@ -15,17 +15,12 @@ class Arm(Jointed):
     """Robot of joints that takes and sets down parts with its effector."""
 
     kind_name: str = "arm"
-    twin: str
     base: Placement
     unsaid: ClassVar[tuple[str, ...]] = ("node",)
 
     @property
     def fact_names(self) -> tuple[str, ...]:
         return ("effector", *super().fact_names)
-
-    @property
-    def twin_name(self) -> str:
-        return self.twin
 
     def drawn(self) -> dict[str, object]:
         speeds = [joint.speed for joint in self.joints]

@@ -36,21 +36,18 @@ class Jointed(Robot):
 
     kind_name: str = "axes"
     joints: tuple[Joint, ...] = ()
+    twin: str = ""  # the name under which its joints are published, "": its own
     model: str = ""
     description: Description | None = None  # None: the model comes with arboleda_description
     tolerance: tuple[float, ...] | None = None
     position_key: ClassVar[str | None] = "q"
     unsaid: ClassVar[tuple[str, ...]] = ("node", "effector", "piece")  # what no report of it has
 
-    @property
-    def twin_name(self) -> str:
-        """The name under which its joints are published."""
-        return self.name
-
     @cached_property
     def joint_states(self) -> JointStates:
-        names = tuple(f"{self.twin_name}_{joint.name}" for joint in self.joints)
-        return JointStates(twin=self.twin_name, joints=names, measured=attrgetter("q"))
+        twin = self.twin or self.name
+        names = tuple(f"{twin}_{joint.name}" for joint in self.joints)
+        return JointStates(twin=twin, joints=names, measured=attrgetter("q"))
 
     @property
     def units(self) -> list[str]:
@@ -67,7 +64,8 @@ class Jointed(Robot):
 
     @cached_property
     def motion(self) -> JointMotion:
-        return JointMotion(self.joints, self.tolerances)
+        held = tuple(joint.step / 2 + 1e-5 for joint in self.joints)
+        return JointMotion(self.joints, self.tolerance or held)
 
     def go(self, *, id: str, way: Sequence[Position]) -> MoveJoints:
         goal = way[-1]
@@ -78,14 +76,6 @@ class Jointed(Robot):
     def reference(self) -> tuple[float, ...]:
         """The joints at the end of the homing routine, from which the counters begin."""
         return (0.0,) * len(self.joints)
-
-    @cached_property
-    def tolerances(self) -> tuple[float, ...]:
-        return self.tolerance or tuple(joint.step / 2 + 1e-5 for joint in self.joints)
-
-    def quantised(self, q: tuple[float, ...]) -> tuple[float, ...]:
-        """The joints as their motors can hold them."""
-        return self.motion.quantised(q)
 
     def at_rate(self, rate: float) -> Jointed:
         """The same robot at `rate` times its speed, and its square for accelerations: ramps keep their

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import ClassVar
 
 from arboleda.model.commands import Position
@@ -40,10 +40,7 @@ class Mobile(Robot):
     @cached_property
     def joint_states(self) -> JointStates:
         names = (f"{self.name}_x_joint", f"{self.name}_y_joint")
-        return JointStates(twin=self.name, joints=names, measured=self._on_floor)
-
-    def _on_floor(self, report: Report) -> tuple[float, ...] | None:
-        return None if report.node is None else self.grid.position(report.node)
+        return JointStates(twin=self.name, joints=names, measured=partial(_on_floor, self.grid))
 
     def at_rate(self, rate: float) -> Mobile:
         return replace(self, speed=self.speed * rate)
@@ -62,3 +59,7 @@ class Mobile(Robot):
 
     def go(self, *, id: str, way: Sequence[Position]) -> FollowPath:
         return FollowPath(id=id, robot=self.name, nodes=tuple(node for node in way if isinstance(node, int)))
+
+
+def _on_floor(grid: Grid, report: Report) -> tuple[float, ...] | None:
+    return None if report.node is None else grid.position(report.node)

@@ -30,7 +30,7 @@ def web(assembly: Assembly) -> Iterator[Part]:
 
     running, held, options = assembly.need(Orchestrator), assembly.holdings, assembly.options
     paged = page.PagePlant(running, assembly) if options.page else None
-    metrics = Metrics(running.snapshot, assembly.links)
+    metrics = Metrics(running.screens.snapshot, assembly.links)
     part = WebPart(
         paged or assembly.need(LocalPlant),
         assembly.model.name,
@@ -44,7 +44,7 @@ def web(assembly: Assembly) -> Iterator[Part]:
     )
     assembly.offer(PageAddress, part)
     assembly.notes.append(lambda: part.notes)
-    running.watchers += [part.plant.saw, metrics.saw]
+    running.screens.watchers += [part.plant.saw, metrics.saw]
     running.listeners.append(metrics.changed)
     running.reacted = metrics.reacted
     held.pace.observers.append(metrics.committed)
@@ -61,13 +61,13 @@ class _Announcement:
     def __call__(self, port: int, *, host: str, guarded: bool, certificate: str) -> None:
         self._held.state.announce(port, host=host, guarded=guarded, certificate=certificate)
         try:
-            self._held.memory.announce(self._web.origin(port, self._own_address))
+            self._held.memory.lead.announce(self._web.origin(port, self._own_address))
         except ArboledaError as error:
             LOG.warning("standbys are not told where the page is: %s", error)
 
     def _own_address(self) -> str:
         """The address of this host that hosts which reach the memory may reach it by."""
-        return self._held.memory.own_address() or other_address()
+        return self._held.memory.lead.own_address() or other_address()
 
 
 def groot2(assembly: Assembly) -> Iterator[Part]:
@@ -80,7 +80,7 @@ def groot2(assembly: Assembly) -> Iterator[Part]:
     where = Groot2Options(host=options.web.address, port=model.groot2_port)
     part = Groot2Part([cell.name for cell in model.cells], where)
     assembly.notes.append(lambda: part.notes)
-    running.watchers.append(part.saw)
+    running.screens.watchers.append(part.saw)
     yield part
 
 
@@ -88,5 +88,5 @@ def systemd(assembly: Assembly) -> Iterator[Part]:
     """The part that tells systemd that the plant runs, if systemd has started it."""
     running = assembly.ask(Orchestrator)
     if running is not None:
-        part = systemd_part(os.environ, lambda: running.stepped_at)
+        part = systemd_part(os.environ, lambda: running.screens.stepped_at)
         yield from [part] if part else []

@@ -18,10 +18,11 @@ from ..parts.alarms import alarms_part
 from ..parts.bridge import BridgePart
 from ..parts.drivers import DriversPart
 from ..parts.local_plant import LocalPlant
-from ..parts.orchestrator import FlightRecorder, Orchestrator
+from ..parts.orchestrator import Orchestrator
 from ..parts.part import Broker, PageAddress, Part
 from ..parts.periodic import Periodic
 from ..parts.router import PlantPort, Router
+from ..parts.screens import FlightRecorder
 from ..registry import Assembly
 
 LOG = logging.getLogger(__name__)
@@ -44,7 +45,7 @@ def plant(assembly: Assembly) -> Iterable[Part]:
             drops_waiting=not assembly.options.keeps_waiting,
             leave_out_raiser=assembly.leave_out_raiser,
         )
-        made.diagnoses.append(held.pace.diagnosis)
+        made.screens.diagnoses.append(held.pace.diagnosis)
         assembly.offer(Orchestrator, made)
         assembly.offer(LocalPlant, LocalPlant(made, held.history, assembly))
         assembly.links.add(lambda: {"memory": asdict(held.pace.pace)})
@@ -66,7 +67,7 @@ def looks(assembly: Assembly) -> Iterator[Part]:
     if assembly.ask(Orchestrator) is None:
         return
     held = assembly.holdings
-    is_leased = held.memory.renew_s is not None  # then the thread of the lease finds out
+    is_leased = held.memory.lead.renew_s is not None  # then the thread of the lease finds out
     places = [held.state.confirm] if is_leased else [held.memory.confirm, held.state.confirm]
     each: list[Callable[[], None]] = [held.pace.look, *places]  # a disk that hangs may hold up the others
     yield Periodic("place", each, assembly.crash)
@@ -127,7 +128,7 @@ def _record(assembly: Assembly, made: Orchestrator) -> None:
     logs = [RosLog(assembly.model)]
     folder = assembly.holdings.state.path / FOLDER
     recorder = Recorder(Writing(folder, beginning, wanted.limits, logs, view=view))
-    made.recorder = recorder
+    made.screens.recorder = recorder
     assembly.offer(RecordPart, recorder)
 
 

@@ -57,7 +57,7 @@ def bridge(assembly: Assembly) -> Iterator[Part]:
         broker,
         assembly.crash,
         waits=scout and "devices" in assembly.parts,
-        has_lease=assembly.holdings.memory.renew_s is not None,
+        has_lease=assembly.holdings.memory.lead.renew_s is not None,
     )
 
     def broker_state() -> dict[str, Any]:

@@ -18,7 +18,8 @@ from arboleda.views import view
 from arboleda.web.offers import Offers, Thing
 from arboleda.web.plant_api import Found, PlantApi, Snapshot
 
-from .orchestrator import GLANCE_S, Orchestrator
+from .orchestrator import Orchestrator
+from .screens import GLANCE_S
 
 LOG = logging.getLogger(__name__)
 
@@ -42,10 +43,10 @@ class LocalPlant(PlantApi):
         return self._plant.loop.read(look)
 
     def snapshot(self) -> Snapshot:
-        return self._plant.snapshot(GLANCE_S)
+        return self._plant.screens.snapshot(GLANCE_S)
 
     def latest(self) -> Snapshot:
-        return self._plant.snapshot()
+        return self._plant.screens.snapshot()
 
     def ask(self, kind: type[Thing]) -> Thing | None:
         return self._offers.ask(kind)
@@ -55,7 +56,7 @@ class LocalPlant(PlantApi):
         self._plant.hear(event)
 
     def find(self, task: str) -> dict[str, Any] | None:
-        return self._plant.find(task)
+        return self._plant.screens.find(task)
 
     def history(self, query: TaskQuery) -> list[TaskRow]:
         return self._history.select(query)

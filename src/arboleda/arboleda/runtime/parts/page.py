@@ -39,7 +39,7 @@ class PagePlant(LocalPlant):
         is_recorded = assembly.options.recording is not None
         self._recorded_in = assembly.holdings.state.path if is_recorded else None
         self.links = assembly.links
-        self.positions = plant.positions
+        self.positions = plant.screens.positions
 
     def past_acts(self) -> list[dict[str, Any]]:
         return self._past_acts

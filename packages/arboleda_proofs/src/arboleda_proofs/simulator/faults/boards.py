@@ -65,7 +65,7 @@ def _joints(model: PlantModel, target: str) -> tuple[str, ...]:
 def lost_steps(world: BoardSite, fault: Fault) -> None:
     """An axis slips by `amount` motor steps and nobody notices; only homing finds it again."""
     steps = round(fault.amount) or 1
-    targets.arm_body(world, fault.target).lose_steps(int(fault.word[1:]) - 1, steps)
+    targets.arm_body(world, fault.target).motors.lose_steps(int(fault.word[1:]) - 1, steps)
 
 
 def _now_us(world: BoardSite) -> int:

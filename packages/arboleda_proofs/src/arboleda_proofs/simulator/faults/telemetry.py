@@ -95,7 +95,7 @@ def _about(word: str) -> tuple[str, ...]:
 
 def _keys(arm: Robot) -> dict[str, tuple[Joint, float]]:
     """The joints of an arm and their tolerances by the keys that its telemetry has for them."""
-    rows = zip(arm.joints, cast(Jointed, arm).tolerances, strict=True)
+    rows = zip(arm.joints, cast(Jointed, arm).motion.tolerances, strict=True)
     return {f"q{number}_mov": row for number, row in enumerate(rows, start=1)}
 
 

@@ -75,7 +75,7 @@ def _longest_s(robot: Jointed) -> float:
     """The time within which a robot stands whose button is not held any more: a motor with large steps, or
     one that is seen only roughly, may need longer for the least that it can do.
     """
-    rows = zip(robot.joints, robot.tolerances, strict=True)
+    rows = zip(robot.joints, robot.motion.tolerances, strict=True)
     least = max(joint.travel_s(max(joint.step, 2 * within)) for joint, within in rows)
     return STOPS_WITHIN_S + max(0.0, least - STRIDE_S)
 

@@ -46,7 +46,7 @@ class ArmTruth(RobotTruth):
         self.lost: Steps = (0,) * len(robot.joints)
         self.here = self.stood = self.goal = NOWHERE
         self.zones = NOWHERE
-        self.true, self.counted = self.body.true_position, self.body.position
+        self.true, self.counted = self.body.motors.true_position, self.body.motors.position
         self._shift = tuple(map(sub, self.true, self.counted))  # of the counters, by boots alone
         self._known_steps: dict[Position, Steps] = {}  # of the poses
         self._names: dict[Steps, frozenset[str]] = {}
@@ -59,7 +59,7 @@ class ArmTruth(RobotTruth):
         reference = (0,) * len(robot.joints)  # where homing leads; like home it lies outside all zones
         self._spots.setdefault(reference, frozenset({space.home.name}) if space else NOWHERE)
         self._is_coarse = any(
-            within >= joint.step for joint, within in zip(robot.joints, robot.tolerances, strict=True)
+            within >= joint.step for joint, within in zip(robot.joints, robot.motion.tolerances, strict=True)
         )
         self._between = NOWHERE
         self._free = frozenset(pose.name for pose in self._poses if not pose.zones)
@@ -112,7 +112,7 @@ class ArmTruth(RobotTruth):
     @property
     def stands(self) -> bool:
         """True if it does not move, or only counts as moving for a moment as it is at its goal."""
-        return not self.moving or self.body.targets == self.body.position
+        return not self.moving or self.body.motors.targets == self.body.motors.position
 
     @property
     def intended(self) -> Steps:
@@ -125,7 +125,7 @@ class ArmTruth(RobotTruth):
 
     @property
     def _came_home(self) -> bool:
-        return not any(self.body.position)
+        return not any(self.body.motors.position)
 
     @property
     def outside(self) -> str | None:
@@ -148,7 +148,7 @@ class ArmTruth(RobotTruth):
     def _follow(self, was_moving: bool) -> None:
         body = self.body
         self.on, self.holding = body.effector, body.holding
-        true, counted = body.true_position, body.position
+        true, counted = body.motors.true_position, body.motors.position
         still = not (was_moving or self.moving or self.lost_power)
         self.jumped = still and counted != self.counted
         if self.lost_power and not was_moving:
@@ -175,7 +175,7 @@ class ArmTruth(RobotTruth):
         self.stood = was_here if moved_on else self.here
         if was_moving and moved_on and self._arrived:
             self.stood = was_bound_for
-        target = tuple(map(add, self.body.targets, self._shift)) if self.moving else place
+        target = tuple(map(add, self.body.motors.targets, self._shift)) if self.moving else place
         self.goal = self._found(self._names, target)
         spot = self._found(self._spots, target)
         if not any(act.moves for act in self.acts):
@@ -196,7 +196,7 @@ class ArmTruth(RobotTruth):
         return NOWHERE.union(*(names for there, names in book.items() if self._is_near(place, there)))
 
     def _is_near(self, here: Steps, there: Steps) -> bool:
-        rows = zip(self.arm.joints, here, there, self.arm.tolerances, strict=True)
+        rows = zip(self.arm.joints, here, there, self.arm.motion.tolerances, strict=True)
         return all(abs(a - b) * joint.step <= within for joint, a, b, within in rows)
 
     def _zones_of(self, poses: frozenset[str]) -> frozenset[str]:
@@ -212,7 +212,7 @@ class ArmTruth(RobotTruth):
         if not self.stopping:
             self._speeds = None
             return
-        speeds = self.body.speeds
+        speeds = self.body.motors.speeds
         slowest = self._speeds or speeds
         self.sped_up = any(map(_faster, speeds, slowest, self._jitter))
         self._speeds = tuple(map(min, speeds, slowest))

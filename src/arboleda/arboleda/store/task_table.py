@@ -1,0 +1,82 @@
+"""The table of a plant's tasks."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+
+from arboleda.model.messages import TaskAnswer, TaskChanged, TaskState, outlives_power
+
+from .rows import Rows
+from .task_rows import (
+    TaskQuery,
+    TaskRow,
+    choice_written,
+    course_written,
+    selection,
+    to_row,
+    unchecked_written,
+)
+
+PRUNED = 20  # ended tasks forgotten with each new end: more than come in, and quickly done
+
+
+class TaskTable:
+    """The tasks of a plant, from their acceptance until they are forgotten."""
+
+    def __init__(self, rows: Rows) -> None:
+        self._rows = rows
+
+    def keep(
+        self,
+        change: TaskChanged,
+        recipe: str,
+        unix_s: float,
+        asked_by: str | None = None,
+        answers: Sequence[TaskAnswer] = (),
+    ) -> None:
+        """Commit one change of a task; what is known already, as when it is asked for again, stays.
+
+        `answers` are kept with its end.
+        """
+        state, durable = change.state, outlives_power(change)
+        if state is TaskState.QUEUED:
+            words = (change.task, change.text, change.cell, recipe, state.value)
+            row = (*words, unix_s, asked_by, choice_written(change.choice))
+            columns = "id, text, cell, recipe, state, accepted_s, asked_by, choice"
+            values = ", ".join("?" * len(row))
+            insert = f"INSERT INTO task ({columns}) VALUES ({values}) ON CONFLICT (id) DO NOTHING"
+            self._rows.write((insert, row), durable=durable)
+        elif state is TaskState.RUNNING:
+            begin = (
+                "UPDATE task SET state = ?, started_s = ?, attempts = 1 WHERE id = ? AND started_s IS NULL"
+            )
+            self._rows.write((begin, (state.value, unix_s, change.task)), durable=durable)
+        elif state is not TaskState.REFUSED:
+            sentence_json = json.dumps(change.sentence.data(), ensure_ascii=False)
+            reason = None if change.reason is None else change.reason.value
+            end = (
+                "UPDATE task SET state = ?, reason = ?, sentence = ?, said = ?, ended_s = ?, answers = ?,"
+                " course = ?, unchecked = ? WHERE id = ? AND ended_s IS NULL"
+            )
+            answers_json = (
+                json.dumps([vars(each) for each in answers], ensure_ascii=False) if answers else None
+            )
+            how, unchecked = course_written(change.course), unchecked_written(change.unchecked)
+            outcome = (state.value, reason, str(change.sentence), sentence_json, unix_s)
+            self._rows.write((end, (*outcome, answers_json, how, unchecked, change.task)), durable=durable)
+
+    def attempted(self, task: str, attempts: int) -> None:
+        """Commit the number of times that a task was begun."""
+        self._rows.write(("UPDATE task SET attempts = ? WHERE id = ?", (attempts, task)), durable=False)
+
+    def forget(self, before_unix_s: float) -> None:
+        """Forget the oldest tasks that ended before a time, at most PRUNED of them."""
+        oldest = "SELECT number FROM task WHERE ended_s < ? ORDER BY ended_s LIMIT ?"
+        delete = f"DELETE FROM task WHERE number IN ({oldest})"
+        self._rows.write((delete, (before_unix_s, PRUNED)), durable=False)
+
+    def select(self, query: TaskQuery) -> list[TaskRow]:
+        """The tasks that a query asks for, the last accepted first."""
+        statement, values = selection(query)
+        return [to_row(row) for row in self._rows.read(statement, *values)]
