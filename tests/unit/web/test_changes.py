@@ -8,11 +8,12 @@ import json
 
 import pytest
 
+from arboleda.client.answers.plant import Snapshot
 from arboleda.core.plant import Plant
 from arboleda.model.sentence import in_json
 from arboleda.views import view
 from arboleda.web import stream
-from arboleda.web.schema.bodies import Snapshot
+from arboleda.web.schema.answers import model_of
 from arboleda.web.stream import Reader, changed
 from arboleda_proofs.testing.plants import shipped
 
@@ -29,10 +30,8 @@ def after(before: dict, where: str, **keys: object) -> dict:
 
 
 def test_the_description_of_a_snapshot_is_true(before: dict) -> None:
-    assert (
-        Snapshot.model_validate_json(json.dumps(before, default=in_json), strict=True).plant
-        == before["plant"]
-    )
+    read = model_of(Snapshot).model_validate_json(json.dumps(before, default=in_json), strict=True)
+    assert read.plant == before["plant"]
 
 
 def test_nothing_changed(before: dict) -> None:

@@ -6,43 +6,27 @@ import secrets
 from collections.abc import AsyncGenerator, Mapping, Sequence
 from typing import Any
 
+from arboleda.model.facts import Value
 from arboleda.model.verbs import Verb
 
-from .answers import (
-    Act,
+from .answers.drafts import (
     AppliedDraft,
-    AssistantLevel,
-    CellOee,
     CheckedDraft,
-    DecidedProposal,
-    Done,
     DraftCells,
     DraftState,
-    Drawn,
     DriverRow,
-    Event,
-    FaultList,
     KeptDraft,
-    KeptTask,
-    Nodes,
-    Offer,
-    Promise,
-    ProposalAnswer,
-    ProposalBase,
-    ProposalRow,
-    ProvokedFault,
-    Rows,
     RunState,
-    Snapshot,
-    Task,
-    TaskReport,
-    TreeCopy,
-    TreeFile,
     TreesText,
-    Value,
-    VersionList,
-    WholeProposal,
 )
+from .answers.offers import AssistantLevel, CellOee, FaultList, Offer, Promise, ProvokedFault
+from .answers.plant import Event, Snapshot
+from .answers.proposals import DecidedProposal, ProposalAnswer, ProposalBase, ProposalRow, WholeProposal
+from .answers.reports import TaskReport
+from .answers.rows import Rows
+from .answers.tasks import Act, Done, KeptTask, Task
+from .answers.trees import Drawn, Nodes, TreeCopy, TreeFile
+from .answers.versions import VersionList
 from .calls import Side, flow, following, read_answer, route
 from .errors import NotFound, StillRunning
 from .http import TIMEOUT_S

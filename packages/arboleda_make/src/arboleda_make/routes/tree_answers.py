@@ -8,7 +8,6 @@ from typing import Annotated, Any, Literal, Union, get_type_hints
 from pydantic import BaseModel, ConfigDict, create_model
 from pydantic import Field as Described
 
-from arboleda.web.schema.bodies import ResponseModel
 from arboleda_make.editing import operations
 from arboleda_make.editing.operations import NewNode, Operation
 
@@ -46,56 +45,6 @@ class CopyForm(_Strict):
     cell: str
     recipe: str
     name: str = Described(pattern="^[a-z][a-z0-9_]{0,39}$")
-
-
-class TreeCopy(ResponseModel):
-    text: str = Described(description="The whole file.")
-
-
-class Nodes(ResponseModel):
-    """Nodes of one sort: of a device, by its role, or of Arboleda."""
-
-    sort: str = Described(description="device, python, control, decorator, condition, action or others.")
-    name: str = Described(description="The role of the device.")
-    kinds: list[dict[str, Any]] = Described(description="Name, category, ports, fewest and most nodes in it.")
-
-
-class TreeMark(ResponseModel):
-    """Finding of `check`, on the node that it is about."""
-
-    sentence: str
-    mistake: bool = Described(description="A warning where it is false.")
-    line: int
-    column: int
-    tree: str | None = Described(description="None where it is about no node.")
-    path: str | None = Described(description='"root", or like "0.2"; "" for the tree itself.')
-    attribute: str | None
-
-
-class DrawnTree(ResponseModel):
-    name: str
-    main: bool
-    parameters: list[dict[str, str]]
-    nodes: list[dict[str, Any]] = Described(
-        description="Path, kind, category, attributes, fewest and most nodes in it, in the order of the file."
-    )
-
-
-class Drawn(ResponseModel):
-    """File as an editor shows it; `text` is that after the operation."""
-
-    text: str
-    trees: list[DrawnTree]
-    marks: list[TreeMark]
-
-
-class TreeFile(ResponseModel):
-    """File of trees that is a recipe of the plant, as it was read."""
-
-    recipe: str
-    file: str
-    cells: list[str]
-    text: str
 
 
 def _default(field: Field[Any]) -> Any:
