@@ -5,22 +5,21 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import Field, FiniteFloat
 
 from arboleda.client.answers.offers import CellOee
 from arboleda.model.packages import FLEET
 from arboleda.web.missing import missing
 from arboleda.web.plant_api import PlantApi
+from arboleda.web.schema.bodies import RequestModel
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import WRONG, answering, described, query_of
 
 from .api import OeeApi, OeeQuery
 
 
-class OeeFilter(BaseModel):
+class OeeFilter(RequestModel):
     """Filter for OEE: a cell and a span; by default the last 24 hours of all cells."""
-
-    model_config = ConfigDict(extra="forbid")
 
     cell: str = ""
     since: FiniteFloat | None = Field(default=None, description="Unix time in seconds.")

@@ -8,14 +8,14 @@ from typing import Annotated, Any, TypeVar
 from fastapi import APIRouter, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
 from arboleda.client.answers.drafts import AppliedDraft, CheckedDraft, DraftState, KeptDraft, TreesText
 from arboleda.web.access.auth import require
 from arboleda.web.plant_api import PlantApi
-from arboleda.web.schema.bodies import Sentence
+from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, answering, described_body, read_body
 from arboleda_make.drafts.api import DraftApi, State
@@ -31,11 +31,7 @@ REFUSED: Answers = {
 Key = Annotated[str, Field(max_length=200)] | Annotated[int, Field(ge=0, le=100_000)]
 
 
-class _Request(BaseModel):
-    """Body: these keys and no others, of exactly these types."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
-
+class _Request(BodyModel):
     editor: str = Field(
         pattern="^[A-Za-z0-9_-]{8,64}$", description="An id that a page or tool makes for itself."
     )

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import FileResponse, JSONResponse, Response
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from starlette.exceptions import HTTPException
 
 from arboleda.client.answers.drafts import DraftCells, DraftState, DriverRow, RunState
@@ -15,6 +15,7 @@ from arboleda.client.answers.trees import Drawn, Nodes
 from arboleda.web.access.auth import require
 from arboleda.web.languages import FIRST
 from arboleda.web.plant_api import PlantApi
+from arboleda.web.schema.bodies import RequestModel
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import answering, described, described_body, query_of, read_body
 from arboleda_make.trying.api import MakeApi
@@ -28,16 +29,12 @@ Short = Annotated[str, Field(max_length=200)]
 DeviceName = Annotated[str, Field(pattern="^[a-z][a-z0-9_]{0,31}$", examples=["door"])]
 
 
-class Cell(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-
+class Cell(RequestModel):
     cell: Short
     language: Short = FIRST
 
 
-class Recipe(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-
+class Recipe(RequestModel):
     cell: Short
     recipe: Short
 
@@ -54,16 +51,12 @@ class Copying(Recipe, Step):
     name: RecipeName
 
 
-class Language(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-
+class Language(RequestModel):
     language: Short = FIRST
 
 
-class NewDevice(BaseModel):
+class NewDevice(RequestModel):
     """Device with its driver; none: its board speaks by itself. Settings are texts, nested ones YAML."""
-
-    model_config = ConfigDict(extra="forbid")
 
     cell: Short
     role: DeviceName
@@ -77,9 +70,7 @@ class AddedDevice(Step, NewDevice):
     pass
 
 
-class WantedFault(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-
+class WantedFault(RequestModel):
     kind: Short
     at: float = Field(ge=0, le=1e6)
     seconds: float = Field(ge=0, le=1e6)
@@ -88,13 +79,11 @@ class WantedFault(BaseModel):
     word: Short
 
 
-class Wanted(BaseModel):
+class Wanted(RequestModel):
     """Task to be tried, with answers and faults; or recipes to be proved, for so long."""
 
-    model_config = ConfigDict(extra="forbid")
-
     task: Short = ""
-    answers: dict[Short, str | int | float | bool] = {}
+    answers: dict[Short, str | int | float | bool] = Field(default={})
     faults: list[WantedFault] = Field(default=[], max_length=2)
     recipes: list[Short] = Field(default=[], max_length=50)
     kinds: list[Short] = Field(default=[], max_length=100, description="Of faults; none: all.")

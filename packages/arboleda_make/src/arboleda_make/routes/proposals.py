@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Path, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
@@ -22,6 +22,7 @@ from arboleda.client.answers.proposals import (
 from arboleda.client.answers.tasks import Task
 from arboleda.web.access.auth import GIVE, PROPOSE, require
 from arboleda.web.plant_api import PlantApi
+from arboleda.web.schema.bodies import BodyModel
 from arboleda.web.schema.plain_json import PlainJson, explained
 from arboleda.web.schema.queries import answering, described_body, read_body
 from arboleda_make.proposals.api import ProposalsApi
@@ -35,20 +36,14 @@ Person = Annotated[str, Field(min_length=1, max_length=60)]
 PlacePath = Annotated[list[Key], Field(min_length=1, max_length=20)]
 
 
-class _Body(BaseModel):
-    """Body: these keys and no others, of exactly these types."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
-
-
-class ProposedValue(_Body):
+class ProposedValue(BodyModel):
     """Value of the plant file, by its place: a target, a new device, a new kind."""
 
     place: PlacePath = Field(examples=[["cells", "lab", "targets", "nest"]])
     value: Any
 
 
-class NewProposal(_Body):
+class NewProposal(BodyModel):
     """Content that an assistant proposes, with its own words beside it."""
 
     name: Word = Field(description="Of the piece of work: a later proposal of this name takes its place.")
@@ -68,17 +63,17 @@ class NewProposal(_Body):
     )
 
 
-class ProofRequest(_Body):
+class ProofRequest(BodyModel):
     recipes: list[Word] = Field(default=[], max_length=50, description="None named: all.")
     budget_s: float = Field(default=60, ge=1, le=600)
 
 
-class SimulationRequest(_Body):
+class SimulationRequest(BodyModel):
     seeds: int = Field(default=5, ge=1, le=50, description="Each draws other faults.")
     cycles: int = Field(default=4, ge=1, le=20, description="Tasks of each seed.")
 
 
-class Approval(_Body):
+class Approval(BodyModel):
     name: Person = Field(description="Of the person who approves, for the journal.", examples=["Ana"])
 
 
@@ -86,7 +81,7 @@ class Rejection(Approval):
     reason: str = Field(min_length=1, max_length=1000, description="The assistant reads it.")
 
 
-class AssistantTask(_Body):
+class AssistantTask(BodyModel):
     text: str = Field(min_length=1, max_length=1000, examples=["lab to_tray #lot42"])
     by: Person
 

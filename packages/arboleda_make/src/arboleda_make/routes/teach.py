@@ -9,13 +9,13 @@ from typing import Annotated, Any, Literal, TypeVar
 from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 from starlette.exceptions import HTTPException
 
 from arboleda.client.answers.plant import Teaching
 from arboleda.web.access.auth import require
 from arboleda.web.plant_api import PlantApi
-from arboleda.web.schema.bodies import Sentence
+from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson, explained
 from arboleda.web.schema.queries import Answers, answering, described_body, read_body
 from arboleda_make.teaching import api as teach
@@ -32,20 +32,14 @@ Number = Annotated[int, Field(ge=0, lt=2**53)]
 Value = bool | int | float | Annotated[str, Field(max_length=200)]
 
 
-class _Request(BaseModel):
-    """Body: these keys and no others, of exactly these types."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
-
-
-class WayAlong(_Request):
+class WayAlong(BodyModel):
     axis: Literal["x", "y", "z"]
     frame: Literal["base", "tool"] = "base"
     sign: Literal[-1, 1] = 1
     mm: float | None = Field(default=None, gt=0, le=100, description="Its length; without, on and on.")
 
 
-class ButtonState(_Request):
+class ButtonState(BodyModel):
     """Button that is held; said again at least every 0.1 s, with the same number, or the robot is halted."""
 
     session: Number = Field(description="The act that began the teaching, as `teach` has answered it.")
@@ -71,7 +65,7 @@ class ButtonState(_Request):
         return teach.Button(**self.model_dump(exclude={"along"}), along=along)
 
 
-class NewTarget(_Request):
+class NewTarget(BodyModel):
     """Target of the draft, made or moved to where the robot stands now."""
 
     robot: Word
@@ -110,7 +104,7 @@ class MadeTarget:
     place: Annotated[list[str], "Where it stands in the plant file."]
 
 
-Body = TypeVar("Body", bound=_Request)
+Body = TypeVar("Body", bound=BodyModel)
 
 
 def routes(side: PlantApi) -> APIRouter:

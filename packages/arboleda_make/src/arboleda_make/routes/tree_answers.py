@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import MISSING, Field, fields
 from typing import Annotated, Any, Literal, Union, get_type_hints
 
-from pydantic import BaseModel, ConfigDict, create_model
+from pydantic import BaseModel, create_model
 from pydantic import Field as Described
 
+from arboleda.web.schema.bodies import BodyModel
 from arboleda_make.editing import operations
 from arboleda_make.editing.operations import NewNode, Operation
 
@@ -28,18 +29,14 @@ OPERATIONS: dict[str, type] = {
 }
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True)
-
-
-class TreeForm(_Strict):
+class TreeForm(BodyModel):
     """Text of a file of trees, looked at for a cell."""
 
     cell: str = Described(description="The cell whose devices and targets its nodes are checked against.")
     text: str = Described(description="The whole file.")
 
 
-class CopyForm(_Strict):
+class CopyForm(BodyModel):
     """Recipe in Python of a cell, and the name of its copy as a tree."""
 
     cell: str
@@ -57,7 +54,7 @@ def _form(name: str, shape: type, **more: Any) -> type[BaseModel]:
     """The model of a request for a dataclass of operations."""
     hints = get_type_hints(shape)
     known: dict[str, Any] = {each.name: (_typed(hints[each.name]), _default(each)) for each in fields(shape)}
-    form: type[BaseModel] = create_model(name, __base__=_Strict, __doc__=shape.__doc__, **more, **known)
+    form: type[BaseModel] = create_model(name, __base__=BodyModel, __doc__=shape.__doc__, **more, **known)
     return form
 
 

@@ -7,13 +7,12 @@ import asyncio
 from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict
 
 from arboleda.client.answers.trees import Drawn, Nodes, TreeCopy, TreeFile
 from arboleda.web.access.auth import DRAW, require
 from arboleda.web.languages import FIRST, spoken, texts
 from arboleda.web.plant_api import PlantApi
-from arboleda.web.schema.bodies import Sentence
+from arboleda.web.schema.bodies import RequestModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import (
     WRONG,
@@ -34,10 +33,8 @@ REFUSED: Answers = {
 }
 
 
-class PaletteFilter(BaseModel):
+class PaletteFilter(RequestModel):
     """Cell for which a tree is drawn, and the language of what its nodes are about."""
-
-    model_config = ConfigDict(extra="forbid")
 
     cell: str
     language: str = FIRST

@@ -7,13 +7,14 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from starlette.exceptions import HTTPException
 
 from arboleda.client.answers.drafts import AppliedDraft
 from arboleda.client.answers.versions import VersionList
 from arboleda.web.access.auth import require
 from arboleda.web.plant_api import PlantApi
+from arboleda.web.schema.bodies import BodyModel
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import answering, described_body, read_body
 from arboleda_make.versions.api import VersionsApi
@@ -24,10 +25,8 @@ MAY = "putting a version to work"
 Number = Annotated[int, Path(ge=1, le=1_000_000)]
 
 
-class PutRequest(BaseModel):
+class PutRequest(BodyModel):
     """Body: these keys and no others, of exactly these types."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
 
     name: str = Field(
         min_length=1, max_length=60, description="Of who does it, for the journal.", examples=["Ana"]

@@ -8,12 +8,12 @@ from typing import Annotated
 from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from arboleda.client.answers.offers import FaultList, ProvokedFault
 from arboleda.web.access.auth import require
 from arboleda.web.plant_api import PlantApi
-from arboleda.web.schema.bodies import Sentence
+from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, answering, described_body, read_body
 from arboleda_proofs.running.faults_api import FaultRefused, FaultsApi
@@ -28,13 +28,7 @@ REFUSED: Answers = {
 Word = Annotated[str, Field(min_length=1, max_length=64)]
 
 
-class _Request(BaseModel):
-    """Body: these keys and no others, of exactly these types."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
-
-
-class NewFault(_Request):
+class NewFault(BodyModel):
     kind: Word = Field(examples=["cut_link"])
     robot: Word = Field(description="A virtual device.", examples=["ra1"])
     seconds: float | None = Field(
@@ -42,7 +36,7 @@ class NewFault(_Request):
     )
 
 
-class EndOfFaults(_Request):
+class EndOfFaults(BodyModel):
     """Body that names the faults to end: one by its number, all of a device, or all without either."""
 
     robot: str = Field(default="", max_length=64)

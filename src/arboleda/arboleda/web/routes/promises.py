@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from arboleda.client.answers.offers import Promise
 
 from ..plant_api import PlantApi
+from ..schema.bodies import RequestModel
 from ..schema.plain_json import PlainJson
 from ..schema.queries import WRONG, answering, described, query_of
 
 
-class PromiseFilter(BaseModel):
+class PromiseFilter(RequestModel):
     """Task for which promises are asked."""
-
-    model_config = ConfigDict(extra="forbid")
 
     text: str = Field(max_length=200, examples=["sis_a,sis_b 0B 7"])
 

@@ -18,16 +18,20 @@ from .answers import ResponseModel
 ANYTHING = ".+"  # the form of an argument that has none of its own
 
 
-class _RequestModel(BaseModel):
-    """Body of a request: these keys and no others, of exactly these types."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
-
-
-class TaskFilter(BaseModel):
-    """Filter for tasks of the history; without any key the last `limit` tasks."""
+class RequestModel(BaseModel):
+    """Query or body of a request: these keys and no others."""
 
     model_config = ConfigDict(extra="forbid")
+
+
+class BodyModel(RequestModel):
+    """Body of a request whose values are of exactly these types."""
+
+    model_config = ConfigDict(strict=True)
+
+
+class TaskFilter(RequestModel):
+    """Filter for tasks of the history; without any key the last `limit` tasks."""
 
     cell: str = ""
     state: Literal["", "queued", "running", "done", "failed", "cancelled"] = ""
@@ -52,20 +56,20 @@ class TaskFilter(BaseModel):
         )
 
 
-class FindingLines(_RequestModel):
+class FindingLines(BodyModel):
     """Findings in English, as the API gives them, that a page wants in its language."""
 
     lines: list[Annotated[str, Field(max_length=5000)]] = Field(max_length=1000)
 
 
-class TaskText(_RequestModel):
+class TaskText(BodyModel):
     text: str = Field(examples=["sis_a 0B 7"], description="A task, as on the command line.")
     why: str = Field(
         default="", max_length=500, description="Why it is given to this cell, by who chose between plants."
     )
 
 
-class TaskForm(_RequestModel):
+class TaskForm(BodyModel):
     """A task as a form of `/api/recipes` has it; either for a `cell`, or for `any_of` several."""
 
     model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": ["cell"]}, {"required": ["any_of"]}]})
@@ -92,7 +96,7 @@ class TaskForm(_RequestModel):
         return named | {"cell": self.cell or BETWEEN_CELLS.join(self.any_of)}
 
 
-class AnyVerbArguments(_RequestModel):
+class AnyVerbArguments(BodyModel):
     """Arguments of an operator's verb."""
 
     by_hand: bool = Field(
