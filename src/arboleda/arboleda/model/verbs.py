@@ -1,4 +1,4 @@
-"""Operators' verbs: a row each, and how a person writes what each is told beside its scope."""
+"""Operators' verbs: a row each, how a person writes what each is told beside its scope, what comes of it."""
 
 from __future__ import annotations
 
@@ -136,6 +136,16 @@ class Verb(str, Enum):
     def needs_arguments(self) -> bool:
         """True where it means nothing with a scope alone."""
         return any(argument.needed for argument in self.row.arguments)
+
+
+class Outcome(str, Enum):
+    """Outcome of an operator's act."""
+
+    SENT = "sent"  # a stop: whether robots stand shows in what they report
+    UNDER_WAY = "under_way"  # devices were told to do it, and have not ended
+    DONE = "done"
+    UNCHECKED = "unchecked"  # devices were told, and report nothing of it
+    FAILED = "failed"
 
 
 def refusable(scope: Scope) -> tuple[Verb, ...]:

@@ -6,8 +6,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from arboleda.model.facts import Value
-from arboleda.model.messages import Outcome
-from arboleda.model.verbs import Verb
+from arboleda.model.verbs import Outcome, Verb
 
 VerbWord = Annotated[str, Verb]
 OutcomeWord = Annotated[str, Outcome]
