@@ -14,11 +14,12 @@ from rich.console import Console
 
 import arboleda.core
 from arboleda.cli.screen import table
+from arboleda.client.answers.plant import Cell
 from arboleda.dashboard.wording import LANGUAGES, SENTENCES, tree_of, words
 from arboleda.model.cell_states import CellState
 from arboleda.model.sentence import Phrase
 from arboleda.views import view
-from arboleda.web.schema.bodies import Cell
+from arboleda.web.schema.answers import model_of
 from arboleda_proofs.testing import Rig, shipped
 
 ROOT = Path(__file__).parents[2]
@@ -56,7 +57,7 @@ def test_the_docs_have_each_word_once() -> None:
 
 def test_the_page_says_the_words_of_the_api() -> None:
     assert on_page("en") == {state.value: state.value for state in CellState}
-    assert Cell.model_fields["state"].annotation is CellState
+    assert model_of(Cell).model_fields["state"].annotation is CellState
 
 
 def test_the_message_on_ros_2_lists_the_words() -> None:

@@ -10,24 +10,29 @@ ROUTE = '''"""Tasks that wait in all cells."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Annotated
+
 from fastapi import APIRouter
 from fastapi.responses import JSONResponse
-from pydantic import Field
 
 from ..schema.plain_json import PlainJson
+from ..schema.queries import answering
 from ..plant_api import PlantApi
-from ..schema.bodies import ResponseModel
 
 
-class Waiting(ResponseModel):
-    waiting: int = Field(description="How many tasks wait.")
+@dataclass(frozen=True, kw_only=True)
+class Waiting:
+    """Tasks that wait."""
+
+    waiting: Annotated[int, "How many tasks wait."]
 
 
 def routes(side: PlantApi) -> APIRouter:
     """Register the route."""
     api = APIRouter(prefix="/api")
 
-    @api.get("/waiting", response_model=Waiting)
+    @api.get("/waiting", **answering(Waiting))
     async def waiting() -> JSONResponse:
         """The number of tasks that wait."""
         return PlainJson({"waiting": side.waiting()})

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import copy
-import json
 
 import pytest
 
 from arboleda.core.plant import Plant
-from arboleda.model.sentence import in_json
 from arboleda.views import view
 from arboleda.web import stream
-from arboleda.web.schema.bodies import Snapshot
 from arboleda.web.stream import Reader, changed
 from arboleda_proofs.testing.plants import shipped
 
@@ -26,13 +23,6 @@ def after(before: dict, where: str, **keys: object) -> dict:
     made = copy.deepcopy(before)
     made[where][0].update(keys)
     return made
-
-
-def test_the_description_of_a_snapshot_is_true(before: dict) -> None:
-    assert (
-        Snapshot.model_validate_json(json.dumps(before, default=in_json), strict=True).plant
-        == before["plant"]
-    )
 
 
 def test_nothing_changed(before: dict) -> None:

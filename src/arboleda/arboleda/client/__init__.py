@@ -3,7 +3,9 @@ neither ROS 2, MQTT nor what the page is made with."""
 
 from __future__ import annotations
 
-from .answers import KeptTask, Rows, Snapshot, Task
+from .answers.plant import Snapshot
+from .answers.rows import Rows
+from .answers.tasks import KeptTask, Task
 from .errors import (
     Conflict,
     Forbidden,

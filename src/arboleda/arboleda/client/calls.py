@@ -145,10 +145,11 @@ class Route(Flow[P, Result]):
         )
 
 
-def read_answer(wanted: Any, data: Any) -> Any:
+def read_answer(wanted: type[Result], data: Any) -> Result:
     """An answer as its type; NoAnswer for one that no plant would give."""
     try:
-        return read(wanted, data)
+        answer: Result = read(wanted, data)
+        return answer
     except ValueError as error:
         sentence = f"What answers is no plant, or one of another version: {error}."
         raise NoAnswer(sentence, may_have_heard=True) from error

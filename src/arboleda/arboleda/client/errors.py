@@ -9,7 +9,7 @@ from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.outside import plain
 
 if TYPE_CHECKING:
-    from .answers import Task
+    from .answers.tasks import Task
 
 LONGEST = 300  # characters of what a plant says that are shown
 

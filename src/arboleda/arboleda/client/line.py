@@ -13,7 +13,7 @@ from urllib.parse import quote, urlencode, urlsplit
 
 from arboleda import __version__
 
-from .answers import Event
+from .answers.plant import Event
 from .errors import NoAnswer, OtherPlant, Refusal, refusal
 from .http import TIMEOUT_S, Http, HttpRequest, Reply
 from .protocol import BEAT_S, PLANT

@@ -4,45 +4,30 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import AsyncGenerator, Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
+from arboleda.model.facts import Value
 from arboleda.model.verbs import Verb
 
-from .answers import (
-    Act,
+from .answers.drafts import (
     AppliedDraft,
-    AssistantLevel,
-    CellOee,
     CheckedDraft,
-    DecidedProposal,
-    Done,
     DraftCells,
     DraftState,
-    Drawn,
     DriverRow,
-    Event,
-    FaultList,
     KeptDraft,
-    KeptTask,
-    Nodes,
-    Offer,
-    Promise,
-    ProposalAnswer,
-    ProposalBase,
-    ProposalRow,
-    ProvokedFault,
-    Rows,
     RunState,
-    Snapshot,
-    Task,
-    TaskReport,
-    TreeCopy,
-    TreeFile,
     TreesText,
-    Value,
-    VersionList,
-    WholeProposal,
 )
+from .answers.offers import AssistantLevel, CellOee, FaultList, Offer, Promise, ProvokedFault
+from .answers.plant import Event, Snapshot
+from .answers.proposals import DecidedProposal, ProposalAnswer, ProposalBase, ProposalRow, WholeProposal
+from .answers.reports import TaskReport
+from .answers.rows import Rows
+from .answers.tasks import Act, Done, KeptTask, Task
+from .answers.trees import Drawn, Nodes, TreeCopy, TreeFile
+from .answers.versions import VersionList
 from .calls import Side, flow, following, read_answer, route
 from .errors import NotFound, StillRunning
 from .http import TIMEOUT_S
@@ -176,7 +161,7 @@ class Tasks(Side):
         until = self._line.clock() + within_s
         while True:
             data = await self._line.data(Call(method="GET", path=path, is_repeatable=True))
-            report: TaskReport = read_answer(TaskReport, data)
+            report = read_answer(TaskReport, data)
             if report.state == "written" or self._line.clock() >= until:
                 return report
             await self._line.http.sleep(LOOK_S)
@@ -202,8 +187,7 @@ class Verbs(Side):
             is_repeatable=stops,
             within_s=STOP_S if stops else TIMEOUT_S,
         )
-        done: Done = read_answer(Done, await self._line.data(call))
-        return done
+        return read_answer(Done, await self._line.data(call))
 
     @flow("POST /api/plant/{verb}", "POST /api/cells/{scope}/{verb}")
     async def stop(self, scope: str = "") -> Done:
@@ -317,8 +301,7 @@ class Proposals(Side):
             body={"text": text, "by": by},
             is_repeatable=True,
         )
-        task: Task = read_answer(Task, await self._line.data(call))
-        return task
+        return read_answer(Task, await self._line.data(call))
 
 
 class Trees(Side):
@@ -478,8 +461,7 @@ def new_id() -> str:
 
 async def _submitted(side: Side, body: Mapping[str, Any]) -> Task:
     call = Call(method="POST", path="/api/tasks", body=body, is_repeatable=True)  # it has an id
-    task: Task = read_answer(Task, await side._line.data(call))
-    return task
+    return read_answer(Task, await side._line.data(call))
 
 
 async def _followed(side: Side, task_id: str, until: float | None) -> AsyncGenerator[Task, None]:
@@ -509,15 +491,4 @@ async def _found(side: Side, task_id: str) -> Task:
 
 def as_task(row: KeptTask) -> Task:
     """A task of the history as one of the plant."""
-    return Task(
-        id=row.id,
-        text=row.text,
-        cell=row.cell,
-        state=row.state,
-        reason=row.reason,
-        sentence=row.sentence,
-        key=row.key,
-        values=row.values,
-        answers=row.answers,
-        unchecked=row.unchecked,
-    )
+    return read_answer(Task, asdict(row))

@@ -14,7 +14,8 @@ from .facts import Facts, Value
 from .grips import Grip
 from .sentence import NOTHING, Sentence
 from .verbs import Arguments
-from .verbs import Verb as Verb  # of whose requests and answers this module tells
+from .verbs import Outcome as Outcome  # of whose requests and answers this module tells
+from .verbs import Verb as Verb
 
 
 class MotionState(int, Enum):
@@ -170,16 +171,6 @@ class TaskChanged:
     choice: Sentence | None = field(default=None, repr=False)
     course: Course | None = field(default=None, repr=False)
     unchecked: tuple[Check, ...] = field(default=(), repr=False)
-
-
-class Outcome(str, Enum):
-    """Outcome of an operator's act."""
-
-    SENT = "sent"  # a stop: reports show whether robots stand
-    UNDER_WAY = "under_way"  # devices carry it out
-    DONE = "done"
-    UNCHECKED = "unchecked"  # devices were told to do it, and report nothing of it
-    FAILED = "failed"
 
 
 @dataclass(frozen=True, kw_only=True)

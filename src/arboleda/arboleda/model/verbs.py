@@ -1,4 +1,4 @@
-"""Verbs of operators: a row each, and their arguments as a person writes them."""
+"""Verbs of operators: a row each, their arguments as a person writes them, and outcomes of acts."""
 
 from __future__ import annotations
 
@@ -138,6 +138,16 @@ class Verb(str, Enum):
     def needs_arguments(self) -> bool:
         """True where it needs more than a scope."""
         return any(argument.needed for argument in self.row.arguments)
+
+
+class Outcome(str, Enum):
+    """Outcome of an operator's act."""
+
+    SENT = "sent"  # a stop: reports show whether robots stand
+    UNDER_WAY = "under_way"  # devices carry it out
+    DONE = "done"
+    UNCHECKED = "unchecked"  # devices were told to do it, and report nothing of it
+    FAILED = "failed"
 
 
 def refusable(scope: Scope) -> tuple[Verb, ...]:

@@ -1,4 +1,7 @@
-"""The plant as plain data (dicts, lists, str, numbers, None) and sentences for screens; read only."""
+"""The plant as plain data (dicts, lists, str, numbers, None) and sentences for screens; read only.
+
+The rows have the keys of the types in `client/answers/`, which say what each is, and more.
+"""
 
 from __future__ import annotations
 
@@ -143,11 +146,7 @@ def _devices(cell: Cell) -> list[dict[str, Any]]:
 
 
 def _device(role: str, robot: Robot) -> dict[str, Any]:
-    """The row of a device in its cell.
-
-    `position`: the key of its own row that has the position; `holds`: the fact that tells whether it holds a
-    part; `asked`: True for a person, who answers on the plant's own screens.
-    """
+    """The row of a device in its cell."""
     return {
         "role": role,
         "name": robot.name,
@@ -169,10 +168,7 @@ def devices_once(cells: Iterable[dict[str, Any]]) -> Iterator[tuple[str, dict[st
 
 
 def promises(plant: Plant, text: str) -> list[dict[str, Any]]:
-    """The promise of each cell that a task text names; raises TextError or QueueFull.
-
-    `seconds` until it would have done it, `hindrance` to beginning now, and `full` if its queue is full.
-    """
+    """The promise of each cell that a task text names; raises TextError or QueueFull."""
     return [
         {
             "cell": each.order.cell,
@@ -249,7 +245,7 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
 
 
 def teaching(plant: Plant, cell: CellRun) -> dict[str, Any] | None:
-    """The manual mode of a cell: who teaches it, what moves, and why the last press came to nothing."""
+    """The manual mode of a cell; None if nobody teaches it."""
     if cell.manual.teaching is None:
         return None
     held = cell.manual.teaching.held
@@ -264,7 +260,7 @@ def teaching(plant: Plant, cell: CellRun) -> dict[str, Any] | None:
 
 
 def _places(run: CellRun) -> list[dict[str, Any]]:
-    """The places of a cell: the parts that each has, how many it holds, its device or number in the rack."""
+    """The places of a cell."""
     counts, stations = run.context.places.counts, run.cell.station_targets
     return [
         {
@@ -455,10 +451,7 @@ def _rejected(known: tuple[int, Sentence | None] | None) -> dict[str, Any]:
 
 
 def _act(act: OperatorAct) -> dict[str, Any]:
-    """An operator's act and its outcome; `number` grows by one with every act.
-
-    `ended` says its end, at `ended_at`, where it did not come with the act.
-    """
+    """An operator's act and its outcome."""
     return {
         "number": act.number,
         "at": act.at,

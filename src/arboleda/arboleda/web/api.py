@@ -22,6 +22,8 @@ from starlette.routing import BaseRoute, Match
 from starlette.types import Receive, Scope, Send
 
 from arboleda import __version__
+from arboleda.client.answers.plant import Snapshot
+from arboleda.client.answers.tasks import Act, Done, KeptTask, Task
 from arboleda.client.protocol import COMMAND_LINE
 from arboleda.departures.leaving import Unkept
 from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, Refused, TextError
@@ -41,21 +43,19 @@ from .request import METRICS, is_api
 from .routes import LeaveOut, installed
 from .routes import routers as looks
 from .schema import openapi
-from .schema.bodies import (
-    Act,
-    AnyVerbArguments,
-    Done,
-    KeptTask,
-    Sentence,
-    Snapshot,
-    Task,
-    TaskFilter,
-    TaskForm,
-    TaskText,
-    VerbArguments,
-)
+from .schema.answers import model_of
+from .schema.bodies import AnyVerbArguments, Sentence, TaskFilter, TaskForm, TaskText, VerbArguments
 from .schema.plain_json import PlainJson, explained
-from .schema.queries import WRONG, Answers, described, described_body, query_of, text_answer, wrong_parameter
+from .schema.queries import (
+    WRONG,
+    Answers,
+    answering,
+    described,
+    described_body,
+    query_of,
+    text_answer,
+    wrong_parameter,
+)
 
 
 class NotFound(BaseRoute):
@@ -113,7 +113,7 @@ REFUSED: Answers = {
 }
 ACCEPTED: Answers = {
     202: {
-        "model": Done,
+        "model": model_of(Done),
         "description": "Devices do it now, and its act tells its end; or it is a stop that has left for its "
         "robots, and the plant cannot keep it, or not yet.",
     }
@@ -193,34 +193,34 @@ def routes(side: PlantApi) -> APIRouter:
 
 
 def _look(api: APIRouter, side: PlantApi) -> None:
-    @api.get("/plant", response_model=Snapshot)
+    @api.get("/plant", **answering(Snapshot))
     async def plant() -> JSONResponse:
         """The whole plant: cells with their trees, robots, tasks, zones."""
         return PlainJson(await run_in_threadpool(side.latest))
 
-    @api.get("/tasks", response_model=list[Task])
+    @api.get("/tasks", **answering(list[Task]))
     async def tasks() -> JSONResponse:
         """The open tasks and those that ended last, in the order of their acceptance."""
         latest = await run_in_threadpool(side.latest)
         return PlainJson([explained(task) for task in latest["tasks"]])
 
-    wanted: dict[str, Any] = {"responses": WRONG, "openapi_extra": described(TaskFilter)}
+    takes = described(TaskFilter)
 
-    @api.get("/history", response_model=list[KeptTask], **wanted)
+    @api.get("/history", **answering(list[KeptTask], WRONG, takes))
     async def history(request: Request) -> JSONResponse:
         """Tasks of all starts, the last accepted first; the next page is `before` the last `number`."""
         rows = await run_in_threadpool(side.history, query_of(request, TaskFilter).query())
         return PlainJson([_kept(row) for row in rows])
 
-    as_table = wanted | {"responses": WRONG | text_answer(CSV, "The table.")}
+    table_or_wrong = WRONG | text_answer(CSV, "The table.")
 
-    @api.get("/history.csv", response_class=Response, **as_table)
+    @api.get("/history.csv", response_class=Response, responses=table_or_wrong, openapi_extra=takes)
     async def history_as_table(request: Request) -> PlainTextResponse:
         """Tasks of all starts as a table for other programs, with a line of names."""
         rows = await run_in_threadpool(side.history, query_of(request, TaskFilter).query())
         return PlainTextResponse(table(rows), media_type=CSV)
 
-    @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
+    @api.get("/tasks/{task_id}", **answering(Task, UNKNOWN))
     async def task(task_id: str) -> JSONResponse:
         """One task by its id."""
         known = await run_in_threadpool(side.find, task_id)
@@ -230,7 +230,7 @@ def _look(api: APIRouter, side: PlantApi) -> None:
 
 
 def _follow(api: APIRouter, side: PlantApi) -> None:
-    @api.get("/acts/{number}", response_model=Act, responses=NO_ACT)
+    @api.get("/acts/{number}", **answering(Act, NO_ACT))
     async def act(number: int) -> JSONResponse:
         """The present state of an operator's act; the last 20 acts are known."""
         known = side.act(number)
@@ -240,13 +240,7 @@ def _follow(api: APIRouter, side: PlantApi) -> None:
 
 
 def _submit(api: APIRouter, side: PlantApi) -> None:
-    @api.post(
-        "/tasks",
-        status_code=202,
-        response_model=Task,
-        responses=REFUSED,
-        openapi_extra=described_body(TaskText, TaskForm),
-    )
+    @api.post("/tasks", status_code=202, **answering(Task, REFUSED, described_body(TaskText, TaskForm)))
     async def add_task(request: Request) -> JSONResponse:
         """Queue a task, written or as a form; 422 where it is refused, 503 where the queue is full."""
         require(request.scope["arboleda.role"], SUBMIT)
@@ -261,11 +255,8 @@ def _submit(api: APIRouter, side: PlantApi) -> None:
 
 
 def _operate(api: APIRouter, side: PlantApi) -> None:
-    verb_route: dict[str, Any] = {
-        "response_model": Done,
-        "responses": ACCEPTED | REFUSED | CONFLICT,
-        "openapi_extra": described_body(VerbArguments, required=False),
-    }
+    takes = described_body(VerbArguments, required=False)
+    verb_route = answering(Done, ACCEPTED | REFUSED | CONFLICT, takes)
 
     @api.post("/plant/{verb}", **verb_route)
     async def operate_plant(verb: str, request: Request) -> JSONResponse:

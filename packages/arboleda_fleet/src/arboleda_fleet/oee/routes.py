@@ -5,22 +5,21 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import Field, FiniteFloat
 
+from arboleda.client.answers.offers import CellOee
 from arboleda.model.packages import FLEET
 from arboleda.web.missing import missing
 from arboleda.web.plant_api import PlantApi
-from arboleda.web.schema.bodies import ResponseModel
+from arboleda.web.schema.bodies import RequestModel
 from arboleda.web.schema.plain_json import PlainJson
-from arboleda.web.schema.queries import WRONG, described, query_of
+from arboleda.web.schema.queries import WRONG, answering, described, query_of
 
 from .api import OeeApi, OeeQuery
 
 
-class OeeFilter(BaseModel):
+class OeeFilter(RequestModel):
     """Filter for OEE: a cell and a span; by default the last 24 hours of all cells."""
-
-    model_config = ConfigDict(extra="forbid")
 
     cell: str = ""
     since: FiniteFloat | None = Field(default=None, description="Unix time in seconds.")
@@ -31,29 +30,11 @@ class OeeFilter(BaseModel):
         return OeeQuery(cell=self.cell, since_s=self.since, until_s=self.until)
 
 
-class CellOee(ResponseModel):
-    """OEE of one cell; shares from 0 to 1, null where `missing` says why nobody can say."""
-
-    cell: str
-    since_s: float = Field(description="Unix time; later than asked where nothing was kept before.")
-    until_s: float
-    planned_s: float = Field(description="A task waited or was at work.")
-    worked_s: float = Field(description="Of that, the cell was at work.")
-    done: int
-    failed: int
-    timed: int = Field(description="Of these, tasks whose shortest time is known.")
-    availability: float | None
-    performance: float | None
-    quality: float | None
-    oee: float | None = Field(description="The three of them multiplied.")
-    missing: str | None
-
-
 def routes(side: PlantApi) -> APIRouter:
     """Register the route."""
     api = APIRouter(prefix="/api")
 
-    @api.get("/oee", response_model=list[CellOee], responses=WRONG, openapi_extra=described(OeeFilter))
+    @api.get("/oee", **answering(list[CellOee], WRONG, described(OeeFilter)))
     async def oee(request: Request) -> JSONResponse:
         """The OEE of the cells, of the last 24 hours where no time is asked for; docs/how-to/oee.md."""
         desk, query = side.ask(OeeApi), query_of(request, OeeFilter).query()

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.client import AsyncPlant
-from arboleda.client.answers import Robot
+from arboleda.client.answers.plant import Robot
 from arboleda.model.facts import shown
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from arboleda.client import AsyncPlant
-from arboleda.client.answers import Cell
+from arboleda.client.answers.plant import Cell
 from arboleda.drawing.picture import picture
 from arboleda.drawing.svg import svg
 from arboleda.model.errors import ArboledaError

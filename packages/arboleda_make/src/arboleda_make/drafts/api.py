@@ -17,14 +17,15 @@ class DraftRefused(Refused):
 
 
 class DraftApi(Protocol):
-    """Draft of one plant; all data is plain, `editor` is an id that its page or tool has made for itself.
+    """Draft of one plant; all data is plain, with the keys of types in `arboleda.client.answers`.
 
-    Each step answers the state that it leads to; DraftRefused, and nothing is changed, where it cannot be.
+    `editor` is an id that its page or tool has made for itself. Each step answers the DraftState that it
+    leads to; DraftRefused, and nothing is changed, where it cannot be.
     """
 
     @abstractmethod
     def state(self) -> State:
-        """The draft: its editor, the changes to the files, those that wait for the next start, the values."""
+        """The draft: DraftState."""
 
     @abstractmethod
     def take(self, editor: str, name: str) -> State:
@@ -52,24 +53,19 @@ class DraftApi(Protocol):
 
     @abstractmethod
     def check(self) -> State:
-        """`problems`, `warnings` and `offers` of the draft as `arboleda check` has them, and its `digest`.
-
-        It waits for seconds.
-        """
+        """What `arboleda check` finds in the draft: CheckedDraft. It waits for seconds."""
 
     @abstractmethod
     def keep(self, editor: str, note: str) -> State:
-        """Check the draft, write it into the files and keep a version: its `version`, or the `problems` for
-        which nothing was changed. It waits for seconds."""
+        """Check the draft, write it into the files and keep a version: KeptDraft. It waits for seconds."""
 
     @abstractmethod
     def apply(self, editor: str, note: str) -> State:
-        """The same, and put the version to work: the `cells` and when each takes it, and what of it needs a
-        `restart`."""
+        """The same, and put the version to work: AppliedDraft."""
 
     @abstractmethod
     def trees(self, file: str) -> State:
-        """A file of trees as the draft has it: `file` and `text`."""
+        """A file of trees as the draft has it: TreesText."""
 
     @abstractmethod
     def set_trees(self, editor: str, file: str, text: str) -> State:

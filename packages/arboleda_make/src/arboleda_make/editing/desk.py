@@ -1,4 +1,4 @@
-"""Everything that an editor of trees asks about the cells of a plant, as plain data."""
+"""Everything that an editor of trees asks about the cells of a plant, as plain data of `client/answers/`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Row = dict[str, Any]
 
 
 def tree_files(model: PlantModel) -> list[Row]:
-    """The files of trees that are recipes, as they were read: `recipe`, `file`, `cells` with it, `text`."""
+    """The files of trees that are recipes, as they were read: a TreeFile each."""
     return [
         {
             "recipe": each.name,
@@ -43,7 +43,7 @@ def palette(model: PlantModel, cell: str, words: Mapping[str, str]) -> list[Row]
 
 
 def drawn(model: PlantModel, cell: str, text: str, operation: Operation | None = None) -> Row:
-    """A file after an operation on it: `text`, `trees` and `marks`; raises EditError."""
+    """A file after an operation on it: Drawn; raises EditError."""
     kinds = leaves.of_cell(_cell(model, cell), own_nodes(model.recipes).values())
     after = text if operation is None else apply(text, operation)
     there = TreeText(after)

@@ -25,11 +25,7 @@ def not_looked_into(file: str, path: str, package: str) -> tuple[str, bytes]:
 def marks(
     text: TreeText, kinds: Mapping[str, Kind], file: str = FILE, fetch: Fetch = not_looked_into
 ) -> list[Row]:
-    """All that `check` says of a file for a cell with these kinds of nodes, mistakes first.
-
-    A row has `sentence`, `mistake`, `line` and `column`; `tree` and `path` of its node, None where it is
-    about none ("" for a tree itself), and the `attribute` that it is about, if it is about one.
-    """
+    """All that `check` says of a file for a cell with these kinds, mistakes first: a TreeMark each."""
     findings = Findings()
     content = text.content
     forest = reading.read(file, content, findings, fetch)

@@ -10,27 +10,28 @@ from ..drafts.api import State
 
 
 class ProposalsApi(Protocol):
-    """Proposals of one plant, as plain data; DraftRefused, and nothing is changed, where it cannot be.
+    """Proposals of one plant, as plain data with the keys of types in `arboleda.client.answers`.
 
-    `hash` names the content of one. Who calls these has the role for it.
+    DraftRefused, and nothing is changed, where it cannot be. `hash` names the content of one. Who
+    calls these has the role for it.
     """
 
     @abstractmethod
     def base(self) -> State:
-        """`cells` with targets and kinds of devices, `kinds`, `trees`, and `version`: what to build on."""
+        """What to build on: ProposalBase."""
 
     @abstractmethod
     def propose(self, wanted: Mapping[str, Any]) -> State:
         """Check content that an assistant wrote, and keep it as a proposal: `name`, `by`, `words`, `trees`,
-        `values`, `removed`, `recipes`. With `problems` nothing is kept, and `hash` is None."""
+        `values`, `removed`, `recipes`. ProposalAnswer."""
 
     @abstractmethod
     def listed(self) -> list[State]:
-        """The proposals, the last first."""
+        """The proposals, the last first: a ProposalRow each."""
 
     @abstractmethod
     def shown(self, hash: str) -> State:
-        """All of one: what it changes, its trees as text and picture, what was tried of it and decided."""
+        """All of one: WholeProposal."""
 
     @abstractmethod
     def prove(self, hash: str, recipes: Sequence[str], budget_s: float) -> State:

@@ -8,15 +8,16 @@ from typing import Annotated, Any, TypeVar
 from fastapi import APIRouter, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
+from arboleda.client.answers.drafts import AppliedDraft, CheckedDraft, DraftState, KeptDraft, TreesText
 from arboleda.web.access.auth import require
 from arboleda.web.plant_api import PlantApi
-from arboleda.web.schema.bodies import ResponseModel, Sentence
+from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
-from arboleda.web.schema.queries import Answers, described_body, read_body
+from arboleda.web.schema.queries import Answers, answering, described_body, read_body
 from arboleda_make.drafts.api import DraftApi, State
 
 MAY = "editing a draft"
@@ -30,11 +31,7 @@ REFUSED: Answers = {
 Key = Annotated[str, Field(max_length=200)] | Annotated[int, Field(ge=0, le=100_000)]
 
 
-class _Request(BaseModel):
-    """Body: these keys and no others, of exactly these types."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
-
+class _Request(BodyModel):
     editor: str = Field(
         pattern="^[A-Za-z0-9_-]{8,64}$", description="An id that a page or tool makes for itself."
     )
@@ -78,68 +75,6 @@ class Keeping(_Request):
     note: str = Field(default="", max_length=200)
 
 
-class Editing(ResponseModel):
-    name: str
-    since: str = Field(description="In UTC, ISO 8601.")
-
-
-class DraftState(ResponseModel):
-    """State of the draft."""
-
-    file: str = Field(description="The plant file's name.")
-    digest: str = Field(description="Of the files of the draft: another step makes it another.")
-    editor: Editing | None
-    changes: list[str] = Field(description="What the draft would change in the files, a line each.")
-    waiting: list[str] = Field(description="What the files have and only the next start of the plant takes.")
-    undo: int = Field(description="How many steps can be undone.")
-    redo: int
-    values: dict[str, Any] = Field(description="The plant file of the draft as plain values.")
-    trees: list[str] = Field(description="The files of trees of the draft.")
-    restart: list[str] = Field(description="Those of its changes that only a restart takes, and why.")
-    is_ours: bool = Field(
-        description="False where its files cannot be changed before they are made one's own."
-    )
-    set_aside: list[str] = Field(
-        description="What of an earlier draft could not be read, and where it is now."
-    )
-
-
-class DraftCheck(ResponseModel):
-    problems: list[str] = Field(description="With file, line and column; none where it is good.")
-    warnings: list[str]
-
-
-class DraftChoice(ResponseModel):
-    text: str = Field(description="What would stand in the plant file.")
-    value: dict[str, Any] = Field(description="The value to set.")
-
-
-class DraftOffer(ResponseModel):
-    sentence: str = Field(description="What nobody knows, as the plant file does not state it.")
-    place: list[str] = Field(description="Where in the plant file it would stand.")
-    choices: list[DraftChoice] = Field(description="Of these one is so; a person knows which.")
-
-
-class CheckedDraft(DraftCheck):
-    digest: str = Field(description="Of the files that were checked, for `of` of the step that sets a value.")
-    offers: list[DraftOffer] = Field(description="What the plant file could state, and does not.")
-
-
-class KeptDraft(DraftCheck):
-    version: int | None = Field(description="Its number; null, with its problems, if nothing was changed.")
-
-
-class AppliedDraft(KeptDraft):
-    cells: dict[str, str] = Field(description="By cell when it takes it: now, or when which task has ended.")
-    cancelled: list[str] = Field(description="The ids of tasks that waited and that it does not offer.")
-    restart: list[str] = Field(description="Why the plant that runs goes on as it is; the next start has it.")
-
-
-class TreesText(ResponseModel):
-    file: str
-    text: str
-
-
 Body = TypeVar("Body", bound=_Request)
 
 
@@ -153,18 +88,18 @@ def routes(side: PlantApi) -> APIRouter:
 
 
 def _look(api: APIRouter, side: PlantApi) -> None:
-    @api.get("", response_model=DraftState, responses=REFUSED)
+    @api.get("", **answering(DraftState, REFUSED))
     async def draft(request: Request) -> JSONResponse:
         """The editor of the draft of the plant's files, and its changes."""
         return await _answered(_draft(side, request).state)
 
-    @api.get("/trees", response_model=TreesText, responses=REFUSED)
+    @api.get("/trees", **answering(TreesText, REFUSED))
     async def trees(request: Request, file: Annotated[str, Query(max_length=200)]) -> JSONResponse:
         """A file of trees as the draft has it."""
         draft = _draft(side, request)
         return await _answered(lambda: draft.trees(file))
 
-    @api.post("/check", response_model=CheckedDraft, responses=REFUSED)
+    @api.post("/check", **answering(CheckedDraft, REFUSED))
     async def check(request: Request) -> JSONResponse:
         """The findings of `arboleda check` on the draft; from a process of its own, within seconds."""
         return await _answered(_draft(side, request).check)
@@ -178,8 +113,8 @@ def _edit(api: APIRouter, side: PlantApi) -> None:
             return await _answered(lambda: act(draft, body))
 
         step.__doc__ = about
-        wanted: dict[str, Any] = {"responses": REFUSED, "openapi_extra": described_body(model)}
-        api.post(path, response_model=DraftState, name=path.strip("/"), **wanted)(step)
+        taken = answering(DraftState, REFUSED, described_body(model))
+        api.post(path, name=path.strip("/"), **taken)(step)
 
     route("/take", Taking, "Begin to edit, or take over.", lambda each, to: each.take(to.editor, to.name))
     route(
@@ -208,14 +143,14 @@ def _edit(api: APIRouter, side: PlantApi) -> None:
 
 
 def _keep(api: APIRouter, side: PlantApi) -> None:
-    @api.post("/keep", response_model=KeptDraft, responses=REFUSED, openapi_extra=described_body(Keeping))
+    @api.post("/keep", **answering(KeptDraft, REFUSED, described_body(Keeping)))
     async def keep(request: Request) -> JSONResponse:
         """Check the draft, write it into the plant's files and keep a version, which the next start takes."""
         draft = _draft(side, request)
         body = read_body(await request.body(), Keeping)
         return await _answered(lambda: draft.keep(body.editor, body.note))
 
-    @api.post("/apply", response_model=AppliedDraft, responses=REFUSED, openapi_extra=described_body(Keeping))
+    @api.post("/apply", **answering(AppliedDraft, REFUSED, described_body(Keeping)))
     async def apply(request: Request) -> JSONResponse:
         """The same, and put the version to work: a cell takes it once its task has ended."""
         draft = _draft(side, request)

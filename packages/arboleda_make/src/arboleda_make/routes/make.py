@@ -7,19 +7,21 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import FileResponse, JSONResponse, Response
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from starlette.exceptions import HTTPException
 
+from arboleda.client.answers.drafts import DraftCells, DraftState, DriverRow, RunState
+from arboleda.client.answers.trees import Drawn, Nodes
 from arboleda.web.access.auth import require
 from arboleda.web.languages import FIRST
 from arboleda.web.plant_api import PlantApi
-from arboleda.web.schema.bodies import ResponseModel
+from arboleda.web.schema.bodies import RequestModel
 from arboleda.web.schema.plain_json import PlainJson
-from arboleda.web.schema.queries import described, described_body, query_of, read_body
+from arboleda.web.schema.queries import answering, described, described_body, query_of, read_body
 from arboleda_make.trying.api import MakeApi
 
-from .draft import MAY, REFUSED, SHIPPED, DraftState, RecipeName, Step
-from .tree_answers import Drawn, EditForm, Nodes, TreeForm, operation_of
+from .draft import MAY, REFUSED, SHIPPED, RecipeName, Step
+from .tree_answers import EditForm, TreeForm, operation_of
 
 What = Literal["try", "prove", "notice", "reach"]
 Simulated = Literal["try", "prove", "notice"]
@@ -27,34 +29,12 @@ Short = Annotated[str, Field(max_length=200)]
 DeviceName = Annotated[str, Field(pattern="^[a-z][a-z0-9_]{0,31}$", examples=["door"])]
 
 
-class DraftCells(ResponseModel):
-    """Cells of the draft."""
-
-    cells: list[dict[str, Any]] = Field(description="Name, devices, targets, carriers, recipes.")
-    faults: list[dict[str, str]] = Field(description="The kinds that can befall it: name, about.")
-    problems: list[str] = Field(description="Where there are some, the cells are those of before.")
-
-
-class RunState(ResponseModel):
-    """State of what is tried or proved."""
-
-    state: str = Field(description="idle, running, done, failed or stopped.")
-    sentence: str | None = None
-    doing: str | None = None
-    done: int | None = None
-    total: int | None = None
-
-
-class Cell(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-
+class Cell(RequestModel):
     cell: Short
     language: Short = FIRST
 
 
-class Recipe(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-
+class Recipe(RequestModel):
     cell: Short
     recipe: Short
 
@@ -71,25 +51,12 @@ class Copying(Recipe, Step):
     name: RecipeName
 
 
-class Language(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-
+class Language(RequestModel):
     language: Short = FIRST
 
 
-class DriverRow(ResponseModel):
-    """Driver that a device of a declared kind can have."""
-
-    name: str
-    about: str
-    why_not: str = Field(description="Empty where it can be used here.")
-    keys: list[dict[str, Any]] = Field(description="Name, form, choices, required, default, about.")
-
-
-class NewDevice(BaseModel):
+class NewDevice(RequestModel):
     """Device with its driver; none: its board speaks by itself. Settings are texts, nested ones YAML."""
-
-    model_config = ConfigDict(extra="forbid")
 
     cell: Short
     role: DeviceName
@@ -103,9 +70,7 @@ class AddedDevice(Step, NewDevice):
     pass
 
 
-class WantedFault(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-
+class WantedFault(RequestModel):
     kind: Short
     at: float = Field(ge=0, le=1e6)
     seconds: float = Field(ge=0, le=1e6)
@@ -114,13 +79,11 @@ class WantedFault(BaseModel):
     word: Short
 
 
-class Wanted(BaseModel):
+class Wanted(RequestModel):
     """Task to be tried, with answers and faults; or recipes to be proved, for so long."""
 
-    model_config = ConfigDict(extra="forbid")
-
     task: Short = ""
-    answers: dict[Short, str | int | float | bool] = {}
+    answers: dict[Short, str | int | float | bool] = Field(default={})
     faults: list[WantedFault] = Field(default=[], max_length=2)
     recipes: list[Short] = Field(default=[], max_length=50)
     kinds: list[Short] = Field(default=[], max_length=100, description="Of faults; none: all.")
@@ -138,7 +101,7 @@ def routes(side: PlantApi) -> APIRouter:
 
 
 def _look(api: APIRouter, side: PlantApi) -> None:
-    @api.get("/cells", response_model=DraftCells, responses=REFUSED)
+    @api.get("/cells", **answering(DraftCells, REFUSED))
     async def cells(request: Request) -> JSONResponse:
         """The cells of the draft: devices, targets, recipes. It waits for a process that reads the draft."""
         return PlainJson(await run_in_threadpool(_make(side, request).cells))
@@ -150,14 +113,14 @@ def _look(api: APIRouter, side: PlantApi) -> None:
         text = await run_in_threadpool(make.shown, wanted.cell, wanted.recipe)
         return Response(text, media_type="application/xml")
 
-    @api.post("/carry", response_model=DraftState, responses=REFUSED, openapi_extra=described_body(Carrying))
+    @api.post("/carry", **answering(DraftState, REFUSED, described_body(Carrying)))
     async def carry(request: Request) -> JSONResponse:
         """Add a recipe that takes a part from one target to another."""
         make, to = _make(side, request), read_body(await request.body(), Carrying)
         way = {"cell": to.cell, "robot": to.robot, "start": to.start, "end": to.end}
         return PlainJson(await run_in_threadpool(make.carry, to.editor, to.recipe, way))
 
-    @api.post("/copy", response_model=DraftState, responses=REFUSED, openapi_extra=described_body(Copying))
+    @api.post("/copy", **answering(DraftState, REFUSED, described_body(Copying)))
     async def copy(request: Request) -> JSONResponse:
         """Add a recipe that is a tree and does what one in Python does."""
         make, to = _make(side, request), read_body(await request.body(), Copying)
@@ -165,19 +128,19 @@ def _look(api: APIRouter, side: PlantApi) -> None:
 
 
 def _draw(api: APIRouter, side: PlantApi) -> None:
-    @api.get("/palette", response_model=list[Nodes], responses=REFUSED, openapi_extra=described(Cell))
+    @api.get("/palette", **answering(list[Nodes], REFUSED, described(Cell)))
     async def palette(request: Request) -> JSONResponse:
         """The nodes that a tree can have in a cell of the draft."""
         make, wanted = _make(side, request), query_of(request, Cell)
         return PlainJson(await run_in_threadpool(make.palette, wanted.cell, wanted.language))
 
-    @api.post("/drawn/check", response_model=Drawn, responses=REFUSED, openapi_extra=described_body(TreeForm))
+    @api.post("/drawn/check", **answering(Drawn, REFUSED, described_body(TreeForm)))
     async def check(request: Request) -> JSONResponse:
         """A file of trees, with what `check` says of each node in a cell of the draft."""
         make, form = _make(side, request), read_body(await request.body(), TreeForm)
         return PlainJson(await run_in_threadpool(make.drawn, form.cell, form.text))
 
-    @api.post("/drawn/edit", response_model=Drawn, responses=REFUSED, openapi_extra=described_body(EditForm))
+    @api.post("/drawn/edit", **answering(Drawn, REFUSED, described_body(EditForm)))
     async def edit(request: Request) -> JSONResponse:
         """The same file after an operation; the draft stays as it is."""
         make, form = _make(side, request), read_body(await request.body(), EditForm)
@@ -186,23 +149,19 @@ def _draw(api: APIRouter, side: PlantApi) -> None:
 
 
 def _device(api: APIRouter, side: PlantApi) -> None:
-    @api.get("/drivers", response_model=list[DriverRow], responses=REFUSED, openapi_extra=described(Language))
+    @api.get("/drivers", **answering(list[DriverRow], REFUSED, described(Language)))
     async def drivers(request: Request) -> JSONResponse:
         """The drivers that a device of a declared kind can have, with a form for each of their settings."""
         make, wanted = _make(side, request), query_of(request, Language)
         return PlainJson(await run_in_threadpool(make.drivers, wanted.language))
 
-    @api.post(
-        "/device", response_model=DraftState, responses=REFUSED, openapi_extra=described_body(AddedDevice)
-    )
+    @api.post("/device", **answering(DraftState, REFUSED, described_body(AddedDevice)))
     async def device(request: Request) -> JSONResponse:
         """Add a device, with its driver, and its kind where that is new."""
         make, new = _make(side, request), read_body(await request.body(), AddedDevice)
         return PlainJson(await run_in_threadpool(make.add_device, new.editor, new.model_dump()))
 
-    @api.post(
-        "/runs/reach", response_model=RunState, responses=REFUSED, openapi_extra=described_body(NewDevice)
-    )
+    @api.post("/runs/reach", **answering(RunState, REFUSED, described_body(NewDevice)))
     async def reach(request: Request) -> JSONResponse:
         """Listen to such a device for some seconds, in a process of its own; no command is sent to it."""
         make, new = _make(side, request), read_body(await request.body(), NewDevice)
@@ -210,20 +169,18 @@ def _device(api: APIRouter, side: PlantApi) -> None:
 
 
 def _run(api: APIRouter, side: PlantApi) -> None:
-    @api.get("/runs/{what}", response_model=RunState, responses=REFUSED)
+    @api.get("/runs/{what}", **answering(RunState, REFUSED))
     async def run(request: Request, what: What) -> JSONResponse:
         """Progress of the run."""
         return PlainJson(_make(side, request).run(what))
 
-    @api.post(
-        "/runs/{what}", response_model=RunState, responses=REFUSED, openapi_extra=described_body(Wanted)
-    )
+    @api.post("/runs/{what}", **answering(RunState, REFUSED, described_body(Wanted)))
     async def begin(request: Request, what: Simulated) -> JSONResponse:
         """Begin with the draft as it is now, in a process that everything else of the plant goes before."""
         make, wanted = _make(side, request), read_body(await request.body(), Wanted)
         return PlainJson(await run_in_threadpool(make.begin, what, wanted.model_dump()))
 
-    @api.post("/runs/{what}/end", response_model=RunState, responses=REFUSED)
+    @api.post("/runs/{what}/end", **answering(RunState, REFUSED))
     async def end(request: Request, what: What) -> JSONResponse:
         """End it, wherever it is."""
         return PlainJson(await run_in_threadpool(_make(side, request).end, what))

@@ -7,19 +7,27 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Path, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
+from arboleda.client.answers.drafts import RunState
+from arboleda.client.answers.proposals import (
+    DecidedProposal,
+    ProposalAnswer,
+    ProposalBase,
+    ProposalRow,
+    WholeProposal,
+)
+from arboleda.client.answers.tasks import Task
 from arboleda.web.access.auth import GIVE, PROPOSE, require
 from arboleda.web.plant_api import PlantApi
-from arboleda.web.schema.bodies import ResponseModel, Task
+from arboleda.web.schema.bodies import BodyModel
 from arboleda.web.schema.plain_json import PlainJson, explained
-from arboleda.web.schema.queries import described_body, read_body
+from arboleda.web.schema.queries import answering, described_body, read_body
 from arboleda_make.proposals.api import ProposalsApi
 
-from .draft import REFUSED, SHIPPED, AppliedDraft, Key
-from .make import RunState
+from .draft import REFUSED, SHIPPED, Key
 
 DECIDE = "deciding on a proposal"
 Hash = Annotated[str, Path(pattern="^[0-9a-f]{64}$")]
@@ -28,20 +36,14 @@ Person = Annotated[str, Field(min_length=1, max_length=60)]
 PlacePath = Annotated[list[Key], Field(min_length=1, max_length=20)]
 
 
-class _Body(BaseModel):
-    """Body: these keys and no others, of exactly these types."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
-
-
-class ProposedValue(_Body):
+class ProposedValue(BodyModel):
     """Value of the plant file, by its place: a target, a new device, a new kind."""
 
     place: PlacePath = Field(examples=[["cells", "lab", "targets", "nest"]])
     value: Any
 
 
-class NewProposal(_Body):
+class NewProposal(BodyModel):
     """Content that an assistant proposes, with its own words beside it."""
 
     name: Word = Field(description="Of the piece of work: a later proposal of this name takes its place.")
@@ -61,17 +63,17 @@ class NewProposal(_Body):
     )
 
 
-class ProofRequest(_Body):
+class ProofRequest(BodyModel):
     recipes: list[Word] = Field(default=[], max_length=50, description="None named: all.")
     budget_s: float = Field(default=60, ge=1, le=600)
 
 
-class SimulationRequest(_Body):
+class SimulationRequest(BodyModel):
     seeds: int = Field(default=5, ge=1, le=50, description="Each draws other faults.")
     cycles: int = Field(default=4, ge=1, le=20, description="Tasks of each seed.")
 
 
-class Approval(_Body):
+class Approval(BodyModel):
     name: Person = Field(description="Of the person who approves, for the journal.", examples=["Ana"])
 
 
@@ -79,66 +81,9 @@ class Rejection(Approval):
     reason: str = Field(min_length=1, max_length=1000, description="The assistant reads it.")
 
 
-class AssistantTask(_Body):
+class AssistantTask(BodyModel):
     text: str = Field(min_length=1, max_length=1000, examples=["lab to_tray #lot42"])
     by: Person
-
-
-class ProposalBase(ResponseModel):
-    """Parts of the plant's files that a proposal can build on."""
-
-    version: str = Field(description="The digest of the version at work.")
-    cells: dict[str, dict[str, Any]]
-    kinds: dict[str, Any]
-    trees: dict[str, str]
-
-
-class ProposalRow(ResponseModel):
-    """Proposal without its trees."""
-
-    hash: str
-    name: str
-    by: str
-    words: str = Field(description="The assistant's own words: text from outside.")
-    at: str
-    recipes: list[str]
-    changes: list[str]
-    warnings: list[str]
-    made_for: str = Field(description="The digest of the version of the plant that it was made for.")
-    fits: bool = Field(description="Whether that version is at work.")
-    stage: str = Field(description="open, replaced, withdrawn, rejected or approved.")
-    decided_by: str
-    decided_at: str
-    reason: str
-    version: int | None = Field(description="The version that it became.")
-
-
-class ProposalAnswer(ResponseModel):
-    """Proposal that was kept, or the problems for which it was not: then its hash is null."""
-
-    hash: str | None
-    problems: list[str]
-    warnings: list[str]
-    stage: str = ""
-    reason: str = ""
-    changes: list[str] = Field(default=[])
-
-
-class WholeProposal(ProposalRow):
-    """Proposal with its trees, as text and as pictures, and with what was proved and simulated of it."""
-
-    trees: dict[str, str]
-    differing: list[str] = Field(description="Those of its files of trees that are others than at work.")
-    differences: dict[str, str] = Field(description="By file of trees the lines that come (+) and go (-).")
-    pictures: dict[str, str] = Field(description="Of these, as SVG.")
-    proof: dict[str, Any] | None
-    proof_state: RunState
-    simulation: dict[str, Any] | None
-    simulation_state: RunState
-
-
-class DecidedProposal(ProposalRow, AppliedDraft):
-    """Proposal that was approved and put to work; with problems neither is done."""
 
 
 def routes(side: PlantApi) -> APIRouter:
@@ -151,69 +96,48 @@ def routes(side: PlantApi) -> APIRouter:
 
 
 def _look(api: APIRouter, side: PlantApi) -> None:
-    @api.get("/proposals", response_model=list[ProposalRow], responses=REFUSED)
+    @api.get("/proposals", **answering(list[ProposalRow], REFUSED))
     async def proposals(request: Request) -> JSONResponse:
         """The proposals of assistants, the last first."""
         return PlainJson(await run_in_threadpool(_desk(side, request, PROPOSE).listed))
 
-    @api.get("/proposals/base", response_model=ProposalBase, responses=REFUSED)
+    @api.get("/proposals/base", **answering(ProposalBase, REFUSED))
     async def base(request: Request) -> JSONResponse:
         """Targets, kinds of devices and trees at work, on which a proposal can build."""
         return PlainJson(await run_in_threadpool(_desk(side, request, PROPOSE).base))
 
-    @api.get("/proposals/{hash}", response_model=WholeProposal, responses=REFUSED)
+    @api.get("/proposals/{hash}", **answering(WholeProposal, REFUSED))
     async def proposal(request: Request, hash: Hash) -> JSONResponse:
         """One proposal: its trees, what was proved and simulated of it, and what was decided."""
         return PlainJson(await run_in_threadpool(_desk(side, request, PROPOSE).shown, hash))
 
 
 def _propose(api: APIRouter, side: PlantApi) -> None:
-    @api.post(
-        "/proposals",
-        response_model=ProposalAnswer,
-        responses=REFUSED,
-        openapi_extra=described_body(NewProposal),
-    )
+    @api.post("/proposals", **answering(ProposalAnswer, REFUSED, described_body(NewProposal)))
     async def propose(request: Request) -> JSONResponse:
         """Check content and keep it for a person to decide on; nothing of it is at work by that."""
         desk, wanted = _desk(side, request, PROPOSE), read_body(await request.body(), NewProposal)
         values = [(each.place, each.value) for each in wanted.values]
         return PlainJson(await run_in_threadpool(desk.propose, {**wanted.model_dump(), "values": values}))
 
-    @api.post(
-        "/proposals/{hash}/prove",
-        response_model=RunState,
-        responses=REFUSED,
-        openapi_extra=described_body(ProofRequest),
-    )
+    @api.post("/proposals/{hash}/prove", **answering(RunState, REFUSED, described_body(ProofRequest)))
     async def prove(request: Request, hash: Hash) -> JSONResponse:
         """Begin to try every single fault at every moment of it, in a process beside the plant."""
         desk, wanted = _desk(side, request, PROPOSE), read_body(await request.body(), ProofRequest)
         return PlainJson(await run_in_threadpool(desk.prove, hash, wanted.recipes, wanted.budget_s))
 
-    @api.post(
-        "/proposals/{hash}/simulate",
-        response_model=RunState,
-        responses=REFUSED,
-        openapi_extra=described_body(SimulationRequest),
-    )
+    @api.post("/proposals/{hash}/simulate", **answering(RunState, REFUSED, described_body(SimulationRequest)))
     async def simulate(request: Request, hash: Hash) -> JSONResponse:
         """Begin to run it on virtual devices with faults, in a process beside the plant."""
         desk, wanted = _desk(side, request, PROPOSE), read_body(await request.body(), SimulationRequest)
         return PlainJson(await run_in_threadpool(desk.simulate, hash, wanted.seeds, wanted.cycles))
 
-    @api.post("/proposals/{hash}/withdraw", response_model=ProposalRow, responses=REFUSED)
+    @api.post("/proposals/{hash}/withdraw", **answering(ProposalRow, REFUSED))
     async def withdraw(request: Request, hash: Hash) -> JSONResponse:
         """Take a proposal back that nobody has decided on."""
         return PlainJson(await run_in_threadpool(_desk(side, request, PROPOSE).withdraw, hash))
 
-    @api.post(
-        "/assistants/tasks",
-        status_code=202,
-        response_model=Task,
-        responses=REFUSED,
-        openapi_extra=described_body(AssistantTask),
-    )
+    @api.post("/assistants/tasks", status_code=202, **answering(Task, REFUSED, described_body(AssistantTask)))
     async def give(request: Request) -> JSONResponse:
         """Queue a task of a recipe that is approved as it is at work, within the limits of the plant file."""
         desk, wanted = _desk(side, request, GIVE), read_body(await request.body(), AssistantTask)
@@ -222,23 +146,13 @@ def _propose(api: APIRouter, side: PlantApi) -> None:
 
 
 def _decide(api: APIRouter, side: PlantApi) -> None:
-    @api.post(
-        "/proposals/{hash}/approve",
-        response_model=DecidedProposal,
-        responses=REFUSED,
-        openapi_extra=described_body(Approval),
-    )
+    @api.post("/proposals/{hash}/approve", **answering(DecidedProposal, REFUSED, described_body(Approval)))
     async def approve(request: Request, hash: Hash) -> JSONResponse:
         """Approve the content with this hash, and put it to work: a cell takes it once its task has ended."""
         desk, wanted = _desk(side, request, DECIDE), read_body(await request.body(), Approval)
         return PlainJson(await run_in_threadpool(desk.approve, hash, wanted.name))
 
-    @api.post(
-        "/proposals/{hash}/reject",
-        response_model=ProposalRow,
-        responses=REFUSED,
-        openapi_extra=described_body(Rejection),
-    )
+    @api.post("/proposals/{hash}/reject", **answering(ProposalRow, REFUSED, described_body(Rejection)))
     async def reject(request: Request, hash: Hash) -> JSONResponse:
         """Reject a proposal, for a reason that its assistant reads."""
         desk, wanted = _desk(side, request, DECIDE), read_body(await request.body(), Rejection)

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal, TypeVar
 
 from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 from starlette.exceptions import HTTPException
 
+from arboleda.client.answers.plant import Teaching
 from arboleda.web.access.auth import require
 from arboleda.web.plant_api import PlantApi
-from arboleda.web.schema.bodies import ResponseModel, Sentence, Teaching
+from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson, explained
-from arboleda.web.schema.queries import Answers, described_body, read_body
+from arboleda.web.schema.queries import Answers, answering, described_body, read_body
 from arboleda_make.teaching import api as teach
 
 MAY = "teaching"
@@ -30,20 +32,14 @@ Number = Annotated[int, Field(ge=0, lt=2**53)]
 Value = bool | int | float | Annotated[str, Field(max_length=200)]
 
 
-class _Request(BaseModel):
-    """Body: these keys and no others, of exactly these types."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
-
-
-class WayAlong(_Request):
+class WayAlong(BodyModel):
     axis: Literal["x", "y", "z"]
     frame: Literal["base", "tool"] = "base"
     sign: Literal[-1, 1] = 1
     mm: float | None = Field(default=None, gt=0, le=100, description="Its length; without, on and on.")
 
 
-class ButtonState(_Request):
+class ButtonState(BodyModel):
     """Button that is held; said again at least every 0.1 s, with the same number, or the robot is halted."""
 
     session: Number = Field(description="The act that began the teaching, as `teach` has answered it.")
@@ -69,7 +65,7 @@ class ButtonState(_Request):
         return teach.Button(**self.model_dump(exclude={"along"}), along=along)
 
 
-class NewTarget(_Request):
+class NewTarget(BodyModel):
     """Target of the draft, made or moved to where the robot stands now."""
 
     robot: Word
@@ -80,50 +76,55 @@ class NewTarget(_Request):
     zone: str = Field(default="", max_length=64, description="A zone of the plant file in which it lies.")
 
 
-class TeachState(ResponseModel):
+@dataclass(frozen=True, kw_only=True)
+class TeachState:
+    """Teacher of a cell, its devices and its targets."""
+
     cell: str
     teaching: Teaching | None
-    refusal: str | None = Field(description="Why nobody can begin to teach it now.")
-    devices: list[dict[str, Any]] = Field(description="Where each stands, its joints, nodes and verbs.")
-    targets: list[dict[str, Any]] = Field(description="By robot; `draft`: as the draft has it.")
-    drafts: bool = Field(description="Whether there is a plant file in which targets can be kept.")
+    refusal: Annotated[str | None, "Why nobody can begin to teach it now."]
+    devices: Annotated[list[dict[str, Any]], "Where each stands, its joints, nodes and verbs."]
+    targets: Annotated[list[dict[str, Any]], "By robot; `draft`: as the draft has it."]
+    drafts: Annotated[bool, "Whether there is a plant file in which targets can be kept."]
 
 
-class Pressed(ResponseModel):
+@dataclass(frozen=True, kw_only=True)
+class Pressed:
+    """Robot whose button is held, or was let go of."""
+
     teaching: Teaching | None
     robot: dict[str, Any]
 
 
-class MadeTarget(ResponseModel):
+@dataclass(frozen=True, kw_only=True)
+class MadeTarget:
+    """Target that was made or moved."""
+
     at: list[float] | int
-    place: list[str] = Field(description="Where it stands in the plant file.")
+    place: Annotated[list[str], "Where it stands in the plant file."]
 
 
-Body = TypeVar("Body", bound=_Request)
+Body = TypeVar("Body", bound=BodyModel)
 
 
 def routes(side: PlantApi) -> APIRouter:
     """Register the routes."""
     api = APIRouter(prefix="/api/teach")
 
-    @api.get("/{cell}", response_model=TeachState, responses=REFUSED)
+    @api.get("/{cell}", **answering(TeachState, REFUSED))
     async def state(cell: str, request: Request) -> JSONResponse:
         """Teacher of a cell, the commands that its devices take, and its targets."""
         desk = _desk(side, request)
         return await _answered(lambda: desk.state(cell))
 
-    @api.post(
-        "/{cell}/jog", response_model=Pressed, responses=REFUSED, openapi_extra=described_body(ButtonState)
-    )
+    @api.post("/{cell}/jog", **answering(Pressed, REFUSED, described_body(ButtonState)))
     async def jog(cell: str, request: Request) -> JSONResponse:
         """Hold a button of a cell that is taught, or let go of it."""
         desk = _desk(side, request)
         body = read_body(await request.body(), ButtonState)
         return await _answered(lambda: desk.press(cell, body.button()))
 
-    @api.post(
-        "/{cell}/here", response_model=MadeTarget, responses=REFUSED, openapi_extra=described_body(NewTarget)
-    )
+    @api.post("/{cell}/here", **answering(MadeTarget, REFUSED, described_body(NewTarget)))
     async def here(cell: str, request: Request) -> JSONResponse:
         """Make a target in the draft where a robot stands now, or move one there."""
         desk = _desk(side, request)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import MISSING, Field, fields
 from typing import Annotated, Any, Literal, Union, get_type_hints
 
-from pydantic import BaseModel, ConfigDict, create_model
+from pydantic import BaseModel, create_model
 from pydantic import Field as Described
 
-from arboleda.web.schema.bodies import ResponseModel
+from arboleda.web.schema.bodies import BodyModel
 from arboleda_make.editing import operations
 from arboleda_make.editing.operations import NewNode, Operation
 
@@ -29,73 +29,19 @@ OPERATIONS: dict[str, type] = {
 }
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True)
-
-
-class TreeForm(_Strict):
+class TreeForm(BodyModel):
     """Text of a file of trees, looked at for a cell."""
 
     cell: str = Described(description="The cell whose devices and targets its nodes are checked against.")
     text: str = Described(description="The whole file.")
 
 
-class CopyForm(_Strict):
+class CopyForm(BodyModel):
     """Recipe in Python of a cell, and the name of its copy as a tree."""
 
     cell: str
     recipe: str
     name: str = Described(pattern="^[a-z][a-z0-9_]{0,39}$")
-
-
-class TreeCopy(ResponseModel):
-    text: str = Described(description="The whole file.")
-
-
-class Nodes(ResponseModel):
-    """Nodes of one sort: of a device, by its role, or of Arboleda."""
-
-    sort: str = Described(description="device, python, control, decorator, condition, action or others.")
-    name: str = Described(description="The role of the device.")
-    kinds: list[dict[str, Any]] = Described(description="Name, category, ports, fewest and most nodes in it.")
-
-
-class TreeMark(ResponseModel):
-    """Finding of `check`, on the node that it is about."""
-
-    sentence: str
-    mistake: bool = Described(description="A warning where it is false.")
-    line: int
-    column: int
-    tree: str | None = Described(description="None where it is about no node.")
-    path: str | None = Described(description='"root", or like "0.2"; "" for the tree itself.')
-    attribute: str | None
-
-
-class DrawnTree(ResponseModel):
-    name: str
-    main: bool
-    parameters: list[dict[str, str]]
-    nodes: list[dict[str, Any]] = Described(
-        description="Path, kind, category, attributes, fewest and most nodes in it, in the order of the file."
-    )
-
-
-class Drawn(ResponseModel):
-    """File as an editor shows it; `text` is that after the operation."""
-
-    text: str
-    trees: list[DrawnTree]
-    marks: list[TreeMark]
-
-
-class TreeFile(ResponseModel):
-    """File of trees that is a recipe of the plant, as it was read."""
-
-    recipe: str
-    file: str
-    cells: list[str]
-    text: str
 
 
 def _default(field: Field[Any]) -> Any:
@@ -108,7 +54,7 @@ def _form(name: str, shape: type, **more: Any) -> type[BaseModel]:
     """The model of a request for a dataclass of operations."""
     hints = get_type_hints(shape)
     known: dict[str, Any] = {each.name: (_typed(hints[each.name]), _default(each)) for each in fields(shape)}
-    form: type[BaseModel] = create_model(name, __base__=_Strict, __doc__=shape.__doc__, **more, **known)
+    form: type[BaseModel] = create_model(name, __base__=BodyModel, __doc__=shape.__doc__, **more, **known)
     return form
 
 

@@ -7,17 +7,25 @@ import asyncio
 from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict
 
+from arboleda.client.answers.trees import Drawn, Nodes, TreeCopy, TreeFile
 from arboleda.web.access.auth import DRAW, require
 from arboleda.web.languages import FIRST, spoken, texts
 from arboleda.web.plant_api import PlantApi
-from arboleda.web.schema.bodies import Sentence
+from arboleda.web.schema.bodies import RequestModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
-from arboleda.web.schema.queries import WRONG, Answers, described, described_body, query_of, read_body
+from arboleda.web.schema.queries import (
+    WRONG,
+    Answers,
+    answering,
+    described,
+    described_body,
+    query_of,
+    read_body,
+)
 from arboleda_make.editing import desk
 
-from .tree_answers import CopyForm, Drawn, EditForm, Nodes, TreeCopy, TreeFile, TreeForm, operation_of
+from .tree_answers import CopyForm, EditForm, TreeForm, operation_of
 
 REFUSED: Answers = {
     403: {"model": Sentence, "description": "The role is not enough."},
@@ -25,10 +33,8 @@ REFUSED: Answers = {
 }
 
 
-class PaletteFilter(BaseModel):
+class PaletteFilter(RequestModel):
     """Cell for which a tree is drawn, and the language of what its nodes are about."""
-
-    model_config = ConfigDict(extra="forbid")
 
     cell: str
     language: str = FIRST
@@ -39,19 +45,19 @@ def routes(side: PlantApi) -> APIRouter:
     api = APIRouter(prefix="/api/trees")
     turn = asyncio.Lock()
 
-    @api.get("", response_model=list[TreeFile])
+    @api.get("", **answering(list[TreeFile]))
     async def trees() -> JSONResponse:
         """The files of trees that are recipes of this plant, as they were read."""
         return PlainJson(desk.tree_files(side.model))
 
-    @api.get("/palette", response_model=list[Nodes], responses=WRONG, openapi_extra=described(PaletteFilter))
+    @api.get("/palette", **answering(list[Nodes], WRONG, described(PaletteFilter)))
     async def palette(request: Request) -> JSONResponse:
         """All nodes that a tree can have in a cell: of its devices, in Python, and those of Arboleda."""
         wanted = query_of(request, PaletteFilter)
         words = texts(spoken([wanted.language]), "nodes")
         return PlainJson(await run_in_threadpool(desk.palette, side.model, wanted.cell, words))
 
-    @api.post("/check", response_model=Drawn, responses=REFUSED, openapi_extra=described_body(TreeForm))
+    @api.post("/check", **answering(Drawn, REFUSED, described_body(TreeForm)))
     async def check(request: Request) -> JSONResponse:
         """A file as an editor shows it, with what `check` says of each node in a cell."""
         require(request.scope["arboleda.role"], DRAW)
@@ -59,7 +65,7 @@ def routes(side: PlantApi) -> APIRouter:
         async with turn:
             return PlainJson(await run_in_threadpool(desk.drawn, side.model, form.cell, form.text))
 
-    @api.post("/copy", response_model=TreeCopy, responses=REFUSED, openapi_extra=described_body(CopyForm))
+    @api.post("/copy", **answering(TreeCopy, REFUSED, described_body(CopyForm)))
     async def copy(request: Request) -> JSONResponse:
         """A recipe in Python as a tree that does the same; refused where no tree in XML can say it."""
         require(request.scope["arboleda.role"], DRAW)
@@ -68,7 +74,7 @@ def routes(side: PlantApi) -> APIRouter:
             text = await run_in_threadpool(desk.copied, side.model, form.cell, form.recipe, form.name)
             return PlainJson({"text": text})
 
-    @api.post("/edit", response_model=Drawn, responses=REFUSED, openapi_extra=described_body(EditForm))
+    @api.post("/edit", **answering(Drawn, REFUSED, described_body(EditForm)))
     async def edit(request: Request) -> JSONResponse:
         """The same file after an operation, which leaves every other byte of it as it was."""
         require(request.scope["arboleda.role"], DRAW)

@@ -7,26 +7,26 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from starlette.exceptions import HTTPException
 
+from arboleda.client.answers.drafts import AppliedDraft
+from arboleda.client.answers.versions import VersionList
 from arboleda.web.access.auth import require
 from arboleda.web.plant_api import PlantApi
-from arboleda.web.schema.bodies import ResponseModel
+from arboleda.web.schema.bodies import BodyModel
 from arboleda.web.schema.plain_json import PlainJson
-from arboleda.web.schema.queries import described_body, read_body
+from arboleda.web.schema.queries import answering, described_body, read_body
 from arboleda_make.versions.api import VersionsApi
 
-from .draft import REFUSED, SHIPPED, AppliedDraft
+from .draft import REFUSED, SHIPPED
 
 MAY = "putting a version to work"
 Number = Annotated[int, Path(ge=1, le=1_000_000)]
 
 
-class PutRequest(BaseModel):
+class PutRequest(BodyModel):
     """Body: these keys and no others, of exactly these types."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
 
     name: str = Field(
         min_length=1, max_length=60, description="Of who does it, for the journal.", examples=["Ana"]
@@ -39,63 +39,23 @@ class RestartWish(PutRequest):
     wanted: bool = Field(default=True, description="False: the restart is not wanted any more.")
 
 
-class VersionRow(ResponseModel):
-    number: int
-    at: str = Field(description="In UTC, ISO 8601.")
-    by: str
-    note: str
-    changes: list[str]
-    is_at_work: bool
-
-
-class AtWork(ResponseModel):
-    number: int | None = Field(description="Null where no version has what is at work.")
-    at: str
-
-
-class CellVersion(ResponseModel):
-    cell: str
-    version: int | None = Field(description="Which it took while the plant ran; null: as the plant started.")
-    following: int | None = Field(description="Which it takes next, if any.")
-    when: str = Field(description="now, or when which task has ended.")
-
-
-class Restart(ResponseModel):
-    by: str = Field(description="Who wants one once all cells rest; empty: nobody.")
-    can: bool = Field(description="Whether the plant can restart itself here.")
-
-
-class VersionList(ResponseModel):
-    at_work: AtWork
-    versions: list[VersionRow] = Field(description="Oldest first.")
-    cells: list[CellVersion]
-    restart: Restart
-
-
 def routes(side: PlantApi) -> APIRouter:
     """Register the routes."""
     api = APIRouter(prefix="/api/versions")
 
-    @api.get("", response_model=VersionList, responses=REFUSED)
+    @api.get("", **answering(VersionList, REFUSED))
     async def versions() -> JSONResponse:
         """The versions that were put to work, which one is, and what each cell works by."""
         return PlainJson(await run_in_threadpool(_versions(side).listed))
 
-    @api.post(
-        "/{number}/put",
-        response_model=AppliedDraft,
-        responses=REFUSED,
-        openapi_extra=described_body(PutRequest),
-    )
+    @api.post("/{number}/put", **answering(AppliedDraft, REFUSED, described_body(PutRequest)))
     async def put(request: Request, number: Number) -> JSONResponse:
         """Put a version to work, as when going back to it: a cell takes it once its task has ended."""
         require(request.scope["arboleda.role"], MAY)
         desk, body = _versions(side), read_body(await request.body(), PutRequest)
         return PlainJson(await run_in_threadpool(lambda: desk.put(number, body.name)))
 
-    @api.post(
-        "/restart", response_model=VersionList, responses=REFUSED, openapi_extra=described_body(RestartWish)
-    )
+    @api.post("/restart", **answering(VersionList, REFUSED, described_body(RestartWish)))
     async def restart(request: Request) -> JSONResponse:
         """Restart the plant with its files as they are now, once all its cells rest; until then no further
         task begins.

@@ -14,12 +14,12 @@ RUNS = ("try", "prove", "notice", "reach")
 
 
 class MakeApi(Protocol):
-    """All data is plain. What runs does so in processes of its own; a call waits for one that only looks."""
+    """All data is plain, with the keys of types in `arboleda.client.answers`. What runs does so in processes
+    of its own; a call waits for one that only looks."""
 
     @abstractmethod
     def cells(self) -> Row:
-        """`cells`, each with devices, targets and recipes, kinds of `faults`, and the `problems` for which
-        these may be those of before."""
+        """The cells of the draft: DraftCells."""
 
     @abstractmethod
     def palette(self, cell: str, language: str) -> list[Row]:
@@ -47,8 +47,7 @@ class MakeApi(Protocol):
 
     @abstractmethod
     def drivers(self, language: str) -> list[Row]:
-        """The drivers that a device of a declared kind can have: `name`, `about`, a form for each of its
-        `keys`, and `why_not` where it cannot be used here."""
+        """The drivers that a device of a declared kind can have: a DriverRow each."""
 
     @abstractmethod
     def add_device(self, editor: str, device: Mapping[str, Any]) -> Row:
@@ -65,7 +64,7 @@ class MakeApi(Protocol):
 
     @abstractmethod
     def run(self, what: str) -> Row:
-        """State of one of RUNS: `state`, how far it is, the sentence why it failed."""
+        """The state of one of RUNS: RunState."""
 
     @abstractmethod
     def end(self, what: str) -> Row:

@@ -9,20 +9,19 @@ from ..drafts.api import State
 
 
 class VersionsApi(Protocol):
-    """Versions of one plant, as plain data; DraftRefused, and nothing is changed, where it cannot be."""
+    """Versions of one plant, as plain data with the keys of types in `arboleda.client.answers`.
+
+    DraftRefused, and nothing is changed, where it cannot be.
+    """
 
     @abstractmethod
     def listed(self) -> State:
-        """`at_work`, `versions` oldest first, `cells` with what each works by and what it waits for, and
-        `restart`: `by` whom one is wanted ("": by nobody), and whether it `can` be had here.
-        """
+        """The versions, and what each cell works by: VersionList."""
 
     @abstractmethod
     def put(self, number: int, by: str) -> State:
-        """Put a kept version to work, and bring its files back where they are others now: its `version`, the
-        `cells` and when each takes it, and what of it needs a `restart`; or the `problems` for which nothing
-        was changed. It waits for seconds.
-        """
+        """Put a kept version to work, and bring its files back where they are others now: AppliedDraft. It
+        waits for seconds."""
 
     @abstractmethod
     def restart(self, by: str, *, wanted: bool) -> State:

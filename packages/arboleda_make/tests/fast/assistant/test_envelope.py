@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.client.answers import Task
+from arboleda.client.answers.tasks import Task
 from arboleda.client.errors import Conflict
 from arboleda.model.errors import ArboledaError
 from arboleda_make.assistant.envelope import ENTRIES, LONGEST, NOTE, answered, refused

@@ -8,7 +8,7 @@ from xml.etree import ElementTree as Xml
 
 import pytest
 
-from arboleda.client.answers import Robot
+from arboleda.client.answers.plant import Robot
 from arboleda.plant_file import loader
 from arboleda_make.assistant.floor import drawn
 from arboleda_make.assistant.looks import NothingThere

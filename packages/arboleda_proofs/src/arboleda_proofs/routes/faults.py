@@ -8,13 +8,14 @@ from typing import Annotated
 from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from arboleda.client.answers.offers import FaultList, ProvokedFault
 from arboleda.web.access.auth import require
 from arboleda.web.plant_api import PlantApi
-from arboleda.web.schema.bodies import ResponseModel, Sentence
+from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
-from arboleda.web.schema.queries import Answers, described_body, read_body
+from arboleda.web.schema.queries import Answers, answering, described_body, read_body
 from arboleda_proofs.running.faults_api import FaultRefused, FaultsApi
 
 MAY = "provoking a fault"
@@ -27,13 +28,7 @@ REFUSED: Answers = {
 Word = Annotated[str, Field(min_length=1, max_length=64)]
 
 
-class _Request(BaseModel):
-    """Body: these keys and no others, of exactly these types."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
-
-
-class NewFault(_Request):
+class NewFault(BodyModel):
     kind: Word = Field(examples=["cut_link"])
     robot: Word = Field(description="A virtual device.", examples=["ra1"])
     seconds: float | None = Field(
@@ -41,38 +36,18 @@ class NewFault(_Request):
     )
 
 
-class EndOfFaults(_Request):
+class EndOfFaults(BodyModel):
     """Body that names the faults to end: one by its number, all of a device, or all without either."""
 
     robot: str = Field(default="", max_length=64)
     number: int | None = None
 
 
-class FaultKind(ResponseModel):
-    robot: str
-    kind: str
-    about: str
-    lasts: bool = Field(description="False: it is over at once.")
-
-
-class ProvokedFault(ResponseModel):
-    number: int
-    robot: str
-    kind: str
-    about: str
-    left_s: float = Field(description="For how long it goes on; 0.0: it was an instant.")
-
-
-class FaultList(ResponseModel):
-    begun: list[ProvokedFault] = Field(description="Those that go on, the first one first.")
-    offers: list[FaultKind] = Field(description="What can be provoked; empty where no device is virtual.")
-
-
 def routes(side: PlantApi) -> APIRouter:
     """Register the routes."""
     api = APIRouter(prefix="/api/faults")
 
-    @api.get("", response_model=FaultList)
+    @api.get("", **answering(FaultList))
     async def faults() -> JSONResponse:
         """The faults that were provoked at virtual devices and go on, and those that can be."""
         desk = side.ask(FaultsApi)
@@ -82,7 +57,7 @@ def routes(side: PlantApi) -> APIRouter:
             {"begun": [asdict(each) for each in begun], "offers": [asdict(each) for each in offers]}
         )
 
-    @api.post("", response_model=ProvokedFault, responses=REFUSED, openapi_extra=described_body(NewFault))
+    @api.post("", **answering(ProvokedFault, REFUSED, described_body(NewFault)))
     async def provoke(request: Request) -> JSONResponse:
         """Have a fault of the simulator happen to a virtual device; it ends by itself, or by `end`."""
         require(request.scope["arboleda.role"], MAY)
@@ -90,12 +65,7 @@ def routes(side: PlantApi) -> APIRouter:
         begun = await run_in_threadpool(lambda: desk.begin(wanted.kind, wanted.robot, wanted.seconds))
         return PlainJson(asdict(begun))
 
-    @api.post(
-        "/end",
-        response_model=list[ProvokedFault],
-        responses=REFUSED,
-        openapi_extra=described_body(EndOfFaults),
-    )
+    @api.post("/end", **answering(list[ProvokedFault], REFUSED, described_body(EndOfFaults)))
     async def end(request: Request) -> JSONResponse:
         """End faults before their time; the answer has those that went on."""
         require(request.scope["arboleda.role"], MAY)

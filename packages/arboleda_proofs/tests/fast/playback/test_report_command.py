@@ -13,9 +13,11 @@ import pytest
 from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
+from arboleda.client.answers.reports import TaskReport
 from arboleda.model.errors import ConfigError
+from arboleda.web.schema.answers import model_of
 from arboleda_proofs.playback.report import reading
-from arboleda_proofs.routes.reports import DATA, TaskReport
+from arboleda_proofs.routes.reports import DATA
 from arboleda_proofs.simulator.faults import KINDS, Fault
 from arboleda_proofs.simulator.world import World
 from arboleda_proofs.testing import Sim
@@ -119,7 +121,7 @@ def test_a_report_has_its_facts_as_data(tmp_path: Path) -> None:
     content = reported(tmp_path, 5.3, fault("mute", "ra_1", 2.6))
     found = DATA.search(content)
     assert found is not None
-    report = TaskReport.model_validate({**json.loads(found[1])["facts"], "state": "written"})
+    report = model_of(TaskReport).model_validate({**json.loads(found[1])["facts"], "state": "written"})
     assert (report.task, report.cell, report.reason) == ("lot", "sis_a", "link_lost")
     assert report.cause is not None and (report.cause.kind, report.cause.robot) == ("silence", "ra1")
     assert report.cause.key == "cause.silence" and "ra1 said nothing for 2." in report.cause.sentence

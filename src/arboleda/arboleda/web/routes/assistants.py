@@ -2,35 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 from fastapi import APIRouter
 from fastapi.responses import JSONResponse
-from pydantic import Field
 
+from arboleda.client.answers.offers import AssistantLevel
 from arboleda.model.assistants import Assistants
 
 from ..plant_api import PlantApi
-from ..schema.bodies import ResponseModel
 from ..schema.plain_json import PlainJson
-
-
-class AssistantLevel(ResponseModel):
-    """Level of assistants, `assistants` of the plant file."""
-
-    level: Literal["off", "read", "propose", "submit"] = Field(
-        description="off: nothing. read: look, and stop. propose, submit: the same and more."
-    )
-    cells: list[str] = Field(description="Those to which they may give tasks.")
-    at_once: int = Field(description="How many of their tasks may be open.")
-    hours: str | None = Field(description="The hours of the day in which they may; null: at any time.")
+from ..schema.queries import answering
 
 
 def routes(side: PlantApi) -> APIRouter:
     """Register the route."""
     api = APIRouter(prefix="/api")
 
-    @api.get("/assistants", response_model=AssistantLevel)
+    @api.get("/assistants", **answering(AssistantLevel))
     async def assistants() -> JSONResponse:
         """The level of assistants, over `arboleda mcp`, in the plant file, and the limits of their tasks."""
         limits = side.model.assistant_limits

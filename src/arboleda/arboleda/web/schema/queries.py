@@ -11,12 +11,21 @@ from pydantic import BaseModel, ValidationError
 from arboleda.model.errors import PayloadError
 from arboleda.model.outside import quoted
 
+from .answers import model_of
 from .bodies import Sentence
 from .openapi import SHAPES
 
 Query = TypeVar("Query", bound=BaseModel)
 Answers = dict[int | str, dict[str, Any]]
 WRONG: Answers = {422: {"model": Sentence, "description": "The request is wrong."}}
+
+
+def answering(
+    answer: Any, others: Answers | None = None, takes: dict[str, Any] | None = None
+) -> dict[str, Any]:
+    """The description of a route, for its decorator: the type of its answer, its other answers, and the query
+    or body that it takes, as `described` and `described_body` describe them."""
+    return {"response_model": model_of(answer), "responses": others or {}, "openapi_extra": takes}
 
 
 def query_of(request: Request, model: type[Query]) -> Query:

@@ -1,0 +1,96 @@
+"""Reports of tasks that failed, and the evidence in them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated, Any, Literal
+
+
+@dataclass(frozen=True, kw_only=True)
+class Explanation:
+    """Sentence, for a person and as data."""
+
+    sentence: str
+    key: str | None
+    values: dict[str, Any] | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskCause(Explanation):
+    """Cause of a failure, by the record of the plant."""
+
+    kind: Annotated[str, "A word for programs; docs/how-to/failed-at-night.md"] = field(
+        metadata={"examples": ["silence"]}
+    )
+    robot: str | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskTrouble:
+    """Trouble of a device around the failure."""
+
+    at_s: Annotated[float, "Since the failure, as all times here."]
+    robot: str
+    kind: Annotated[str, "silence, boot, alarm or bridge."]
+    seconds: Annotated[float | None, "Null: to the end."]
+    cut: Annotated[bool, "Its connection broke."]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LastCommand:
+    """Last command of the robot whose failure it was."""
+
+    at_s: float
+    robot: str
+    id: str
+    accepted_after_s: Annotated[float | None, "Null: it never said so."]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Absence:
+    """Time in which the plant itself did nothing."""
+
+    at_s: float
+    seconds: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class OperatorAct:
+    """Act of an operator, in words."""
+
+    at_s: float
+    words: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForeignCommand:
+    """Command of somebody else to a robot."""
+
+    at_s: float
+    robot: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskEvidence:
+    """Facts from which the cause follows."""
+
+    troubles: list[TaskTrouble]
+    last_command: LastCommand | None
+    absences: list[Absence]
+    acts: list[OperatorAct]
+    foreign: list[ForeignCommand]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskReport:
+    """Report of a task that failed; while it is `waiting`, it has nothing but its task."""
+
+    task: str
+    state: Literal["waiting", "written"]
+    text: str = ""
+    cell: str = ""
+    ended_s: Annotated[float | None, "Unix time, in seconds."] = None
+    reason: str | None = None
+    failure: Annotated[Explanation | None, "As the plant said it then."] = None
+    cause: TaskCause | None = None
+    evidence: TaskEvidence | None = None
