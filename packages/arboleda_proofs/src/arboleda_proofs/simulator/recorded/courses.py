@@ -153,10 +153,11 @@ class TaskInProgress:
 class Courses:
     """Tasks at work in each cell; `ended` are those that ended in this pass, by id."""
 
-    def __init__(self) -> None:
+    def __init__(self, plant: Plant) -> None:
         self.ended: dict[str, TaskInProgress] = {}
         self._at_work: dict[str, TaskInProgress] = {}
-        self._began_before: frozenset[str] = frozenset()
+        self.begin(run.task.id for run in plant.cells.values() if run.task is not None)
+        self.look(plant)
 
     @property
     def at_work(self) -> Mapping[str, TaskInProgress]:
