@@ -97,7 +97,7 @@ campaign: install  ## simulate 1000 seeds with every kind of fault; SEEDS=... CY
 	$(BIN)/python tools/campaign campaign.json $(SEEDS)
 
 drawn-campaign: install  ## simulate 500 plants that are drawn from seeds, with every kind of fault; DRAWN_SEEDS=... for others
-	$(SIMULATE) --drawn-plants --seeds $(DRAWN_SEEDS) --cycles $(DRAWN_CYCLES) --json drawn.json
+	tools/drawn-plants $(if $(JOBS),--jobs $(JOBS)) --seeds $(DRAWN_SEEDS) --cycles $(DRAWN_CYCLES) --json drawn.json
 	$(BIN)/python tools/campaign drawn.json $(DRAWN_SEEDS)
 
 devices-campaign: install  ## simulate the examples of cells of devices with every kind of fault; DEVICE_SEEDS=... for more seeds
@@ -122,7 +122,7 @@ hosts: install  ## a plant on hosts of its own (network namespaces; root): 1000 
 
 mutants:  ## plant 400 small bugs in core and wire, see which of them tests and simulator find; hours
 	@scripts/install test
-	PYTHONPATH=tools:tools/mutation $(BIN)/python -m arboleda_mutation $(MUTANTS)
+	PYTHONPATH=tools:tools/mutation:tools/drawn $(BIN)/python -m arboleda_mutation $(MUTANTS)
 
 exercises:  ## judge every right and wrong work of the exercises; minutes
 	@scripts/install test
@@ -169,10 +169,9 @@ lint:  ## check style, format, types and the import rules
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
-	$(BIN)/mypy --config-file tests/mypy.ini
 	$(BIN)/mypy --explicit-package-bases firmware/test/*.py
 	$(BIN)/mypy --scripts-are-modules $$(grep -lE '^#!.*python' scripts/* tools/* 2>/dev/null) scripts/*.py tools/*.py
-	@PYTHONPATH=src/arboleda_bringup $(BIN)/lint-imports # pip does not install that one
+	@PYTHONPATH=src/arboleda_bringup:tools:tools/drawn $(BIN)/lint-imports # pip does not install these
 
 diagrams:  ## write docs/reference/states.md anew from the state tables of the core
 	@scripts/install

@@ -55,7 +55,8 @@ def test_a_broken_seed_and_missing_seeds_are_named(campaign: Any) -> None:
 
 
 def test_of_drawn_plants_less_is_needed(campaign: Any) -> None:
-    drawn = {**summary(loss=99), "drawn_plants": True}
+    drawn = summary(loss=99)
+    drawn["seeds"][0]["plant_file"] = {}
     assert campaign.shortcomings(drawn) == []
     drawn["seeds"] = drawn["seeds"][:499]
     assert campaign.shortcomings(drawn) == ["499 seeds, 500 are needed"]

@@ -23,7 +23,8 @@ def reached_for(module: str) -> set[str]:
     assert all(folder.is_dir() for folder in OUTSIDE)
     paths = [path for folder in OUTSIDE for path in folder.rglob("*.py")]
     outside = [path for path in paths if not {HOUSE / each for each in ENGINE} & {*path.parents}]
-    nodes = [node for path in outside for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
+    texts = [text for path in outside if module in (text := path.read_text(encoding="utf-8"))]
+    nodes = [node for text in texts for node in ast.walk(ast.parse(text))]
     imports = [node for node in nodes if isinstance(node, ast.ImportFrom) and node.module == module]
     return {alias.name for each in imports for alias in each.names}
 

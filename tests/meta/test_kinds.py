@@ -49,14 +49,9 @@ NAMED_AS_ROLES = {
     "dashboard/twin/twin.py",
     "simulator/invariants/rows.py",  # what only storage knows
     "simulator/invariants/screens.py",
-    "simulator/plants/cells.py",  # plant files of cells of storage
-    "simulator/plants/draw.py",
-    "simulator/plants/reductions.py",
-    "simulator/plants/timing.py",
 }
 """Where the two robots of a cell of storage are called by their roles, or the model of one by its name."""
 REGISTRY = "plant_file/registry.py"  # where kinds that come with it get their names
-DRAWN = "simulator/plants/devices/"  # plant files, which name the kinds of their devices
 FACT = "effector"  # also what an arm says of itself
 KINDS = COME_WITH_IT.keys() - {FACT}
 
@@ -137,11 +132,7 @@ def _names_of_kinds(package: str) -> dict[str, set[str]]:
         for name, path in _files(package)
         if (code := path.read_text()) and any(name in code for name in KINDS)
     }
-    return {
-        file: found
-        for file, found in names.items()
-        if found and file != REGISTRY and not file.startswith(DRAWN)
-    }
+    return {file: found for file, found in names.items() if found and file != REGISTRY}
 
 
 @pytest.mark.sampled(4)

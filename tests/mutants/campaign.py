@@ -11,9 +11,9 @@ import pytest
 from arboleda.dispatch import ledger
 from arboleda.model import cell_states
 from arboleda_proofs.simulator.climate import Climate
-from arboleda_proofs.simulator.probes import Probes, Rows
 from arboleda_proofs.simulator.run import Simulation
 
+from ..probes import Probes, Rows
 from .search import plants
 
 HOLDS = ("operator_hold", "operator_resume")

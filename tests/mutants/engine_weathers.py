@@ -15,10 +15,10 @@ from importlib.resources import as_file, files
 from pathlib import Path
 
 from arboleda.plant_file import loader
-from arboleda_proofs.campaigns import random_plants
+from arboleda_drawn.devices import Form
+from arboleda_drawn.plants import of_storage
 from arboleda_proofs.campaigns.plants import Plant
 from arboleda_proofs.campaigns.setting import Setting
-from arboleda_proofs.simulator.plants.devices import Form
 
 from .themes import plants_of
 
@@ -69,7 +69,7 @@ def _example(name: str) -> Plant:
 
 @cache
 def _packaged(name: str) -> Plant:
-    with as_file(files("arboleda").joinpath("plants", f"{name}.yaml")) as path:
+    with as_file(files("arboleda").joinpath(f"plants/{name}.yaml")) as path:
         return Plant(declared=loader.load(path) if name == "shared" else loader.load())
 
 
@@ -82,7 +82,7 @@ def packaged(name: str) -> Callable[[], Plant]:
 
 
 DEVICES, TREES = (Drawn(of=plants_of(form)) for form in (Form.PYTHON, Form.XML))
-STORAGE = Drawn(of=random_plants.of_storage)
+STORAGE = Drawn(of=of_storage)
 CELLS = Turns(load=tuple(map(example, ("own_tree", "machine_tending", "lab_bench"))))
 PACKAGED = Turns(load=(packaged("shared"), packaged("plant")))
 WEATHERS = (

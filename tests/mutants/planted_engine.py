@@ -1,8 +1,8 @@
 """Looks for the bugs of the engine: the simulator alone first, then, for what it leaves, the nearest tests.
 
-`PYTHONPATH=tools/mutation python -m tests.mutants.planted_engine`, in the project's folder, says of each bug
-who finds it. Verdicts are kept; after Ctrl-C the same command goes on. No file is changed: a bug is planted
-as its module is imported, in a process of its own.
+`PYTHONPATH=tools/mutation:tools/drawn python -m tests.mutants.planted_engine`, in the project's folder, says
+of each bug who finds it. Verdicts are kept; after Ctrl-C the same command goes on. No file is changed: a bug
+is planted as its module is imported, in a process of its own.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ _whole: dict[tuple[object, ...], str | None] = {}  # many mutants are found in t
 @cache
 def plants() -> tuple[PlantModel, PlantModel]:
     """Those of even and of odd seeds, as `arboleda simulate` takes them."""
-    with as_file(files("arboleda").joinpath("plants", "shared.yaml")) as shared:
+    with as_file(files("arboleda").joinpath("plants/shared.yaml")) as shared:
         return loader.load(shared), loader.load()
 
 

@@ -12,7 +12,7 @@ from arboleda.kinds.declared import FactType
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Limits
 from arboleda.recipes.decorators import Again, Times
-from arboleda_proofs.campaigns.random_plants import loaded
+from arboleda_drawn.plants import loaded
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.invariants import Invariant
 from arboleda_proofs.simulator.judged import INVARIANTS

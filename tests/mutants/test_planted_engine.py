@@ -25,7 +25,7 @@ def test_bugs_of_the_engine_are_found(tmp_path: Path) -> None:
 def _counts(state: Path, options: tuple[str, ...]) -> tuple[int, int]:
     """From the last row of the table: how many there are, and how many the simulator found."""
     command = (sys.executable, "-m", "tests.mutants.planted_engine", "--state", str(state), *options)
-    environment = {"PYTHONPATH": "tools:tools/mutation", "PATH": "/usr/bin:/bin"}
+    environment = {"PYTHONPATH": "tools:tools/mutation:tools/drawn", "PATH": "/usr/bin:/bin"}
     said = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
     assert said.returncode in (0, 1), said.stderr
     last = said.stdout.splitlines()[-1].split()

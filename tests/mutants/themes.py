@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import count
 
-from arboleda_proofs.campaigns import random_plants
+from arboleda_drawn import devices
+from arboleda_drawn.devices import DrawnDevices, Form
+from arboleda_drawn.devices.layout import Section
+from arboleda_drawn.devices.steps import Recover, Repeat, walk
+from arboleda_drawn.plants import of_devices
 from arboleda_proofs.campaigns.plants import Plant
-from arboleda_proofs.simulator.plants import devices
-from arboleda_proofs.simulator.plants.devices import DrawnDevices, Form
-from arboleda_proofs.simulator.plants.devices.layout import Section
-from arboleda_proofs.simulator.plants.devices.steps import Recover, Repeat, walk
 
 MANY_SEEDS = 10_000  # between a plant that does not fit and the next that is drawn instead
 Theme = Callable[[DrawnDevices], bool]
@@ -101,6 +101,6 @@ def plants_of(form: Form) -> Callable[[int], Plant]:
 
         seeds = (seed + MANY_SEEDS * number for number in count())
         fitting = (each for each in seeds if fits(devices.draw(each)))
-        return next(plant for plant in map(random_plants.of_devices, fitting) if fits(plant.drawn))
+        return next(plant for plant in map(of_devices, fitting) if fits(plant.drawn))
 
     return of

@@ -9,10 +9,7 @@ import sys
 
 def test_a_seed_draws_the_same_in_every_process() -> None:
     """Python orders sets of words otherwise in each process, unless PYTHONHASHSEED says how."""
-    code = (
-        "from arboleda_proofs.simulator.plants import devices\n"
-        "for seed in range(60): print(devices.draw(seed))"
-    )
+    code = "from arboleda_drawn import devices\nfor seed in range(60): print(devices.draw(seed))"
     once, again = (
         subprocess.run(
             [sys.executable, "-c", code],

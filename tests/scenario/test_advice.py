@@ -17,8 +17,8 @@ from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
 from arboleda_proofs.simulator.world import BRIDGE
 from arboleda_proofs.testing import Rig, Witness, faults, shipped, slowed
-from arboleda_proofs.testing.following import advised, follow, works
 
+from ..following import advised, follow, works
 from ..lengths import sample
 
 Stage = Callable[..., tuple[Rig, Witness]]

@@ -10,7 +10,8 @@ import pytest
 from arboleda.model.messages import Verb
 from arboleda.plant_file.loader import load
 from arboleda_proofs.testing import Rig
-from arboleda_proofs.testing.following import advised, follow, works
+
+from ..following import advised, follow, works
 
 LEFT = "left: {kind: arm, model: scara, %s}"
 RIGHT = "right: {kind: arm, model: scara, base: {origin_m: [0.6, 0]}, %s}"

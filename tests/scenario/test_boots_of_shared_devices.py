@@ -5,7 +5,7 @@ from __future__ import annotations
 import yaml
 
 from arboleda.model.messages import TaskState, Verb
-from arboleda_proofs.campaigns.random_plants import loaded
+from arboleda_drawn.plants import loaded
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 from arboleda_proofs.simulator.world import PLANT
 

@@ -6,7 +6,7 @@ import pytest
 import yaml
 
 from arboleda.core.choosing import PastTimes
-from arboleda_proofs.campaigns.random_plants import loaded
+from arboleda_drawn.plants import loaded
 from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
 
 FILE = """

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import pytest
 import yaml
 
-from arboleda_proofs.campaigns.random_plants import loaded
+from arboleda_drawn.plants import loaded
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.run import Simulation
 from arboleda_proofs.simulator.shrink import explicit

@@ -9,12 +9,12 @@ import pytest
 from arboleda.model.messages import Reason, TaskChanged, TaskState
 from arboleda.model.plant_model import Evidence
 from arboleda_proofs.simulator.faults import Fault
-from arboleda_proofs.simulator.probes import Probes
 from arboleda_proofs.simulator.run import Simulation
 from arboleda_proofs.simulator.shrink import explicit
 from arboleda_proofs.testing import Rig, shipped
 
 from ..lengths import sample
+from ..probes import Probes
 
 LEVELS = pytest.mark.parametrize("evidence", list(Evidence))
 

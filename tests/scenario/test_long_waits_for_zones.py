@@ -6,7 +6,7 @@ import pytest
 import yaml
 
 from arboleda.model.messages import TaskState
-from arboleda_proofs.campaigns.random_plants import loaded
+from arboleda_drawn.plants import loaded
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 
 FILE = """

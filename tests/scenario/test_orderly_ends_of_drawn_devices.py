@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from arboleda.model.messages import Shutdown
-from arboleda_proofs.campaigns.random_plants import of_devices
+from arboleda_drawn.plants import of_devices
 from arboleda_proofs.simulator.run import Simulation
 from arboleda_proofs.simulator.world import World
 

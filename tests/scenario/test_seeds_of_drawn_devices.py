@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from arboleda_proofs.campaigns.random_plants import RandomPlants
+from arboleda_drawn.plants import DrawnPlants
 from arboleda_proofs.campaigns.setting import Setting
 
 from ..lengths import sample
@@ -39,6 +39,6 @@ ONCE_WRONG: list[tuple[str, int, dict[str, Any]]] = [
     ("seed", "given"), [pytest.param(s, g, id=why) for why, s, g in sample(ONCE_WRONG, 2)]
 )
 def test_every_invariant_holds(seed: int, given: dict[str, Any]) -> None:
-    result = Setting(plants=RandomPlants(), cycles=CYCLES, **given).run(seed)
+    result = Setting(plants=DrawnPlants(), cycles=CYCLES, **given).run(seed)
     assert result.broken is None, str(result.broken)
     assert result.outcomes.get("done", 0) > 0

@@ -10,6 +10,7 @@ import pytest
 from arboleda.core.plant import Plant
 from arboleda.views import view
 from arboleda.views.resting_cells import RestingCells
+from arboleda_drawn.plants import DrawnPlants
 from arboleda_proofs.campaigns.request import Request
 from arboleda_proofs.simulator.run import Simulation
 from arboleda_proofs.simulator.world import World
@@ -44,7 +45,7 @@ class Onlooker:
 @pytest.mark.long
 @pytest.mark.parametrize(("seed", "drawn"), SEEDS)
 def test_after_every_step_what_is_remembered_is_as_if_made_anew(seed: int, drawn: bool) -> None:
-    setting = Request(cycles=CYCLES, drawn_plants=drawn).setting
+    setting = Request(cycles=CYCLES, source=DrawnPlants() if drawn else None).setting
     simulation = Simulation(setting.plant(seed), seed, setting.climate(seed).faults, invariants=())
     onlooker = Onlooker(simulation.world)
     assert simulation.run(cycles=CYCLES).broken is None

@@ -18,8 +18,8 @@ from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.views.zone_rows import zone_rows
 from arboleda_proofs.testing import Rig, Witness, faults, slowed
-from arboleda_proofs.testing.following import advised, follow, works
 
+from ..following import advised, follow, works
 from ..lengths import sample
 from .restarts import crash_without_trail
 
@@ -46,7 +46,7 @@ def zoned(tmp_path: Path) -> Plants:
     """The shipped plant with three zones that its three arms share, its arms so many times slower."""
 
     def make(evidence: Evidence, slower: float = 2.0) -> PlantModel:
-        text = files("arboleda").joinpath("plants", "plant.yaml").read_text()
+        text = files("arboleda").joinpath("plants/plant.yaml").read_text()
         text = text.replace("evidence: ids", f"evidence: {evidence.value}")
         text = text.replace("    home: {", f"    zone_wait_s: {WAIT_S}\n    home: {{")
         path = tmp_path / "plant.yaml"

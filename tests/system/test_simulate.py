@@ -24,6 +24,7 @@ from .conftest import paths
 
 pytestmark = pytest.mark.system
 
+ROOT = Path(__file__).parents[2]
 SUPPORTED = ("3.10", "3.11", "3.12")
 PURE = ("py_trees", "pydot", "pyparsing")  # all that a simulation imports besides Arboleda, and no binary
 SEEDS = (1, 2)
@@ -96,8 +97,8 @@ def test_hash_seeds_clocks_and_interpreters_make_no_difference(setting: Path, tm
         spec = find_spec(name)
         assert spec is not None and spec.submodule_search_locations
         (tmp_path / name).symlink_to(spec.submodule_search_locations[0])
-    sources = Path(__file__).parents[2] / "src/arboleda"
-    pure = {"PYTHONPATH": os.pathsep.join(map(str, (sources, tmp_path)))}
+    sources = [ROOT / "src/arboleda", ROOT / "packages/arboleda_proofs/src"]
+    pure = {"PYTHONPATH": os.pathsep.join(map(str, (*sources, tmp_path)))}
     pythons = (sys.executable, *others())
     said = {python: digests(setting, python, **pure) for python in pythons}
     assert said == dict.fromkeys(pythons, first)

@@ -15,9 +15,9 @@ from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.plant_file.loader import load
+from arboleda_drawn.forms import differences_of
 from arboleda_make.editing import desk
 from arboleda_make.editing.errors import EditError
-from arboleda_proofs.campaigns.forms import differences_of
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 COPIED = {

@@ -10,7 +10,7 @@ from typer.testing import CliRunner, Result
 
 from arboleda.bt_xml import checking, leaves, reading
 from arboleda.bt_xml.findings import Findings
-from arboleda.bt_xml.nodes import Category, PortDirection
+from arboleda.bt_xml.nodes import Category, Kind, PortDirection
 from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
@@ -21,7 +21,7 @@ PLANT = Path(__file__).parents[3] / "examples/machine_tending/plant.yaml"
 
 
 @pytest.fixture(scope="module")
-def kinds() -> dict[str, leaves.Kind]:
+def kinds() -> dict[str, Kind]:
     return leaves.of_cells(loader.load(PLANT).cells)
 
 
@@ -29,24 +29,24 @@ def run(*words: object) -> Result:
     return CliRunner().invoke(cli, [str(word) for word in words])
 
 
-def found(body: str, kinds: dict[str, leaves.Kind]) -> Findings:
+def found(body: str, kinds: dict[str, Kind]) -> Findings:
     findings = Findings()
     forest = reading.read("t.xml", tree(body).encode(), findings)
     checking.check(forest, findings, kinds)
     return findings
 
 
-def mistakes(body: str, kinds: dict[str, leaves.Kind]) -> tuple[str, ...]:
+def mistakes(body: str, kinds: dict[str, Kind]) -> tuple[str, ...]:
     return found(body, kinds).mistakes
 
 
 @pytest.mark.parametrize("node", ["says", "tells", 'becomes at_most_s="2"'])
-def test_a_node_about_no_fact_is_a_warning(kinds: dict[str, leaves.Kind], node: str) -> None:
+def test_a_node_about_no_fact_is_a_warning(kinds: dict[str, Kind], node: str) -> None:
     (warning,) = found(f"<mill_{node}/>", kinds).warnings
     assert "is about no fact; give it some of door, clamped" in warning
 
 
-def test_verbs_questions_facts_and_targets_are_nodes_with_typed_ports(kinds: dict[str, leaves.Kind]) -> None:
+def test_verbs_questions_facts_and_targets_are_nodes_with_typed_ports(kinds: dict[str, Kind]) -> None:
     program = (kinds["mill_run"].ports or {})["program"]
     assert (program.type, program.words, program.is_needed) == ("int", ("1001", "1002"), True)
     assert (kinds["camera_look"].ports or {})["answer"].way is PortDirection.OUT
@@ -68,7 +68,7 @@ def test_verbs_questions_facts_and_targets_are_nodes_with_typed_ports(kinds: dic
         '<operator_ask question="Full again?" answers="yes;no" answer="{said}"/>',
     ],
 )
-def test_what_the_plant_has_is_taken(body: str, kinds: dict[str, leaves.Kind]) -> None:
+def test_what_the_plant_has_is_taken(body: str, kinds: dict[str, Kind]) -> None:
     assert mistakes(body, kinds) == ()
 
 
@@ -89,12 +89,12 @@ def test_what_the_plant_has_is_taken(body: str, kinds: dict[str, leaves.Kind]) -
         ),
     ],
 )
-def test_what_it_has_not_is_told(body: str, words: str, kinds: dict[str, leaves.Kind]) -> None:
+def test_what_it_has_not_is_told(body: str, words: str, kinds: dict[str, Kind]) -> None:
     (found,) = mistakes(body, kinds)
     assert words in found
 
 
-def test_the_palette_is_read_again_as_it_was(kinds: dict[str, leaves.Kind]) -> None:
+def test_the_palette_is_read_again_as_it_was(kinds: dict[str, Kind]) -> None:
     printed = run("nodes", "--plant", PLANT, "--xml").stdout
     forest, findings, _ = looked_at(printed)
     assert findings.mistakes == () and set(forest.models) == set(kinds)

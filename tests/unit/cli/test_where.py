@@ -22,7 +22,7 @@ from arboleda.runtime.state import StateDir, default_state, running_plants
 from arboleda_proofs.campaigns.request import Request
 
 Typed = Callable[..., tuple[int, str, str]]
-SHIPPED = files("arboleda").joinpath("plants", "plant.yaml")
+SHIPPED = files("arboleda").joinpath("plants/plant.yaml")
 
 
 @pytest.fixture

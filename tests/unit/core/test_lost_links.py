@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from tests.following import follow
+
 from arboleda.dispatch.belief import Belief
 from arboleda.model.messages import MotionState, Reason, Report, TaskState
 from arboleda.model.sentence import OWN
 from arboleda.recipes import recipe
-from arboleda_proofs.testing.following import follow
 
 from ..kinds.lab import Bench, model
 from ..kinds.station import plant

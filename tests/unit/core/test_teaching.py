@@ -252,7 +252,7 @@ def test_limits_are_told_before_anything_moves(rig: Rig, teacher: Teacher) -> No
 @pytest.fixture
 def zoned(tmp_path: Path) -> Rig:
     """The shipped plant whose first two arms share a zone."""
-    text = files("arboleda").joinpath("plants", "plant.yaml").read_text()
+    text = files("arboleda").joinpath("plants/plant.yaml").read_text()
     path = tmp_path / "plant.yaml"
     path.write_text(text + "\nzones:\n  centre:\n    poses: [sis_a pickup, sis_b pickup]\n")
     rig = Rig(load(path))

@@ -22,7 +22,7 @@ GRID = re.compile(r"(grid: \{origin_m: \[.*?\]).*\}")
 
 @pytest.fixture(scope="session")
 def narrowed(tmp_path_factory: pytest.TempPathFactory) -> PlantModel:
-    text = files("arboleda").joinpath("plants", "plant.yaml").read_text(encoding="utf-8")
+    text = files("arboleda").joinpath("plants/plant.yaml").read_text(encoding="utf-8")
     for old, new in CHANGES.items():
         assert old in text
         text = text.replace(old, new)

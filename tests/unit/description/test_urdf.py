@@ -26,7 +26,7 @@ JOINTS = {
 
 
 def numbers(model: str) -> dict[str, Any]:
-    text = files("arboleda_description").joinpath("robots", f"{model}.yaml").read_text(encoding="utf-8")
+    text = files("arboleda_description").joinpath(f"robots/{model}.yaml").read_text(encoding="utf-8")
     return yaml.safe_load(text)
 
 

@@ -12,6 +12,7 @@ from itertools import combinations, groupby
 from pathlib import Path
 
 import pytest
+from tests.following import follow, works
 from tests.lengths import length, sample
 from typer.testing import CliRunner
 
@@ -34,7 +35,6 @@ from arboleda.plant_file.urdf import robot_urdf
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import OrderGoal
-from arboleda_proofs.testing.following import follow, works
 
 from .lab import Bench
 

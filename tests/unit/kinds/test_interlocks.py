@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from tests.following import advised, follow
+
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
 from arboleda.model.commands import FRESH_S, OnStop
 from arboleda.model.messages import Fact, MotionState, Reason, Verb
@@ -12,7 +14,6 @@ from arboleda.model.plant_model import Cell, Interlock, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.wire.transport import Publication
-from arboleda_proofs.testing.following import advised, follow
 
 from .lab import Bench
 from .tending import IDS, LAMP, plant

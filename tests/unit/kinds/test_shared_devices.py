@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
+from tests.following import advised, follow, works
 
 from arboleda.core.plant import Plant
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
@@ -19,7 +20,6 @@ from arboleda.recipes import Choice, Kit, parallel, recipe, work
 from arboleda.recipes.errors import RecipeError
 from arboleda.trees.hand_over import HandOver
 from arboleda.trees.tree_run import step_of
-from arboleda_proofs.testing.following import advised, follow, works
 
 from .lab import Bench
 from .tending import IDS, LAMP

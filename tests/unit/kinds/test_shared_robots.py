@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from tests.following import advised, follow
 
 from arboleda.core.plant import Plant
 from arboleda.kinds.declared import Device
@@ -15,7 +16,6 @@ from arboleda.model.recipe import Recipe
 from arboleda.model.whole_cells import whole_cell
 from arboleda.recipes import Kit, recipe, work
 from arboleda.views import view
-from arboleda_proofs.testing.following import advised, follow
 
 from .lab import Bench
 from .tending import FEED, GRIPPER, HOME, IDS, LAMP, VISE, arm

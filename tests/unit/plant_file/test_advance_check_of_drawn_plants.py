@@ -8,9 +8,9 @@ import pytest
 from tests.lengths import sample
 
 from arboleda.plant_file import advance_check
-from arboleda_proofs.campaigns.random_plants import loaded
-from arboleda_proofs.simulator.plants import devices
-from arboleda_proofs.simulator.plants.devices import DrawnDevices, Form, can_be_xml
+from arboleda_drawn import devices
+from arboleda_drawn.devices import DrawnDevices, Form, can_be_xml
+from arboleda_drawn.plants import loaded
 
 REFUSED = (24, 41, 56)  # plants that `arboleda check` refuses, as the simulator passes over them
 XML = (1, 4, 11, 15, 23, 26, 27, 28, 29, 30, 34, 35, 37, 41, 43, 44, 47, 50)  # can be trees

@@ -9,6 +9,7 @@ import pytest
 
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader, shapes
+from arboleda.plant_file.robot_models import Shape
 
 PAGE = (Path(__file__).parents[3] / "docs" / "how-to" / "plant-file.md").read_text("utf-8")
 EXAMPLE = PAGE.split("```yaml\n")[1].split("```")[0]
@@ -17,7 +18,7 @@ SHAPES = [each for name, each in vars(shapes).items() if name.endswith("Shape") 
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.__name__)
-def test_every_key_is_on_the_page(shape: type[shapes.Shape]) -> None:
+def test_every_key_is_on_the_page(shape: type[Shape]) -> None:
     keys = [field.alias or name for name, field in shape.model_fields.items()]
     assert [key for key in keys if not re.search(rf"\b{key}\b", PAGE)] == []
 
@@ -28,7 +29,7 @@ def test_every_default_of_a_time_is_on_the_page() -> None:
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.__name__)
-def test_every_number_that_is_a_default_is_in_the_table_of_its_key(shape: type[shapes.Shape]) -> None:
+def test_every_number_that_is_a_default_is_in_the_table_of_its_key(shape: type[Shape]) -> None:
     for name, field in shape.model_fields.items():
         told = _defaults().get(field.alias or name)
         if told and type(field.default) in (int, float) and field.default != 0:  # some keys are told in prose

@@ -44,7 +44,7 @@ VALUES = st.sampled_from(
 
 @cache
 def shipped() -> str:
-    return files("arboleda").joinpath("plants", "plant.yaml").read_text("utf-8")
+    return files("arboleda").joinpath("plants/plant.yaml").read_text("utf-8")
 
 
 @cache

@@ -29,9 +29,7 @@ def numbers(value: object, key: str) -> set[str]:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_each_number_has_a_source_and_each_source_a_number(name: str) -> None:
-    robot = yaml.safe_load(
-        files("arboleda_description").joinpath("robots", f"{name}.yaml").read_text("utf-8")
-    )
+    robot = yaml.safe_load(files("arboleda_description").joinpath(f"robots/{name}.yaml").read_text("utf-8"))
     assert robot["model"] == name
     assert numbers(robot, "") == set(robot["sources"])
 
@@ -63,7 +61,7 @@ def test_the_mobile_robot_drives_one_edge_a_second() -> None:
 
 
 def test_the_cr10a_keeps_the_origins_and_masses_of_its_maker() -> None:
-    document = Document("cr10a", files("arboleda_description").joinpath("robots", "cr10a.yaml").read_bytes())
+    document = Document("cr10a", files("arboleda_description").joinpath("robots/cr10a.yaml").read_bytes())
     assert document.value(("link_masses_kg",)) == [1.8265, 4.1649, 11.314, 4.8919, 1.1688, 1.223, 0.2054]
     right = math.pi / 2
     expected = [

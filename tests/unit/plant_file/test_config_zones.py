@@ -13,7 +13,7 @@ from arboleda.plant_file import loader
 from arboleda_proofs.testing.storage_layout import StorageLayout
 
 DOCS = Path(__file__).parents[3] / "docs" / "how-to" / "plant-file.md"
-PLANT = files("arboleda").joinpath("plants", "plant.yaml").read_text("utf-8")
+PLANT = files("arboleda").joinpath("plants/plant.yaml").read_text("utf-8")
 ZONES = """\
 zones:
   centre:

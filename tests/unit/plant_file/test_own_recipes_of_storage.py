@@ -8,6 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
+from tests.following import follow
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskState, Verb
@@ -19,7 +20,6 @@ from arboleda.views import forms
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.run import Simulation
 from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.following import follow
 from arboleda_proofs.testing.rig import Rig
 
 RECIPES = """
@@ -63,7 +63,7 @@ ENDED = (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED)
 def read(recipes: str, plant: str = "plant.yaml") -> PlantModel:
     """A packaged plant that uses these recipes."""
     with TemporaryDirectory() as made:
-        text = files("arboleda").joinpath("plants", plant).read_text("utf-8")
+        text = files("arboleda").joinpath(f"plants/{plant}").read_text("utf-8")
         Path(made, "plant.yaml").write_text(text.replace("\nname: ", "\nuses: [own.py]\nname: ", 1), "utf-8")
         Path(made, "own.py").write_text(recipes, "utf-8")
         return loader.load(Path(made, "plant.yaml"))

@@ -22,7 +22,7 @@ from arboleda.store.sqlite import Store
 
 STARTS = ("up", "run")
 ALL = (*STARTS, "tasks", "backup", "restore")
-SHIPPED = files("arboleda").joinpath("plants", "plant.yaml")
+SHIPPED = files("arboleda").joinpath("plants/plant.yaml")
 LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
 
 

@@ -68,8 +68,8 @@ def _runner(root: Path) -> Any:
     from importlib.resources import as_file, files
 
     from arboleda.plant_file import loader
+    from arboleda_drawn.plants import DrawnPlants
     from arboleda_proofs.campaigns.plants import Plant
-    from arboleda_proofs.campaigns.random_plants import RandomPlants
     from arboleda_proofs.campaigns.setting import Setting
     from arboleda_proofs.campaigns.workers import collect_rarely
 
@@ -91,10 +91,10 @@ def _runner(root: Path) -> Any:
     examples = Turns(*(Plant(declared=loader.load(path)) for path in paths))
     settings = (
         setting(packaged, MANY),
-        setting(RandomPlants(), MANY),
+        setting(DrawnPlants(), MANY),
         setting(examples, MANY),
         setting(packaged, CRASHES, any_of=True),
-        setting(RandomPlants(), MANY, any_of=True),
+        setting(DrawnPlants(), MANY, any_of=True),
         setting(examples, CRASHES),
         setting(packaged, MANY, standby=True),
     )

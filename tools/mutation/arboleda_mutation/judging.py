@@ -22,6 +22,7 @@ FOLDERS = {
     TESTS: (str(PACKAGE), str(PROOFS), "wire_vectors"),
     SIMULATOR: (
         "examples",
+        "tools/drawn",
         *(str(PACKAGE / each) for each in (*ENGINE, *SIMULATED)),
         *(str(PROOFS / each) for each in ("simulator", "campaigns")),
     ),

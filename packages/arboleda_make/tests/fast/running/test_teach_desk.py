@@ -29,7 +29,7 @@ from arboleda_proofs.testing import Rig
 
 BEAT_S = 0.05
 EDITOR = {"editor": "ana-12345", "name": "Ana"}
-SHIPPED = files("arboleda").joinpath("plants", "plant.yaml").read_text()
+SHIPPED = files("arboleda").joinpath("plants/plant.yaml").read_text()
 LAB = """# my lab
 name: lab
 uses: [rest.xml]

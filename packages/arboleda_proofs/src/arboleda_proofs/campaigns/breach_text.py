@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 from rich.console import Console
 from rich.text import Text
@@ -12,7 +11,6 @@ from arboleda.model.counting import counted
 from arboleda_proofs.simulator.run import Result
 
 from .plants import Plant, notes
-from .random_plants import as_yaml, keep
 from .setting import rules
 from .words import fault_words
 
@@ -20,15 +18,17 @@ LINES = 40  # of the timeline
 LONG_NUMBER = re.compile(r"-?\d+\.\d{5,}(?:e-?\d+)?")
 
 
-def breach(console: Console, result: Result, plant: str) -> None:
+def breach(console: Console, result: Result, plant: Plant) -> None:
     """Print the broken invariant, its time, its rule and the observation."""
     if result.broken is None:
         return
     name = result.broken.invariant
     _say(
-        console, f"seed {result.seed} breaks {name} after {result.seconds:.3f} s of plant {plant}", "bold red"
+        console,
+        f"seed {result.seed} breaks {name} after {result.seconds:.3f} s of plant {plant.name}",
+        "bold red",
     )
-    _say(console, f"  must hold  {rules().get(name, '')}")
+    _say(console, f"  must hold  {rules(plant).get(name, '')}")
     _say(console, f"  was seen   {result.broken.sentence}")
 
 
@@ -46,25 +46,16 @@ def faults(console: Console, result: Result, injected: int) -> None:
         _say(console, f"{fault.at:10.3f}  {fault_words(fault)}", "yellow")
 
 
-def plant(console: Console, drawn: Plant) -> None:
-    """Print the part of a drawn plant file, which nobody has on disk, that is needed."""
-    if drawn.file is None:
+def plant(console: Console, needed: Plant) -> None:
+    """Print the part of a plant that nobody has on disk that is needed."""
+    if not needed.texts:
         return
-    _say(console, "  plant      as much of its file as is enough:")
-    for line in as_yaml(drawn.file).splitlines():
-        _say(console, f"    {line}", "yellow")
-    for name, text in drawn.beside.items():
-        _say(console, f"  {name}")
+    for number, (name, text) in enumerate(needed.texts.items()):
+        _say(console, f"  {name}" if number else "  plant      as much of its file as is enough:")
         for line in text.splitlines():
             _say(console, f"    {line}", "yellow")
-    for note in notes([drawn]):
+    for note in notes([needed]):
         _say(console, f"  note       {note}")
-
-
-def kept(console: Console, drawn: Plant, folder: Path | None) -> None:
-    """Write a drawn plant into a folder where one is named, and say so."""
-    if folder is not None:
-        _say(console, f"  plant      {keep(drawn, folder)}")
 
 
 def timeline(console: Console, result: Result) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -23,15 +23,14 @@ class FaultsFile:
     """`climate` is what Climate.from_file and script_from take; of a broken seed also which it is, and how
     long it ran.
 
-    `plant_file` is the content of the plant's file, where it was drawn, `plant_files` those beside it;
-    `standby`: it ran on two hosts. `revises`: its files were changed while it ran.
+    `broken` is all that the file says of it. `standby`: it ran on two hosts. `revises`: its files were
+    changed while it ran.
     """
 
     climate: Any
     seed: int | None = None
     plant: str | None = None
-    plant_file: dict[str, Any] | None = None
-    plant_files: dict[str, str] = field(default_factory=dict)
+    broken: Mapping[str, Any] = field(default_factory=dict)
     seconds: float | None = None
     standby: bool = False
     revises: bool = False
@@ -63,8 +62,7 @@ def _broken(path: Path, rows: list[dict[str, Any]], seed: int | None) -> FaultsF
                 climate=climate,
                 seed=row["seed"],
                 plant=row["plant"],
-                plant_file=row["broken"].get("plant_file"),
-                plant_files=row["broken"].get("plant_files", {}),
+                broken=row["broken"],
                 seconds=seconds,
             )
     there = f"; there are {', '.join(str(row['seed']) for row in broken)}" if broken else ""

@@ -1,32 +1,29 @@
-"""Plants that seeds are simulated on; `random_plants.py` has those that seeds draw."""
+"""Plants that seeds are simulated on."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Protocol
 
 from arboleda.model.plant_files import NO_FILES, PlantFiles
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.plant_file.unstated import unknowns
-from arboleda_proofs.simulator.plants.devices import DrawnDevices
+from arboleda_proofs.simulator.findings import Finding
+from arboleda_proofs.simulator.invariants import Invariant
 
 ELSEWHERE = (Link.ROS, Link.NONE, Link.DRIVER)  # robots without a board on MQTT, which get a virtual one
 
 
 @dataclass(frozen=True, kw_only=True)
 class Plant:
-    """One plant: `declared` as its file says it, `file` its content where no file of the user has it.
+    """One plant: `declared` as its file says it, `files` are the ones that it was read from, for its record.
 
-    `beside` are the texts of files beside that by name, `drawn` what both were written from, where that is
-    more than they say. `files` are the ones that it was read from, for its record.
+    A plant that no file of a person has says more of itself: what is empty here.
     """
 
     declared: PlantModel
-    file: dict[str, Any] | None = None
-    beside: Mapping[str, str] = field(default_factory=dict)
-    drawn: DrawnDevices | None = None
     files: PlantFiles = NO_FILES
 
     @property
@@ -35,9 +32,26 @@ class Plant:
 
     @property
     def plain(self) -> dict[str, Any]:
-        """Its content as plain data for `--json`; empty for a file of the user."""
-        beside = {"plant_files": dict(self.beside)} if self.beside else {}
-        return {} if self.file is None else {"plant_file": self.file, **beside}
+        """Its content as plain data for `--json`."""
+        return {}
+
+    @property
+    def texts(self) -> Mapping[str, str]:
+        """Its files by name, for a person to read; the plant file is the first."""
+        return {}
+
+    @property
+    def rules(self) -> tuple[Invariant, ...]:
+        """What must hold in it beside what must hold in every plant."""
+        return ()
+
+    def smaller(self) -> Iterable[Callable[[], Plant]]:
+        """Plants with less in them, to find the least that breaks; ConfigError where there can be none."""
+        return ()
+
+    def intends(self, finding: Finding) -> bool:
+        """True if its recipes have this go wrong on purpose."""
+        return False
 
     @cached_property
     def model(self) -> PlantModel:

@@ -21,22 +21,23 @@ from arboleda_proofs.simulator.levels import LEVELS
 from .defaults import CYCLES, LEVEL, SEED, SEEDS
 from .faults_file import FaultsFile, line_of, read
 from .plants import Plant, PlantRotation, Plants, notes, unjudged
-from .random_plants import RandomPlants, loaded
 from .setting import Setting
 
-OF_DRAWN = "drawn plants: whatever link a robot declares, it is simulated with a virtual board on MQTT"
+COMMAND = ("arboleda", "simulate")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
     """Request: the options; None stands for one that was not given.
 
-    `plant_here` is the plant file of the working directory, for where no plant is named.
+    `plant_here` is the plant file of the working directory, for where no plant is named. `source` has plants
+    in place of those of files; `command` is what a person types before the options.
     """
 
     plant: Path | None = None
     plant_here: Path | None = None
-    drawn_plants: bool = False
+    source: Plants | None = None
+    command: tuple[str, ...] = COMMAND
     seed: int | None = None
     seeds: int | None = None
     cycles: int = CYCLES
@@ -96,13 +97,14 @@ class Request:
 
     @cached_property
     def plants(self) -> Plants:
-        """The plants that the seeds run on; a broken seed of a file runs on the plant that is in there."""
-        if self.faults_file is not None and self.faults_file.plant_file is not None:
-            return PlantRotation(plants=(loaded(self.faults_file.plant_file, self.faults_file.plant_files),))
-        return RandomPlants() if self.drawn_plants else PlantRotation(plants=self._by_files)
+        """The plants that the seeds run on."""
+        return self.source or PlantRotation(plants=self.listed)
 
-    @property
-    def _by_files(self) -> tuple[Plant, ...]:
+    @cached_property
+    def listed(self) -> tuple[Plant, ...]:
+        """The plants of files; none where `source` has others."""
+        if self.source is not None:
+            return ()
         wanted = self.faults_file.plant if self.faults_file else None
         named = self.plant or self.plant_here
         known = [loader.load_with_files(named)] if named else []
@@ -141,23 +143,18 @@ class Request:
     @property
     def _checked(self) -> Iterable[int]:
         """The seeds that stand for all: faults of a file must be possible in each plant."""
-        if self.faults_file is None:
-            return range(self.first, self.first + 1)
-        if isinstance(self.plants, PlantRotation):
-            return range(self.first, self.first + len(self.plants.plants))
-        return range(self.first, self.first + (self.count or 1))
+        those = 1 if self.faults_file is None else len(self.listed) or self.count or 1
+        return range(self.first, self.first + those)
 
     @property
     def notes(self) -> list[str]:
         """The notes for a person on what is simulated."""
-        if isinstance(self.plants, PlantRotation):
-            return notes(self.plants.plants)
-        return [OF_DRAWN]
+        return notes(self.listed)
 
     @property
     def unjudged(self) -> list[str]:
         """The sentences on what nobody can judge, as the plant files do not state it."""
-        return unjudged(self.plants.plants) if isinstance(self.plants, PlantRotation) else []
+        return unjudged(self.listed)
 
     def replay(self, seed: int) -> str:
         """The command that runs one seed again, step by step."""
@@ -167,15 +164,14 @@ class Request:
 
     def replay_shrunk(self, file: Path, seed: int) -> str:
         """The same with the faults that `file` says are enough."""
-        return self._trace("--seed", str(seed), "--faults", str(file), drawn=False)
+        return self._trace("--seed", str(seed), "--faults", str(file))
 
-    def _trace(self, *words: str, drawn: bool = True) -> str:
+    def _trace(self, *words: str) -> str:
         plant = ["--plant", str(self.plant)] if self.plant else []
-        plant += ["--drawn-plants"] if self.drawn_plants and drawn else []
         plant += ["--any-of"] if self.any_of else []
         plant += ["--standby"] if self.standby else []
         plant += ["--revisions"] if self.revises else []
-        return shlex.join(["arboleda", "simulate", *words, *plant, "--trace"])
+        return shlex.join([*self.command, *words, *plant, "--trace"])
 
 
 def shared() -> PlantModel:

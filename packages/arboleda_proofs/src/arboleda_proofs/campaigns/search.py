@@ -1,21 +1,18 @@
-"""Search for the fewest faults, and the least of a drawn plant, that still break an invariant."""
+"""Search for the fewest faults, and the least of a plant, that still break an invariant."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda_proofs.simulator.checks import BadFaults
 from arboleda_proofs.simulator.faults import KINDS, Fault
-from arboleda_proofs.simulator.plants.devices import DrawnDevices
 from arboleda_proofs.simulator.run import MINUTE_S, Plan, Result
 from arboleda_proofs.simulator.shrink import Progress, explicit, shrink
 
 from .plants import Plant
-from .random_plants import loaded, smaller
 from .setting import Setting
 
 ATTEMPTS = 250  # runs on smaller plants, at most
@@ -30,7 +27,7 @@ class ShrunkBreach:
 
 
 def shrunk(setting: Setting, broken: Result, progress: Progress) -> ShrunkBreach:
-    """The same breach with as few faults, and as little of a drawn plant, as could be found."""
+    """The same breach with as few faults, and as little of its plant, as could be found."""
     search = _Search(setting, broken, progress)
     search.fewer_faults()
     if search.smaller_plant():
@@ -57,10 +54,10 @@ class _Search:
         self.best = shrink(self.best, self._on_this_plant, self._progress)
 
     def smaller_plant(self) -> bool:
-        """Leave out part after part of a drawn plant, again while that helps; True if any could go."""
+        """Leave out part after part of the plant, again while that helps; True if any could go."""
         found, at = False, 0
         while self._runs < ATTEMPTS:
-            rest = list(smaller(self.plant))[at:]
+            rest = list(self.plant.smaller())[at:]
             taken = next((number for number, less in enumerate(rest) if self._breaks(less)), None)
             if taken is not None:
                 at, found = at + taken, True
@@ -73,9 +70,9 @@ class _Search:
     def _on_this_plant(self, plan: Plan, seconds: float) -> Result:
         return self._setting.attempt(self.plant, self.best.seed, plan, seconds)
 
-    def _breaks(self, less: dict[str, Any] | DrawnDevices) -> bool:
+    def _breaks(self, less: Callable[[], Plant]) -> bool:
         try:
-            plant = loaded(less)
+            plant = less()
             self._setting.script(plant.model)
         except (ConfigError, BadFaults):
             return False

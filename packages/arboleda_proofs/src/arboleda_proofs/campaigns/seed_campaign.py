@@ -25,19 +25,16 @@ HELD, BROKEN, INTERRUPTED = 0, 1, 130  # exit statuses
 
 
 class SeedCampaign:
-    """SeedCampaign: a campaign in a terminal; `file` gets its result, `keep` the drawn plant that broke."""
+    """SeedCampaign: a campaign in a terminal; `file` gets its result, `shrunk` is a breach of it."""
 
-    def __init__(
-        self, request: Request, console: Console, file: Path | None, keep: Path | None = None
-    ) -> None:
+    def __init__(self, request: Request, console: Console, file: Path | None) -> None:
         self._request = request
         self._console = console
         self._file = file
-        self._keep = keep
         self._tally = Tally(setting=request.setting)
         self._began = time.monotonic()
         self._elapsed_s = 0.0
-        self._shrunk: ShrunkBreach | None = None
+        self.shrunk: ShrunkBreach | None = None
         self._tick: Tick = lambda: None
 
     def run(self, jobs: int) -> int:
@@ -52,7 +49,7 @@ class SeedCampaign:
         self._report()
         if self._file is not None:
             complete = status != INTERRUPTED
-            summary.write(self._file, self._request, self._tally, self._shrunk, complete=complete)
+            summary.write(self._file, self._request, self._tally, self.shrunk, complete=complete)
         return status
 
     def _simulate(self, jobs: int) -> None:
@@ -98,7 +95,7 @@ class SeedCampaign:
         with progress(self._console, f"shrinking seed {lowest.seed}", None) as show:
             all_of_them = counted(injected, "fault")
             show(all_of_them, 0)
-            self._shrunk = shrunk(
+            self.shrunk = shrunk(
                 self._request.setting,
                 lowest,
                 lambda runs, left: show(f"{left} of {all_of_them} left after {counted(runs, 'run')}", runs),
@@ -110,8 +107,8 @@ class SeedCampaign:
             self._console.print(report.tables(tally, ends_of(self._console)))
             self._say(f"{report.amount(tally)} {report.speed(tally, self._elapsed_s)}")
         for seed, result in sorted(tally.broken.items()):
-            if self._shrunk is not None and self._shrunk.result.seed == seed:
-                self._story(self._shrunk, len(result.faults))
+            if self.shrunk is not None and self.shrunk.result.seed == seed:
+                self._story(self.shrunk, len(result.faults))
             else:
                 self._line(seed, result)
         for line in report.findings(tally):
@@ -121,14 +118,13 @@ class SeedCampaign:
     def _story(self, shrunk: ShrunkBreach, injected: int) -> None:
         result = shrunk.result
         self._say("")
-        breach_text.breach(self._console, result, shrunk.plant.name)
+        breach_text.breach(self._console, result, shrunk.plant)
         breach_text.faults(self._console, result, injected)
         breach_text.plant(self._console, shrunk.plant)
         breach_text.timeline(self._console, result)
         self._say(f"  replay     {self._request.replay(result.seed)}", "bold")
         if self._file:
             self._say(f"             {self._request.replay_shrunk(self._file, result.seed)}", "bold")
-        breach_text.kept(self._console, shrunk.plant, self._keep)
         self._say("")
 
     def _line(self, seed: int, result: Result) -> None:

@@ -11,12 +11,9 @@ from arboleda.engine import Plant as CorePlant
 from arboleda.model.plant_model import PlantModel
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.faults import Fault
-from arboleda_proofs.simulator.findings import FindingKind
 from arboleda_proofs.simulator.invariants import Invariant
-from arboleda_proofs.simulator.invariants.as_drawn import as_drawn
 from arboleda_proofs.simulator.judged import judged_by
 from arboleda_proofs.simulator.judged_world import BrokenInvariant
-from arboleda_proofs.simulator.plants.devices import Form
 from arboleda_proofs.simulator.run import NO_EXCEPTION, Plan, Result, Simulation
 from arboleda_proofs.simulator.scripted_people import Script, script_from
 
@@ -97,7 +94,7 @@ class Setting:
             revises=self.revises,
         )
         result = simulation.run(seconds=self.seconds, cycles=self.cycles)
-        _leave_out_drawn_failures(result, self.plants.of(seed))
+        _leave_out_intended(result, self.plants.of(seed))
         return result
 
     def attempt(self, plant: Plant, seed: int, plan: Plan, seconds: float, *, keep: bool = False) -> Result:
@@ -117,29 +114,16 @@ class Setting:
         return simulation.run(seconds=seconds)
 
     def _judges(self, plant: Plant) -> tuple[Invariant, ...]:
-        """Those of every plant, and of a drawn one that its recipes do what was drawn."""
-        judges, drawn = judged_by(standby=self.standby, revises=self.revises), plant.drawn
-        if drawn is None:
-            return judges
-        return (*judges, as_drawn(drawn.recipes, pauses=drawn.form is Form.PYTHON))
+        return (*judged_by(standby=self.standby, revises=self.revises), *plant.rules)
 
 
-def _leave_out_drawn_failures(result: Result, plant: Plant) -> None:
-    """Leave out of the findings the commands that a drawn recipe has refused, and the rescues that it has
-    fail, on purpose.
-    """
-    if plant.drawn is None:
-        return
-    cells, refused, rescues = plant.model.cells, plant.drawn.refused, plant.drawn.failing_rescues
-    names = [f"{cell.roles[role].name}: doing {verb}" for cell in cells for role, verb in refused]
-    for finding in list(result.findings):
-        is_refused = any(finding.step == name or finding.step.startswith(f"{name} ") for name in names)
-        if is_refused if finding.kind is FindingKind.COMMAND else finding.sentence.endswith(rescues):
-            del result.findings[finding]
+def _leave_out_intended(result: Result, plant: Plant) -> None:
+    for finding in filter(plant.intends, list(result.findings)):
+        del result.findings[finding]
 
 
-def rules() -> dict[str, str]:
-    """The sentence of each invariant, by its name."""
-    judges = (*judged_by(standby=True, revises=True), as_drawn(()))
+def rules(plant: Plant | None = None) -> dict[str, str]:
+    """The sentence of each invariant, by its name, with those of a plant."""
+    judges = (*judged_by(standby=True, revises=True), *(plant.rules if plant else ()))
     sentences = {each.name: " ".join(each.sentence.split()) for each in judges}
     return {NO_EXCEPTION: "No exception escapes a step."} | sentences

@@ -19,7 +19,6 @@ from arboleda.store.seeds import SeedRow
 from arboleda_proofs.simulator.levels import LEVELS
 
 from . import report
-from .plants import PlantRotation
 from .request import Request
 from .seed_campaign import BROKEN, HELD, INTERRUPTED
 from .tally import Tally
@@ -30,10 +29,10 @@ LOOK_S = 1.0  # between two looks for a seed that a worker has given back
 def campaign_of(request: Request) -> str:
     """The name of a campaign, made of its options, so that workers with other options have another one."""
     faults = "" if request.faults in LEVELS else Path(request.faults).read_text(encoding="utf-8")
-    plants = request.plants.plants if isinstance(request.plants, PlantRotation) else ()
-    contents = [{name: text.hex() for name, text in each.files.contents.items()} for each in plants]
+    files = (each.files.contents for each in request.listed)
+    contents = [{name: text.hex() for name, text in each.items()} for each in files]
     identity = [__version__, request.first, request.count, request.cycles, request.faults, faults, contents]
-    identity += [request.drawn_plants, request.any_of, request.two_hosts]
+    identity += [request.any_of, request.two_hosts]
     identity += [True] if request.changes_files else []  # else the same as before there were any
     return hashlib.sha256(json.dumps(identity).encode()).hexdigest()[:16]
 

@@ -17,16 +17,8 @@ from .seed_campaign import BROKEN, HELD, INTERRUPTED
 from .tally import Tally
 
 
-def run(
-    request: Request,
-    console: Console,
-    *,
-    trace: bool,
-    record: Path | None,
-    file: Path | None,
-    keep: Path | None = None,
-) -> int:
-    """Run the first seed and return the exit status; `keep` is the folder that gets its plant."""
+def run(request: Request, console: Console, *, trace: bool, record: Path | None, file: Path | None) -> int:
+    """Run the first seed and return the exit status."""
     if trace:
         breach_text.plant(console, request.plants.of(request.first))
     flown: list[str] = []
@@ -44,14 +36,13 @@ def run(
     tally.add(result)
     if file is not None:
         summary.write(file, request, tally, None, complete=True)
-    breach_text.breach(console, result, request.setting.plant(result.seed).name)
+    breach_text.breach(console, result, request.plants.of(result.seed))
     for line in flown:
         console.print(Text(line), soft_wrap=True)
     console.print(Text(f"digest {result.digest}: {report.amount(tally)}"), soft_wrap=True)
     for finding in report.findings(tally):
         console.print(finding, soft_wrap=True)
     console.print(report.verdict(tally), soft_wrap=True)
-    breach_text.kept(console, request.plants.of(result.seed), keep)
     return BROKEN if result.broken or result.findings else HELD
 
 

@@ -34,7 +34,6 @@ def summary(request: Request, tally: Tally, shrunk: ShrunkBreach | None, *, comp
     return {
         "arboleda": __version__,
         "plant": str(request.plant) if request.plant else None,
-        "drawn_plants": request.drawn_plants,
         "cycles": request.cycles,
         "level": request.faults,
         "standby": request.two_hosts,
@@ -70,7 +69,7 @@ def _broken(request: Request, tally: Tally, seed: int, shrunk: ShrunkBreach | No
     assert best.broken is not None
     return {
         "invariant": best.broken.invariant,
-        "must_hold": rules().get(best.broken.invariant, ""),
+        "must_hold": rules(plant).get(best.broken.invariant, ""),
         "seen": best.broken.sentence,
         "seconds": round(best.seconds, 3),
         "minutes": best.minutes,

@@ -20,7 +20,6 @@ HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, a
 \b
 arboleda simulate                            {SEEDS} seeds on the plant of this folder, else on two
 arboleda simulate --plant my_plant.yaml      your plant
-arboleda simulate --drawn-plants             a plant of its own for each seed
 arboleda simulate --standby                  on two hosts, of which one stands by
 arboleda simulate --revisions                whose files are changed while they run
 arboleda simulate --until-failure            seed after seed until something breaks
@@ -41,10 +40,6 @@ Plant = Annotated[
         help=f"Plant file. [default: {IN_FOLDER} of this folder, else odd seeds the shipped plant and even"
         " seeds one with shared zones]",
     ),
-]
-DrawnPlants = Annotated[
-    bool,
-    typer.Option("--drawn-plants", help="Draw a plant file from each seed, any that `arboleda check` takes."),
 ]
 Seed = Annotated[int | None, typer.Option(metavar="N", min=0, help=f"The first seed. [default: {SEED}]")]
 Seeds = Annotated[
@@ -100,14 +95,6 @@ Record = Annotated[
     ),
 ]
 Trace = Annotated[bool, typer.Option("--trace", help="Print all that happens in one seed.")]
-KeepPlant = Annotated[
-    Path | None,
-    typer.Option(
-        "--keep-plant",
-        metavar="DIR",
-        help="Write a drawn plant to this folder: of the one seed, or of the broken one that is shrunk.",
-    ),
-]
 Jobs = Annotated[
     int | None,
     typer.Option(metavar="N", min=1, help="How many processes share the seeds. [default: one per processor]"),
@@ -120,8 +107,14 @@ Worker = Annotated[
         help="Share the seeds with every worker of the same options: they are rows of the --store.",
     ),
 ]
+DrawnPlants = Annotated[bool, typer.Option("--drawn-plants", hidden=True)]
+KeepPlant = Annotated[Path | None, typer.Option("--keep-plant", hidden=True)]
 ONE_SEED = Phrase("cli.simulate.one_seed", "--trace and --record are for one seed; choose it with --seed")
-DRAWN_OR_PLANT = Phrase("cli.simulate.drawn_or_plant", "--drawn-plants and --plant exclude each other")
+FOR_DEVELOPERS = Phrase(
+    "cli.simulate.for_developers",
+    "--drawn-plants and --keep-plant are for developers of Arboleda, in a clone of its repository: type"
+    " tools/drawn-plants instead of arboleda simulate --drawn-plants, or make drawn-campaign",
+)
 STANDBY_OR_REVISIONS = Phrase(
     "cli.simulate.standby_or_revisions", "--standby and --revisions exclude each other"
 )
@@ -130,7 +123,6 @@ WORKER_ALONE = Phrase(
     "cli.simulate.worker_alone",
     "--worker needs --store, and is one process: not with --jobs, --trace, --record, --until-failure",
 )
-NO_KEEPING = Phrase("cli.simulate.no_keeping", "--keep-plant is not for a --worker, which shrinks nothing")
 
 
 def add_to(cli: typer.Typer) -> None:
@@ -140,7 +132,6 @@ def add_to(cli: typer.Typer) -> None:
 
 def simulate(
     plant: Plant = None,
-    drawn_plants: DrawnPlants = False,
     seed: Seed = None,
     seeds: Seeds = None,
     cycles: Cycles = CYCLES,
@@ -152,10 +143,11 @@ def simulate(
     json: Json = None,
     record: Record = None,
     trace: Trace = False,
-    keep_plant: KeepPlant = None,
     jobs: Jobs = None,
     store: StoreAddress = "",
     worker: Worker = False,
+    drawn_plants: DrawnPlants = False,
+    keep_plant: KeepPlant = None,
 ) -> None:
     # the simulator takes a while to load, and only this command needs it
     from arboleda_proofs.campaigns import (
@@ -167,11 +159,11 @@ def simulate(
     from arboleda_proofs.campaigns.seed_campaign import SeedCampaign
     from arboleda_proofs.campaigns.workers import processors
 
+    if drawn_plants or keep_plant is not None:
+        raise typer.BadParameter(say(FOR_DEVELOPERS()))
     alone = trace or record is not None
     if alone and ((seeds or 1) > 1 or until_failure):
         raise typer.BadParameter(say(ONE_SEED()))
-    if drawn_plants and plant is not None:
-        raise typer.BadParameter(say(DRAWN_OR_PLANT()))
     if standby and revisions:
         raise typer.BadParameter(say(STANDBY_OR_REVISIONS()))
     if standby and faults == CRASHES:
@@ -179,7 +171,6 @@ def simulate(
     request = Request(
         plant=plant,
         plant_here=plant_here(None),
-        drawn_plants=drawn_plants,
         seed=seed,
         seeds=1 if alone else seeds,
         cycles=cycles,
@@ -191,8 +182,6 @@ def simulate(
     )
     if worker and (not store or alone or until_failure or jobs is not None):
         raise typer.BadParameter(say(WORKER_ALONE()))
-    if keep_plant is not None and worker:
-        raise typer.BadParameter(say(NO_KEEPING()))
     if json is not None:
         check_writable(json)
     if record is not None:
@@ -205,7 +194,5 @@ def simulate(
 
         raise typer.Exit(work(request, console, store, json))
     if alone:
-        raise typer.Exit(
-            single_seed.run(request, console, trace=trace, record=record, file=json, keep=keep_plant)
-        )
-    raise typer.Exit(SeedCampaign(request, console, json, keep_plant).run(jobs or processors()))
+        raise typer.Exit(single_seed.run(request, console, trace=trace, record=record, file=json))
+    raise typer.Exit(SeedCampaign(request, console, json).run(jobs or processors()))

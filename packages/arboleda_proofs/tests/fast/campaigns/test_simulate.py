@@ -16,8 +16,6 @@ from arboleda.cli.main import main
 from arboleda.model.plant_model import Evidence
 from arboleda.plant_file import loader
 from arboleda_proofs.campaigns import setting
-from arboleda_proofs.campaigns.plants import Plant
-from arboleda_proofs.campaigns.random_plants import RandomPlants
 from arboleda_proofs.campaigns.request import Request, shared
 from arboleda_proofs.simulator import judged
 from arboleda_proofs.simulator.faults import KINDS
@@ -64,8 +62,7 @@ def arboleda(plant: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
 
     def run(*words: object) -> Ended:
         usual = {"--plant": plant, "--cycles": 1, "--jobs": 1, "--faults": "none"}
-        given = {*words, *(["--plant"] if "--drawn-plants" in words else [])}
-        left = [word for pair in usual.items() if pair[0] not in given for word in pair]
+        left = [word for pair in usual.items() if pair[0] not in words for word in pair]
         monkeypatch.setattr(sys, "argv", ["arboleda", "simulate", *map(str, (*words, *left))])
         with pytest.raises(SystemExit) as end:
             main()
@@ -275,6 +272,8 @@ def test_ctrl_c_says_what_was_done_so_far(
         (("--cycles", "0"), "Invalid value for '--cycles'"),
         (("--jobs", "0"), "Invalid value for '--jobs'"),
         (("--seed", "-1"), "Invalid value for '--seed'"),
+        (("--drawn-plants",), "type tools/drawn-plants instead"),
+        (("--keep-plant", "kept"), "type tools/drawn-plants instead"),
     ],
     ids=" ".join,
 )
@@ -361,47 +360,3 @@ def test_the_shared_plant_is_what_the_shipped_one_is_not() -> None:
     assert not all(cell.drive_to_start for cell in cells) and not all(arm.queue_triggers for arm in arms)
     assert Evidence.JOINTS in {robot.evidence for robot in plant.robots.values()}
     assert any(arm.piece_on_change for arm in arms) and any(arm.home_at_start for arm in arms)
-
-
-@pytest.mark.long
-def test_each_seed_draws_a_plant_and_the_file_has_it(arboleda: Arboleda, tmp_path: Path) -> None:
-    out = tmp_path / "out.json"
-    ended = arboleda("--drawn-plants", "--seeds", 2, "--json", out)
-    assert (ended.status, ended.complained) == (0, "")
-    assert ended.said.startswith(
-        "drawn plants: whatever link a robot declares, it is simulated with a virtual"
-    )
-    rows = json.loads(out.read_text())["seeds"]
-    assert (
-        [row["plant"] for row in rows]
-        == [row["plant_file"]["name"] for row in rows]
-        == ["drawn_1", "drawn_2"]
-    )
-
-
-@pytest.mark.long
-@pytest.mark.usefixtures("brittle")
-def test_a_drawn_plant_is_shrunk_with_its_faults_and_replayed_from_the_file(
-    arboleda: Arboleda, tmp_path: Path
-) -> None:
-    faults, out = tmp_path / "faults.json", tmp_path / "out.json"
-    seed = next(seed for seed in range(100) if _is_rich(RandomPlants().of(seed)))
-    faults.write_text(json.dumps({"faults": [{"kind": "bridge_stall", "at": 1, "seconds": 0.1}, REBOOT]}))
-    ended = arboleda("--drawn-plants", "--seed", seed, "--seeds", 1, "--faults", faults, "--json", out)
-    assert ended.status == 1 and "1 of 2 faults is enough:" in ended.said
-    assert "as much of its file as is enough:" in ended.said and "    name: drawn_" in ended.said
-    assert f"--seed {seed} --cycles 1 --faults {faults} --drawn-plants --trace" in ended.said
-    (row,) = json.loads(out.read_text())["seeds"]
-    whole, needed = row["plant_file"], row["broken"]["plant_file"]
-    assert len(whole["cells"]) > len(needed["cells"]) == 1 and "zones" not in needed
-    again = arboleda("--faults", out, "--trace")
-    assert again.status == 1 and again.said.endswith("BROKEN: an invariant did not hold in 1 seed of 1\n")
-    assert "as much of its file" in again.said
-
-
-def _is_rich(plant: Plant) -> bool:
-    """Whether there is much to leave out."""
-    return not plant.beside and len(plant.declared.cells) == 2 and bool(plant.declared.zones)
-
-
-REBOOT = {"kind": "reboot", "at": 3.25}

@@ -338,7 +338,7 @@ def test_crashes_are_a_level_of_their_own() -> None:
 
 
 def test_what_a_done_task_leaves_unchecked_is_heard_also_in_the_last_words_of_a_plant() -> None:
-    with as_file(files("arboleda").joinpath("plants", "shared.yaml")) as file:
+    with as_file(files("arboleda").joinpath("plants/shared.yaml")) as file:
         model = load(file)
     climate = Climate.draw(model, 6, "crashes")
     assert Simulation(model, 6, climate.faults).run(seconds=10.0).broken is None

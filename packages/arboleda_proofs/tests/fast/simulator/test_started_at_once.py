@@ -8,7 +8,7 @@ import yaml
 from arboleda.core.task_queue import TaskQueue
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import TaskState, Verb
-from arboleda_proofs.campaigns.random_plants import loaded
+from arboleda_drawn.plants import loaded
 from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
 
 PLANT = """

@@ -1,0 +1,1 @@
+"""Plants drawn from seeds, odd values included, and simulated as those of people are."""
