@@ -14,7 +14,6 @@ MOST = 25
 LARGER: Mapping[str, int] = {
     "arboleda_proofs.testing.rig.Rig": 52,
     "arboleda_drivers.ur.machine.Machine": 51,
-    "arboleda_proofs.simulator.record.Record": 47,
     "arboleda.runtime.parts.orchestrator.Orchestrator": 46,
     "arboleda.client.plant.AsyncPlant": 45,
     "arboleda.client.plant.Plant": 45,
