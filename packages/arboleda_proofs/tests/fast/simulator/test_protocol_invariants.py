@@ -898,10 +898,10 @@ def test_zone_requests_end__of_a_recovery_unless_who_has_the_zone_works():
     watch.task("sis_b palletizing", wait_s=1)
     assert watch.world.plant.zones.holder("table") == "ra2"
     watch.task("sis_a palletizing", wait_s=8)
-    assert [user.cell for user in watch.record.waiting] == ["sis_a"]
+    assert [user.cell for user in watch.record.waiting.users] == ["sis_a"]
     assert watch.world.plant.cells["sis_a"].run.recovering
     watch.wait(40)
-    assert watch.found == {} and watch.record.waiting == []
+    assert watch.found == {} and watch.record.waiting.users == []
 
 
 def test_zone_requests_end__in_the_cells_own_time(monkeypatch):
@@ -926,7 +926,7 @@ def test_zone_requests_end__anew_after_the_pause_of_a_retry(monkeypatch):
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
     monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     watch.task("sis_a look", wait_s=7.0)
-    assert [user.cell for user in watch.record.waiting] == ["sis_a"]
+    assert [user.cell for user in watch.record.waiting.users] == ["sis_a"]
     watch.wait(10)
     assert watch.found == {}
 
@@ -948,7 +948,7 @@ def test_zone_requests_end__anew_at_each_try_of_a_tree(monkeypatch, node):
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
     monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     watch.task("sis_a look", wait_s=5.0)
-    assert [user.cell for user in watch.record.waiting] == ["sis_a"]
+    assert [user.cell for user in watch.record.waiting.users] == ["sis_a"]
     watch.wait(12)
     assert watch.found == {}
 

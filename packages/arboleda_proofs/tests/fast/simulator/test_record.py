@@ -136,7 +136,7 @@ def test_what_was_refused_changes_nothing(world, record):
     verb(world, Verb.RESET)
     assert record.robots["ra1"].stop is None
     assert not record.cells["sis_a"].stopped
-    assert [answer.verb for answer in record.answers] == []
+    assert [answer.verb for answer in record.asked.answers] == []
 
 
 def test_the_stop_of_one_robot_stops_its_cell(world, record):
@@ -212,7 +212,7 @@ def test_a_task_is_followed_from_its_queue_to_its_end(world, record):
 
 def test_who_asks_twice_gets_an_answer_that_is_no_change(world, record):
     changes = []
-    world.watchers.append(lambda: changes.extend(record.tasks.changes if record.stepped else ()))
+    world.watchers.append(lambda: changes.extend(record.tasks.changes if record.step.stepped else ()))
     for _ in range(2):
         world.request_task(f"{TASK} #one")
         world.advance(0.01)
@@ -240,10 +240,10 @@ def test_a_plant_that_crashed_has_no_cell_whose_tasks_wait(world, record):
     world.advance(0.5)
     world.request_task(TASK)
     world.advance(0.5)
-    assert record.idle == [record.cells["sis_a"]]
+    assert record.states.idle == [record.cells["sis_a"]]
     world.crash(PLANT)
     world.advance(0.5)
-    assert record.idle == []
+    assert record.states.idle == []
 
 
 def test_a_plant_that_crashed_has_its_task_at_work_and_none_of_its_commands(world, record):
@@ -260,7 +260,7 @@ def test_a_plant_that_crashed_has_its_task_at_work_and_none_of_its_commands(worl
 
 def test_cells_are_followed_by_their_states(world, record):
     seen = []
-    world.watchers.append(lambda: seen.extend(record.transitions if record.stepped else ()))
+    world.watchers.append(lambda: seen.extend(record.states.transitions if record.step.stepped else ()))
     world.request_task(TASK)
     world.advance(1)
     verb(world, Verb.HOLD)
@@ -339,28 +339,28 @@ def test_positions_are_those_that_boards_told_lately(world, record):
     world.advance(2.5)
     told = record.robots["rm_sis_a"].node
     assert told not in (0, 8)
-    assert board.has_reported(None, told, record.reports_from_s(world.now))
+    assert board.has_reported(None, told, record.lateness.reports_from_s(world.now))
     assert not board.has_reported(None, 8, 0.0)
     assert board.has_reported(None, 0, 0.0)
     world.advance(10)
-    assert not board.has_reported(None, 0, record.reports_from_s(world.now))
+    assert not board.has_reported(None, 0, record.lateness.reports_from_s(world.now))
 
 
 def test_a_slow_line_may_bring_old_positions(world, record):
-    assert record.reports_from_s(world.now) == world.now - STALE_S
+    assert record.lateness.reports_from_s(world.now) == world.now - STALE_S
     world.to_plant.troubles.append(lambda report: [0.5])
     world.advance(0.5)
     world.to_plant.troubles.clear()
     world.advance(5.0)
-    assert record.reports_from_s(world.now) == 0.0
+    assert record.lateness.reports_from_s(world.now) == 0.0
     world.advance(6.0)
-    assert record.reports_from_s(world.now) == world.now - STALE_S
+    assert record.lateness.reports_from_s(world.now) == world.now - STALE_S
 
 
 def test_a_stalled_bridge_may_bring_old_positions(world, record):
     world.stall(BRIDGE, 1.0)
     world.advance(0.9)
-    assert record.reports_from_s(world.now) == 0.0
+    assert record.lateness.reports_from_s(world.now) == 0.0
 
 
 def test_scopes_are_the_plant_a_cell_or_a_robot():
@@ -378,7 +378,9 @@ def test_what_was_said_before_the_record_began_is_known(world):
     record = Record(world)
     known = record.robots["ra1"]
     assert known.obstacles(world.now, world.plant.epoch) == frozenset()
-    assert record.boards.by_name["ra_1"].has_reported(known.q, None, record.reports_from_s(world.now))
+    assert record.boards.by_name["ra_1"].has_reported(
+        known.q, None, record.lateness.reports_from_s(world.now)
+    )
     assert replace(said(), robot="ra1").robot == known.robot.name
 
 
@@ -420,6 +422,6 @@ def test_whom_an_operator_put_right_is_known_by_the_request_that_was_granted(by_
 
 
 def test_a_value_is_new_until_it_was_asked_for(record):
-    asked = [record.is_new("status", value) for value in (None, 1, 1, 2, 1)]
+    asked = [record.checked.is_new("status", value) for value in (None, 1, 1, 2, 1)]
     assert asked == [True, True, False, True, True]
-    assert record.is_new("another thing", 1)
+    assert record.checked.is_new("another thing", 1)

@@ -23,7 +23,7 @@ _values = attrgetter(*("boot" if field == "boot_id" else field for field in FIEL
 def believed_as_said(look: Look) -> Iterable[str]:
     """The plant believes the last word of each robot on everything, and that who is silent is not there."""
     record = look.record
-    return _unlike(look, set(record.robots) if look.whole else {report.robot for report in record.anew})
+    return _unlike(look, set(record.robots) if look.whole else {report.robot for report in record.heard.anew})
 
 
 def _unlike(look: Look, robots: set[str]) -> Iterator[str]:

@@ -111,12 +111,12 @@ def _illegal(look: Look) -> Iterator[str]:
 def no_deadline_overrun(look: Look) -> Iterable[str]:
     """No command outlasts its deadline, no deadline its longest way, and no wait its end."""
     record = look.record
-    return _late(look) if record.commands.soonest <= record.stepped_at else _overrun(look)
+    return _late(look) if record.commands.soonest <= record.step.at else _overrun(look)
 
 
 def _late(look: Look) -> Iterator[str]:
     for sent in look.record.commands.open.values():
-        if sent.entry is not None and sent.entry.deadline <= look.record.stepped_at:
+        if sent.entry is not None and sent.entry.deadline <= look.record.step.at:
             yield f"{sent} is open past its deadline"
 
 
@@ -133,10 +133,9 @@ def _overrun(look: Look) -> Iterator[str]:
 
 
 def _too_long(look: Look, sent: SentCommand) -> str | None:
-    timing = look.record.timing_of(sent)
-    allowed_s = _longest_s(look.world.model.robots[sent.robot], sent, timing)
+    allowed_s = _longest_s(look.world.model.robots[sent.robot], sent, sent.timing)
     if sent.cancelled_at is not None:  # cancelled in the same step: its deadline is that of its halt
-        allowed_s = max(allowed_s, timing.stop_timeout_s)
+        allowed_s = max(allowed_s, sent.timing.stop_timeout_s)
     if sent.deadline <= sent.at + allowed_s + ROUNDING_S:
         return None
     return f"{sent} has {sent.deadline - sent.at:.1f} s; {allowed_s:.1f} s are enough for its longest way"
@@ -162,7 +161,7 @@ def _moved_deadline(look: Look, sent: SentCommand) -> Iterator[str]:
         moved_s = 0.0 if sent.entry is None else sent.entry.deadline - sent.deadline
         if moved_s and not 0 < moved_s <= sent.late_s + ROUNDING_S:
             yield f"the deadline of {sent} was moved"
-    elif sent.entry.deadline > sent.cancelled_at + look.record.timing_of(sent).stop_timeout_s + ROUNDING_S:
+    elif sent.entry.deadline > sent.cancelled_at + sent.timing.stop_timeout_s + ROUNDING_S:
         yield f"{sent} has more than stop_timeout_s to end after its cancel"
 
 
@@ -238,7 +237,7 @@ def _left(look: Look) -> Iterator[str]:
 def held_cells_stand_still(look: Look) -> Iterator[str]:
     """A cell at work is held only once all that it had told to move has ended."""
     commands = look.record.commands
-    changes = look.record.transitions
+    changes = look.record.states.transitions
     held = {cell.name for cell, _, after in changes if after is CellState.HELD and cell.tree is not None}
     for sent in commands.open.values() if held else ():
         in_one = sent.entry is not None and sent.entry.cell in held
@@ -264,7 +263,7 @@ def _known_still(look: Look, sent: SentCommand) -> bool:
 @invariant(Trigger.TAKEN)
 def no_move_after_its_halt(look: Look) -> Iterable[str]:
     """No move reaches the bridge after a stop or a halt that the plant gave after it: it would begin anew."""
-    return look.record.stops.overtaken
+    return look.record.early_stops.overtaken
 
 
 @invariant(Trigger.COMMANDED)

@@ -132,7 +132,7 @@ def no_command_against_a_need_of_others(look: Look) -> Iterator[str]:
         for need in cell.needs:
             known = look.record.robots[need.other]
             if (need.device, need.word) == (sent.robot, sent.command.word) and (
-                known.fact(need.fact) != need.value or known.offline(look.record.stepped_at)
+                known.fact(need.fact) != need.value or known.offline(look.record.step.at)
             ):
                 yield f"{sent} leaves, needs {need.fact} of {need.other} {need.value}, which said otherwise"
 
@@ -220,7 +220,7 @@ def an_answer_is_to_its_question(look: Look) -> Iterator[str]:
 @invariant(Trigger.ASKED)
 def offered_answers_are_accepted(look: Look) -> Iterator[str]:
     """An answer that a question offers is accepted from whoever gives it while that question is open."""
-    refused = {each.scope for each in look.record.answers if each.verb is Verb.ANSWER and each.refusal}
+    refused = {each.scope for each in look.record.asked.answers if each.verb is Verb.ANSWER and each.refusal}
     for request in look.moment.requests if refused else ():
         if not isinstance(request, OperatorRequest) or request.verb is not Verb.ANSWER:
             continue

@@ -42,28 +42,28 @@ class Trigger(Enum):
     DEEDS = "truth.deeds"
     ASKED = "moment.requests"
     HEARD = "moment.reports"
-    SAID = "record.anew"
+    SAID = "record.heard.anew"
     SENT = "moment.sent"
     UNKEPT = "moment.unkept"
     LATE = "moment.late"
     COMMANDED = "record.commands.new"
-    TOLD = "record.has_spoken"
+    TOLD = "record.step.has_spoken"
     TAKEN = "moment.taken"
     PUBLISHED = "moment.published"
     EXECUTED = "moment.executed"
     ORDERED = "moment.ordered"
     BRIDGED_WRONGLY = "record.bridges.wrong"
     UNTOLD = "record.others.untold"
-    STEPPED = "record.stepped"
+    STEPPED = "record.step.stepped"
     LEFT_OVER = "world.plant.dispatcher.outbox"
     TAUGHT = "record.teachers.taught"
-    NEWS = "record.news"
-    BORN = "record.born"
+    NEWS = "record.step.news"
+    BORN = "record.step.born"
     TOLD_OTHERWISE = "record.starts.wrong"
     DONE_TWICE = "record.starts.twice"
     KEPT_WRONGLY = "record.trails.wrong"
-    WAITING = "record.waiting"
-    IDLE = "record.idle"
+    WAITING = "record.waiting.users"
+    IDLE = "record.states.idle"
     CHANGED = "truth.changed"
     MISPLACED = "truth.places.wrong"
     MISSED = "truth.places.missed"
@@ -136,7 +136,7 @@ class Judges:
             for name, rule in bench.rules:
                 for sentence in rule(look):
                     yield name, sentence
-        if look.record.stepped and look.world.now >= self._next_round_at:
+        if look.record.step.stepped and look.world.now >= self._next_round_at:
             yield from self._look_around(look)
 
     def look_around(self, look: Look) -> Iterator[tuple[str, str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.engine import reasons
+from arboleda.engine import Entry, reasons
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Fact, MotionState
 from arboleda.model.plant_model import Evidence, Link, Pose, Workspace
@@ -23,9 +23,16 @@ AT_WORK = (CellState.EXECUTE, CellState.HOLDING, CellState.HELD)
 def running_tree_has_waker(look: Look) -> Iterable[str]:
     """A tree that runs has an open command or a time that will wake it."""
     awake = {sent.entry.cell for sent in look.record.commands.open.values() if sent.entry}
-    awake |= {entry.cell for entry in look.record.questions}
+    awake |= {entry.cell for entry in _questions(look)}
     asleep = [cell for cell in look.record.cells.values() if cell.name not in awake and _sleeps(cell)]
     return [f"{cell.name} sleeps with a running tree" for cell in asleep]
+
+
+def _questions(look: Look) -> list[Entry]:
+    """The open questions to people: nothing is sent for those."""
+    ledger, robots = look.world.plant.dispatcher.ledger, look.world.model.robots.values()
+    asked = [ledger.question(robot.name) for robot in robots if robot.link is Link.SCREEN]
+    return [entry for entry in asked if entry is not None]
 
 
 def _sleeps(cell: KnownCell) -> bool:
@@ -60,11 +67,11 @@ def no_tree_outlives_its_work(look: Look) -> Iterable[str]:
 @invariant(Trigger.IDLE)
 def no_starvation(look: Look) -> Iterable[str]:
     """In a cell that is idle, ready and not paused the next task starts in the same step."""
-    return _idle_though_ready(look) if look.record.stepped else NOTHING
+    return _idle_though_ready(look) if look.record.step.stepped else NOTHING
 
 
 def _idle_though_ready(look: Look) -> Iterator[str]:
-    for cell in look.record.idle:
+    for cell in look.record.states.idle:
         if ready(look, cell):
             yield f"{cell.name} is ready, and its next task does not start"
 
@@ -98,7 +105,7 @@ def _is_stopped_with_another_cell(look: Look, person: str) -> bool:
 def _is_busy(look: Look, cell: KnownCell) -> bool:
     """True while one of its robots may not have done yet what an operator told it."""
     robots = {robot.name for robot in cell.cell.robots}
-    has_question = any(entry.command.robot in robots for entry in look.record.questions)
+    has_question = any(entry.command.robot in robots for entry in _questions(look))
     return has_question or any(sent.robot in robots for sent in look.record.commands.open.values())
 
 
@@ -112,7 +119,7 @@ def _outside(look: Look, cell: KnownCell) -> bool:
         return False
     if (
         look.world.plant_process.found.facts.get(Fact.QUARANTINE)
-        and look.world.now < look.record.born_at + SURE_S
+        and look.world.now < look.record.unattended.born_at + SURE_S
     ):
         return not (cell.cell.zone_users or cell.cell.shared_movers)
     return all(_is_outside(look, cell.cell.workspaces[name]) for name in cell.cell.zone_users)
@@ -162,7 +169,7 @@ def zone_requests_end(look: Look) -> Iterable[str]:
 
 def _overdue(look: Look) -> Iterator[str]:
     """Sentences on arms that wait for too long; no tree is asked while its cell is held."""
-    for user in look.record.waiting:
+    for user in look.record.waiting.users:
         cell = look.record.cells[user.cell]
         if cell.state is CellState.EXECUTE and user.waited_s > cell.cell.zone_wait_s + SLACK_S:
             yield f"{user.robot} waits for its zones for {user.waited_s:.3f} s"

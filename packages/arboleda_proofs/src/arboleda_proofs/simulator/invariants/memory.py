@@ -17,7 +17,9 @@ KEPT = {StopProgress.LATCHED: "on", StopProgress.CLEARED: "cleared", None: None}
 @invariant(Trigger.COMMANDED)
 def kept_before_it_leaves(look: Look) -> Iterator[str]:
     """A stop is kept before it leaves, so is its clear, and that an effector is being switched."""
-    kept = {(fact, name): value for fact, rows in look.record.kept.items() for name, value in rows.items()}
+    kept = {
+        (fact, name): value for fact, rows in look.record.facts.before.items() for name, value in rows.items()
+    }
     for message in look.moment.sent:
         if isinstance(message, Remember):
             kept[message.fact, message.name] = message.value or ""

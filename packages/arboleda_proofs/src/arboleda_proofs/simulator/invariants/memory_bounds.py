@@ -20,7 +20,7 @@ INBOX = 20_000  # messages for a process that stalls for 15 s while everybody sa
 @invariant(Trigger.LEFT_OVER, every_s=EVERY_S)
 def bounded_books(look: Look) -> Iterable[str]:
     """The books that the plant, the bridge and the boards keep stay below fixed bounds."""
-    if look.record.stepped and look.world.plant.dispatcher.outbox:
+    if look.record.step.stepped and look.world.plant.dispatcher.outbox:
         return ["the plant kept a message after its step"]
     return _long(look) if look.whole else NOTHING
 

@@ -23,7 +23,7 @@ def oee_is_as_seen(look: Look) -> Iterator[str]:
     """The figures of a cell are what its tasks, its states and the starts of the plant add up to: in all of
     the time and in a part of it, while the plant runs, once it was ended, and long after it was killed.
     """
-    record, now = look.record, look.record.stepped_at
+    record, now = look.record, look.record.step.at
     for cell in record.cells:
         works = [_work(task) for task in record.tasks.of_cell(cell)[-LAST:]]
         for ended, until_s in ((False, now), (True, now + 1.0), (False, now + LATE_S + 1.0)):

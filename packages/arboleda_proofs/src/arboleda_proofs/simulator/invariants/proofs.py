@@ -74,9 +74,9 @@ def _settled(look: Look, sent: SentCommand) -> bool:
 
     So do an effector that reports nothing and, at `state`, a move to where the robot is already.
     """
-    evidence, timing = look.world.model.robots[sent.robot].evidence, look.record.timing_of(sent)
+    evidence, timing = look.world.model.robots[sent.robot].evidence, sent.timing
     late_s = sent.late_s if sent.late_s >= WORTH_TELLING_S else 0.0  # the plant takes no notice of less
-    passed_s = look.record.stepped_at - sent.at - late_s + ROUNDING_S
+    passed_s = look.record.step.at - sent.at - late_s + ROUNDING_S
     if isinstance(sent.command, Switch):
         return evidence is not Evidence.IDS and passed_s >= timing.effector_settle_s + sent.command.takes_s
     return evidence is Evidence.STATE and passed_s >= min(timing.stop_timeout_s, sent.deadline - sent.at)
@@ -93,9 +93,9 @@ def _wrong_cause(look: Look, sent: SentCommand, proof: Proof) -> Iterator[str]:
 def _by_time(look: Look, sent: SentCommand) -> set[Reason]:
     """The reasons for which it may fail now though its robot says nothing."""
     record, known = look.record, look.record.robots[sent.robot]
-    is_cut_off = known.stale_at <= record.stepped_at or _has_not_left(look, sent)
+    is_cut_off = known.stale_at <= record.step.at or _has_not_left(look, sent)
     found = {Reason.LINK_LOST} if is_cut_off else set()
-    if sent.entry is not None and sent.entry.deadline <= record.stepped_at + ROUNDING_S:
+    if sent.entry is not None and sent.entry.deadline <= record.step.at + ROUNDING_S:
         found.add(Reason.STOP_UNCONFIRMED if sent.cancelled_at is not None else Reason.DEADLINE)
     return found
 

@@ -27,7 +27,7 @@ def cells_take_versions_between_tasks(look: Look) -> Iterator[str]:
         if running is not None and not any(_begins(each, running) for each in sent[place:]):
             yield f"{taken.cell} took version {taken.version.number} while {running} ran"
         for each in record.commands.open.values():
-            if each.entry is not None and each.entry.cell == taken.cell and each.at < record.stepped_at:
+            if each.entry is not None and each.entry.cell == taken.cell and each.at < record.step.at:
                 yield f"{taken.cell} took version {taken.version.number} while {each} was open"
 
 

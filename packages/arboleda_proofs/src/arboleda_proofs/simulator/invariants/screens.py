@@ -85,7 +85,7 @@ def _shown(look: Look) -> Iterator[str]:
         yield from rows.ways(plant.advice(cell.name), row)
         if view.standing_text(row) != rows.stands(row):
             yield f"{cell.name} is said to be {view.standing_text(row)}, it is {rows.stands(row)}"
-        yield from _tree(cell, row["tree"], record.stepped_at, own=_is_own(look, cell))
+        yield from _tree(cell, row["tree"], record.step.at, own=_is_own(look, cell))
     for row in shown["robots"]:
         known = record.robots[row["name"]]
         yield from _unlike(known.robot.name, row, _robot(look, known))
@@ -124,7 +124,7 @@ def _refused(look: Look, row: Row, kind: str) -> Iterator[str]:
     plant, found = look.world.plant, []
     shown = [name for name in row["refused"] if not name.endswith("_by_hand")]
     stands = *map(row.get, REFUSED_BY), *map(bool, map(row.get, REFUSED_BY_ANY))
-    if not look.record.is_new(f"refused {row['name']}", (plant.epoch, *shown, *stands)):
+    if not look.record.checked.is_new(f"refused {row['name']}", (plant.epoch, *shown, *stands)):
         return
     for verb in REFUSABLE[kind]:
         if plant.refusal(OperatorRequest(at=plant.now, verb=verb, scope=row["name"])) is not None:
@@ -177,7 +177,7 @@ def _plant(look: Look) -> Row:
     return {
         "plant": model.name,
         "epoch": plant.epoch,
-        "at": look.record.stepped_at,
+        "at": look.record.step.at,
         "ending": False,
         "zones": [_zone(look, zone) for zone in model.zones],
     }
@@ -192,7 +192,7 @@ def _zone(look: Look, zone: str) -> Row:
 
 
 def _cell(look: Look, cell: KnownCell) -> Row:
-    tasks, run, now = look.record.tasks, cell.run, look.record.stepped_at
+    tasks, run, now = look.record.tasks, cell.run, look.record.step.at
     arm, mobile = cell.cell.taker.robot, cell.cell.giver.robot
     expected: Row = {
         "state": cell.state.value,
@@ -233,16 +233,16 @@ def _tasks(look: Look, shown: Row) -> Iterator[str]:
         known = tasks.open.get(row["id"]) or tasks.ended.get(row["id"])
         if known is not None:
             yield from _unlike(f"task {known.id}", row, rows.task(known))
-            yield from rows.times(known, row, look.record.stepped_at)
+            yield from rows.times(known, row, look.record.step.at)
 
 
 def _obstacle(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
-    allowed = rows.obstacle(known, look.record.stepped_at, look.world.plant.epoch)
+    allowed = rows.obstacle(known, look.record.step.at, look.world.plant.epoch)
     sentence = row["obstacle"]
     if allowed is not None and (sentence.phrase not in allowed if sentence else allowed):
         yield f"{known.robot.name}: {sentence!r} is shown as what is in its way, it is one of {allowed}"
     last = look.record.commands.last.get(known.robot.name)
-    expected = rows.command(last, look.record.stepped_at)
+    expected = rows.command(last, look.record.step.at)
     if expected is None or expected["state"] is None:
         return
     yield from _unlike(known.robot.name, row["command"] or {}, expected)
@@ -279,10 +279,10 @@ def _node(tree: Behaviour, path: str) -> Behaviour:
 
 
 def _robot(look: Look, known: KnownRobot) -> Row:
-    now, robot = look.record.stepped_at, known.robot
+    now, robot = look.record.step.at, known.robot
     last = look.record.commands.last.get(robot.name)
     is_arm = bool(robot.joints)
-    kept = look.record.effector_of(robot.name)
+    kept = look.record.facts.effector(robot.name)
     return {
         "mqtt": robot.mqtt,
         "online": not known.offline(now),
@@ -348,7 +348,7 @@ def _drawn(look: Look, drawn: Row) -> Iterator[str]:
         yield from _unlike(f"{row['name']} as drawn", row, {**wanted, "heard_at": known.heard_at})
         yield from _ends(look, known, row)
     for name, part in drawn["parts"].items():
-        kept = look.record.effector_of(look.record.cells[name].cell.taker.robot.name)
+        kept = look.record.facts.effector(look.record.cells[name].cell.taker.robot.name)
         if look.world.model.cell(name).places:
             yield from _in_hands(name, part, drawn["books"][name]["carriers"], kept)
             continue
@@ -384,7 +384,7 @@ def _ends(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
     known_place = known.q if known.robot.joints else known.node
     if (row["position_at"] is None) is not (known_place is None):
         yield f"{name} is drawn as of {row['position_at']}, it has said {known_place}"
-    age_s = math.inf if row["position_at"] is None else look.record.stepped_at - row["position_at"]
+    age_s = math.inf if row["position_at"] is None else look.record.step.at - row["position_at"]
     speaks = known.robot.evidence is not Evidence.STATE  # at `state` it may be silent for long
     if row["reports"] is not (speaks or age_s <= look.world.model.timing.stale_after_s):
         yield f"{name} is drawn as {'' if row['reports'] else 'not '}reporting, it did {age_s} s ago"
@@ -393,7 +393,7 @@ def _ends(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
 @invariant(Trigger.NEWS)
 def screens_are_told_of_news(look: Look) -> Iterable[str]:
     """Whenever a cell or a task changes, so does the number by which screens know that they are behind."""
-    if look.record.unnumbered:
+    if look.record.step.unnumbered:
         return [f"cells or tasks changed, and what is shown is still number {look.world.plant.version}"]
     return NOTHING
 
@@ -401,15 +401,18 @@ def screens_are_told_of_news(look: Look) -> Iterable[str]:
 @invariant(Trigger.SAID)
 def status_says_the_report(look: Look) -> Iterable[str]:
     """A report that goes over ROS 2 arrives as it left; a status that no bridge can mean is refused."""
-    if not look.record.due_for("status", STATUS_S):
+    if not look.record.checked.due_for("status", look.world.now, STATUS_S):
         return NOTHING
-    return (*_carried(look), *(_broken(look) if look.record.due_for("garbled", GARBLED_S) else NOTHING))
+    return (
+        *_carried(look),
+        *(_broken(look) if look.record.checked.due_for("garbled", look.world.now, GARBLED_S) else NOTHING),
+    )
 
 
 def _carried(look: Look) -> Iterator[str]:
-    for report in look.record.anew:
+    for report in look.record.heard.anew:
         robot = look.world.model.robots.get(report.robot)
-        if robot is None or not look.record.is_new(f"status of {robot.name}", report.words):
+        if robot is None or not look.record.checked.is_new(f"status of {robot.name}", report.words):
             continue
         try:
             sent = status.to_status(robot, report)
@@ -426,12 +429,12 @@ def _carried(look: Look) -> Iterator[str]:
 
 def _broken(look: Look) -> Iterator[str]:
     """The last report, garbled as other nodes may garble it."""
-    report = look.record.anew[-1]
+    report = look.record.heard.anew[-1]
     robot = look.world.model.robots.get(report.robot)
     if robot is None:
         return
     sent = status.to_status(robot, report)
-    if not look.record.is_new(f"garbled {robot.name}", (sent.message, *sent.values)):
+    if not look.record.checked.is_new(f"garbled {robot.name}", (sent.message, *sent.values)):
         return
     garbled = [replace(sent, values={**sent.values, key: value}) for key, value in GARBLED]
     if robot.joints:

@@ -27,7 +27,7 @@ def accepted_is_found_again(look: Look) -> Iterator[str]:
             yield f"task {id} was told to have ended as {end.state.value}, and is {known[id].state.value}"
         elif said.state is TaskState.RUNNING and row.state is TaskState.QUEUED:
             yield f"task {id} was told to run, and waits again"
-    for name in look.record.lost_stops:
+    for name in look.record.stops.lost:
         yield f"{name} was stopped, and the plant that starts does not know it"
 
 
@@ -93,7 +93,7 @@ def nothing_moves_after_a_restart(look: Look) -> Iterator[str]:
     """After a start no robot is told to move before an operator gets its cell going, or somebody brings a
     task to a cell that had nothing to do; but where the plant file says so and no task was at work.
     """
-    for command in look.record.stirring:
+    for command in look.record.unattended.stirring:
         yield f"the plant has started, and by itself sends {shown(command)} to {command.robot}"
 
 

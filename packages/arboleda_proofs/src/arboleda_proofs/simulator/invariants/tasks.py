@@ -97,7 +97,7 @@ def ended_tasks_stay_ended(look: Look) -> Iterable[str]:
     for change in look.record.tasks.changes:
         if not change.answer and change.before in ENDED:
             yield f"task {change.message.task} had ended, and became {change.message.state.value}"
-    for answer in look.record.answers:
+    for answer in look.record.asked.answers:
         if answer.verb is Verb.CANCEL and answer.refusal is None and _had_ended(look, answer):
             yield f"to cancel {answer.scope}, which had ended, was not refused"
 
@@ -143,7 +143,7 @@ def tasks_start_where_all_is_ready(look: Look) -> Iterable[str]:
         cell = record.cells[change.message.cell].cell
         for robot in cell.robots:
             known = record.robots[robot.name]
-            if robot.link not in UNSENT and known.is_unfit(record.stepped_at, look.world.plant.epoch):
+            if robot.link not in UNSENT and known.is_unfit(record.step.at, look.world.plant.epoch):
                 yield f"task {change.message.task} starts, and {robot.name} takes no command"
         for name in (each for each in cell.zone_users if each not in cell.shared):
             if not _seen_outside(look, cell.workspaces[name]):
@@ -151,8 +151,8 @@ def tasks_start_where_all_is_ready(look: Look) -> Iterable[str]:
         keepers = {name: zones.holder(name) or look.world.model.cell_of[name].name for name in cell.shared}
         with_others = {name for name, keeper in keepers.items() if keeper != cell.name}
         for name in (each for each in cell.holders if each not in with_others):
-            kept = record.kept.get(Fact.EFFECTOR, {}).get(name, "off")
-            if "off" not in (kept, record.effector_of(name)) and not _let_go(look, name):
+            kept = record.facts.before.get(Fact.EFFECTOR, {}).get(name, "off")
+            if "off" not in (kept, record.facts.effector(name)) and not _let_go(look, name):
                 yield f"task {change.message.task} starts, and the effector of {name} is {kept}"
 
 
@@ -232,18 +232,18 @@ def only_legal_cell_states(look: Look) -> Iterable[str]:
     """A cell changes its state along the rows of its table, by itself, as an operator asked then, or as its
     plant ends.
     """
-    return _at_birth(look) if look.record.born else _illegal(look)
+    return _at_birth(look) if look.record.step.born else _illegal(look)
 
 
 def _illegal(look: Look) -> Iterator[str]:
-    for cell, before, after in look.record.transitions:
+    for cell, before, after in look.record.states.transitions:
         if after not in _reachable(before, _causes(look, cell)):
             yield f"{cell.name} went from {before.value} to {after.value}, and nobody asked for that"
 
 
 def _causes(look: Look, cell: KnownCell) -> frozenset[Cause]:
     """The causes for which a cell may change its state in this step."""
-    by_itself = BY_ITSELF | {Cause.AWAY} if look.record.away else BY_ITSELF
+    by_itself = BY_ITSELF | {Cause.AWAY} if look.record.step.away else BY_ITSELF
     if look.world.plant.intake.closed:  # a plant that ends in order holds what is at work
         by_itself |= {Cause.HOLD}
     return by_itself.union(*(BY_VERB.get(verb, frozenset()) for verb in _verbs(look, cell)))
@@ -252,7 +252,7 @@ def _causes(look: Look, cell: KnownCell) -> frozenset[Cause]:
 def _verbs(look: Look, cell: KnownCell) -> Iterator[Verb]:
     """The verbs done in this step whose scope has the cell, or is no robot and so may be its task."""
     scopes = look.record.scopes
-    for answer in look.record.answers:
+    for answer in look.record.asked.answers:
         if answer.refusal is None and (answer.scope not in scopes or cell.name in scopes.cells(answer.scope)):
             yield answer.verb
 
@@ -302,7 +302,7 @@ def _first_states(look: Look, cell: KnownCell) -> set[CellState]:
     goes on from there, as a device may have reported already.
     """
     resting = {CellState.IDLE, CellState.HELD}
-    if cell.name in look.record.unattended:
+    if cell.name in look.record.unattended.cells:
         return resting
     return resting.union(*(_reachable(state, _causes(look, cell)) for state in resting))
 
@@ -318,8 +318,8 @@ def every_request_is_answered(look: Look) -> Iterable[str]:
     """Each task text and each verb has its answer in the step that takes it in."""
     record, requests = look.record, look.moment.requests
     verbs = sum(isinstance(each, OperatorRequest) for each in requests)
-    if verbs != len(record.answers):
-        yield f"{verbs} verbs were asked for, {len(record.answers)} answered"
+    if verbs != len(record.asked.answers):
+        yield f"{verbs} verbs were asked for, {len(record.asked.answers)} answered"
     tokens = [each.request for each in requests if isinstance(each, TaskRequest) and each.request is not None]
     answered = [each.request for each in look.moment.sent if isinstance(each, TaskChanged)]
     if tokens != [token for token in answered if token is not None]:
@@ -331,7 +331,7 @@ def nothing_moves_after_an_absence(look: Look) -> Iterator[str]:
     """After the plant was away for longer than a robot may be silent, no robot is told to move before an
     operator gets its cell going, or where nothing was under way in it, for a task.
     """
-    for command in look.record.unasked:
+    for command in look.record.unattended.unasked:
         yield f"the plant was away, and by itself sends {shown(command)} to {command.robot}"
 
 
@@ -354,7 +354,7 @@ def no_internal_failure(look: Look) -> Iterable[str]:
             yield f"task {change.message.task}: {change.message.sentence}"
     for defect in look.record.errors:
         yield f"{defect.cell or 'the plant'} raised {type(defect.error).__name__}: {defect.error}"
-    for cell, _, after in look.record.transitions:
+    for cell, _, after in look.record.states.transitions:
         trouble = cell.run.trouble
         if after is CellState.HELD and trouble is not None and trouble.reason is Reason.INTERNAL:
             yield f"{cell.name} is held: {trouble.sentence}"
@@ -368,7 +368,7 @@ def no_task_fails_without_a_fault(look: Look) -> Iterable[str]:
     up, an answer.
     """
     world, record = look.world, look.record
-    if world.last_fault_at > -math.inf or world.recipes or not record.undisturbed:
+    if world.last_fault_at > -math.inf or world.recipes or not record.asked.undisturbed:
         return
     for change in record.tasks.changes:
         if change.message.state is TaskState.FAILED and not _may_fail(look, change.message):

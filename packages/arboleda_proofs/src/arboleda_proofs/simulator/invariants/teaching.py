@@ -56,7 +56,7 @@ def a_lost_teacher_stops_the_robot(look: Look) -> Iterator[str]:
     """
     teachers, world = look.record.teachers, look.world
     calm = not world.faults_active and world.now >= world.last_fault_at + QUIET_S
-    if not (look.record.stepped and calm):
+    if not (look.record.step.stepped and calm):
         return
     for name in teachers.taught:
         cell = world.model.cell(name)

@@ -69,8 +69,8 @@ def _alone(look: Look) -> Iterator[tuple[OperatorRequest, OperatorAnswer]]:
     """The verb of a step and its answer, if nothing but an absence came before it in that step. A plant's
     first step has none, as the plant looks there first what became of the tasks that it found.
     """
-    requests, answers = look.moment.requests, look.record.answers
-    alone = len(requests) == len(answers) == 1 and not look.moment.reports and not look.record.begins
+    requests, answers = look.moment.requests, look.record.asked.answers
+    alone = len(requests) == len(answers) == 1 and not look.moment.reports and not look.record.step.begins
     if alone and isinstance(requests[0], OperatorRequest) and not _is_shared(look, requests[0]):
         yield requests[0], answers[0]
 
@@ -83,7 +83,7 @@ def _is_shared(look: Look, request: OperatorRequest) -> bool:
 def _found(look: Look) -> list[CellSnapshot]:
     """The cells as the verb found them: a plant that was away first holds those at work."""
     cells = look.record.before_requests.cells
-    return [_held_after_absence(cell) for cell in cells] if look.record.away else cells
+    return [_held_after_absence(cell) for cell in cells] if look.record.step.away else cells
 
 
 def _held_after_absence(cell: CellSnapshot) -> CellSnapshot:
@@ -121,7 +121,7 @@ def _refused(look: Look, request: OperatorRequest) -> bool | None:
         return True
     if verb in CANNOT:
         return True if all(map(CANNOT[verb], cells)) else None
-    if record.away and verb in (Verb.RESUME, Verb.RETRY) and any(_is_at_a_step(cell) for cell in cells):
+    if record.step.away and verb in (Verb.RESUME, Verb.RETRY) and any(_is_at_a_step(cell) for cell in cells):
         return None  # robots are offline until they are heard again: what became of the step may not be known
     return not any(map(CAN[verb], cells))
 
@@ -153,7 +153,7 @@ def verbs_do_what_they_say(look: Look) -> Iterator[str]:
     """A verb that is not refused is in the journal and has done its work, in its scope and nowhere else."""
     entries = (each for each in look.moment.sent if isinstance(each, Journal) and each.verb is not None)
     journalled = sum(each.outcome is None for each in entries)
-    done = sum(answer.refusal is None for answer in look.record.answers)
+    done = sum(answer.refusal is None for answer in look.record.asked.answers)
     if journalled != done:
         yield f"{done} verbs were done, {journalled} are in the journal"
     for request, answer in _alone(look):

@@ -14,8 +14,8 @@ from arboleda.model.messages import Heartbeat
 from arboleda.model.plant_model import Evidence, Robot
 from arboleda.wire.payloads import StopGoal
 
-from ..record import SLOW_S
 from ..recorded.boards import fields, is_number, on_wire
+from ..recorded.lateness import SLOW_S
 from .invariant import Look, Trigger, invariant
 
 LIMIT_BYTES = 512
@@ -162,24 +162,24 @@ def payload_size(look: Look) -> Iterable[str]:
 @invariant(Trigger.HEARD)
 def published_joints_are_reported(look: Look) -> Iterable[str]:
     """A position that the plant shows is the last one it heard, and its board told it lately."""
-    shown = look.record.shown
+    boards, beliefs = look.record.boards.of_robot, look.world.plant.dispatcher.beliefs
     for report in look.moment.reports:
-        if report.robot in shown:
-            known, _, belief = shown[report.robot]
+        if report.robot in boards:
+            known, belief = look.record.robots[report.robot], beliefs[report.robot]
             if belief.q != known.q or belief.node != known.node:
                 yield f"{report.robot} is shown at {belief.position}, and said {known.q or known.node}"
-    if look.record.anew:
+    if look.record.heard.anew:
         yield from _untold(look)
 
 
 def _untold(look: Look) -> Iterator[str]:
     record = look.record
-    for report in record.anew:
+    for report in record.heard.anew:
         where = report.node if report.q is None else report.q
-        if where is None or report.robot not in record.shown:
+        board = record.boards.of_robot.get(report.robot)
+        if where is None or board is None:
             continue
-        _, board, _ = record.shown[report.robot]
-        if board.has_reported(report.q, report.node, record.reports_from_s(report.at)):
+        if board.has_reported(report.q, report.node, record.lateness.reports_from_s(report.at)):
             continue
         if board.remembers(report.at - SLOW_S):  # else the plant waited longer for its disk than that
             yield f"{report.robot} is reported at {where}, which its board has not told lately"

@@ -19,7 +19,9 @@ from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Delivery, Publication
 
 from ..commands import goal as goal_of
+from ..moment import Moment
 from ..network import Client
+from ..world import World
 
 RECENT = 512  # telemetry messages, more than the bridge or a line keep
 DECIMALS = 4
@@ -157,13 +159,28 @@ class KnownBoard:
 class Boards:
     """All boards by name; `executed`: the commands carried out in this step."""
 
-    def __init__(self, boards: dict[str, KnownBoard]) -> None:
+    def __init__(self, world: World) -> None:
+        robots = {robot.mqtt: robot for robot in world.model.robots.values()}
+        boards = {name: KnownBoard(robots[name], board) for name, board in world.boards.items()}
         self.by_name = boards
         self.of_robot = {board.robot.name: board for board in boards.values()}
         self.executed: list[ExecutedCommand] = []
         self._busy: dict[str, None] = {}  # boards with something in their inbox
         self._hears = {f"{name}/sensores": board.telemetry.append for name, board in boards.items()}
         self._obeys = {topic: name for name in boards for topic in _commands(name)}
+
+    def take_over(self, now: float, beliefs: Mapping[str, Belief]) -> None:
+        """Take over what boards said before this record began."""
+        for name, board in self.of_robot.items():
+            board.take_over(now, beliefs[name])
+
+    def look(self, moment: Moment, clients: dict[str, Client]) -> None:
+        """Take in what reached boards, and what they carry out."""
+        self.deliver(moment.delivered)
+        self.executed.clear()
+        for name, goal in moment.executed:
+            self.executed.append(self.by_name[name].carried_out(goal))
+        self.forget_read(clients)
 
     def deliver(self, delivered: list[tuple[str, Delivery]]) -> None:
         """Messages reached the inboxes of the bridge and of boards."""
@@ -184,10 +201,6 @@ class Boards:
                 if board.boot != board.board.boot_id:
                     board.notice_boot()
                 board.published.append((publication.payload, at))
-
-    def execute(self, name: str, goal: Goal) -> None:
-        """Note that a board carries out a command."""
-        self.executed.append(self.by_name[name].carried_out(goal))
 
     def forget_read(self, clients: dict[str, Client]) -> None:
         """Forget the messages that boards have read: they are no longer new to them."""

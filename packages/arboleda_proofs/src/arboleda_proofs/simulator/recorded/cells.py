@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterable, Iterator
 from operator import attrgetter
 from typing import Any
 
 from py_trees.behaviour import Behaviour
 
 from arboleda.engine import Act, CellRun
+from arboleda.model.cell_states import CellState
 from arboleda.model.plant_model import Cell, Timing
 
 from .starts import turn_of
 from .zone_users import PAUSED, ZoneUser, running
 
+Transition = tuple["KnownCell", CellState, CellState]  # a cell, its state before a step, and after
 LOOK_S = 1.0  # a tree that sends nothing is looked through this often
 
 
@@ -33,7 +35,6 @@ class KnownCell:
 
     def __init__(self, cell: Cell, timing: Timing) -> None:
         self.cell, self.timing = cell, timing
-        self.timing_before = timing  # before this step
         self.name = cell.name
         self.stopped = False
         self.retries = 0
@@ -107,3 +108,32 @@ class KnownCell:
             if isinstance(leaf, Act) and leaf.entry is not None and leaf.entry.command.id in sent:
                 turn = leaf, turn_of(leaf)
                 self.sends[turn] = self.sends.get(turn, 0) + 1
+
+
+class CellStates:
+    """Changes of cells in a step: `transitions` of their states; `idle`: cells with tasks in their queue,
+    which is not paused.
+    """
+
+    def __init__(self, cells: Iterable[KnownCell]) -> None:
+        self.transitions: list[Transition] = []
+        self.idle: list[KnownCell] = []
+        self._cells = tuple(cells)
+
+    def look(self) -> bool:
+        """Take over the states of the cells; True if any of them changed."""
+        changed = False
+        for cell in self._cells:
+            cell.looked, run = False, cell.run
+            cell.wakes = cell.context.time.wakes
+            if cell.signs(run) == cell.last_signs and len(run.queue) == cell.queued:
+                continue
+            before, changed = cell.state, True
+            cell.follow()
+            if cell.state is not before:
+                self.transitions.append((cell, before, cell.state))
+        return changed
+
+    def look_for_idle(self) -> None:
+        idle = [cell for cell in self._cells if cell.queued and cell.state is CellState.IDLE]
+        self.idle = [cell for cell in idle if not cell.paused]

@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 from arboleda.engine import OPEN, Entry, State
 from arboleda.engine.inspection import Ledger
 from arboleda.kinds.declared import WorkCall
 from arboleda.model.commands import Command, Motion, OnStop, Stop, StopMode, Switch, Work
 from arboleda.model.messages import Heartbeat, MotionState, Report, Verb
+from arboleda.model.plant_model import Timing
 
 from .robots import KnownRobot, Obstacle
+
+if TYPE_CHECKING:
+    from .cells import KnownCell
 
 RECENT = 32  # goals per robot that may still be under way to its board
 
@@ -19,16 +25,24 @@ RECENT = 32  # goals per robot that may still be under way to its board
 class SentCommand:
     """One command as it was sent; `state` and `entry` are what the ledger says after each step.
 
-    `obstacles` spoke against it by what the robot had said; `verbs` are what operators asked for on its robot
-    in the same step; `halts` counts the robot's halts and stops before it.
+    `timing` are the times of its cell, which takes no others while one of its commands is open. `obstacles`
+    spoke against it by what the robot had said; `verbs` are what operators asked for on its robot in the same
+    step; `halts` counts the robot's halts and stops before it.
     """
 
     def __init__(
-        self, command: Command, at: float, obstacles: frozenset[Obstacle], verbs: frozenset[Verb], halts: int
+        self,
+        command: Command,
+        at: float,
+        obstacles: frozenset[Obstacle],
+        verbs: frozenset[Verb],
+        halts: int,
+        timing: Timing,
     ) -> None:
         self.command = command
         self.robot = command.robot
         self.at = at
+        self.timing = timing
         self.late_s = 0.0  # between the plant's step and when it left
         self.obstacles = obstacles
         self.verbs = verbs
@@ -45,9 +59,9 @@ class SentCommand:
         self.cancelled_at: float | None = None
         self.before: SentCommand | None = None  # the last one of its robot, a stop or halt left out
 
-    def bind(self, entry: Entry) -> None:
+    def bind(self, entry: Entry, timing: Timing) -> None:
         """Bind it to its entry in the ledger."""
-        self.entry, self.state, self.deadline = entry, State.SENT, entry.deadline
+        self.entry, self.state, self.deadline, self.timing = entry, State.SENT, entry.deadline, timing
 
     def __str__(self) -> str:
         return f"{type(self.command).__name__} {self.command.id} to {self.robot}"
@@ -64,7 +78,8 @@ class Commands:
     of them; `soonest`: the first deadline of all, s.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, cells: Mapping[str, KnownCell]) -> None:
+        self._cells = cells
         self.open: dict[str, SentCommand] = {}
         self.new: list[SentCommand] = []
         self.moved: list[tuple[SentCommand, State | None]] = []
@@ -119,7 +134,7 @@ class Commands:
         for sent in self.new:
             entry = ledger.entries.get(sent.command.id)
             if entry is not None:
-                sent.bind(entry)
+                sent.bind(entry, self._cells[entry.cell].timing)
                 self.open[sent.command.id] = sent
         for sent in self.open.values():
             if sent.entry is not None and sent.entry.state is not sent.state:

@@ -22,21 +22,21 @@ def differences(record: Record) -> list[str]:
 
 def _only_refused(record: Record) -> bool:
     moment, tasks = record.world.moment, record.tasks
-    refused = sum(answer.refusal is not None for answer in record.answers)
+    refused = sum(answer.refusal is not None for answer in record.asked.answers)
     repeated = sum(change.answer for change in tasks.changes)
     return not moment.reports and refused + repeated + tasks.refused == len(moment.requests)
 
 
 def _something_was_due(record: Record) -> bool:
     now = record.world.plant.now
-    if record.away or record.begins:  # what an earlier start left is found in the first step
+    if record.step.away or record.step.begins:  # what an earlier start left is found in the first step
         return True
     # an arm whose tree has ended gives its zones back in the next step, whatever happens in that
     if any(isinstance(each, Remember) and each.fact is Fact.QUARANTINE for each in record.world.moment.sent):
         return True
     if any(cell.woke() for cell in record.cells.values()):
         return True
-    if any(record.stepped_at < robot.stale_at <= now for robot in record.robots.values()):
+    if any(record.step.at < robot.stale_at <= now for robot in record.robots.values()):
         return True
     commands = [*record.commands.open.values(), *(sent for sent, _ in record.commands.moved)]
     return any(sent.entry.next_deadline <= now for sent in commands if sent.entry is not None)

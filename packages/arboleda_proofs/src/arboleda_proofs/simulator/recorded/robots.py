@@ -8,6 +8,7 @@ from collections.abc import Callable
 from copy import copy
 from enum import Enum
 
+from arboleda.engine import Belief
 from arboleda.model.facts import Value
 from arboleda.model.messages import BUILT_IN, MotionState, Report
 from arboleda.model.plant_model import Evidence, Link, Robot
@@ -71,10 +72,15 @@ class KnownRobot:
         self.barred = False  # a command was refused because of a stop that it does not tell
         self.unnamed: str | None = None  # the last command that it was sent, until a report names it
 
-    def take_over(self, reported_at: float | None) -> None:
-        """Take over when it was heard last, before this record began."""
-        self.heard_at = reported_at
-        self.stale_at = math.inf if reported_at is None else reported_at + self._patience_s
+    def take_over(self, belief: Belief) -> None:
+        """Take over what it said before this record began, as the plant believes it."""
+        self.heard_at = belief.heard_at
+        self.stale_at = math.inf if belief.heard_at is None else belief.heard_at + self._patience_s
+        self.state, self.homed = belief.state, belief.homed
+        self.boot, self.epoch, self.plant = belief.boot_id, belief.epoch, belief.plant
+        self.q, self.node = belief.q, belief.node
+        self.numbers.append(belief.number)
+        self.effector, self.piece, self.facts = belief.effector, belief.piece, dict(belief.facts)
 
     def as_it_is(self) -> KnownRobot:
         """A copy that later reports do not change."""

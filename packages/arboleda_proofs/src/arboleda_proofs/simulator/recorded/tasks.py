@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from arboleda.engine import HISTORY
@@ -119,6 +119,28 @@ class Tasks:
         self.changes.append(Change(change, before, answer, first, task.cancelled if task else False))
         if not answer:
             self._follow(change, task, now)
+
+    def cancel(self, scope: str, cells: Sequence[str]) -> list[str]:
+        """Take in a cancel: of a task by its id, or of what runs in each of the cells of the scope and could
+        be cancelled. Return the cells of which it is known that their task is cancelled.
+        """
+        task = self.known(scope.strip().lstrip("#"))
+        if task is not None:
+            task.cancelled = True
+            return [task.cell]
+        for name in cells:
+            running = self.open.get(self.running.get(name, ""))
+            if running is not None and running.cancelled is False:
+                running.cancelled = True if len(cells) == 1 else None
+        return list(cells) if len(cells) == 1 else []
+
+    def may_be_cancelled(self, scope: str, cells: Iterable[str]) -> None:
+        """Take in a cancel, of a task by its id or in these cells, that may or may not have been kept."""
+        named = self.known(scope.strip().lstrip("#"))
+        running = (self.running.get(name, "") for name in cells)
+        for task in [named] if named is not None else [self.open.get(id) for id in running]:
+            if task is not None and task.cancelled is False:
+                task.cancelled = None
 
     def announce(self, cell: str, now: float) -> None:
         """Take in that the tree of a cell's task tells that it starts."""

@@ -1,0 +1,66 @@
+"""Robots that wait for shared zones, and for how long."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from arboleda.engine import Plant
+from arboleda.kinds.joints import MoveJoints
+from arboleda.model.cell_states import CellState
+
+from .cells import KnownCell
+from .commands import Commands, SentCommand
+from .zone_users import ZoneUser
+
+
+class Waiting:
+    """Follows the robots that get into shared zones; `users`: those that wait for some."""
+
+    def __init__(self, cells: Mapping[str, KnownCell]) -> None:
+        self.users: list[ZoneUser] = []
+        self._cells = cells
+        self._requests: tuple[tuple[str, frozenset[str]], ...] = ()
+
+    def look(self, plant: Plant, commands: Commands, seconds: float) -> None:
+        """Look at the zones, before the cells are taken over: each still has its previous state. `seconds`
+        passed since the step before.
+        """
+        requests = plant.zones.queue.waiting
+        if requests != self._requests:
+            self._requests, robots = requests, dict(requests)
+            users = [user for cell in self._cells.values() for user in cell.zone_users.values()]
+            self.users = [user for user in users if user.robot in robots]
+        for user in self.users if seconds <= plant.away_after_s else ():
+            state, behind_work = self._cells[user.cell].state, self._is_behind_work(user, plant, commands)
+            user.wait(seconds, state=state, behind_work=behind_work)
+        self._look_at_recoveries(plant, commands.new)
+
+    def _look_at_recoveries(self, plant: Plant, new: Iterable[SentCommand]) -> None:
+        moves: dict[str, list[SentCommand]] = {}
+        for each in new:
+            if each.entry is not None and each.entry.cancelled_at is None:  # not halted at once
+                of_cell = moves.setdefault(each.entry.cell, [])
+                of_cell += [each] if isinstance(each.command, MoveJoints) else []
+        holders = plant.zones.holders.values()
+        for cell in self._cells.values():
+            for user in cell.zone_users.values():
+                if cell.name in moves:
+                    user.watch_recovery(moves[cell.name])
+                user.holds = user.robot in holders
+
+    def _is_behind_work(self, user: ZoneUser, plant: Plant, commands: Commands) -> bool:
+        """True if all that have, or get earlier, the zones that this robot wants were at work."""
+        zones, before, wanted = plant.zones, set(), dict(self._requests)[user.robot]
+        for arm, asked in self._requests:
+            if arm == user.robot:
+                break
+            if not wanted.isdisjoint(asked):
+                before.add(arm)
+        holders = zones.holders
+        before.update([holders[zone] for zone in wanted if zone in holders])
+        if before:
+            before.difference_update([sent.robot for sent in commands.open.values()])
+            for each in self._cells.values() if before else ():
+                if CellState.EXECUTE in (each.state, each.run.state):
+                    before.difference_update(each.cell.zone_users)
+        return not before and not any(map(zones.is_quarantined, wanted))
