@@ -13,7 +13,6 @@ SOURCES = (ROOT / "src/arboleda", ROOT / "src/arboleda_ros", *sorted((ROOT / "pa
 MOST = 25
 LARGER: Mapping[str, int] = {
     "arboleda_proofs.testing.rig.Rig": 52,
-    "arboleda_drivers.ur.machine.Machine": 51,
     "arboleda.client.plant.AsyncPlant": 45,
     "arboleda.client.plant.Plant": 45,
     "arboleda_proofs.simulator.truth.arm.ArmTruth": 44,
