@@ -171,8 +171,8 @@ RECIPE_BUGS = (
     bug(
         HOLDING,
         "A device is taken in one way of several.",
-        "    return all(certain for _, certain in ways)",
-        "    return any(certain for _, certain in ways)",
+        "    return all(certain for _, certain in branches)",
+        "    return any(certain for _, certain in branches)",
     ),
     bug(
         HOLDING,

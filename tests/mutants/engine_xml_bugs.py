@@ -239,8 +239,8 @@ XML_BUGS = (
     bug(
         STEPS,
         "A step keeps the values of its first turn.",
-        "(found := self.order.values(self.scope)) != (self.anew or self.built):",
-        "not self.anew and (found := self.order.values(self.scope)) != self.built:",
+        "(values := self.order.values(self.scope)) != (self.anew or self.built):",
+        "not self.anew and (values := self.order.values(self.scope)) != self.built:",
     ),
     bug(
         STEPS,

@@ -44,6 +44,6 @@ def test_it_goes_to_the_cell_whose_task_has_come_further() -> None:
 
 
 def test_the_simulator_notices_where_that_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(PastTimes, "left", lambda self, order, steps: 0.0)
+    monkeypatch.setattr(PastTimes, "remaining_s", lambda self, order, steps: 0.0)
     with pytest.raises(BrokenInvariant, match="tasks_go_to_the_best_cell"):
         cell_of_third()

@@ -21,8 +21,9 @@ from arboleda.core.task_queue import TaskQueue
 from arboleda.core.verbs import cancelling
 from arboleda.dispatch import belief, evidence, latches, ledger, obstacles, outlet, time_limits
 from arboleda.dispatch.ledger import TABLE, Feed, State
-from arboleda.kinds.arm import Arm, SetEffector
+from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
+from arboleda.kinds.joints.motion import JointMotion
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command, Home, Stop, StopMode
@@ -649,7 +650,7 @@ def test_no_repeat_has_effect(monkeypatch, bites):
 
 
 def test_wire_targets_legal(monkeypatch, bites):
-    monkeypatch.setattr(Arm, "quantised", lambda self, q: tuple(q))
+    monkeypatch.setattr(JointMotion, "quantised", lambda self, q: tuple(q))
     watch = Watch()
     watch.task(wait_s=15)
     bites(watch)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import ClassVar
 
 from ..floor import Placement
@@ -15,6 +16,8 @@ class Arm(Jointed):
     """Robot of joints that takes and sets down parts with its effector."""
 
     kind_name: str = "arm"
+    twin: str
+    twin_of: ClassVar[attrgetter[str]] = attrgetter("twin")
     base: Placement
     unsaid: ClassVar[tuple[str, ...]] = ("node",)
 

@@ -36,16 +36,16 @@ class Jointed(Robot):
 
     kind_name: str = "axes"
     joints: tuple[Joint, ...] = ()
-    twin: str = ""  # the name under which its joints are published, "": its own
     model: str = ""
     description: Description | None = None  # None: the model comes with arboleda_description
     tolerance: tuple[float, ...] | None = None
     position_key: ClassVar[str | None] = "q"
+    twin_of: ClassVar[attrgetter[str]] = attrgetter("name")  # the name under which its joints are published
     unsaid: ClassVar[tuple[str, ...]] = ("node", "effector", "piece")  # what no report of it has
 
     @cached_property
     def joint_states(self) -> JointStates:
-        twin = self.twin or self.name
+        twin = self.twin_of(self)
         names = tuple(f"{twin}_{joint.name}" for joint in self.joints)
         return JointStates(twin=twin, joints=names, measured=attrgetter("q"))
 
