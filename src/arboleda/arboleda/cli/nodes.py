@@ -11,12 +11,13 @@ from arboleda.bt_xml import leaves, writing
 from arboleda.bt_xml.nodes import Kind, PortDirection
 from arboleda.bt_xml.recipe import own_nodes
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import Phrase
 from arboleda.plant_file import loader
 
 from .language import allowed, say
 from .plant_options import PlantFile
-from .tree import NO_CELL
 
+NO_CELL = Phrase("cli.tree.no_cell", "'{name}' is not a cell; {others}")
 CellName = Annotated[str | None, typer.Option("--cell", help="Only for this cell. [default: for all]")]
 
 

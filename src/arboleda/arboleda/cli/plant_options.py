@@ -13,13 +13,12 @@ from arboleda.plant_file.shipped import shipped_name
 from arboleda.runtime.endpoints import tokens_of
 from arboleda.runtime.state import default_state, find_running, last_run, plants_of_databases, running_plants
 
-from .client import PlantClient
-from .remote_plant import RemotePlant
-
 if TYPE_CHECKING:
     from arboleda.model.plant_model import PlantModel
     from arboleda.store.leadership import Leadership
     from arboleda.store.task_rows import History
+
+    from .client import PlantClient
 
 LONGEST = 500  # characters of a line
 PLANT_VARIABLE = "ARBOLEDA_PLANT"  # of the environment, instead of --plant
@@ -98,6 +97,9 @@ def client(
     plant: Path | None, state: Path | None, store: str = "", tokens: Path | None = None
 ) -> PlantClient:
     """The client of the plant that runs on `state`, or on that plant file's state directory; on any host."""
+    from .client import PlantClient  # loads all answers of a plant, which few of these commands ask for
+    from .remote_plant import RemotePlant
+
     where = located(plant, state)
     elsewhere = RemotePlant(
         where,

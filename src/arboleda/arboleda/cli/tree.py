@@ -22,6 +22,7 @@ from .client import PlantClient
 from .draw import Format, draw
 from .language import allowed, say
 from .misplaced_plant import no_plant_file
+from .nodes import NO_CELL
 from .plant_options import PlantFile, StateFolder, StoreAddress, TokensFile, client
 
 Drawn = Annotated[
@@ -37,7 +38,6 @@ NONE_ANYWHERE = Phrase("cli.tree.none_anywhere", "No {recipe} runs in any cell n
 OTHERS_RUN = Phrase("cli.tree.others_run", "{none}; {others}.")
 NONE_RUNS = Phrase("cli.tree.none_runs", "{none}.")
 RUNS = Phrase("cli.tree.runs", "{cell} runs {recipe}")
-NO_CELL = Phrase("cli.tree.no_cell", "'{name}' is not a cell; {others}")
 
 
 def add_to(cli: typer.Typer) -> None:
