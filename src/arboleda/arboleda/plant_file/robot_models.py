@@ -54,7 +54,8 @@ TO_SI: dict[str, Callable[[float], float]] = {"deg": math.radians, "rad": float,
 class Shape(BaseModel):
     """A mapping of known keys; text is no number and a number no text."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+    # Built when it is used first: a plant file needs few of all shapes.
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, defer_build=True)
 
 
 class RobotFile(Shape):

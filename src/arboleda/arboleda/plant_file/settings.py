@@ -35,7 +35,14 @@ def shape(name: str, settings: type) -> type[Shape]:
     """The shape of the plant file's mapping for these settings."""
     hints = get_type_hints(settings)
     outer = {name: (_outer(hints[name], key[0]), key[1]) for name, key in keys(settings).items()}
-    return create_model(name, __base__=Shape, **outer)  # type: ignore[call-overload, no-any-return]
+    return _built(name, Shape, outer)
+
+
+def _built(name: str, base: type[M], own: dict[str, Any]) -> type[M]:
+    """The shape with these keys too; PydanticSchemaGenerationError for a type that no plant file can give."""
+    made: type[M] = create_model(name, __base__=base, **own)
+    made.model_rebuild()  # not deferred as that of other shapes: it is the type that is looked at here
+    return made
 
 
 def read(document: Document, place: Place, fits: type[Shape], settings: type) -> Any:
@@ -104,7 +111,7 @@ def shape_of_kind(kind: WrittenKind | MovingKind, base: type[M], clash: str) -> 
     taken = next((name for name in own if name in base.model_fields), None)
     if taken is not None:
         raise KindError(clash.format(taken))
-    return create_model(f"Device_{kind.name}", __base__=base, **own)
+    return _built(f"Device_{kind.name}", base, own)
 
 
 def settings_of_kind(kind: WrittenKind | MovingKind, shape: Shape) -> Any:

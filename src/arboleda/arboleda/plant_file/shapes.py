@@ -443,7 +443,7 @@ class ZoneShape(Shape):
     held_while: dict[str, Any] = Field(default_factory=dict)
 
 
-STRICT = ConfigDict(strict=True)
+STRICT = ConfigDict(strict=True, defer_build=True)
 WORDS: TypeAdapter[list[str]] = TypeAdapter(Annotated[list[str], Field(min_length=1)], config=STRICT)
 NODES: TypeAdapter[list[int]] = TypeAdapter(
     Annotated[list[int], Field(min_length=1, max_length=64)], config=STRICT
