@@ -164,6 +164,6 @@ def test_tasks_are_found_by_what_is_asked_for(database: str, plant: str) -> None
     with PostgresMemory(database, plant) as memory, closing(PostgresHistory(database, plant)) as history:
         memory.lead.take(1)
         tell_of_four(memory)
-        for select in (memory.tasks, history.select):
+        for select in (memory.tasks.select, history.select):
             found = [(query, [row.id for row in select(query)]) for query, _ in FOUND]
             assert found == FOUND

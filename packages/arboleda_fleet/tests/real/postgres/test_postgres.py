@@ -309,7 +309,7 @@ def test_a_server_that_says_nothing_counts_as_away_and_is_heard_again(
         try:
             with monkeypatch.context() as patch:
                 patch.setattr("arboleda_fleet.postgres.server.ANSWER_S", 1.0)
-                for ask in (lambda: memory.keep(LATCH), memory.renew, others.leader):
+                for ask in (lambda: memory.keep(LATCH), memory.lead.renew, others.leader):
                     with pytest.raises(ArboledaError, match="gave no answer for 1 s"):
                         ask()
         finally:
