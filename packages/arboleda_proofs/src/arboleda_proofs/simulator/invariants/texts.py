@@ -59,7 +59,8 @@ def _wrongly_taken(look: Look, text: str, meant: list[Meaning]) -> Iterator[str]
     full = [each for each in meant if queued[each.cell] >= look.world.offers.cell(each.cell).queue_limit]
     id = meant[0].id
     known = id is not None and id in record.before_requests.ids
-    if not known and refused is not (len(full) == len(meant)):
+    is_ending = look.world.plant.intake.closed
+    if not known and refused is not (is_ending or len(full) == len(meant)):
         word = "refused" if refused else "taken"
         yield f"{text!r} was {word}, so many tasks wait: {queued}"
     allowed = {(each.cell, each.words) for each in meant}
