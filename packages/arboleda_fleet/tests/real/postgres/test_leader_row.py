@@ -13,9 +13,9 @@ from tests.postgres import Server
 from arboleda.departures.leading import LEASE_S, WANTED_S
 from arboleda.model.messages import Fact, Remember
 from arboleda.store.lead import Superseded
+from arboleda_fleet.postgres.lead import LEAD
 from arboleda_fleet.postgres.leader_row import END_LEASE, LAST_SEEN
 from arboleda_fleet.postgres.leadership import PostgresLeadership
-from arboleda_fleet.postgres.lead import LEAD
 from arboleda_fleet.postgres.memory import PostgresMemory
 from arboleda_proofs.simulator.hosts.database import LeaderRow
 
