@@ -8,6 +8,7 @@ from arboleda.model import text
 from arboleda.model.messages import Check
 from arboleda.model.plant_model import Evidence
 from arboleda.sim.starts import supplies_of
+from arboleda.wire.payloads import EffectorGoal
 
 from ..truth.arm import ArmTruth
 from ..truth.grips import Effector, Switching
@@ -51,7 +52,8 @@ def parts_conserved(look: Look) -> Iterator[str]:
         elif arm.holding and not arm.was_holding and not _lies_ready(arm):
             yield f"{name} holds a part where none lay"
         calm = not world.faults_active and world.last_fault_at < world.now
-        if arm.was_holding and not arm.holding and arm.on and calm and not arm.taken_away:
+        is_lost = arm.was_holding and not arm.holding and arm.on and calm and not arm.taken_away
+        if is_lost and not _was_let_go(arm):
             yield f"{name} loses its part with its effector on"
 
 
@@ -130,6 +132,11 @@ def _is_excused(look: Look, switching: Switching) -> bool:
     """True where the plant could not know where an arm stood, or did not give the order."""
     arm = look.truth.grips.effectors[switching.arm].arm
     return switching.outdated or switching.taken_away or look.truth.unseen(arm)
+
+
+def _was_let_go(arm: ArmTruth) -> bool:
+    """True where its board carried out a command to let go in this step; late commands come many at once."""
+    return any(isinstance(act.goal, EffectorGoal) and not act.goal.on for act in arm.acts)
 
 
 def _lies_ready(arm: ArmTruth) -> bool:
