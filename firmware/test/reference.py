@@ -36,7 +36,7 @@ class Reference(Virtual):
         super()._reboot(boot_id)
 
     def _slip(self, joint: str, steps: str) -> None:
-        self.body.lose_steps(int(joint), int(steps))
+        self.body.motors.lose_steps(int(joint), int(steps))
 
     def _drop(self) -> None:
         self.body.lose_piece()
@@ -51,5 +51,5 @@ class Reference(Virtual):
         self.body.stuck = yes == "1"
 
     def _probe(self) -> None:
-        numbers = (*self.body.position, *self.body.true_position, self.board.refusals)
+        numbers = (*self.body.motors.position, *self.body.motors.true_position, self.board.refusals)
         self.said.append(f"{self.now_us} @ " + " ".join(str(number) for number in numbers))
