@@ -119,7 +119,7 @@ class NodeTopics:
             except PayloadError as error:
                 self.refused += 1
                 self._log_seldom(topic, str(error))
-            except Exception:
+            except Exception:  # one broken handler must not silence the other topics
                 self.failures += 1
                 self.log.exception("the handler of %s failed", self._absolute(topic))
 

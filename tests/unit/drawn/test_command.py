@@ -82,3 +82,21 @@ def _is_rich(plant: DrawnPlant) -> bool:
 def test_bad_input_ends_with_2_and_a_sentence(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--faults", "hgih"]) == 2
     assert "'hgih' is neither a file nor a level" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--standby", "--revisions"), "exclude each other"),
+        (("--standby", "--faults", "crashes"), "deaths of its own"),
+        (("--trace", "--seeds", "5"), "for one seed"),
+        (("--record", "x.mcap", "--until-failure"), "for one seed"),
+        (("--seed", "-1"), "argument --seed"),
+    ],
+)
+def test_options_that_exclude_each_other_are_refused(
+    words: tuple[str, ...], sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(words)
+    assert ended.value.code == 2 and sentence in capsys.readouterr().err

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import arboleda
-from arboleda.client.answers.plant import Snapshot
+from arboleda.client.answers.plant import Cell, Robot, Snapshot
+from arboleda.client.answers.tasks import Task
 from arboleda.client.reading import read
 from arboleda.model.messages import Verb
 from arboleda.model.sentence import in_json
@@ -15,6 +17,7 @@ from arboleda.plant_file.loader import load
 from arboleda.web.schema.answers import model_of
 from arboleda_proofs.testing import Rig, shipped
 
+ADDED_BY_THE_SERVER = {"key", "values"}  # of the sentence on a task
 KITTING = Path(arboleda.__file__).parent / "examples/kitting/plant.yaml"
 
 
@@ -22,7 +25,11 @@ def answered(rig: Rig) -> Snapshot:
     """The view as a client has it, once its description was held against it."""
     text = json.dumps(rig.snapshot(), default=in_json)
     model_of(Snapshot).model_validate_json(text, strict=True)
-    snapshot: Snapshot = read(Snapshot, json.loads(text))
+    rows = json.loads(text)
+    for name, kind in (("cells", Cell), ("robots", Robot), ("tasks", Task)):
+        told = {key for row in rows[name] for key in row}
+        assert told >= {each.name for each in fields(kind)} - ADDED_BY_THE_SERVER
+    snapshot: Snapshot = read(Snapshot, rows)
     return snapshot
 
 

@@ -22,6 +22,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.plant_file.user_file import check_new, check_writable
 from arboleda_proofs.campaigns import screen, single_seed
 from arboleda_proofs.campaigns.defaults import CYCLES, LEVEL, SEED, SEEDS
+from arboleda_proofs.campaigns.exclusions import exclusion
 from arboleda_proofs.campaigns.flight import SUFFIX
 from arboleda_proofs.campaigns.plants import Plant, PlantRotation, Plants
 from arboleda_proofs.campaigns.request import Request
@@ -103,7 +104,7 @@ def _plants(options: Namespace) -> Plants:
 
 def _options(typed: Sequence[str] | None) -> Namespace:
     options = parser(__doc__, prog=COMMAND)
-    options.add_argument("--seed", type=int, metavar="N", help=f"the first seed [{SEED}]")
+    options.add_argument("--seed", type=_seed, metavar="N", help=f"the first seed [{SEED}]")
     options.add_argument("--seeds", type=_count, metavar="N", help=f"how many [{SEEDS}]")
     cycles = f"tasks that are ended in each seed, at least [{CYCLES}]"
     options.add_argument("--cycles", type=_count, default=CYCLES, metavar="N", help=cycles)
@@ -120,7 +121,24 @@ def _options(typed: Sequence[str] | None) -> Namespace:
     keeping = "write a plant there: of the one seed, or of the broken one that is shrunk"
     options.add_argument("--keep-plant", type=Path, metavar="DIR", help=keeping)
     options.add_argument("--jobs", type=_count, metavar="N", help="processes [one per processor]")
-    return options.parse_args(typed)
+    chosen = options.parse_args(typed)
+    excluded = exclusion(
+        one_seed=_is_of_one_seed(chosen),
+        seeds=chosen.seeds,
+        until_failure=chosen.until_failure,
+        standby=chosen.standby,
+        revisions=chosen.revisions,
+        faults=chosen.faults,
+    )
+    if excluded is not None:
+        options.error(str(excluded()))
+    return chosen
+
+
+def _seed(word: str) -> int:
+    if (seed := int(word)) < 0:
+        raise ValueError(word)
+    return seed
 
 
 def _count(word: str) -> int:

@@ -490,5 +490,5 @@ async def _found(side: Side, task_id: str) -> Task:
 
 
 def as_task(row: KeptTask) -> Task:
-    """A task of the history as one of the plant."""
-    return read_answer(Task, asdict(row))
+    """A task of the history as one of the plant, without its choice: the history has another sentence."""
+    return read_answer(Task, {**asdict(row), "choice": None})

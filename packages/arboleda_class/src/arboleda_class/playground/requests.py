@@ -1,4 +1,4 @@
-"""What a person has asked a plant for, and the sentences on what became of it."""
+"""Requests of people to a plant, and the sentences on their outcomes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What became of the commands to one device, as its reports tell it, and when a report is due."""
+"""Ends of the commands to one device, as its reports tell them, and when a report is due."""
 
 from __future__ import annotations
 

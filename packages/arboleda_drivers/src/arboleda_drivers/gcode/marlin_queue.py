@@ -84,7 +84,7 @@ class MarlinStop(Halting[Halt]):
 
 
 class Firmware:
-    """What a controller says about its firmware: whether it is Marlin, with a parser that passes lines."""
+    """Firmware of a controller by its own word: whether it is Marlin, with a parser that passes lines."""
 
     def __init__(self, queue: LineQueue) -> None:
         self.has_name = self.has_parser = False

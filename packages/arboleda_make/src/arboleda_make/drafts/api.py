@@ -53,7 +53,7 @@ class DraftApi(Protocol):
 
     @abstractmethod
     def check(self) -> State:
-        """What `arboleda check` finds in the draft: CheckedDraft. It waits for seconds."""
+        """Findings of `arboleda check` in the draft: CheckedDraft. It waits for seconds."""
 
     @abstractmethod
     def keep(self, editor: str, note: str) -> State:

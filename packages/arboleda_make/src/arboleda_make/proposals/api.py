@@ -18,7 +18,7 @@ class ProposalsApi(Protocol):
 
     @abstractmethod
     def base(self) -> State:
-        """What to build on: ProposalBase."""
+        """Files of the plant to build on: ProposalBase."""
 
     @abstractmethod
     def propose(self, wanted: Mapping[str, Any]) -> State:

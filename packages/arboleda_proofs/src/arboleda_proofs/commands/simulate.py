@@ -13,7 +13,8 @@ from arboleda.cli.plant_options import IN_FOLDER, StoreAddress, plant_here
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_new, check_writable
 from arboleda_proofs.campaigns.defaults import CYCLES, LEVEL, SEED, SEEDS
-from arboleda_proofs.simulator.levels import CRASHES, LEVELS
+from arboleda_proofs.campaigns.exclusions import exclusion
+from arboleda_proofs.simulator.levels import LEVELS
 
 HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, and judge every step.
 
@@ -109,16 +110,11 @@ Worker = Annotated[
 ]
 DrawnPlants = Annotated[bool, typer.Option("--drawn-plants", hidden=True)]
 KeepPlant = Annotated[Path | None, typer.Option("--keep-plant", hidden=True)]
-ONE_SEED = Phrase("cli.simulate.one_seed", "--trace and --record are for one seed; choose it with --seed")
 FOR_DEVELOPERS = Phrase(
     "cli.simulate.for_developers",
-    "--drawn-plants and --keep-plant are for developers of Arboleda, in a clone of its repository: type"
-    " tools/drawn-plants instead of arboleda simulate --drawn-plants, or make drawn-campaign",
+    "drawn plants, --drawn-plants and --keep-plant are for developers of Arboleda, in a clone of its"
+    " repository: type tools/drawn-plants instead of arboleda simulate, or make drawn-campaign",
 )
-STANDBY_OR_REVISIONS = Phrase(
-    "cli.simulate.standby_or_revisions", "--standby and --revisions exclude each other"
-)
-OWN_DEATHS = Phrase("cli.simulate.own_deaths", "--standby has deaths of its own: leave out --faults crashes")
 WORKER_ALONE = Phrase(
     "cli.simulate.worker_alone",
     "--worker needs --store, and is one process: not with --jobs, --trace, --record, --until-failure",
@@ -162,12 +158,16 @@ def simulate(
     if drawn_plants or keep_plant is not None:
         raise typer.BadParameter(say(FOR_DEVELOPERS()))
     alone = trace or record is not None
-    if alone and ((seeds or 1) > 1 or until_failure):
-        raise typer.BadParameter(say(ONE_SEED()))
-    if standby and revisions:
-        raise typer.BadParameter(say(STANDBY_OR_REVISIONS()))
-    if standby and faults == CRASHES:
-        raise typer.BadParameter(say(OWN_DEATHS()))
+    excluded = exclusion(
+        one_seed=alone,
+        seeds=seeds,
+        until_failure=until_failure,
+        standby=standby,
+        revisions=revisions,
+        faults=faults,
+    )
+    if excluded is not None:
+        raise typer.BadParameter(say(excluded()))
     request = Request(
         plant=plant,
         plant_here=plant_here(None),
@@ -180,6 +180,8 @@ def simulate(
         standby=standby,
         revises=revisions,
     )
+    if request.faults_file is not None and "plant_file" in request.faults_file.broken:
+        raise typer.BadParameter(say(FOR_DEVELOPERS()))
     if worker and (not store or alone or until_failure or jobs is not None):
         raise typer.BadParameter(say(WORKER_ALONE()))
     if json is not None:

@@ -25,7 +25,6 @@ from arboleda.model.messages import (
 )
 
 from .recorded.acts import Acts
-from .recorded.asked import Asked
 from .recorded.boards import Boards
 from .recorded.bridge import Bridges
 from .recorded.cells import CellStates, KnownCell
@@ -37,6 +36,7 @@ from .recorded.foreign import ForeignCommands
 from .recorded.heard import Heard
 from .recorded.kept_facts import KeptFacts
 from .recorded.lateness import Lateness
+from .recorded.operator_requests import OperatorRequests
 from .recorded.operator_stops import OperatorStops
 from .recorded.plant_step import PlantStep
 from .recorded.proofs import Proofs
@@ -75,7 +75,7 @@ class Record:
         self.cells = {cell.name: KnownCell(cell, model.timing) for cell in model.cells}
         self.scopes = Scopes(model)
         self.step = PlantStep(at=plant.now)
-        self.asked = Asked(self.scopes)
+        self.operator_requests = OperatorRequests(self.scopes)
         self.acts = Acts()
         self.stops = OperatorStops(model, self.scopes, self.robots, self.cells)
         self.unattended = Unattended(model, self.scopes)
@@ -217,7 +217,7 @@ class Record:
         if moment.reports:
             self.heard.hear(moment, self.commands, self.proofs)
         if moment.requests:
-            self.asked.hear(moment.requests)
+            self.operator_requests.hear(moment.requests)
         if moment.requests or self.teachers.taught or self.teachers.was:
             self.teachers.look(moment.requests, moment.sent)
         self.facts.begin_step()
@@ -238,7 +238,7 @@ class Record:
     def _take_last_words(self) -> None:
         """Take in what a plant said in the step in which it died, of which the rest is unknown."""
         words = self.world.moment.last_words
-        requests = self.asked.hear_last(words)
+        requests = self.operator_requests.hear_last(words)
         self._take(words)
         for request in requests:  # its effects may be kept, though nobody was told
             if request.verb is Verb.RETRY:
@@ -253,7 +253,7 @@ class Record:
         self._clear_news()
         self.facts.restore(self.world.plant_process.found.facts)
         kept = self.facts.now.get(Fact.LATCH, {})
-        self.stops.find(kept, self.asked.unanswered)
+        self.stops.find(kept, self.operator_requests.unanswered)
         if words:
             self.stops.take_over(kept)
             for each in self.commands.open.values():
@@ -264,7 +264,7 @@ class Record:
         self.commands.clear_news()
         self.unattended.clear_news()
         self.tasks.clear_news()
-        self.asked.answers.clear()
+        self.operator_requests.answers.clear()
         self.errors.clear()
         self.states.transitions.clear()
         self.differences.clear()
@@ -276,7 +276,7 @@ class Record:
         has_requests = bool(self.world.moment.requests)
         if has_requests:
             self.differences += differences(self)
-            self.asked.end_step()
+            self.operator_requests.end_step()
         if self.world.model.zones:
             self.waiting.look(plant, self.commands, plant.now - self.step.at)
         changed = self.states.look()
@@ -284,7 +284,7 @@ class Record:
         if changed or self.step.born:
             self.times.look(self.cells.values(), plant.now)
             self.states.look_for_idle()
-        tasks, answers = self.tasks, self.asked.answers
+        tasks, answers = self.tasks, self.operator_requests.answers
         late = self.commands.soonest <= plant.now
         news = moved or has_requests or changed or late or self.step.born or bool(tasks.changes)
         spoken = tasks.changes or tasks.refused or answers or self.states.transitions
@@ -312,7 +312,7 @@ class Record:
         return moved
 
     def _look_at_trails(self) -> None:
-        answers = self.asked.answers
+        answers = self.operator_requests.answers
         if self.trails.found or self.trails.wrong:
             retried = Verb.RETRY in [each.verb for each in answers]
             self.trails.look(self.cells, self.states.transitions, retried=retried)
@@ -321,8 +321,8 @@ class Record:
 
     def _on_command(self, command: Command) -> None:
         known, now, moment = self.robots[command.robot], self._plant.now, self.world.moment
-        verbs = self.asked.done(command.robot, moment.sent)
-        self.unattended.judge(command, self.asked, homes_at_start=known.robot.home_at_start)
+        verbs = self.operator_requests.done(command.robot, moment.sent)
+        self.unattended.judge(command, self.operator_requests, homes_at_start=known.robot.home_at_start)
         if isinstance(command, Stop):
             obstacles = NO_OBSTACLES
             verbs |= self.stops.missed(command, known, verbs, now)
@@ -342,7 +342,7 @@ class Record:
             self.unattended.give_task(change.cell or "")
 
     def _on_answer(self, answer: OperatorAnswer) -> None:
-        request = self.asked.take(answer)
+        request = self.operator_requests.take(answer)
         self.acts.take(request, self._acted_on(request), is_refused=answer.refusal is not None)
         if answer.refusal is not None:
             return

@@ -136,7 +136,7 @@ def test_what_was_refused_changes_nothing(world, record):
     verb(world, Verb.RESET)
     assert record.robots["ra1"].stop is None
     assert not record.cells["sis_a"].stopped
-    assert [answer.verb for answer in record.asked.answers] == []
+    assert [answer.verb for answer in record.operator_requests.answers] == []
 
 
 def test_the_stop_of_one_robot_stops_its_cell(world, record):

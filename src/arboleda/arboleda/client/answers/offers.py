@@ -1,4 +1,4 @@
-"""What a plant offers: recipes of cells, promises for a task, OEE, the level of assistants, faults."""
+"""Offers of a plant: recipes of cells, promises for a task, OEE, the level of assistants, faults."""
 
 from __future__ import annotations
 

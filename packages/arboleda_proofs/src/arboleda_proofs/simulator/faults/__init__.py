@@ -57,7 +57,7 @@ OF_BOARDS = {name: kind for name, kind in KINDS.items() if isinstance(kind, Boar
 """The kinds that need boards and their connections alone, and so can befall those of a real start."""
 
 OF_DEVICES = tuple(kind.name for kind in devices.KINDS)
-"""The kinds that befall devices of declared kinds alone: nobody in the packaged plants and in drawn ones."""
+"""The kinds that befall devices of declared kinds alone: nobody in the packaged plants."""
 
 OF_WORK = tuple(kind.name for family in (devices, effectors, sensors) for kind in family.KINDS)
 """The kinds in which a device or an effector does its work badly, or says so falsely."""

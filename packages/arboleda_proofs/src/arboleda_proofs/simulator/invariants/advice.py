@@ -25,7 +25,7 @@ def advice_leads_out(look: Look) -> Iterator[str]:
 def refusals_are_foretold(look: Look) -> Iterator[str]:
     """The refusal of a verb, or that it is not refused, is foretold just as it is answered then."""
     for request, foretold in look.record.before_requests.foretold:
-        (answer,) = look.record.asked.answers
+        (answer,) = look.record.operator_requests.answers
         if answer.refusal != foretold:
             verb = f"{request.verb.value} {request.scope!r}"
             yield f"{verb} was answered with {answer.refusal}, foretold was {foretold}"

@@ -220,7 +220,11 @@ def an_answer_is_to_its_question(look: Look) -> Iterator[str]:
 @invariant(Trigger.ASKED)
 def offered_answers_are_accepted(look: Look) -> Iterator[str]:
     """An answer that a question offers is accepted from whoever gives it while that question is open."""
-    refused = {each.scope for each in look.record.asked.answers if each.verb is Verb.ANSWER and each.refusal}
+    refused = {
+        each.scope
+        for each in look.record.operator_requests.answers
+        if each.verb is Verb.ANSWER and each.refusal
+    }
     for request in look.moment.requests if refused else ():
         if not isinstance(request, OperatorRequest) or request.verb is not Verb.ANSWER:
             continue

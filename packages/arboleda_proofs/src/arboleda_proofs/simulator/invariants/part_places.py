@@ -109,7 +109,7 @@ def _is_known(look: Look, cell: str) -> bool:
 
 def _is_calm(look: Look) -> bool:
     """True as long as nothing has gone wrong."""
-    return look.world.last_fault_at == -math.inf and look.record.asked.undisturbed
+    return look.world.last_fault_at == -math.inf and look.record.operator_requests.undisturbed
 
 
 def _hands(look: Look, cell: Cell) -> list[str]:

@@ -97,7 +97,7 @@ def ended_tasks_stay_ended(look: Look) -> Iterable[str]:
     for change in look.record.tasks.changes:
         if not change.answer and change.before in ENDED:
             yield f"task {change.message.task} had ended, and became {change.message.state.value}"
-    for answer in look.record.asked.answers:
+    for answer in look.record.operator_requests.answers:
         if answer.verb is Verb.CANCEL and answer.refusal is None and _had_ended(look, answer):
             yield f"to cancel {answer.scope}, which had ended, was not refused"
 
@@ -252,7 +252,7 @@ def _causes(look: Look, cell: KnownCell) -> frozenset[Cause]:
 def _verbs(look: Look, cell: KnownCell) -> Iterator[Verb]:
     """The verbs done in this step whose scope has the cell, or is no robot and so may be its task."""
     scopes = look.record.scopes
-    for answer in look.record.asked.answers:
+    for answer in look.record.operator_requests.answers:
         if answer.refusal is None and (answer.scope not in scopes or cell.name in scopes.cells(answer.scope)):
             yield answer.verb
 
@@ -318,8 +318,8 @@ def every_request_is_answered(look: Look) -> Iterable[str]:
     """Each task text and each verb has its answer in the step that takes it in."""
     record, requests = look.record, look.moment.requests
     verbs = sum(isinstance(each, OperatorRequest) for each in requests)
-    if verbs != len(record.asked.answers):
-        yield f"{verbs} verbs were asked for, {len(record.asked.answers)} answered"
+    if verbs != len(record.operator_requests.answers):
+        yield f"{verbs} verbs were asked for, {len(record.operator_requests.answers)} answered"
     tokens = [each.request for each in requests if isinstance(each, TaskRequest) and each.request is not None]
     answered = [each.request for each in look.moment.sent if isinstance(each, TaskChanged)]
     if tokens != [token for token in answered if token is not None]:
@@ -368,7 +368,7 @@ def no_task_fails_without_a_fault(look: Look) -> Iterable[str]:
     up, an answer.
     """
     world, record = look.world, look.record
-    if world.last_fault_at > -math.inf or world.recipes or not record.asked.undisturbed:
+    if world.last_fault_at > -math.inf or world.recipes or not record.operator_requests.undisturbed:
         return
     for change in record.tasks.changes:
         if change.message.state is TaskState.FAILED and not _may_fail(look, change.message):

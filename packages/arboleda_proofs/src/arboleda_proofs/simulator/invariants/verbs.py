@@ -69,7 +69,7 @@ def _alone(look: Look) -> Iterator[tuple[OperatorRequest, OperatorAnswer]]:
     """The verb of a step and its answer, if nothing but an absence came before it in that step. A plant's
     first step has none, as the plant looks there first what became of the tasks that it found.
     """
-    requests, answers = look.moment.requests, look.record.asked.answers
+    requests, answers = look.moment.requests, look.record.operator_requests.answers
     alone = len(requests) == len(answers) == 1 and not look.moment.reports and not look.record.step.begins
     if alone and isinstance(requests[0], OperatorRequest) and not _is_shared(look, requests[0]):
         yield requests[0], answers[0]
@@ -153,7 +153,7 @@ def verbs_do_what_they_say(look: Look) -> Iterator[str]:
     """A verb that is not refused is in the journal and has done its work, in its scope and nowhere else."""
     entries = (each for each in look.moment.sent if isinstance(each, Journal) and each.verb is not None)
     journalled = sum(each.outcome is None for each in entries)
-    done = sum(answer.refusal is None for answer in look.record.asked.answers)
+    done = sum(answer.refusal is None for answer in look.record.operator_requests.answers)
     if journalled != done:
         yield f"{done} verbs were done, {journalled} are in the journal"
     for request, answer in _alone(look):

@@ -9,8 +9,8 @@ from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.plant_model import PlantModel
 
-from .asked import NO_VERBS
 from .cells import KnownCell
+from .operator_requests import NO_VERBS
 from .robots import STOPS, KnownRobot, StopProgress
 from .scopes import Scopes
 

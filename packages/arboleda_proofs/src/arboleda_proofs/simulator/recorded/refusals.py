@@ -22,7 +22,7 @@ def differences(record: Record) -> list[str]:
 
 def _only_refused(record: Record) -> bool:
     moment, tasks = record.world.moment, record.tasks
-    refused = sum(answer.refusal is not None for answer in record.asked.answers)
+    refused = sum(answer.refusal is not None for answer in record.operator_requests.answers)
     repeated = sum(change.answer for change in tasks.changes)
     return not moment.reports and refused + repeated + tasks.refused == len(moment.requests)
 

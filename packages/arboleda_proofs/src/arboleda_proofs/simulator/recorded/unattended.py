@@ -9,8 +9,8 @@ from arboleda.model.commands import Command, Home, Work
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import PlantModel
 
-from .asked import Asked
 from .cells import KnownCell
+from .operator_requests import OperatorRequests
 from .scopes import Scopes
 from .tasks import Tasks
 
@@ -62,7 +62,7 @@ class Unattended:
         if not self.cells.get(cell, True):
             del self.cells[cell]
 
-    def judge(self, command: Command, asked: Asked, *, homes_at_start: bool) -> None:
+    def judge(self, command: Command, asked: OperatorRequests, *, homes_at_start: bool) -> None:
         """Note a command that moves something in a cell for which nobody has asked for anything since.
 
         A request for one robot of a cell may move the other: `abandon` of the mobile brings the arm home.

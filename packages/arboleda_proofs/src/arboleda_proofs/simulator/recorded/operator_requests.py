@@ -12,7 +12,7 @@ from .scopes import Scopes
 NO_VERBS: frozenset[Verb] = frozenset()
 
 
-class Asked:
+class OperatorRequests:
     """Verbs of one step, with the `answers` of the plant; `unanswered`: those that have none yet, in order.
 
     `cancels_a_task`: somebody cancels a task by its id. `undisturbed`: no operator has asked for anything
