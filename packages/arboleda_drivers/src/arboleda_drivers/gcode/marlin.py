@@ -83,7 +83,8 @@ class Marlin(GcodeController):
         self._work: Move | Homing | None = None
 
     def greet(self, now: float) -> None:
-        self.out.append(written(""))  # what was left of a line that was torn ends here, and takes no stop
+        # What is left of a line that was torn ends here, and takes no stop with it.
+        self.out.append(written(""))
         if self.has_leftover:
             self.has_leftover = False
             self.stops.say(now, Halt.QUICK)

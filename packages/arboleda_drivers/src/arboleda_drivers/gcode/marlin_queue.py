@@ -1,4 +1,4 @@
-"""Lines to Marlin: one after another, each with its answer, and those that pass them."""
+"""Lines to Marlin: one after another, each with its answer, and stops that pass them."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class LineQueue:
         self._number += 1
 
     def ask_at_once(self, line: str) -> None:
-        """Ask without a number: the line passes those that were lost or are not read yet."""
+        """Ask without a number. Stops pass lines that were lost or are not read yet; other lines wait."""
         self.unanswered.append(line)
         self._out.append(written(line))
 

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from typing import Any
 
 from arboleda.model.outside import plain
+from arboleda_drivers.connections.link import LinkBroken
 from arboleda_drivers.connections.receipts import Receipts
 from arboleda_drivers.connections.replies_due import RepliesDue
 
 from .port_data import DASHBOARD, Send
-from .rtde import NotRtde
 
 ASK_S = 1.0  # period of the question whether it is in remote control
 LOCAL = "local_control"
@@ -46,12 +46,12 @@ class Dashboard:
     def hear(self, now: float, data: bytes) -> None:
         *lines, self._rest = (self._rest + data).split(b"\n")
         if len(self._rest) > LONGEST_LINE:
-            raise NotRtde("a reply of its dashboard does not end")
+            raise LinkBroken("a reply of its dashboard does not end")
         for line in lines:
             text = plain(line.decode("utf-8", "replace").strip(), 200)
             due = self.due.pop()
             if due is None:
-                raise NotRtde(f"its dashboard says {text[:60]!r}, and nobody asked")
+                raise LinkBroken(f"its dashboard says {text[:60]!r}, and nobody asked")
             due.take(now, text)
 
     def ask_control(self, now: float) -> None:
@@ -65,7 +65,7 @@ class Dashboard:
         was, self.is_local = self.is_local, reply.lower().startswith("false")
         self._receipts.news = self._receipts.news or was is not self.is_local
         if self.is_read_only and not self.is_local:
-            raise NotRtde("it is in remote control again, which takes a new connection")
+            raise LinkBroken("it is in remote control again, which takes a new connection")
 
     def rejects(self, id: str) -> bool:
         """True where a command is rejected, as the controller is in local control."""
@@ -76,4 +76,4 @@ class Dashboard:
 
 def _check_greeting(now: float, reply: str) -> None:
     if GREETING not in reply:
-        raise NotRtde(f"its dashboard greets with {reply[:60]!r}")
+        raise LinkBroken(f"its dashboard greets with {reply[:60]!r}")
