@@ -94,7 +94,7 @@ def talking(side: Callable[..., Side]) -> tuple[Side, Side]:
     """Plant and bridge, matched both ways."""
     bridge, orchestrator = side("bridge"), side("orchestrator")
     eventually(lambda: orchestrator.node.count_subscribers("station/order"))
-    for publisher in orchestrator.port._commands.values():
+    for publisher in orchestrator.port.commands.plain.values():
         eventually(publisher.get_subscription_count)
     eventually(bridge.port._voices["station"].status.get_subscription_count)
     return orchestrator, bridge
@@ -145,7 +145,7 @@ def test_a_device_that_speaks_ros_2_itself_is_told_orders_and_one_behind_a_drive
     model = PlantModel(name="lab", cells=(replace(cell, members=(("station", spoken),)),))
     orchestrator, device = side("orchestrator", model), side()
     orders = device.hear(String, "station/order")
-    publisher = orchestrator.port._commands["station", VerbCall]
+    publisher = orchestrator.port.commands.plain["station", VerbCall]
     eventually(lambda: publisher.get_subscription_count() == 2)  # one of them its own
     orchestrator.port.send(WARM)
     (told,) = eventually(lambda: orders)  # type: ignore[misc]

@@ -140,7 +140,7 @@ def pair(links) -> SimpleNamespace:
     """The two parts as two processes would have them: a link each, matched both ways."""
     bridge, orchestrator = Side(links(), "bridge", PLANT), Side(links(), "orchestrator", PLANT)
     eventually(lambda: orchestrator.node.count_subscribers("ra1/joint_goals_q"))
-    for publisher in orchestrator.port._commands.values():
+    for publisher in orchestrator.port.commands.plain.values():
         eventually(publisher.get_subscription_count)
     eventually(orchestrator.port._heartbeat.get_subscription_count)
     for voice in bridge.port._voices.values():
@@ -289,7 +289,7 @@ def test_who_listens_beside_the_bridge_hears_copies(pair, links):
     person = Stranger(links(), "person")
     goals = person.hear(Float32MultiArray, "/ra1/joint_goals_q")
     grips = person.hear(UInt8, "/ra1/effector_cmd")
-    commands = pair.orchestrator.port._commands
+    commands = pair.orchestrator.port.commands.plain
     eventually(lambda: commands["ra1", MoveJoints].get_subscription_count() == 2)
     eventually(lambda: commands["ra1", SetEffector].get_subscription_count() == 2)
     grip = SetEffector(id="7-3", robot="ra1", on=True)

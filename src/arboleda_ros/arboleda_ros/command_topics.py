@@ -28,7 +28,8 @@ class NoBridge(ArboledaError):
 
 
 class CommandTopics:
-    """Topics of the commands to `robots`; `labelled` are those that bridges listen to, by robot.
+    """Topics of the commands to `robots`; `labelled` are those that bridges listen to, by robot, and
+    `plain` those of plain goals, by robot and class of command.
 
     `on_event` is told of commands that somebody else gives to a robot which hears everybody.
     """
@@ -49,7 +50,7 @@ class CommandTopics:
         self.labelled = {
             robot.name: speak(*convert.ordered(robot)) for robot in robots if robot.link is Link.MQTT
         }
-        self._commands = {
+        self.plain = {
             (robot.name, kind): self._plain(robot, kind, speak)
             for robot in robots
             for kind in convert.commands_of(robot)
@@ -82,7 +83,7 @@ class CommandTopics:
         Raises NoBridge if a command for MQTT would reach nobody.
         """
         key = (command.robot, kind_of(command))
-        plain, labelled = self._commands[key], self.labelled.get(command.robot)
+        plain, labelled = self.plain[key], self.labelled.get(command.robot)
         if labelled is None:
             self._speak_plainly(command, key)
             return
@@ -111,7 +112,7 @@ class CommandTopics:
         own = self._own.get(key)
         if own is not None:
             own.say(message)
-        self._commands[key].publish(message)
+        self.plain[key].publish(message)
 
     def _on_command(self, robot: Robot, kind: type[Command], message: Any) -> None:
         """Take a command on a topic of a robot that hears everybody: the plant's own, or somebody else's."""

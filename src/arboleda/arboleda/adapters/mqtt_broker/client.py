@@ -54,12 +54,12 @@ class Client(asyncio.BufferedProtocol):
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.Transport)
         self._transport = transport
+        self._outbox = Outbox(transport, self.cut)  # the end of a connection needs it, whatever raises here
         sock = transport.get_extra_info("socket")
         # asyncio sets it only on sockets that it made itself
         sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
-        self._outbox = Outbox(transport, self.cut)
         self._silence.watch(limits.HELLO_S)
         self._sessions.came(self)
 

@@ -18,7 +18,7 @@ LOG = logging.getLogger(__name__)
 
 
 class Receiver(Protocol):
-    """Client, as far as the router needs to know it."""
+    """Outbox of a client, as far as the router needs to know it."""
 
     def __hash__(self) -> int: ...
     def send(self, message: Message) -> None: ...

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from operator import attrgetter
 from typing import ClassVar
 
 from ..floor import Placement
@@ -17,7 +16,7 @@ class Arm(Jointed):
 
     kind_name: str = "arm"
     twin: str
-    twin_of: ClassVar[attrgetter[str]] = attrgetter("twin")
+    published_by: ClassVar[str] = "twin"
     base: Placement
     unsaid: ClassVar[tuple[str, ...]] = ("node",)
 

@@ -40,12 +40,12 @@ class Jointed(Robot):
     description: Description | None = None  # None: the model comes with arboleda_description
     tolerance: tuple[float, ...] | None = None
     position_key: ClassVar[str | None] = "q"
-    twin_of: ClassVar[attrgetter[str]] = attrgetter("name")  # the name under which its joints are published
+    published_by: ClassVar[str] = "name"  # the attribute whose text names its joints in public
     unsaid: ClassVar[tuple[str, ...]] = ("node", "effector", "piece")  # what no report of it has
 
     @cached_property
     def joint_states(self) -> JointStates:
-        twin = self.twin_of(self)
+        twin: str = getattr(self, self.published_by)
         names = tuple(f"{twin}_{joint.name}" for joint in self.joints)
         return JointStates(twin=twin, joints=names, measured=attrgetter("q"))
 

@@ -256,8 +256,9 @@ class Orchestrator:
             return
         request = self.stops.open(request)
         self.loop.post(request)
+        # Where the thread is free, the step that takes the stop sends it first.
         if self.loop.busy and self.keeping.leads_for_certain:
-            self.stops.leave_beside(request)  # a step that has taken it sends its stops first
+            self.stops.leave_beside(request)
 
     def halt(self) -> None:
         """Halt whatever moves, accept nothing more, and wait for nothing."""
