@@ -23,7 +23,8 @@ DONE_UNKEPT = Phrase(
     "{verb} {scope} is done, and the plant has not kept it ({why}); a restart would not know of it",
 )
 TAKEN_UP_LATER = Phrase(
-    "act.taken_up_later", "{verb} {scope} has reached the plant, which has not done it yet ({why}); look again"
+    "act.taken_up_later",
+    "{verb} {scope} has reached the plant, which has not done it yet ({why}); look again",
 )
 WORTH_TELLING_S = 0.02  # a commit takes a few ms
 EVERYTHING = Phrase("stop.everything", "the whole plant")
