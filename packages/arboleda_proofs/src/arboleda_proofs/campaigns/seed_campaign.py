@@ -126,8 +126,8 @@ class SeedCampaign:
         assert broken.broken is not None
         plant = self._request.plants.of(broken.seed)
         must_hold = rules(plant).get(broken.broken.invariant, broken.broken.invariant)
-        few = f"{counted(len(broken.faults), 'fault')} to {len(best.faults)} so far, {counted(runs, 'run')}"
-        return f"{few}, still breaks: {must_hold}"
+        drawn, few = counted(len(broken.faults), "fault"), len(best.faults)
+        return f"{drawn} to {few} so far, {counted(runs, 'run')}, still breaks: {must_hold}"
 
     def _report(self) -> None:
         tally = self._tally
