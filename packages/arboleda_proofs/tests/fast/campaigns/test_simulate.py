@@ -262,6 +262,7 @@ def test_ctrl_c_says_what_was_done_so_far(
     assert arboleda("--seed", 3, "--trace") == Ended(130, "interrupted\n", "")
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("brittle")
 def test_ctrl_c_while_shrinking_tells_the_fewest_faults_so_far(
     arboleda: Arboleda, faults: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -309,6 +310,7 @@ def test_progress_is_told_within_a_seed(plant: Path) -> None:
     assert "simulating: " not in quiet
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("brittle")
 def test_what_shrinking_has_so_far_is_told(plant: Path, faults: Path) -> None:
     said = campaign(plant, faults, 3.0)
