@@ -301,6 +301,7 @@ def campaign(plant: Path, faults: object, second: float) -> str:
     return console.file.getvalue()
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("arboleda")
 def test_progress_is_told_within_a_seed(plant: Path) -> None:
     lines = [line for line in campaign(plant, "none", 0.5).splitlines() if line.startswith("simulating: ")]
