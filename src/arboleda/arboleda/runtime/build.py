@@ -8,7 +8,6 @@ import threading
 import time
 from collections.abc import Callable, Collection
 from datetime import datetime, timezone
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -94,8 +93,6 @@ class App:
             now = datetime.now(timezone.utc).isoformat(timespec="seconds")
             files = options.recording.files if options.recording else None
             at_work.keep(self._holdings.state.path, files, now)
-        if "web" in parts and options.page:
-            import_module("arboleda.dashboard.page")  # takes longer than a leader may say nothing
         return Assembly(
             model=self.model,
             parts=parts,

@@ -12,6 +12,18 @@ MOST_YOUNG = 10_000  # objects at which Python collects by itself, as where the 
 SHARE = 0.01  # of the time for collections of everything, at most: one of a large plant takes 0.1 s
 
 
+def leave_out() -> None:
+    """Leave what there is by now out of all collections that come."""
+    gc.collect()
+    gc.freeze()
+
+
+def leave_out_more() -> None:
+    """Do it again for what was loaded later, in a process that does it at all."""
+    if gc.get_freeze_count():
+        leave_out()
+
+
 class Garbage:
     """Garbage: collects once a step is over and its commands have left, as often as Python would.
 
@@ -28,8 +40,7 @@ class Garbage:
         """Begin; without steps Python collects as ever."""
         if gc.get_freeze_count():  # whoever runs this process has seen to it
             return
-        gc.collect()
-        gc.freeze()
+        leave_out()
         if has_steps:
             gc.set_threshold(MOST_YOUNG, *self._often[1:])
         self._runs = True
