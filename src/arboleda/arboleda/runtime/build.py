@@ -13,6 +13,7 @@ from typing import Any
 
 from arboleda.adapters import descriptors
 from arboleda.engine import Plant
+from arboleda.host.garbage import none_collected
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import TaskChanged
 from arboleda.model.plant_model import PlantModel
@@ -226,4 +227,5 @@ def build(model: PlantModel, parts: Collection[str], options: Options) -> App:
     alarms = options.of(AlarmOptions)
     if alarms is not None:
         alarms.check(model, has_broker=model.has_boards or options.broker is not None)
-    return App(model, wanted, options)
+    with none_collected():
+        return App(model, wanted, options)
