@@ -151,7 +151,6 @@ def make_app(
     routers += [_metrics(counts)] if counts is not None else []
     app.serve(routers)
     app.router.routes.append(NotFound([route for router in routers for route in router.routes]))
-    _read_routes(app)
     return app
 
 
@@ -161,12 +160,6 @@ def answer_in_sentences(app: FastAPI) -> None:
     app.add_exception_handler(HTTPException, refuse)
     app.add_exception_handler(RequestValidationError, refuse_parameter)
     app.add_exception_handler(Exception, own_up)
-
-
-def _read_routes(app: FastAPI) -> None:
-    """Have FastAPI read the included routes now, and not while somebody waits for the first answer."""
-    for route in app.routes:
-        route.matches({"type": "http", "method": "GET", "path": "", "root_path": "", "headers": []})
 
 
 def _metrics(counts: Callable[[], bytes]) -> APIRouter:

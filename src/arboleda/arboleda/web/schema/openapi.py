@@ -55,9 +55,9 @@ class DescribedApp(FastAPI):
         self._routers: list[APIRouter] = []
 
     def serve(self, routers: Sequence[APIRouter]) -> None:
-        """Serve the routes of these routers."""
+        """Serve the routes of these routers, as they are: FastAPI would make each that it includes anew."""
         for router in routers:
-            self.include_router(router)
+            self.router.routes += router.routes
         self._routers += routers
 
     def openapi(self) -> Schema:
