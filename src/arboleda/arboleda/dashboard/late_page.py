@@ -12,7 +12,6 @@ from contextlib import asynccontextmanager, suppress
 from typing import Any
 
 from fastapi import FastAPI
-from starlette.types import Receive, Scope, Send
 
 from arboleda.web.api import answer_in_sentences
 from arboleda.web.routes import LeaveOut
@@ -43,7 +42,7 @@ class LatePage:
         server.mount("/", self)
         server.router.lifespan_context = self._lifespan
 
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         self._want()
         page = await asyncio.shield(asyncio.wrap_future(self._page))
         await page(scope, receive, send)
