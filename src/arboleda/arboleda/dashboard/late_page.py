@@ -18,11 +18,15 @@ from arboleda.web.routes import LeaveOut
 
 from .page_api import WAITING, PageApi, Seen
 
+LATEST_S = (
+    5.0  # by then it is made though a robot is silent: later it would take its time from robots at work
+)
 LOG = logging.getLogger(__name__)
 
 
 class LatePage:
-    """LatePage: ASGI application that is made once every robot is heard, or at the first request for it.
+    """LatePage: ASGI application that is made once every robot is heard, at the first request for it, or
+    after LATEST_S.
 
     Who asks before it is there waits for it. It shows what the plant did meanwhile. `made` is called once it
     is there, in a thread.
@@ -50,7 +54,7 @@ class LatePage:
     def _saw(self, snapshot: dict[str, Any]) -> None:
         """Take in a snapshot, in the plant's thread."""
         self._seen.append((time.time(), snapshot))
-        if len(self._seen) == WAITING or all(robot["online"] for robot in snapshot["robots"]):
+        if all(robot["online"] for robot in snapshot["robots"]):
             self._want()
 
     def _want(self) -> None:
@@ -67,7 +71,8 @@ class LatePage:
         await asyncio.wait([life])
 
     async def _live(self, over: asyncio.Event) -> None:
-        await asyncio.wrap_future(self._wanted)
+        with suppress(asyncio.TimeoutError):
+            await asyncio.wait_for(asyncio.wrap_future(self._wanted), LATEST_S)
         try:
             page = await asyncio.to_thread(self._make)
             async with page.router.lifespan_context(page):
