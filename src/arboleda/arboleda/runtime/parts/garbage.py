@@ -13,12 +13,19 @@ MOST_YOUNG = 50_000  # objects at which Python collects by itself, as where the 
 SHARE = 0.001  # of the time for collections of everything, at most: one of a large plant takes 0.1 s
 
 
+def leave_out_more() -> None:
+    """Leave out what was loaded later, too, in a process that leaves anything out."""
+    if gc.get_freeze_count():
+        gc.freeze()
+
+
 class Garbage:
     """Garbage: collects once a step is over and its commands have left.
 
     What ends is given back without it, trees of tasks as well; left are pages and what exceptions refer to.
     So it collects seldom: no thread of Python runs meanwhile, not even for a stop. `start` leaves out for
-    good what is there by then: a collection of everything would look at every library again.
+    good what is there by then, which is hardly any garbage: a collection of everything would look at every
+    library again.
     """
 
     def __init__(self) -> None:
@@ -30,7 +37,6 @@ class Garbage:
         """Begin; without steps Python collects as ever."""
         if gc.get_freeze_count():  # whoever runs this process has seen to it
             return
-        gc.collect()
         gc.freeze()
         if has_steps:
             gc.set_threshold(MOST_YOUNG, *self._often[1:])
