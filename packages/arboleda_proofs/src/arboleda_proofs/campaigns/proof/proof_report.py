@@ -155,5 +155,6 @@ def verdict(tally: ProofTally, total: int, *, bad_calm: int) -> Text:
         sentence = f"HELD in {of} ({share}): a sample, beginnings of steps first; nothing is proven"
         return Text(sentence, "bold yellow")
     kinds = f" of {counted(len(tally.proof.kinds), 'kind')}" if tally.proof.kinds else ""
-    held = f"HELD: all {counted(total, 'run')}, every single fault{kinds} at every instant"
-    return Text(held, "bold green")
+    where = f"at one instant of each class; --all-instants tries {tally.proof.represented:,}"
+    where = "at every instant" if tally.proof.is_at_every_instant else where
+    return Text(f"HELD: all {counted(total, 'run')}, every single fault{kinds} {where}", "bold green")
