@@ -18,7 +18,7 @@ from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_writable
 
 BUDGET = "10m"
-HELP = f"""Try every single fault at each class of moments of every recipe, and judge each run.
+HELP = f"""Try every single fault at every kind of moment of every recipe, and judge each run.
 
 \b
 arboleda prove                          the plant of this folder, for {BUDGET}

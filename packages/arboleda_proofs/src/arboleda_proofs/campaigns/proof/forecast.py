@@ -26,15 +26,15 @@ class Forecast:
     @property
     def words(self) -> str:
         """How much there is to do, in one line."""
-        recipes = len({(each.scenario.cell, each.scenario.recipe) for each in self.proof.calm})
-        whose = (
-            f"{counted(recipes, 'recipe')}, {'every instant' if self.proof.every else 'classes of instants'}"
+        recipes = counted(
+            len({(each.scenario.cell, each.scenario.recipe) for each in self.proof.calm}), "recipe"
         )
-        kept = f", {self.kept:,} of them kept from before" if self.kept else ""
+        runs, cores = counted(self.proof.total - self.kept, "run"), counted(self.jobs, "core")
         share = self.budget_s / self.seconds if self.seconds else 1.0
         part = f"; --budget is enough for about {share:.0%}" if share < 1.0 else ""
-        runs = f"about {counted(self.proof.total, 'run')}{kept}"
-        return f"{whose}: {runs}, {_time(self.seconds)} on {counted(self.jobs, 'core')}{part}"
+        if self.proof.every:
+            return f"{recipes}, every instant: about {runs}, {_time(self.seconds)} on {cores}{part}"
+        return f"{recipes}, classes of instants: about {runs}, {_time(self.seconds)} on {cores}{part}"
 
     @property
     def seconds(self) -> float:

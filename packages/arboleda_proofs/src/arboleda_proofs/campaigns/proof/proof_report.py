@@ -155,6 +155,11 @@ def verdict(tally: ProofTally, total: int, *, bad_calm: int) -> Text:
         sentence = f"HELD in {of} ({share}): a sample, beginnings of steps first; nothing is proven"
         return Text(sentence, "bold yellow")
     kinds = f" of {counted(len(tally.proof.kinds), 'kind')}" if tally.proof.kinds else ""
-    where = f"at one instant of each class; --all-instants tries {tally.proof.represented:,}"
-    where = "at every instant" if tally.proof.is_at_every_instant else where
-    return Text(f"HELD: all {counted(total, 'run')}, every single fault{kinds} {where}", "bold green")
+    held = f"HELD: all {counted(total, 'run')}, every single fault{kinds} at every instant"
+    if not tally.proof.is_at_every_instant:
+        every = f"{tally.proof.represented:,}"
+        held = (
+            f"HELD: all {counted(total, 'run')}, every single fault{kinds} at one instant of each class; "
+            f"--all-instants tries {every}"
+        )
+    return Text(held, "bold green")

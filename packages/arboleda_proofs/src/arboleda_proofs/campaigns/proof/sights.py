@@ -40,7 +40,7 @@ class Standing:
 
     doing: Mapping[str, tuple[Words, ...]] = field(default_factory=dict)
     saying: Mapping[str, Words] = field(default_factory=dict)
-    state: str = ""
+    state: Words = ()
     grips: Words = ()
 
 
@@ -182,7 +182,7 @@ def standing(plant: Plant, cell: Cell) -> Standing:
     return Standing(
         doing={name: tuple(map(_doing, dispatcher.ledger.of_robot(name))) for name in names},
         saying={name: tuple(dispatcher.beliefs[name].facts.items()) for name in names},
-        state=run.state.value if run.task is None else f"{run.state.value} at a task",
+        state=(run.state.value, run.task is not None),
         grips=tuple((name, grips[name].value) for name in names if name in grips),
     )
 
