@@ -31,7 +31,7 @@ class Forecast:
         )
         runs, cores = counted(self.proof.total - self.kept, "run"), counted(self.jobs, "core")
         share = self.budget_s / self.seconds if self.seconds else 1.0
-        part = f"; --budget is enough for about {share:.0%}" if share < 1.0 else ""
+        part = f"; --budget is enough for about {share:.1%}" if share < 1.0 else ""
         if self.proof.every:
             return f"{recipes}, every instant: about {runs}, {_time(self.seconds)} on {cores}{part}"
         return f"{recipes}, classes of instants: about {runs}, {_time(self.seconds)} on {cores}{part}"

@@ -41,7 +41,7 @@ from .scenario import scenarios
 
 MEND_S = 120.0  # a mend is looked for so long
 CALM_SHARE = 0.5  # of the budget, in which runs without faults begin
-SAID_BY_S = 8.0  # when it is said what is known so far, if that is not all by then
+SAID_BY_S = 6.0  # when it is said what is known so far, if that is not all by then
 Work = TypeVar("Work")
 NOTHING_RUN = 2  # exit status: of nothing it cannot be said that it held
 
