@@ -14,7 +14,7 @@ from typing import NamedTuple
 from arboleda.model.commands import Command, Home, Motion, Position, Process, Query, Switch
 from arboleda.model.facts import Facts, Value, shown
 from arboleda.model.messages import Failure, MotionState, Reason, Report
-from arboleda.model.plant_model import APART_S, Evidence, Robot
+from arboleda.model.plant_model import APART_S, Evidence
 from arboleda.model.sentence import Phrase, Sentence
 
 from .belief import Belief
@@ -98,7 +98,11 @@ def judge(entry: Entry, before: Before | None, belief: Belief, report: Report) -
     if broken is not None or report.at < entry.sent_at:
         return broken
     _look(entry, belief, report)
-    return _device(entry, belief, report) or _progress(entry, belief, report) or _stopping(entry, belief)
+    objection = _device(entry, belief, report) if report.state in OBJECTIONS else None
+    verdict = objection or _progress(entry, belief, report)
+    if verdict is None and entry.cancelled_at is not None and entry.halts:
+        return _stopping(entry, belief)
+    return verdict
 
 
 def _look(entry: Entry, belief: Belief, report: Report) -> None:
@@ -161,9 +165,17 @@ def _failure(entry: Entry, reason: Reason, what: Phrase, **values: str | float |
 
 
 def _broken(entry: Entry, before: Before, belief: Belief, report: Report) -> CommandVerdict | None:
-    link = _broken_link(entry, before, belief, report)
-    ended = _refused(entry, report) or _gave_up(entry, report)
-    return link or ended or _reboot(entry, before, belief, report)
+    """The failure that a report shows; most show none, so that no rule is asked that cannot apply."""
+    verdict = None
+    if report.state is MotionState.NO_LINK or report.epoch != before.epoch:
+        verdict = _broken_link(entry, before, belief, report)
+    if verdict is None and report.rejected is not None:
+        verdict = _refused(entry, report)
+    if verdict is None and report.failed is not None:
+        verdict = _gave_up(entry, report)
+    if verdict is None and (report.boot_id != before.boot_id or belief.robot.evidence is Evidence.JOINTS):
+        verdict = _reboot(entry, before, belief, report)
+    return verdict
 
 
 def _broken_link(entry: Entry, before: Before, belief: Belief, report: Report) -> CommandVerdict | None:
@@ -204,15 +216,8 @@ def _reboot(entry: Entry, before: Before, belief: Belief, report: Report) -> Com
 
 def displaced(before: Before, belief: Belief, report: Report) -> bool:
     """True where a robot that cannot report it must have lost its position: a new boot, or a jump."""
-    if belief.robot.says_homed:
-        return False
     jumped = belief.robot.evidence is Evidence.JOINTS and _jumped(before, belief, report)
     return jumped or rebooted(before, belief, report)
-
-
-def tells_boots_only(robot: Robot) -> bool:
-    """True where only the number of its boot tells that a robot must have lost its position."""
-    return robot.evidence is Evidence.IDS and not robot.says_homed
 
 
 def strayed(before: Before, belief: Belief, report: Report, goal: Position) -> bool:
@@ -241,8 +246,7 @@ def _jumped(before: Before, belief: Belief, report: Report) -> bool:
 
 
 def _device(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | None:
-    if report.state not in OBJECTIONS:
-        return None
+    """The objection of a device that reports one of OBJECTIONS."""
     if report.state is MotionState.FAULT:
         if isinstance(entry.command, Home) and belief.is_cleared_by_homing:
             return None  # homing leads it out of that fault; its driver reports where it cannot
@@ -258,8 +262,7 @@ def _device(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | No
 
 
 def _stopping(entry: Entry, belief: Belief) -> CommandVerdict | None:
-    if entry.cancelled_at is None or not entry.halts:
-        return None
+    """The end of a command that was cancelled, and can be halted."""
     return CommandVerdict(feed=Feed.HALTED) if belief.stillness.still_since(entry.cancelled_after) else None
 
 

@@ -76,7 +76,8 @@ class Obstacles:
         if (busy := self._busy_with(command)) is not None:
             now, before = BUSY_MOVING if isinstance(busy.command, Motion) else BUSY_WORKING
             return Failure(reason=Reason.REJECTED, sentence=(before if was else now)(robot=robot))
-        if not by_hand and (fact := self._open_switch_of(command)) is not None:
+        switches = isinstance(command, Switch) and not by_hand
+        if switches and (fact := self._open_switch_of(command)) is not None:
             now, before = BUSY_SWITCHING
             sentence = (before if was else now)(robot=robot, fact=fact)
             return Failure(reason=Reason.REJECTED, sentence=sentence)
@@ -109,8 +110,6 @@ class Obstacles:
 
     def _open_switch_of(self, command: Command) -> str | None:
         """The fact of a switch that another open command switches, too."""
-        if not isinstance(command, Switch):
-            return None
         entries = self._ledger.of_robot(command.robot)
         if not entries:
             return None

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.messages import Notice
 from arboleda.model.plant_model import Link
@@ -53,7 +51,7 @@ class Outlet:
             return
         number = None if isinstance(command, Stop) else belief.number
         if number is not None or (token is not None and link is Link.DRIVER):
-            command = replace(command, heard=number, token=token)
+            command = command.labelled(heard=number, token=token)
         self._outbox.append(command)
         self._under_way.leaves(command)
         self._unnamed.leaves(command)

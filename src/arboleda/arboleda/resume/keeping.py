@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from py_trees.behaviour import Behaviour
+from py_trees.common import Status
 
 from arboleda.model.commands import Process
 from arboleda.model.messages import Failure
@@ -142,7 +143,9 @@ class Keeping:
         numbers = [
             act.entry.number
             for act in self._run.acts
-            if act.entry is not None and isinstance(act.entry.command, Process)
+            if act.status is Status.RUNNING
+            and act.entry is not None
+            and isinstance(act.entry.command, Process)
         ]
         state = (self._run.rested, holds, cancels, stranded, numbers)
         if state == self._last_state:
@@ -161,7 +164,10 @@ class Keeping:
         context, recovers = self._context, self._run.recovering
         nodes = [] if recovers else self._run.nodes
         told = context.commands.used.union(self._begun.planned.positions)
-        receiving = [] if recovers else context.robots.receiving(told)
+        knowledge = {}
+        for belief, more in () if recovers else context.robots.receiving(told):
+            heard = Knowledge(belief.boot_id, belief.receipt, more, belief.epoch)
+            knowledge[belief.robot.name] = heard
         return Trail(
             begun=self._begun,
             statuses=trail.statuses(nodes),
@@ -170,7 +176,7 @@ class Keeping:
             back={robot: pose.name for robot, pose in context.parts.back.items()},
             origins=sorted(context.parts.origins),
             used=sorted(context.commands.used),
-            knowledge={each.robot.name: Knowledge.of(each, more) for each, more in receiving},
+            knowledge=knowledge,
             grips={} if recovers else context.parts.grips,
             zones={name: sorted(context.zones.held_by(name)) for name in context.cell.interlocked},
             failure=(failure or context.failures.first) if recovers else None,

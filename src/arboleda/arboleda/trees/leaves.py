@@ -240,7 +240,7 @@ class Act(Leaf):
             return self._wait()
         if (obstacle := self._obstacle()) is not None:
             return self._failed(obstacle)
-        if self.entry is not None and self._waits_for_the_robot(self.entry):
+        if self.entry is not None and self.entry.too_early and self._waits_for_the_robot(self.entry):
             return Status.RUNNING
         if self.entry is None or self.entry.open:
             return Status.RUNNING
@@ -278,8 +278,6 @@ class Act(Leaf):
 
         Work that goes on to its end has a deadline of its own, and is waited for until then.
         """
-        if not entry.too_early:
-            return False
         commands, robot = self.context.commands, entry.command.robot
         if not commands.may_come_to_rest(robot):
             self._give()
