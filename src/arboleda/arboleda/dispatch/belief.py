@@ -173,7 +173,11 @@ class Belief:
         self._last, self.lost = report, report.lost
         if self.reports == 1 or not self.online or report.at - self.rate.since >= RATE_S:
             self.rate.count(report.at, self.reports, online=self.online)
-        self.online = self._is_online()
+        self.online = (
+            not (self.stale or self.drawn)
+            and self.state is not MotionState.NO_LINK
+            and (self.heard_at is not None or not self.supervised)
+        )
 
     def _merge_facts(self, facts: Facts) -> None:
         if any(self.facts.get(name) != value for name, value in facts):
@@ -185,11 +189,6 @@ class Belief:
         self.stale = True
         self.stale_at = None
         self.online = False
-
-    def _is_online(self) -> bool:
-        if self.stale or self.state is MotionState.NO_LINK or self.drawn:
-            return False
-        return self.heard_at is not None or not self.supervised
 
     def _hear(self, report: Report) -> None:
         """Take over when and where it was heard; reports are numbered, as two may come at one time."""

@@ -125,7 +125,10 @@ def _rests(entry: Entry, report: Report) -> bool:
 
 
 def _look_at_goal(entry: Entry, belief: Belief, report: Report) -> None:
-    """Note since when every report shows the goal, and how far along its positions the robot was seen."""
+    """Note since when every report shows the goal, and how far along its positions the robot was seen.
+
+    A path that passes its goal earlier has to show all positions before.
+    """
     observed, place = entry.observations, belief.position_in(report)
     if place is None and not _tells(report, entry.sets):
         return
@@ -133,23 +136,20 @@ def _look_at_goal(entry: Entry, belief: Belief, report: Report) -> None:
         observed.place = place
         ahead = entry.positions[observed.passed + 1 :]
         observed.passed += ahead.index(place) + 1 if place in ahead else 0
-    observed.on_goal_since = (observed.on_goal_since or report.at) if _at_end(entry, belief) else None
+    driven = len(entry.positions) <= 1 or observed.passed == len(entry.positions) - 1
+    at_end = driven and reached(entry, belief)
+    observed.on_goal_since = (observed.on_goal_since or report.at) if at_end else None
 
 
 def _tells(report: Report, facts: Facts) -> bool:
     return any(report.fact(name) is not None for name, _ in facts)
 
 
-def _at_end(entry: Entry, belief: Belief) -> bool:
-    """True where the last report shows the goal, and all positions of a path that passes there earlier."""
-    driven = len(entry.positions) <= 1 or entry.observations.passed == len(entry.positions) - 1
-    return driven and reached(entry, belief)
-
-
 def reached(entry: Entry, belief: Belief) -> bool:
     """True where the belief shows the goal of a command: its last position, and the facts that it sets."""
-    if entry.sets and any(belief.fact(name) != value for name, value in entry.sets):
-        return False
+    for name, value in entry.sets:
+        if belief.fact(name) != value:
+            return False
     if not entry.positions:
         return entry.sets != ()
     return belief.position is not None and belief.robot.motion.stands_at(belief.position, entry.positions[-1])
@@ -367,8 +367,10 @@ def _set_as_reported(entry: Entry, belief: Belief, report: Report) -> CommandVer
         entry.must_be_named = entry.command.id not in (report.accepted, report.done)
         if entry.must_be_named:
             return None
-    is_set = all(report.fact(name) == value for name, value in entry.sets)
-    return CommandVerdict(feed=Feed.DONE) if is_set else None
+    for name, value in entry.sets:
+        if report.fact(name) != value:
+            return None
+    return CommandVerdict(feed=Feed.DONE)
 
 
 def _answered(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | None:

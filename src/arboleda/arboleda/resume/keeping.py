@@ -162,6 +162,7 @@ class Keeping:
 
     def _trail(self, failure: Failure | None, *, cancels: bool, stranded: Sentence | None) -> Trail:
         context, recovers = self._context, self._run.recovering
+        back, machines = context.parts.back, context.cell.interlocked  # empty ones cost no call below
         nodes = [] if recovers else self._run.nodes
         told = context.commands.used.union(self._begun.planned.positions)
         knowledge = {}
@@ -173,12 +174,12 @@ class Keeping:
             statuses=trail.statuses(nodes),
             nodes=trail.kept_of(() if recovers else self._run.keepers),
             carrier=context.parts.carrier,
-            back={robot: pose.name for robot, pose in context.parts.back.items()},
+            back={robot: pose.name for robot, pose in back.items()} if back else {},
             origins=sorted(context.parts.origins),
             used=sorted(context.commands.used),
             knowledge=knowledge,
             grips={} if recovers else context.parts.grips,
-            zones={name: sorted(context.zones.held_by(name)) for name in context.cell.interlocked},
+            zones={name: sorted(context.zones.held_by(name)) for name in machines} if machines else {},
             failure=(failure or context.failures.first) if recovers else None,
             recovers=recovers,
             cancels=cancels,

@@ -12,6 +12,7 @@ from py_trees.common import Status
 
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.dispatch.obstacles import Make
+from arboleda.model.commands import Switch
 from arboleda.model.messages import Check, Failure, Notice, Reason
 from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
 
@@ -259,9 +260,14 @@ class Act(Leaf):
         return self._failed(failure)
 
     def _done(self) -> Status:
-        record = command_kept(self.entry) or self.last
-        if record is not None and record["grips"] is not None:
-            self.context.handling.note(record["robot"], grips=record["grips"])
+        robot, grips = None, None
+        if self.entry is not None and self.entry.was_sent:
+            command = self.entry.command
+            robot, grips = command.robot, command.grips if isinstance(command, Switch) else None
+        elif self.last is not None:
+            robot, grips = self.last["robot"], self.last["grips"]
+        if robot is not None and grips is not None:
+            self.context.handling.note(robot, grips=grips)
         if self.then is not None:
             self.then()
         return Status.SUCCESS
