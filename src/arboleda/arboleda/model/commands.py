@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from enum import Enum
-from typing import TypeVar
 
 from .facts import Facts
-
-Labelled = TypeVar("Labelled", bound="Command")
 
 GO, GRIP, LET_GO = "go", "grip", "let_go"
 """The names of a robot's own commands in a plant file."""
@@ -44,12 +41,6 @@ class Command:
     """The number of the board's last telemetry that the plant had heard; None for a board without numbers."""
     token: str | None = None
     """The token of its step and task, which its board echoes; None where no task gives it."""
-
-    def labelled(self: Labelled, *, heard: int | None, token: str | None) -> Labelled:
-        """The same command with labels for its way."""
-        labelled = object.__new__(type(self))  # several times as fast as `replace`
-        object.__setattr__(labelled, "__dict__", {**vars(self), "heard": heard, "token": token})
-        return labelled
 
     @property
     def word(self) -> str:
