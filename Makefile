@@ -128,7 +128,7 @@ exercises:  ## judge every right and wrong work of the exercises; minutes
 	@scripts/install test
 	$(BIN)/python -m pytest packages/arboleda_class/tests/exercises $(PYTEST_ARGS)
 
-cost:  ## count the Python calls of pinned scenarios; fails where there are more than 2 % more; COST=--pin writes the table anew
+cost:  ## count the Python calls and different functions of pinned scenarios; fails where there are more than 2 % more; COST=--pin writes the table anew
 	@scripts/install test
 	$(BIN)/python -m arboleda_bench.cost $(COST)
 

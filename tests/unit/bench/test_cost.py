@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
+from dataclasses import replace
 from functools import partial
 from itertools import count
 from pathlib import Path
@@ -54,22 +55,27 @@ def test_a_busy_machine_does_not_change_the_count(monkeypatch: pytest.MonkeyPatc
 
 
 def test_two_percent_more_are_allowed_and_three_are_not() -> None:
-    pinned = Cost(calls=1000, functions={})
+    pinned = Cost(calls=1000, different=100, functions={})
     rows = [
-        Comparison(name=NAME, pinned=pinned, now=Cost(calls=calls, functions={}))
-        for calls in (970, 1000, 1020, 1030)
+        Comparison(name=NAME, pinned=pinned, now=Cost(calls=calls, different=different, functions={}))
+        for calls, different in ((970, 100), (1000, 100), (1020, 102), (1030, 100), (1000, 97), (1000, 103))
     ]
-    assert [row.is_dearer for row in rows] == [False, False, False, True]
-    assert [row.is_cheaper for row in rows] == [True, False, False, False]
+    assert [row.is_dearer for row in rows] == [False, False, False, True, False, True]
+    assert [row.is_cheaper for row in rows] == [True, False, False, False, True, False]
+
+
+def test_a_function_counts_once_in_each_act() -> None:
+    cost = Cost.of([Counter({"a.py often": 10, "a.py rare": 1}), Counter({"a.py often": 3})])
+    assert (cost.calls, cost.different) == (14, 3)
 
 
 def test_a_scenario_without_a_pinned_cost_fails() -> None:
-    assert Comparison(name=NAME, pinned=None, now=Cost(calls=1, functions={})).is_dearer
+    assert Comparison(name=NAME, pinned=None, now=Cost(calls=1, different=1, functions={})).is_dearer
 
 
 def test_a_function_that_was_too_rare_to_be_pinned_is_named_once_it_is_not() -> None:
-    pinned = Cost.of(Counter({"a.py often": 10_000, "a.py rare": 1}))
-    now = Cost.of(Counter({"a.py often": 10_000, "a.py rare": 500}))
+    pinned = Cost.of([Counter({"a.py often": 10_000, "a.py rare": 1})])
+    now = Cost.of([Counter({"a.py often": 10_000, "a.py rare": 500})])
     [line] = Comparison(name=NAME, pinned=pinned, now=now).grown()
     assert line == "500 calls, pinned at most 20: a.py rare"
 
@@ -87,7 +93,7 @@ def test_the_command_fails_for_what_is_dearer(
     monkeypatch.setattr(command, "file_for", lambda _python: table)
     monkeypatch.setattr("sys.argv", ["cost", "--only", NAME])
     cost = counted()
-    write(table, {NAME: Cost(calls=cost.calls - 50, functions=cost.functions)})
+    write(table, {NAME: replace(cost, calls=cost.calls - 50)})
     assert command.main() == command.DEARER
     assert f"{NAME}: {cost.calls:,} calls" in capsys.readouterr().err
     write(table, {NAME: cost})

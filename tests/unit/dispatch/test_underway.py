@@ -66,15 +66,15 @@ def test_what_left_for_a_board_is_counted_until_it_or_a_later_one_is_named() -> 
     for move in MOVES:
         unnamed.leaves(move)
     unnamed.hear(Report(at=1.0, robot=ARM, accepted="7-1"))
-    assert unnamed.of(ARM) == 1
+    assert len(unnamed.ids[ARM]) == 1
     unnamed.hear(Report(at=1.1, robot=ARM, rejected="7-2"))
-    assert unnamed.of(ARM) == 0
+    assert len(unnamed.ids[ARM]) == 0
 
 
 def test_who_numbers_nothing_has_nothing_to_name() -> None:
     unnamed = UnnamedCommands(MODEL)
     unnamed.leaves(MoveJoints(id="7-1", robot=MUTE, q=(0.0, 0.0, 0.0)))
-    assert unnamed.of(MUTE) == 0
+    assert MUTE not in unnamed.ids
 
 
 def clamp(number: int, *, on: bool) -> Switch:

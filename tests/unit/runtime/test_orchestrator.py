@@ -734,6 +734,27 @@ def test_where_a_task_stands_is_committed_once_its_command_has_left(plant, store
     assert store.facts(Fact.STEP) == {"a": "[]"}
 
 
+def test_the_files_of_a_memory_are_looked_at_right_after_a_command_and_at_each_heartbeat(
+    plant, store, monkeypatch
+):
+    port, had_left = Sent(), []
+    plant.connect(port)
+    monkeypatch.setattr(store, "confirm", lambda: had_left.append(len(port.messages)))
+    turn(plant, STEP, ON)
+    turn(plant, Heartbeat(epoch=7))
+    assert had_left == [1, 1]
+
+
+def test_once_a_memory_is_not_in_its_place_no_further_command_leaves(plant, store, crashes):
+    port = Sent()
+    plant.connect(port)
+    store.path.unlink()
+    turn(plant, STEP, ON)
+    turn(plant, OFF)
+    assert port.messages == [ON]
+    assert "was deleted or moved away" in str(crashes[0])
+
+
 def test_a_plant_that_cannot_commit_what_left_its_commands_behind_ends(plant, store, crashes, monkeypatch):
     port = Sent()
     plant.connect(port)

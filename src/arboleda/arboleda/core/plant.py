@@ -82,9 +82,9 @@ class Plant:
     `memory` has the facts of earlier starts: latches, effectors, zones that may be occupied. `kept` has the
     tasks of earlier starts in the order of acceptance: all that have not ended, and the last that have.
     `recipes` replace the cells' recipes by name. `versions` are models that can be put to work while the
-    plant runs; the process that runs it may add some. `next_deadline` (s) is when `step` is due without an
-    event. A plant was away if its last step was more than `away_after_s` ago. `revisions` has a number by
-    cell, which grows whenever the cell's view may change, but for times, rates and shared devices.
+    plant runs; the process that runs it may add some. A plant was away if its last step was more than
+    `away_after_s` ago. `revisions` has a number by cell, which grows whenever the cell's view may change, but
+    for times, rates and shared devices.
     """
 
     def __init__(
@@ -147,7 +147,14 @@ class Plant:
             RestartRequest: self._on_restart_request,
         }
         self.away_after_s = min(max(model.timing.stale_after_s, SHORTEST_ABSENCE_S), LONGEST_STALL_S)
-        self.next_deadline = now
+        self._due: float | None = now  # None after a step, until it is worked out
+
+    @property
+    def next_deadline(self) -> float:
+        """The time at which `step` is due without an event, s; worked out when it is asked for."""
+        if self._due is None:
+            self._due = min(self._next_beat, self._rounds.next_wake, self.dispatcher.next_deadline)
+        return self._due
 
     def step(self, now: float, events: Iterable[Event]) -> list[Command | Notice]:
         """Take in `events` in order, then deadlines up to `now` (s, never decreasing); return what to send.
@@ -157,6 +164,7 @@ class Plant:
         events, away_s = [*events], now - self.now
         if LateDeparture in map(type, events):
             events = self._without_late_departures(events)
+        due = self.next_deadline if self._due is None else self._due
         if self._steps and away_s > self.away_after_s:
             self._come_back(away_s)
             events = _requests_last(events, now)
@@ -164,8 +172,10 @@ class Plant:
         for event in events:
             # Deadlines expire between events, in the order of time. So a late step, with many events at
             # once, decides as punctual steps would have; a report that comes at a deadline is still in time.
-            if event.at > self.next_deadline:
-                self._expire(math.nextafter(event.at, -math.inf))
+            if event.at > due:
+                limit = math.nextafter(event.at, -math.inf)
+                if limit >= due:
+                    self.dispatcher.expire(limit, now, self._guard.run)
             if isinstance(event, Report):
                 self._on_report(event)
             else:
@@ -176,7 +186,8 @@ class Plant:
                     self._news.revised.update(self.cells)
                 self._guard.told.clear()
                 self._handlers[type(event)](event)
-        self._expire(now)
+        if now >= due:
+            self.dispatcher.expire(now, now, self._guard.run)
         if self._watch.interlocked:
             self._watch.follow_interlocks()
         if self.zones.is_used:
@@ -191,7 +202,7 @@ class Plant:
         if now >= self._next_beat:
             self._next_beat = now + HEARTBEAT_S
             self.dispatcher.outbox.append(Heartbeat(epoch=self.epoch))
-        self.next_deadline = self._earliest()
+        self._due = None
         out = self.dispatcher.outbox.copy()
         self.dispatcher.outbox.clear()
         return out
@@ -201,7 +212,7 @@ class Plant:
         for event in events:
             if isinstance(event, LateDeparture):
                 self.dispatcher.left_late(event.id, event.late_s)
-        self.next_deadline = self._earliest()
+        self._due = None
         return [event for event in events if not isinstance(event, LateDeparture)]
 
     def precedes_commands(self, notice: Remember | Journal | TaskChanged) -> bool:
@@ -213,7 +224,7 @@ class Plant:
         """
         if isinstance(notice, TaskChanged):
             return notice.state is TaskState.RUNNING
-        if not outlives_power(notice):
+        if (isinstance(notice, Remember) and notice.fact is Fact.STEP) or not outlives_power(notice):
             return False
         if not isinstance(notice, Remember) or notice.fact is not Fact.EFFECTOR:
             return True
@@ -290,13 +301,6 @@ class Plant:
 
     def _use(self, model: PlantModel) -> None:
         self.model = self.dispatcher.model = model
-
-    def _expire(self, limit: float) -> None:
-        if limit >= self.next_deadline:
-            self.dispatcher.expire(limit, self.now, self._guard.run)
-
-    def _earliest(self) -> float:
-        return min(self._next_beat, self._rounds.next_wake, self.dispatcher.next_deadline)
 
     def _come_back(self, away_s: float) -> None:
         """Hold the cells that were at work when the plant fell silent.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.commands import Command, Stop
@@ -22,7 +21,7 @@ ROUND_BOUND = 100  # rounds in one step; more means cells that wake each other f
 
 
 class Rounds:
-    """Rounds over the cells of a plant; `next_wake` is when a tree is to be woken next, s."""
+    """Rounds over the cells of a plant."""
 
     def __init__(
         self,
@@ -32,7 +31,6 @@ class Rounds:
         guard: CellGuard,
         watch: ZoneWatch,
     ) -> None:
-        self.next_wake = math.inf
         self._cells = cells
         self._dispatcher = dispatcher
         self._news = news
@@ -40,12 +38,26 @@ class Rounds:
         self._watch = watch
         self._order = {name: number for number, name in enumerate(cells)}
         self._wakes: dict[str, float] = {}  # by cell
+        self._next_wake = math.inf
+        self._unplanned: set[str] = set()  # cells whose wakes may have changed
+        self._shares = bool(dispatcher.model.shared)
+
+    @property
+    def next_wake(self) -> float:
+        """The time at which a tree is to be woken next, s; worked out once it is asked for."""
+        if self._unplanned:
+            for name in self._unplanned:
+                at = self._cells[name].due
+                self._wakes[name] = math.inf if at is None else at
+            self._unplanned.clear()
+            self._next_wake = min(self._wakes.values())
+        return self._next_wake
 
     def go(self, now: float) -> None:
         """Let each cell to which something happened do what it can, round after round until none does."""
         ledger, news = self._dispatcher.ledger, self._news
         soon = math.nextafter(now, math.inf)  # a wake after a hold may be earlier by one rounding
-        if self.next_wake <= soon:
+        if self._next_wake <= soon:
             woken = [name for name, at in self._wakes.items() if at <= soon]
             news.touched.update(woken)
             news.revised.update(woken)
@@ -61,10 +73,11 @@ class Rounds:
                 if self._advanced(name, woken=name in changed):
                     did.add(name)
             news.revised |= changed | did
-            self._plan(touched)
+            self._unplanned |= touched
             if did:
                 news.changes += 1
-                self._watch.give_back_shared()
+                if self._shares:
+                    self._watch.give_back_shared()
             elif not ledger.changed:
                 return
             touched = did
@@ -104,13 +117,6 @@ class Rounds:
             self._guard.break_down(name, error)
             return False
         return did
-
-    def _plan(self, names: Iterable[str]) -> None:
-        """Take over when the trees of these cells are to be woken."""
-        for name in names:
-            at = self._cells[name].due
-            self._wakes[name] = math.inf if at is None else at
-        self.next_wake = min(self._wakes.values())
 
 
 def _waits(message: Command | Notice, task: Task) -> bool:

@@ -43,11 +43,11 @@ class ZoneWatch:
         inside = self._zones.robots
         for name, cell in self._cells.items() if inside else ():
             # A shared robot may home for a cell without zones, and holds those of its other cells meanwhile.
-            movers = filter(cell.context.devices.answers_for, cell.cell.workspaces)
-            machines = filterfalse(cell.context.devices.is_lent, cell.cell.interlocked)
-            for robot in (*movers, *machines):
-                if robot in inside:
-                    self._guard.run(name, partial(self._look_at, cell, robot))
+            movers = filter(inside.__contains__, cell.cell.workspaces)
+            machines = filter(inside.__contains__, cell.cell.interlocked)
+            devices = cell.context.devices
+            for robot in (*filter(devices.answers_for, movers), *filterfalse(devices.is_lent, machines)):
+                self._guard.run(name, partial(self._look_at, cell, robot))
         self.give_back_shared()
 
     def give_back_shared(self) -> None:

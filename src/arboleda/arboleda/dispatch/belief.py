@@ -71,6 +71,9 @@ class Belief:
         self.position_in = _position_under(robot.position_key)  # of a report, or of a belief
         self.held_in = _fact_under(robot.held_fact)  # of the same: True where it holds something
         self.drawn = robot.link is Link.NONE
+        # rules that can never apply to this robot are not asked at each report
+        self.may_be_displaced = not robot.says_homed
+        self.tells_boots_only = self.may_be_displaced and robot.evidence is Evidence.IDS
         tells = robot.goes or robot.fact_names
         self._comes_apart = bool(tells) and robot.evidence is Evidence.JOINTS  # its place and its state
         self.heard_at: float | None = None
@@ -103,7 +106,7 @@ class Belief:
         self.facts: dict[str, Value] = {}
         self.lost: Sentence | None = None  # why there is no link
         self.facts_no = 0  # the number of the last report that changed a fact
-        self._last_words: tuple[object, ...] = ()  # the words of the last report
+        self._last: Report | None = None  # the last report
 
     @property
     def numbers_commands(self) -> bool:
@@ -128,7 +131,10 @@ class Belief:
 
     def hear_again(self, report: Report) -> bool:
         """Take over a report that repeats the last one of an online robot; False where it is to be merged."""
-        if not self.online or report.at < self.stillness.position_at or report.words != self._last_words:
+        last = self._last
+        if last is None or not self.online or report.at < self.stillness.position_at:
+            return False
+        if report.done != last.done or report.words != last.words:  # of most ends no words are made
             return False
         self.repeats += 1
         self.reports += 1
@@ -164,9 +170,14 @@ class Belief:
             self.piece_boot = self.boot_id
         if report.epoch is not None:
             self.plant = report.plant  # a bridge that restarted has to hear the plant anew
-        self._last_words, self.lost = report.words, report.lost
-        self.rate.count(report.at, self.reports, online=self.online)
-        self.online = self._is_online()
+        self._last, self.lost = report, report.lost
+        if self.reports == 1 or not self.online or report.at - self.rate.since >= RATE_S:
+            self.rate.count(report.at, self.reports, online=self.online)
+        self.online = (
+            not (self.stale or self.drawn)
+            and self.state is not MotionState.NO_LINK
+            and (self.heard_at is not None or not self.supervised)
+        )
 
     def _merge_facts(self, facts: Facts) -> None:
         if any(self.facts.get(name) != value for name, value in facts):
@@ -178,11 +189,6 @@ class Belief:
         self.stale = True
         self.stale_at = None
         self.online = False
-
-    def _is_online(self) -> bool:
-        if self.stale or self.state is MotionState.NO_LINK or self.drawn:
-            return False
-        return self.heard_at is not None or not self.supervised
 
     def _hear(self, report: Report) -> None:
         """Take over when and where it was heard; reports are numbered, as two may come at one time."""

@@ -61,11 +61,12 @@ class Booking:
         """Feed the ledger with a verdict, and halt a robot whose motion failed and may still be under way."""
         before = entry.state
         entry.answer = verdict.answer
-        self._ledger.feed(entry.command.id, verdict.feed, now, _explained(entry, verdict.failure))
+        failure = None if verdict.failure is None else _explained(entry, verdict.failure)
+        self._ledger.feed(entry.command.id, verdict.feed, now, failure)
         self._ledger.version += entry.state is not before
         if entry.state in (State.DONE, State.CANCELLED):
             self._under_way.ended(entry.command)
-        if _lets_go(entry.command) and entry.state is State.FAILED and not was_broken_off(entry):
+        if entry.state is State.FAILED and _lets_go(entry.command) and not was_broken_off(entry):
             self._effectors.unopened.add(entry.command.robot)
         if entry.state is State.DONE:
             self._done(entry.command)
@@ -167,9 +168,9 @@ def _lets_go(command: Command) -> bool:
     return isinstance(command, Switch) and command.grips is False
 
 
-def _explained(entry: Entry, failure: Failure | None) -> Failure | None:
+def _explained(entry: Entry, failure: Failure) -> Failure:
     """The failure; where a command of somebody else may have caused it, its sentence says so."""
-    if failure is None or entry.interference is None:
+    if entry.interference is None:
         return failure
     return replace(failure, sentence=BOTH(first=failure.sentence, second=entry.interference))
 

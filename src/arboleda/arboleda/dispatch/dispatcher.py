@@ -196,7 +196,8 @@ class Dispatcher:
             return
         before, facts = Before.of(belief), _facts_shown(belief)
         was_held, held_since_boot = belief.held_in(belief), belief.held_boot
-        self._hear_of_others(report)
+        if report.foreign is not None or report.accepted != self.interference.accepted.get(report.robot):
+            self._hear_of_others(report)
         was_online, latched = belief.online, report.robot in self.latches.stopped
         new_link = latched and _is_new_link(belief, report)
         belief.merge(report)
@@ -208,9 +209,9 @@ class Dispatcher:
             self.whereabouts.moves_again(report.robot)
         goal = self.whereabouts.reached.get(report.robot)
         astray = goal is not None and evidence.strayed(before, belief, report, goal)
-        if astray or evidence.displaced(before, belief, report):
+        if astray or (belief.may_be_displaced and evidence.displaced(before, belief, report)):
             self.whereabouts.displace(belief, displaced=True)
-        if belief.boot_id is not None and evidence.tells_boots_only(belief.robot):
+        if belief.tells_boots_only and belief.boot_id is not None:
             self.memory.remember(Fact.BOOT, report.robot, str(belief.boot_id))
         self._prove(belief, report, now, before)
         if latched and (new_link or (belief.online and not was_online)):  # its board may have lost the stop

@@ -95,7 +95,7 @@ class Effectors:
             if grip is not Grip.SWITCHING:
                 empty = HandlingStep.TAKEN_OUT if taken_out else HandlingStep.EMPTY
                 self._tell(robot, HandlingStep.HELD if grip is Grip.ON else empty)
-            self._memory.remember(Fact.EFFECTOR, robot, grip.value)
+            self._memory.remember(Fact.EFFECTOR, robot, grip._value_)  # a call less than `value`
         if grip is Grip.OFF:
             self.unopened.discard(robot)
 

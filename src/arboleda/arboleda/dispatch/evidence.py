@@ -14,7 +14,7 @@ from typing import NamedTuple
 from arboleda.model.commands import Command, Home, Motion, Position, Process, Query, Switch
 from arboleda.model.facts import Facts, Value, shown
 from arboleda.model.messages import Failure, MotionState, Reason, Report
-from arboleda.model.plant_model import APART_S, Evidence, Robot
+from arboleda.model.plant_model import APART_S, Evidence
 from arboleda.model.sentence import Phrase, Sentence
 
 from .belief import Belief
@@ -98,7 +98,11 @@ def judge(entry: Entry, before: Before | None, belief: Belief, report: Report) -
     if broken is not None or report.at < entry.sent_at:
         return broken
     _look(entry, belief, report)
-    return _device(entry, belief, report) or _progress(entry, belief, report) or _stopping(entry, belief)
+    objection = _device(entry, belief, report) if report.state in OBJECTIONS else None
+    verdict = objection or _progress(entry, belief, report)
+    if verdict is None and entry.cancelled_at is not None and entry.halts:
+        return _stopping(entry, belief)
+    return verdict
 
 
 def _look(entry: Entry, belief: Belief, report: Report) -> None:
@@ -121,7 +125,10 @@ def _rests(entry: Entry, report: Report) -> bool:
 
 
 def _look_at_goal(entry: Entry, belief: Belief, report: Report) -> None:
-    """Note since when every report shows the goal, and how far along its positions the robot was seen."""
+    """Note since when every report shows the goal, and how far along its positions the robot was seen.
+
+    A path that passes its goal earlier has to show all positions before.
+    """
     observed, place = entry.observations, belief.position_in(report)
     if place is None and not _tells(report, entry.sets):
         return
@@ -129,23 +136,20 @@ def _look_at_goal(entry: Entry, belief: Belief, report: Report) -> None:
         observed.place = place
         ahead = entry.positions[observed.passed + 1 :]
         observed.passed += ahead.index(place) + 1 if place in ahead else 0
-    observed.on_goal_since = (observed.on_goal_since or report.at) if _at_end(entry, belief) else None
+    driven = len(entry.positions) <= 1 or observed.passed == len(entry.positions) - 1
+    at_end = driven and reached(entry, belief)
+    observed.on_goal_since = (observed.on_goal_since or report.at) if at_end else None
 
 
 def _tells(report: Report, facts: Facts) -> bool:
     return any(report.fact(name) is not None for name, _ in facts)
 
 
-def _at_end(entry: Entry, belief: Belief) -> bool:
-    """True where the last report shows the goal, and all positions of a path that passes there earlier."""
-    driven = len(entry.positions) <= 1 or entry.observations.passed == len(entry.positions) - 1
-    return driven and reached(entry, belief)
-
-
 def reached(entry: Entry, belief: Belief) -> bool:
     """True where the belief shows the goal of a command: its last position, and the facts that it sets."""
-    if entry.sets and any(belief.fact(name) != value for name, value in entry.sets):
-        return False
+    for name, value in entry.sets:
+        if belief.fact(name) != value:
+            return False
     if not entry.positions:
         return entry.sets != ()
     return belief.position is not None and belief.robot.motion.stands_at(belief.position, entry.positions[-1])
@@ -161,9 +165,17 @@ def _failure(entry: Entry, reason: Reason, what: Phrase, **values: str | float |
 
 
 def _broken(entry: Entry, before: Before, belief: Belief, report: Report) -> CommandVerdict | None:
-    link = _broken_link(entry, before, belief, report)
-    ended = _refused(entry, report) or _gave_up(entry, report)
-    return link or ended or _reboot(entry, before, belief, report)
+    """The failure that a report shows; most show none, so that no rule is asked that cannot apply."""
+    verdict = None
+    if report.state is MotionState.NO_LINK or report.epoch != before.epoch:
+        verdict = _broken_link(entry, before, belief, report)
+    if verdict is None and report.rejected is not None:
+        verdict = _refused(entry, report)
+    if verdict is None and report.failed is not None:
+        verdict = _gave_up(entry, report)
+    if verdict is None and (report.boot_id != before.boot_id or belief.robot.evidence is Evidence.JOINTS):
+        verdict = _reboot(entry, before, belief, report)
+    return verdict
 
 
 def _broken_link(entry: Entry, before: Before, belief: Belief, report: Report) -> CommandVerdict | None:
@@ -204,15 +216,8 @@ def _reboot(entry: Entry, before: Before, belief: Belief, report: Report) -> Com
 
 def displaced(before: Before, belief: Belief, report: Report) -> bool:
     """True where a robot that cannot report it must have lost its position: a new boot, or a jump."""
-    if belief.robot.says_homed:
-        return False
     jumped = belief.robot.evidence is Evidence.JOINTS and _jumped(before, belief, report)
     return jumped or rebooted(before, belief, report)
-
-
-def tells_boots_only(robot: Robot) -> bool:
-    """True where only the number of its boot tells that a robot must have lost its position."""
-    return robot.evidence is Evidence.IDS and not robot.says_homed
 
 
 def strayed(before: Before, belief: Belief, report: Report, goal: Position) -> bool:
@@ -241,8 +246,7 @@ def _jumped(before: Before, belief: Belief, report: Report) -> bool:
 
 
 def _device(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | None:
-    if report.state not in OBJECTIONS:
-        return None
+    """The objection of a device that reports one of OBJECTIONS."""
     if report.state is MotionState.FAULT:
         if isinstance(entry.command, Home) and belief.is_cleared_by_homing:
             return None  # homing leads it out of that fault; its driver reports where it cannot
@@ -258,8 +262,7 @@ def _device(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | No
 
 
 def _stopping(entry: Entry, belief: Belief) -> CommandVerdict | None:
-    if entry.cancelled_at is None or not entry.halts:
-        return None
+    """The end of a command that was cancelled, and can be halted."""
     return CommandVerdict(feed=Feed.HALTED) if belief.stillness.still_since(entry.cancelled_after) else None
 
 
@@ -364,8 +367,10 @@ def _set_as_reported(entry: Entry, belief: Belief, report: Report) -> CommandVer
         entry.must_be_named = entry.command.id not in (report.accepted, report.done)
         if entry.must_be_named:
             return None
-    is_set = all(report.fact(name) == value for name, value in entry.sets)
-    return CommandVerdict(feed=Feed.DONE) if is_set else None
+    for name, value in entry.sets:
+        if report.fact(name) != value:
+            return None
+    return CommandVerdict(feed=Feed.DONE)
 
 
 def _answered(entry: Entry, belief: Belief, report: Report) -> CommandVerdict | None:

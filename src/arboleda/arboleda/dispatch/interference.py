@@ -36,7 +36,7 @@ class Interferences:
         self._counts: dict[str, tuple[int | None, int, int]] = {}  # robot -> bridge's start, refused, obeyed
         self._obeyed: dict[str, tuple[float, Sentence]] = {}
         self._count = 0
-        self._accepted: dict[str, str | None] = {}
+        self.accepted: dict[str, str | None] = {}  # by robot, the last command that it named as taken
 
     def note(self, robot: str, sentence: Sentence, at: float, *, obeyed: bool) -> None:
         self._count += 1
@@ -60,9 +60,9 @@ class Interferences:
 
     def forged(self, report: Report, epoch: int, given: int) -> int | None:
         """The number of a command of `epoch` that a robot newly took, above the last that was given."""
-        if report.accepted == self._accepted.get(report.robot):
+        if report.accepted == self.accepted.get(report.robot):
             return None
-        self._accepted[report.robot] = report.accepted
+        self.accepted[report.robot] = report.accepted
         start, _, number = (report.accepted or "").partition("-")
         is_ours = start == str(epoch) and number.isascii() and number.isdigit()
         return int(number) if is_ours and int(number) > given else None

@@ -203,8 +203,9 @@ class Ledger:
     def _close(self, entry: Entry) -> None:
         id, robot, cell = entry.command.id, entry.command.robot, entry.cell
         del self.entries[id]
-        self.by_robot[robot] = [each for each in self.by_robot[robot] if each is not entry]
-        self.by_cell[cell] = [each for each in self.by_cell[cell] if each is not entry]
+        for table, key in ((self.by_robot, robot), (self.by_cell, cell)):
+            table[key] = table[key].copy()
+            table[key].remove(entry)
         if self._due.pop(id) == self.next_deadline:
             self.next_deadline = min(self._due.values(), default=math.inf)
 

@@ -73,14 +73,16 @@ class Obstacles:
     def to(self, command: Command, *, by_hand: bool, was: bool = False) -> Failure | None:
         """The reason why a command cannot leave; by hand an effector opens even while its arm is stopped."""
         robot = command.robot
-        if (busy := self._busy_with(command)) is not None:
+        is_query = isinstance(command, Query)
+        if (busy := self._query_of(robot) if is_query else self._ledger.work_of(robot)) is not None:
             now, before = BUSY_MOVING if isinstance(busy.command, Motion) else BUSY_WORKING
             return Failure(reason=Reason.REJECTED, sentence=(before if was else now)(robot=robot))
-        if not by_hand and (fact := self._open_switch_of(command)) is not None:
+        switches = isinstance(command, Switch) and not by_hand
+        if switches and (fact := self._open_switch_of(command)) is not None:
             now, before = BUSY_SWITCHING
             sentence = (before if was else now)(robot=robot, fact=fact)
             return Failure(reason=Reason.REJECTED, sentence=sentence)
-        if isinstance(command, Query):
+        if is_query:
             return self._beliefs[robot].unreachable(was=was) or self._unmet(command, was=was)
         if isinstance(command, Work) and (tool := self._effectors.opening_tool(robot)) is not None:
             return Failure(reason=Reason.REJECTED, sentence=MAY_LET_GO(robot=robot, tool=tool))
@@ -93,24 +95,20 @@ class Obstacles:
             obstacle = None  # "moving" may be older than the end of its last move, which was proven
         elif by_hand and obstacle:
             obstacle = self._beliefs[robot].obstacle_besides_stop(was=was)
-        return obstacle or self._unmet(command, was=was)
+        return obstacle or (self._unmet(command, was=was) if command.needs else None)
 
     def may_come_to_rest(self, robot: str) -> bool:
         """True where a robot may take a command soon: its last move may be over, or was cancelled."""
         abandoned = any(entry.is_abandoned for entry in self._ledger.of_robot(robot))
         return abandoned or self._may_be_the_end_of_its_last_move(robot)
 
-    def _busy_with(self, command: Command) -> Entry | None:
-        """The open command that keeps a robot from another: its work; a query waits only for a query."""
-        if not isinstance(command, Query):
-            return self._ledger.work_of(command.robot)
-        queries = (e for e in self._ledger.of_robot(command.robot) if isinstance(e.command, Query))
+    def _query_of(self, robot: str) -> Entry | None:
+        """The open query of a robot, which alone keeps it from another query."""
+        queries = (e for e in self._ledger.of_robot(robot) if isinstance(e.command, Query))
         return next(queries, None)
 
     def _open_switch_of(self, command: Command) -> str | None:
         """The fact of a switch that another open command switches, too."""
-        if not isinstance(command, Switch):
-            return None
         entries = self._ledger.of_robot(command.robot)
         if not entries:
             return None

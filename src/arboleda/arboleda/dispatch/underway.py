@@ -38,9 +38,6 @@ class UnnamedCommands:
         if ids := self.ids.get(report.robot):
             _settle(ids, report)
 
-    def of(self, robot: str) -> int:
-        return len(self.ids.get(robot, ()))
-
 
 class UnderWay:
     """Commands to each arm that shares zones, or is shared, which no report has settled.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from py_trees.behaviour import Behaviour
+from py_trees.common import Status
 
 from arboleda.model.commands import Process
 from arboleda.model.messages import Failure
@@ -142,7 +143,9 @@ class Keeping:
         numbers = [
             act.entry.number
             for act in self._run.acts
-            if act.entry is not None and isinstance(act.entry.command, Process)
+            if act.status is Status.RUNNING
+            and act.entry is not None
+            and isinstance(act.entry.command, Process)
         ]
         state = (self._run.rested, holds, cancels, stranded, numbers)
         if state == self._last_state:
@@ -159,20 +162,24 @@ class Keeping:
 
     def _trail(self, failure: Failure | None, *, cancels: bool, stranded: Sentence | None) -> Trail:
         context, recovers = self._context, self._run.recovering
+        back, machines = context.parts.back, context.cell.interlocked  # empty ones cost no call below
         nodes = [] if recovers else self._run.nodes
         told = context.commands.used.union(self._begun.planned.positions)
-        receiving = [] if recovers else context.robots.receiving(told)
+        knowledge = {}
+        for belief, more in () if recovers else context.robots.receiving(told):
+            heard = Knowledge(belief.boot_id, belief.receipt, more, belief.epoch)
+            knowledge[belief.robot.name] = heard
         return Trail(
             begun=self._begun,
             statuses=trail.statuses(nodes),
             nodes=trail.kept_of(() if recovers else self._run.keepers),
             carrier=context.parts.carrier,
-            back={robot: pose.name for robot, pose in context.parts.back.items()},
+            back={robot: pose.name for robot, pose in back.items()} if back else {},
             origins=sorted(context.parts.origins),
             used=sorted(context.commands.used),
-            knowledge={each.robot.name: Knowledge.of(each, more) for each, more in receiving},
+            knowledge=knowledge,
             grips={} if recovers else context.parts.grips,
-            zones={name: sorted(context.zones.held_by(name)) for name in context.cell.interlocked},
+            zones={name: sorted(context.zones.held_by(name)) for name in machines} if machines else {},
             failure=(failure or context.failures.first) if recovers else None,
             recovers=recovers,
             cancels=cancels,

@@ -9,13 +9,13 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import attrgetter, itemgetter
 from typing import Any, NamedTuple
 
 from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.dispatch.belief import Belief
 from arboleda.model.commands import Position
 from arboleda.model.messages import Check, Failure, Receipt, TaskAnswer
 from arboleda.model.sentence import Sentence, retold
@@ -23,6 +23,7 @@ from arboleda.trees.cell_robots import Planned
 from arboleda.trees.node_state import Keeps, failure_kept, read_failure
 
 VERSION = 3
+STATUS_WORD, FIRST = attrgetter("status._value_"), itemgetter(0)  # `value` takes several times as long
 STATUSES = {status.value[0]: status for status in Status}
 REMEMBERS = composites.Sequence | composites.Selector | composites.Parallel
 
@@ -37,11 +38,6 @@ class Knowledge(NamedTuple):
     receipt: Receipt | None
     more: int
     bridge: int | None = None
-
-    @classmethod
-    def of(cls, belief: Belief, more: int) -> Knowledge:
-        """The knowledge in a belief."""
-        return cls(boot=belief.boot_id, receipt=belief.receipt, more=more, bridge=belief.epoch)
 
     def explains(self, now: Receipt | None, *, others: int = 0) -> bool:
         """True where the commands that were under way, and at most `others` more, explain a later receipt."""
@@ -144,7 +140,7 @@ class Trail(NamedTuple):
 
 def statuses(nodes: Iterable[Behaviour]) -> str:
     """The statuses of nodes, a letter each."""
-    return "".join([node.status._value_[0] for node in nodes])  # `value` takes several times as long
+    return "".join(map(FIRST, map(STATUS_WORD, nodes)))
 
 
 def kept_of(nodes: Iterable[tuple[int, Keeps]]) -> dict[int, Mapping[str, Any]]:

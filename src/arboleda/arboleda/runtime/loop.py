@@ -154,7 +154,10 @@ class Loop(Generic[Event, Message]):
                 self._handing_on_since = now
         if messages:
             for message in messages if self._arrange is None else self._arrange(messages):
-                self._deliver(message)
+                try:
+                    self._send(message)
+                except Exception as error:  # noqa: BLE001 - whatever the port raises, its message failed
+                    self._on_send_error(message, error)
             with self._between_steps:
                 self._handing_on_since = None
                 if self._readers:
@@ -162,12 +165,6 @@ class Loop(Generic[Event, Message]):
         if self._on_step is not None:
             self._on_step(now, events, messages)
         self.busy = False
-
-    def _deliver(self, message: Message) -> None:
-        try:
-            self._send(message)
-        except Exception as error:  # noqa: BLE001 - whatever the port raises, its message is the one that failed
-            self._on_send_error(message, error)
 
     def _run(self) -> None:
         try:

@@ -12,15 +12,14 @@ from arboleda.model.messages import Failure
 from arboleda.model.sentence import Sentence
 from arboleda.model.step_token import ATTEMPTS, MOST_STEPS
 
-from .cell_devices import CellDevices
 from .cell_time import CellTime
-from .cell_zones import CellZones
 
 
 class CellCommands:
     """Sender of one cell's commands. `sent` counts them; `used` are the robots that the task has commanded.
 
-    `task` is the hash of the task's id, by which boards echo its steps; None while no task runs.
+    `task` is the hash of the task's id, by which boards echo its steps; None while no task runs. The first of
+    the `guards` that objects keeps a command from leaving.
     """
 
     def __init__(
@@ -28,8 +27,6 @@ class CellCommands:
         cell: str,
         dispatcher: Dispatcher,
         time: CellTime,
-        zones: CellZones,
-        devices: CellDevices,
         guards: Sequence[Barrier],
     ) -> None:
         self.sent = 0
@@ -38,8 +35,6 @@ class CellCommands:
         self._cell = cell
         self._dispatcher = dispatcher
         self._time = time
-        self._zones = zones
-        self._devices = devices
         self._guards = guards
 
     def send(self, make: Make, doing: Sentence, *, step: int | None = None, attempt: int = 0) -> Entry:
@@ -91,7 +86,7 @@ class CellCommands:
         return self._dispatcher.ledger.finishes(robot)
 
     def _objection(self, command: Command) -> Failure | None:
-        own: Failure | None = None
         for guard in self._guards:
-            own = own or guard(command)
-        return self._devices.objection(command.robot) or own or self._zones.objection(command)
+            if (failure := guard(command)) is not None:
+                return failure
+        return None

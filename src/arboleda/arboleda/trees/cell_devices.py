@@ -7,6 +7,7 @@ from functools import partial
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.zones import Zones
+from arboleda.model.commands import Command
 from arboleda.model.messages import Fact, Failure, Reason
 from arboleda.model.plant_model import Cell
 from arboleda.model.sentence import Phrase
@@ -139,8 +140,9 @@ class CellDevices:
             return None
         return Failure(reason=Reason.STOPPED, sentence=NOT_RESET(device=device))
 
-    def objection(self, device: str) -> Failure | None:
+    def objection(self, command: Command) -> Failure | None:
         """Objection to a command to a device that the cell does not hold, or whose stop is not over."""
+        device = command.robot
         if device not in self._cell.shared:
             return None
         if (stop := self.not_reset(device)) is not None:

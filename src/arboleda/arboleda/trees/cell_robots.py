@@ -141,12 +141,15 @@ class CellRobots:
 
         Each comes with the number of commands that may have reached the robot and that it has not named yet.
         """
-        beliefs, unnamed = self._dispatcher.beliefs, self._dispatcher.unnamed
+        beliefs, unnamed = self._dispatcher.beliefs, self._dispatcher.unnamed.ids
         told = set(names)
         for robot in self._cell.reached:
-            if beliefs[robot.name].numbers_commands:
+            if robot.name not in told and beliefs[robot.name].numbers_commands:
                 told.add(robot.name)
-        return [(beliefs[name], unnamed.of(name)) for name in sorted(told)]
+        receiving = []
+        for name in sorted(told):
+            receiving.append((beliefs[name], len(unnamed.get(name, ()))))
+        return receiving
 
     def moments(self) -> dict[str, ReportMoment]:
         """This moment in the reports of each robot of the cell, for `moving_since`."""

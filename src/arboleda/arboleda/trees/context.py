@@ -7,6 +7,7 @@ from collections.abc import Callable
 from py_trees.behaviour import Behaviour
 
 from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.obstacles import Barrier
 from arboleda.dispatch.zones import Zones
 from arboleda.model.messages import Failure, Notice, TaskAnswer
 from arboleda.model.plant_model import Cell, Timing
@@ -49,8 +50,7 @@ class Context:
         self.parts = Parts(cell, dispatcher, self.devices, self.robots, self.sensors)
         self.zones = CellZones(cell, dispatcher, zones, self.devices, self.robots, self.parts, at_work)
         self.places = Places(cell, dispatcher, self.robots, self.devices)
-        guards = (CellNeeds(cell, dispatcher).objection, self.places.objection)
-        self.commands = CellCommands(cell.name, dispatcher, self.time, self.zones, self.devices, guards)
+        self.commands = CellCommands(cell.name, dispatcher, self.time, self._guards(cell, dispatcher))
         self.failures = Failures(self.parts)
         self.handling = Handling(dispatcher.beliefs)
         self.answers: list[TaskAnswer] = []
@@ -64,6 +64,16 @@ class Context:
             facet.revise(cell)
         self.sensors.revise(timing)
         self._dispatcher.limits.timings[cell.name] = timing
+
+    def _guards(self, cell: Cell, dispatcher: Dispatcher) -> list[Barrier]:
+        """The guards that may ever object to a command; no version changes what they look at."""
+        guards = (
+            (cell.shared, self.devices.objection),
+            (cell.needs, CellNeeds(cell, dispatcher).objection),
+            (cell.places, self.places.objection),
+            (cell.interlocks or cell.zone_users, self.zones.objection),
+        )
+        return [objection for applies, objection in guards if applies]
 
     def start_afresh(self) -> None:
         """Forget the waits and failures of the last tree."""

@@ -12,6 +12,7 @@ from py_trees.common import Status
 
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.dispatch.obstacles import Make
+from arboleda.model.commands import Switch
 from arboleda.model.messages import Check, Failure, Notice, Reason
 from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
 
@@ -240,7 +241,7 @@ class Act(Leaf):
             return self._wait()
         if (obstacle := self._obstacle()) is not None:
             return self._failed(obstacle)
-        if self.entry is not None and self._waits_for_the_robot(self.entry):
+        if self.entry is not None and self.entry.too_early and self._waits_for_the_robot(self.entry):
             return Status.RUNNING
         if self.entry is None or self.entry.open:
             return Status.RUNNING
@@ -259,9 +260,14 @@ class Act(Leaf):
         return self._failed(failure)
 
     def _done(self) -> Status:
-        record = command_kept(self.entry) or self.last
-        if record is not None and record["grips"] is not None:
-            self.context.handling.note(record["robot"], grips=record["grips"])
+        robot, grips = None, None
+        if self.entry is not None and self.entry.was_sent:
+            command = self.entry.command
+            robot, grips = command.robot, command.grips if isinstance(command, Switch) else None
+        elif self.last is not None:
+            robot, grips = self.last["robot"], self.last["grips"]
+        if robot is not None and grips is not None:
+            self.context.handling.note(robot, grips=grips)
         if self.then is not None:
             self.then()
         return Status.SUCCESS
@@ -278,8 +284,6 @@ class Act(Leaf):
 
         Work that goes on to its end has a deadline of its own, and is waited for until then.
         """
-        if not entry.too_early:
-            return False
         commands, robot = self.context.commands, entry.command.robot
         if not commands.may_come_to_rest(robot):
             self._give()

@@ -28,8 +28,6 @@ class CellNeeds:
 
     def objection(self, command: Command) -> Failure | None:
         """The failure for the first need of a command that is not met."""
-        if not self._needs:
-            return None
         unmet = filter(None, map(self._unmet, self._needs.get((command.robot, command.word), ())))
         sentence = next(unmet, None)
         return None if sentence is None else Failure(reason=Reason.PRECONDITION, sentence=sentence)

@@ -178,8 +178,6 @@ class Places:
 
     def objection(self, command: Command) -> Failure | None:
         """Objection to a command that would take a part where none is, or put one where no room is."""
-        if not self._places:
-            return None
         if isinstance(command, Switch) and command.grips is not None:
             sentence = self._to_grip(command.robot) if command.grips else self._to_let_go(command.robot)
         elif isinstance(command, Motion) and command.robot in self._cell.reach:

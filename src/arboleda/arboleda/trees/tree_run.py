@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator
+from operator import attrgetter
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -24,6 +25,7 @@ from .node_state import Keeps
 
 BROKE_IN_TREE = Phrase("cell.broke_in_tree", "{cell}: {kind} in the tree: {error}")
 IN_RECOVERY = Phrase("step.in_recovery", "recovery: {step}")
+STATUS = attrgetter("status")
 TICK_BOUND = 20  # ticks in one step; more means a tree that never comes to rest
 
 
@@ -34,7 +36,7 @@ class TreeRun:
         self.tree: Behaviour | None = None
         self.nodes: list[Behaviour] = []  # of the tree, its root last
         self.keepers: list[tuple[int, Keeps]] = []  # nodes with more than a status to keep, by number
-        self._acts: list[Act] = []
+        self.acts: list[Act] = []  # its steps that give commands
         self._recoveries: list[Behaviour] = []
         self._ended: list[Behaviour] = []  # nodes of trees that were dropped
         self._began: float | None = None  # in this start of the plant, s of the cell's time
@@ -44,7 +46,7 @@ class TreeRun:
     @property
     def recovering(self) -> bool:
         """True while the recovery runs."""
-        return Status.RUNNING in [node.status for node in self._recoveries]
+        return Status.RUNNING in map(STATUS, self._recoveries)
 
     def begin(self, make: Callable[[], Behaviour]) -> Status:
         """Build a tree and tick it until it rests: RUNNING, SUCCESS or FAILURE."""
@@ -63,7 +65,7 @@ class TreeRun:
         acts = [(number, node) for number, node in enumerate(self.nodes) if isinstance(node, Act)]
         for number, act in acts:
             act.number_in_tree = number
-        self._acts = [act for _, act in acts]
+        self.acts = [act for _, act in acts]
         self._recoveries = [node for node in self.nodes if node.name == steps.RECOVERY]
 
     def tick(self) -> Status:
@@ -78,7 +80,7 @@ class TreeRun:
         tree, self.tree = self.tree, None
         self._began = None
         self._ended += self.nodes
-        self.nodes, self.keepers, self._acts, self._recoveries = [], [], [], []
+        self.nodes, self.keepers, self.acts, self._recoveries = [], [], [], []
         try:
             if tree is not None:
                 tree.stop(Status.INVALID)
@@ -94,11 +96,6 @@ class TreeRun:
         for node in self._ended:
             node.parent, node.children, node.iterator = None, [], iter(())  # py_trees' own refers to its node
         self._ended.clear()
-
-    @property
-    def acts(self) -> list[Act]:
-        """The commands that are under way."""
-        return [act for act in self._acts if act.status is Status.RUNNING]
 
     @property
     def course(self) -> Course | None:
@@ -166,7 +163,7 @@ class TreeRun:
         return True
 
     def _signature(self) -> tuple[object, ...]:
-        return (self._context.commands.sent, [node.status for node in self.nodes])
+        return (self._context.commands.sent, [*map(STATUS, self.nodes)])
 
     def _raised(self, error: Exception) -> Status:
         cell, kind = self._context.cell.name, type(error).__name__

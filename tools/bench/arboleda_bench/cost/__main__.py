@@ -1,5 +1,7 @@
 """Cost lock: counts the Python calls of pinned scenarios, and fails where there are more than 2 % more.
 
+It counts the different functions of each act, too: those that are touched once cost most in cold memory.
+
     make cost                       compare with the table in tools/bench/arboleda_bench/cost
     make cost COST="--only view"    the scenarios whose names have this in them
     make cost COST=--pin            write the table anew; the commit says why something is dearer
@@ -34,6 +36,7 @@ def main() -> int:
         return _refuse(f"nothing is pinned for Python {PYTHON}; `make cost COST=--pin` does it")
     costs: dict[str, Cost] = {}
     dearer = []
+    print("       calls          different           scenario")
     for name in names:
         costs[name] = Cost.of(cost_of(SCENARIOS[name]))
         row = Comparison(name=name, pinned=pinned.get(name), now=costs[name])
@@ -48,31 +51,30 @@ def main() -> int:
     return DEARER if dearer else 0
 
 
-def cost_of(scenario: Scenario) -> Calls:
-    """The calls of all acts of a scenario.
+def cost_of(scenario: Scenario) -> list[Calls]:
+    """The calls of each act of a scenario.
 
     The first act is played once before, uncounted, so that caches are filled.
     """
     for act in islice(scenario(), 1):
         act()
-    calls = Calls()
-    for act in scenario():
-        calls += count(act)
-    return calls
+    return [count(act) for act in scenario()]
 
 
 def _line(row: Comparison) -> str:
     if row.pinned is None:
-        return f"{row.now.calls:>12,}     new  {row.name}"
+        return f"{row.now.calls:>12,}     new {row.now.different:>8,}     new  {row.name}"
     advice = "  (cheaper: pin it, so that it stays so)" if row.is_cheaper else ""
-    return f"{row.now.calls:>12,} {100 * row.growth:>+6.1f} %  {row.name}{advice}"
+    different = f"{row.now.different:>8,} {100 * row.spread:>+6.1f} %"
+    return f"{row.now.calls:>12,} {100 * row.growth:>+6.1f} % {different}  {row.name}{advice}"
 
 
 def _finding(row: Comparison) -> str:
     if row.pinned is None:
         return f"{row.name}: nothing is pinned for it; `make cost COST=--pin` does it"
-    more = f"{100 * row.growth:.1f} % more than the pinned {row.pinned.calls:,}"
-    head = f"{row.name}: {row.now.calls:,} calls, {more}"
+    calls = f"{row.now.calls:,} calls, pinned {row.pinned.calls:,} ({100 * row.growth:+.1f} %)"
+    different = f"{row.now.different:,} different functions, pinned {row.pinned.different:,}"
+    head = f"{row.name}: {calls}; {different}"
     return "\n  ".join([head, *row.grown()])
 
 

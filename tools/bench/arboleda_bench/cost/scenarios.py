@@ -184,6 +184,7 @@ class WholePlant(Orchestrator):
     """A plant that nothing is asked of but by HTTP; `heard` is called after each event."""
 
     heard: Callable[[], object] = staticmethod(lambda: None)
+    due = 0.0
 
     def hear(self, event: Any) -> None:
         super().hear(event)
@@ -194,6 +195,7 @@ class WholePlant(Orchestrator):
         for event in events:
             self.hear(replace(event, at=clock.seconds()))
         self.loop.turn()
+        self.due = self.plant.next_deadline  # the thread of a plant that runs sleeps until then
 
 
 class Port:

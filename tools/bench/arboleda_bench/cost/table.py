@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,17 +19,24 @@ NAMED = 6  # functions that grew, in a finding
 
 @dataclass(frozen=True, kw_only=True)
 class Cost:
-    """The cost of a scenario: all its calls, and those of the functions that are called most."""
+    """The cost of a scenario: all its calls, and those of the functions that are called most.
+
+    `different` counts the functions of each act once, and adds that up over the acts: what an act costs with
+    cold caches.
+    """
 
     calls: int
+    different: int
     functions: Mapping[str, int]
 
     @classmethod
-    def of(cls, calls: Calls) -> Cost:
-        """The cost from counted calls; the rarest functions are left out."""
+    def of(cls, acts: Sequence[Calls]) -> Cost:
+        """The cost from the counted calls of each act; the rarest functions are left out."""
+        calls = sum(acts, Counter[str]())
         most = sorted(calls.items(), key=lambda each: (-each[1], each[0]))
         least = LEAST_SHARE * calls.total()
-        return cls(calls=calls.total(), functions={name: number for name, number in most if number >= least})
+        functions = {name: number for name, number in most if number >= least}
+        return cls(calls=calls.total(), different=sum(map(len, acts)), functions=functions)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,14 +53,22 @@ class Comparison:
         return 0.0 if self.pinned is None else self.now.calls / self.pinned.calls - 1
 
     @property
+    def spread(self) -> float:
+        """The share by which the different functions have grown."""
+        return 0.0 if self.pinned is None else self.now.different / self.pinned.different - 1
+
+    @property
     def is_dearer(self) -> bool:
-        """True if the lock fails: there are more calls than allowed, or no pinned cost at all."""
-        return self.pinned is None or self.now.calls > self.pinned.calls * (1 + ALLOWED)
+        """True if the lock fails: more calls or functions than allowed, or no pinned cost at all."""
+        if self.pinned is None:
+            return True
+        more = 1 + ALLOWED
+        return self.now.calls > self.pinned.calls * more or self.now.different > self.pinned.different * more
 
     @property
     def is_cheaper(self) -> bool:
         """True if the cost should be pinned anew, so that it stays low."""
-        return self.pinned is not None and self.now.calls < self.pinned.calls * (1 - ALLOWED)
+        return min(self.growth, self.spread) < -ALLOWED
 
     def grown(self) -> list[str]:
         """The functions that grew most, one line each."""
@@ -84,5 +100,5 @@ def read(file: Path) -> dict[str, Cost]:
 
 def write(file: Path, costs: Mapping[str, Cost]) -> None:
     """Pin these costs."""
-    rows = {name: {"calls": cost.calls, "functions": dict(cost.functions)} for name, cost in costs.items()}
+    rows = {name: asdict(cost) for name, cost in costs.items()}
     file.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")

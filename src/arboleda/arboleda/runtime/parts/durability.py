@@ -85,7 +85,8 @@ class Durability:
         """
         since = self._since
         is_late = since is not None and clock.seconds() - since > MOST_UNSYNCED_S
-        failure = self._sync(self.written if is_late else self._owed)
+        number = self.written if is_late else self._owed
+        failure = self._failure if self.durable >= number else self._sync(number)
         if failure is not None:
             raise failure
 

@@ -51,8 +51,11 @@ class Keeping:
 
     def lets_leave(self, message: Command | Notice) -> bool:
         """True if this plant may send a message: once another process has taken it over it sends nothing, not
-        even a stop; if it cannot find out, it stops what moves, and ends. A stop does not wait to find out
-        while this process leads for certain: at 100 cells the files would be looked at 400 times."""
+        even a stop; if it cannot find out, it stops what moves, and ends. A command does not wait to find out
+        while this process leads for certain: the files are looked at when its step is committed, right after
+        it, and at each heartbeat."""
+        if isinstance(message, Command) and self.failure is None and self.leads_for_certain:
+            return True
         if ends_motion(message) and self.leads_for_certain:
             return True
         if self.store is not None and self.failure is None:
@@ -96,7 +99,8 @@ class Keeping:
             self.store.keep(*facts)
             self.durability.wrote(precedes_commands=True)
         else:
-            self.settle()
+            if self._noted:
+                self.settle()
             self.store.note(*facts)
             self._noted = True
 

@@ -315,7 +315,8 @@ class Orchestrator:
         elif self._port is not None and self.keeping.lets_leave(message):
             if not leaves_unkept(message):
                 self.keeping.durability.let_commands_leave()
-            self._refuse_late(message)
+            if is_too_late(message, self.plant, now := clock.seconds()):
+                raise CommandTooLate(SENT_TOO_LATE(seconds=now - self.plant.now))
             if self.stops.ahead:
                 self.stops.refuse_overtaken(message)
             self._port.send(message)
@@ -363,12 +364,6 @@ class Orchestrator:
         if is_left and self.keeping.standing is not Standing.SUPERSEDED:
             return stop_left(answer, as_sentence(why))
         return replace(answer, refusal=answer.refusal or as_sentence(why))
-
-    def _refuse_late(self, message: Command | Notice) -> None:
-        """Raise CommandTooLate if the process was stopped within a step: its commands may now be wrong."""
-        now = clock.seconds()
-        if is_too_late(message, self.plant, now):
-            raise CommandTooLate(SENT_TOO_LATE(seconds=now - self.plant.now))
 
     def _arrange(self, messages: Sequence[Any]) -> Sequence[Any]:
         """The messages of a step in the order in which they leave: its stops wait for no commit."""

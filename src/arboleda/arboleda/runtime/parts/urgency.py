@@ -31,7 +31,7 @@ class Urgency:
         self._ledger = plant.dispatcher.ledger
         self._last_words: dict[str, tuple[object, ...]] = {}
         self._state: dict[str, MotionState] = {}
-        self._last: dict[str, tuple[object, ...]] = {}
+        self._last: dict[str, Report] = {}
         self._runs = {
             robot.name: run
             for run in plant.cells.values()
@@ -44,10 +44,10 @@ class Urgency:
         robot = report.robot
         if report.state is not None:
             self._state[robot] = report.state
-        repeats = report.words == self._last.get(robot)
-        self._last[robot] = report.words
+        last, self._last[robot] = self._last.get(robot), report
         if self._is_news(report):
             return 0.0
+        repeats = last is not None and report.words == last.words
         run = self._runs.get(robot)
         if run is None or (run.context.sensors.awaited and report.piece is not None):
             return 0.0
