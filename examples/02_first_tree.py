@@ -13,6 +13,7 @@ from py_trees.display import ascii_tree
 
 from arboleda.cli.draw import draw
 from arboleda.views.tree_view import rows
+from arboleda_class.lessons import said, spoken
 
 paths = import_module("01_paths")  # an import statement cannot name a file that begins with a digit
 
@@ -138,10 +139,11 @@ def main() -> None:
     print(ascii_tree(tree))
     outcome = run(tree, clock)
     print(f"\n{ascii_tree(tree, show_status=True)}")
+    drawn = [{**row, "name": said(str(row["name"]))} for row in rows(tree, clock.now)]
     for format in ("svg", "png") if words.picture else ():
-        Path(f"{words.picture}.{format}").write_bytes(draw(rows(tree, clock.now), format))
+        Path(f"{words.picture}.{format}").write_bytes(draw(drawn, format))
     raise SystemExit(0 if outcome is Status.SUCCESS else 1)
 
 
 if __name__ == "__main__":
-    main()
+    spoken(main)

@@ -70,6 +70,8 @@ def test_a_program_prints_draws_and_is_given_what_is_typed(ask: Ask) -> None:
     found = ask("program", **request, arguments="--grid malla_A --code 0B --picture tree", typed="")
     assert "walk path: node 7" in found["output"] and found["problem"] is None
     assert found["pictures"]["tree.svg"].startswith("<svg")
+    spanish = ask("program", **request, arguments="--grid malla_A --code 0B", typed="", language="es")
+    assert "recorrer el camino: nodo 7" in spanish["output"]
     asked = ask("program", **request, arguments="", typed="malla_A\n 0b \n")
     assert "walk path: node 7" in asked["output"]
 

@@ -135,7 +135,9 @@ class Tab:
 
     def program(self, request: Row) -> Row:
         """Run a program of a lesson."""
-        found = programs.run(request["files"], request["program"], request["arguments"], request["typed"])
+        language = spoken([request.get("language")])
+        words = request["arguments"], request["typed"], language
+        found = programs.run(request["files"], request["program"], *words)
         problem = found["problem"]
         return found | {"problem": None if problem is None else _problem(request, problem)}
 
