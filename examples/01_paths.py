@@ -7,6 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from types import MappingProxyType
 
+from arboleda_class.lessons import spoken
+
 COLUMNS = ROWS = 3  # nodes are numbered row by row: 0 1 2 / 3 4 5 / 6 7 8
 
 Nodes = tuple[int, ...]
@@ -111,4 +113,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    spoken(main)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from argparse import ArgumentParser
-from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from py_trees.display import ascii_tree
 
 from arboleda.cli.draw import draw
 from arboleda.views.tree_view import rows
+from arboleda_class.lessons import said, spoken
 
 paths = import_module("01_paths")  # an import statement cannot name a file that begins with a digit
 
@@ -34,7 +34,7 @@ class Clock:
 class Job:
     """What the leaves of one tree share: the words that were asked for, and the path they mean."""
 
-    def __init__(self, grid: str | None, code: str | None) -> None:
+    def __init__(self, grid: str, code: str) -> None:
         self.grid = grid
         self.code = code
         self.nodes: tuple[int, ...] = ()
@@ -60,16 +60,13 @@ class Timed(Behaviour):
 class FindPath(Behaviour):
     """SUCCESS with the path in the job; FAILURE, with the reason, where the words mean none."""
 
-    def __init__(self, job: Job, ask: Callable[[str], str]) -> None:
+    def __init__(self, job: Job) -> None:
         super().__init__("find path")
         self.job = job
-        self.ask = ask
 
     def update(self) -> Status:
-        grid = self.job.grid or self.ask("grid (malla_A, malla_B, malla_C)? ")
-        code = self.job.code or self.ask("code (0A to 2C)? ")
         try:
-            self.job.nodes = paths.find(grid, code)
+            self.job.nodes = paths.find(self.job.grid, self.job.code)
         except paths.PathError as error:
             self.feedback_message = str(error)
             return Status.FAILURE
@@ -99,10 +96,10 @@ class Walk(Behaviour):
         return Status.RUNNING
 
 
-def build(clock: Clock, job: Job, ask: Callable[[str], str]) -> Behaviour:
+def build(clock: Clock, job: Job) -> Behaviour:
     """The cycle; `memory` lets a Sequence go on where it was instead of asking every child anew."""
     children = [
-        FindPath(job, ask),
+        FindPath(job),
         Timed("home", clock, 2.0),
         Walk(clock, job),
         Timed("effector on", clock, 0.5),
@@ -121,7 +118,8 @@ def run(tree: Behaviour, clock: Clock, at_most_s: float = 60.0) -> Status:
     return tree.status
 
 
-def ask_person(question: str) -> str:
+def ask(question: str) -> str:
+    """The answer of a person: before the first tick, as no leaf may wait for one."""
     try:
         return input(question)
     except EOFError:  # nobody is there
@@ -134,15 +132,18 @@ def main() -> None:
     parser.add_argument("--code", help="e.g. 0B; asked for where it is left out")
     parser.add_argument("--picture", metavar="NAME", help="write NAME.svg and NAME.png of the finished tree")
     words = parser.parse_args()
-    clock, job = Clock(), Job(words.grid, words.code)
-    tree = build(clock, job, ask_person)
+    grid = words.grid or ask("grid (malla_A, malla_B, malla_C)? ")
+    code = words.code or ask("code (0A to 2C)? ")
+    clock, job = Clock(), Job(grid, code)
+    tree = build(clock, job)
     print(ascii_tree(tree))
     outcome = run(tree, clock)
     print(f"\n{ascii_tree(tree, show_status=True)}")
+    drawn = [{**row, "name": said(str(row["name"]))} for row in rows(tree, clock.now)]
     for format in ("svg", "png") if words.picture else ():
-        Path(f"{words.picture}.{format}").write_bytes(draw(rows(tree, clock.now), format))
+        Path(f"{words.picture}.{format}").write_bytes(draw(drawn, format))
     raise SystemExit(0 if outcome is Status.SUCCESS else 1)
 
 
 if __name__ == "__main__":
-    main()
+    spoken(main)

@@ -9,6 +9,8 @@ from py_trees.common import Status
 from py_trees.composites import Sequence
 from py_trees.decorators import Retry
 
+from arboleda_class.lessons import spoken
+
 DONE, GIVEN_UP = "done", "given up"
 TRIES = 3
 
@@ -124,4 +126,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    spoken(main)

@@ -12,6 +12,7 @@ from py_trees.decorators import Decorator
 
 from arboleda.engine import RETRYABLE
 from arboleda.model.messages import Reason
+from arboleda_class.lessons import spoken
 
 lesson = import_module("02_first_tree")
 
@@ -135,4 +136,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    spoken(main)

@@ -9,6 +9,8 @@ from py_trees.blackboard import Blackboard
 from py_trees.common import Access, Status
 from py_trees.composites import Sequence
 
+from arboleda_class.lessons import spoken
+
 paths = import_module("01_paths")
 
 
@@ -117,4 +119,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    spoken(main)

@@ -17,6 +17,7 @@ from py_trees.composites import Sequence
 from arboleda.cli.session import NO_ROS, ros_link
 from arboleda.plant_file.loader import load
 from arboleda.runtime.build import Options, build
+from arboleda_class.lessons import spoken
 
 try:
     from rclpy.context import Context
@@ -163,4 +164,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    spoken(main)

@@ -8,6 +8,8 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Sequence
 
+from arboleda_class.lessons import spoken
+
 lesson = import_module("02_first_tree")
 
 STARTS = ((0.0, "ra1"), (1.0, "ra2"), (1.5, "ra1"))  # simulated s, arm: ra1 is at work when its second comes
@@ -128,4 +130,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    spoken(main)

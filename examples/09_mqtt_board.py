@@ -20,6 +20,7 @@ from arboleda.adapters.broker_login import address as broker_address
 from arboleda.model.errors import StartError
 from arboleda.plant_file.loader import load
 from arboleda.runtime.build import Options, build
+from arboleda_class.lessons import spoken
 
 PLANT = Path(__file__).parent / "plants" / "lessons.yaml"
 BOARD = "ra_1"
@@ -129,4 +130,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    spoken(main)

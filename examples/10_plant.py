@@ -20,6 +20,7 @@ from arboleda.model.messages import MotionState
 from arboleda.model.sentence import Sentence
 from arboleda.plant_file.loader import load
 from arboleda.runtime.build import App, Options, build
+from arboleda_class.lessons import spoken
 
 PLANT = Path(__file__).parent / "plants" / "lessons.yaml"
 PATIENCE_S = 60.0
@@ -155,4 +156,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    spoken(main)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import degrees
 from pathlib import Path
 
+from arboleda_class.lessons import spoken
 from arboleda_class.notebook import World
 
 PLANT = Path(__file__).parent / "plants" / "own_arm.yaml"
@@ -24,4 +25,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    spoken(main)

@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 from real_start import running
 
 from arboleda.client import Conflict, Plant
+from arboleda_class.lessons import spoken
 
 LOOK_S = 0.1
 TEXT = "bench bake shelf_1 2"
@@ -47,4 +48,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    spoken(main)

@@ -11,6 +11,8 @@ from tempfile import TemporaryDirectory
 
 from real_start import ARBOLEDA, running
 
+from arboleda_class.lessons import spoken
+
 LOOK_S = 0.1
 TEST = re.compile(r"(def test_.*?)</pre>", re.DOTALL)
 
@@ -40,4 +42,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    spoken(main)

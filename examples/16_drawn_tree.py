@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from arboleda_class.lessons import spoken
 from arboleda_class.notebook import World
 
 PLANT = Path(__file__).parent / "plants" / "workshop.yaml"
@@ -28,4 +29,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    spoken(main)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -13,13 +14,15 @@ from arboleda.client import Plant
 LESSONS = Path(__file__).parent
 ARBOLEDA = (sys.executable, "-c", "from arboleda.cli.main import main; main()")
 PAGE = "Page: "
+ENGLISH = {"ARBOLEDA_LANG": "en"}  # what the plant prints is read here, whatever the reader's language
 
 
 @contextmanager
 def running(plant: str, state: Path) -> Iterator[Plant]:
     """A plant of `plants/` on virtual devices, ten times as fast, that keeps its state in this folder."""
     options = ("up", "--no-ros", "--rate", "10", "--state", state, "--plant", LESSONS / "plants" / plant)
-    up = subprocess.Popen([*ARBOLEDA, *map(str, options)], stdout=subprocess.PIPE, text=True)
+    command, spoken = [*ARBOLEDA, *map(str, options)], os.environ | ENGLISH
+    up = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=spoken)
     try:
         assert up.stdout is not None
         address = next(line.removeprefix(PAGE).strip() for line in up.stdout if line.startswith(PAGE))

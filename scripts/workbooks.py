@@ -17,6 +17,7 @@ import markdown2
 from docs_links import LANGUAGE, LINK
 
 from arboleda.web.languages import LANGUAGES, texts
+from arboleda_class.exercises.command import effort
 from arboleda_class.exercises.exercise import PLANT, catalog
 from arboleda_class.playground import plants
 from arboleda_class.playground.markup import PlayWords
@@ -63,7 +64,10 @@ def exercises() -> Iterator[Book]:
             "kind": "exercise",
             "name": each.name,
             "title": {language: f"{each.number}. {each.title[language]}" for language in LANGUAGES},
-            "text": {language: _html(each.task[language]) for language in LANGUAGES},
+            "text": {
+                language: _html(f"{effort(each, language)}\n\n{each.task[language]}")
+                for language in LANGUAGES
+            },
             "hints": [{language: _html(hint[language]) for language in LANGUAGES} for hint in each.hints],
             "files": {name: content.decode("utf-8") for name, content in each.start.items()},
             "yours": list(each.yours),

@@ -8,6 +8,14 @@ from pathlib import Path
 from .scripts import load
 
 SITE = load("docs_links.py")
+BOXES = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+TYPED = re.compile(r"^\$ .*\n", re.MULTILINE)
+
+
+def boxes(text: str) -> list[tuple[str, str]]:
+    """The boxes of a page by their kind; of a console only what is typed: its output is translated."""
+    found = BOXES.findall(text)
+    return [(kind, "".join(TYPED.findall(box)) if kind == "console" else box) for kind, box in found]
 
 
 def links(page: Path) -> list[str]:

@@ -17,9 +17,12 @@ LONG = ("examples/11_first_recipe.py", "examples/13_declared_device.py", "exampl
 SHELL = frozenset("|>;&")
 
 
-def pages() -> list[Path]:
-    """The pages of the lessons, in English."""
-    return [page for page in sorted(FOLDER.glob("[0-9]*[a-z].md")) if not page.name.endswith(".es.md")]
+def pages(language: str = "en") -> list[Path]:
+    """The pages of the lessons in a language."""
+    spanish = sorted(FOLDER.glob("[0-9]*.es.md"))
+    if language == "es":
+        return spanish
+    return [page for page in sorted(FOLDER.glob("[0-9]*.md")) if page not in spanish]
 
 
 def commands(page: Path) -> Iterator[tuple[str, list[str]]]:
@@ -32,7 +35,7 @@ def commands(page: Path) -> Iterator[tuple[str, list[str]]]:
 
 def is_plain(page: Path, command: str) -> bool:
     """Whether a command needs no shell, no process, and no clock but one that is moved by hand."""
-    if page.stem in REAL or SHELL & set(command):
+    if page.stem.removesuffix(".es") in REAL or SHELL & set(command):
         return False
     return not any(each in command for each in (*LIVE, *LONG))
 

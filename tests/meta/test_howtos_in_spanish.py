@@ -7,11 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from ..documents import links
+from ..documents import BOXES, boxes, links
 
 FOLDER = Path(__file__).parents[2] / "docs/how-to"
 PAGES = sorted(path.name.removesuffix(".es.md") for path in FOLDER.glob("*.es.md"))
-BOXES = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 WORDS = re.compile(r"`([^`\n]+)`")
 
 
@@ -34,7 +33,7 @@ def test_every_page_is_there_in_both_languages() -> None:
 def test_both_languages_have_the_same_parts_code_and_links(page: str) -> None:
     english, spanish = both(page)
     assert shape(english) and shape(spanish) == shape(english)
-    assert BOXES.findall(spanish) == BOXES.findall(english)
+    assert boxes(spanish) == boxes(english)
     assert links(FOLDER / f"{page}.es.md") == links(FOLDER / f"{page}.md")
 
 

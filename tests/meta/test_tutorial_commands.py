@@ -11,15 +11,18 @@ from pathlib import Path
 import pytest
 
 from arboleda.cli.main import main
+from arboleda.web.languages import LANGUAGES
+from arboleda_class.lessons import said
 
 from ..tutorial_pages import LEFT_OUT, ROOT, commands, differs, is_plain, pages
 
 
 def cases() -> Iterator[pytest.param]:
-    for page in pages():
-        for number, (command, expected) in enumerate(commands(page), start=1):
-            if is_plain(page, command):
-                yield pytest.param(command, expected, id=f"{page.stem}-{number}")
+    for language in LANGUAGES:
+        for page in pages(language):
+            for number, (command, expected) in enumerate(commands(page), start=1):
+                if is_plain(page, command):
+                    yield pytest.param(language, command, expected, id=f"{page.stem}-{number}")
 
 
 @pytest.fixture
@@ -32,14 +35,16 @@ def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize(("command", "expected"), list(cases()))
+@pytest.mark.parametrize(("language", "command", "expected"), list(cases()))
 def test_a_command_prints_what_the_page_says(
+    language: str,
     command: str,
     expected: list[str],
     checkout: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
+    monkeypatch.setenv("ARBOLEDA_LANG", language)
     program, *words = shlex.split(command)
     try:
         if program == ".venv/bin/arboleda":
@@ -62,3 +67,14 @@ def test_left_out_lines_may_be_any_and_others_may_not() -> None:
     assert differs(page, "one\nport 127.0.0.1:1\ntwo\nthree\n")
     assert differs(page, "port 127.0.0.1:1\ntwo\n")
     assert differs(["one", LEFT_OUT], "one\nTraceback (most recent call last)\n")
+
+
+@pytest.mark.parametrize("page", pages("es"), ids=lambda page: page.stem)
+def test_a_spanish_page_shows_what_its_lesson_prints(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ARBOLEDA_LANG", "es")
+    english = commands(page.with_name(page.name.replace(".es.md", ".md")))
+    for (command, expected), (typed, printed) in zip(english, commands(page), strict=True):
+        assert typed == command
+        if "examples/" in command and ".venv/bin/python" in command:
+            spoken = [said(line) for line in expected if LEFT_OUT not in line]
+            assert [line for line in printed if LEFT_OUT not in line] == spoken

@@ -7,13 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from ..documents import links
+from ..documents import BOXES, boxes, links
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "tutorial"
 LESSONS = sorted(path.stem for path in (ROOT / "examples").glob("[0-9][0-9]_*.py"))
 PAGES = ["README", *LESSONS]
-BOXES = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 def read(page: str, ending: str) -> str:
@@ -24,9 +23,9 @@ def headings(text: str) -> list[str]:
     return re.findall(r"^(#+) ", BOXES.sub("", text), re.MULTILINE)
 
 
-def boxes(text: str) -> list[tuple[str, str]]:
-    """Commands and their output; the words of a plain box may be translated."""
-    return [(kind, content) for kind, content in BOXES.findall(text) if kind]
+def boxes_with_code(text: str) -> list[tuple[str, str]]:
+    """Those of a kind; the words of a plain box may be translated."""
+    return [(kind, content) for kind, content in boxes(text) if kind]
 
 
 def test_there_are_sixteen_lessons_with_a_page_each() -> None:
@@ -40,13 +39,13 @@ def test_both_languages_have_the_same_headings_and_commands(page: str) -> None:
     english, spanish = read(page, ".md"), read(page, ".es.md")
     assert headings(english)
     assert headings(spanish) == headings(english)
-    assert boxes(spanish) == boxes(english)
+    assert boxes_with_code(spanish) == boxes_with_code(english)
     assert links(FOLDER / f"{page}.es.md") == links(FOLDER / f"{page}.md")
 
 
 @pytest.mark.parametrize("lesson", LESSONS)
 def test_a_page_runs_its_example(lesson: str) -> None:
-    commands = [content for kind, content in boxes(read(lesson, ".md")) if kind == "console"]
+    commands = [content for kind, content in boxes_with_code(read(lesson, ".md")) if kind == "console"]
     assert any(f"$ .venv/bin/python examples/{lesson}.py" in content for content in commands)
 
 

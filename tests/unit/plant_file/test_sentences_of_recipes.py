@@ -31,6 +31,7 @@ def assay(cell):
 """
 TWICE = "stands at two places; a step has one place: call what makes it again for the other, or repeat it"
 NOT_ASKED = "choose looks at the answer of reader look, which is not asked by then"
+MADE_TWICE = f"{NOT_ASKED}; each call makes a step of its own, and another one stands in the recipe"
 WAYS = '{"a": [], "b": []}'
 WRONG = {
     's = reader.close(); return work(s, reader.open(), s)': f"reader close {TWICE}",
@@ -50,7 +51,8 @@ WRONG = {
     "return cell.run(reader)": "it takes a recipe, a function with @recipe before it",
     "return again()": "it calls itself without an end",
     f"return cell.choose(reader.look(), {WAYS})": NOT_ASKED,
-    f"s = reader.look(); return work(cell.choose(s, {WAYS}), s)": NOT_ASKED,
+    f"s = reader.look(); return work(cell.choose(s, {WAYS}), s)": f"{NOT_ASKED}; let it stand before",
+    f"s = reader.look(); return work(cell.retry(reader.look()), cell.choose(s, {WAYS}))": MADE_TWICE,
     's = reader.look(); return cell.choose(s, {"a": [s], "b": []})': NOT_ASKED,
     "return cell.repeat(reader.close(), -1)": "times of repeat takes a whole number from 1 to 100,000; is -1",
     "return cell.repeat(reader.close(), 10**9)": "from 1 to 100,000; is 1000000000",

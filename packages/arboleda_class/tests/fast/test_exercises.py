@@ -9,15 +9,17 @@ import pytest
 from tests.lengths import length
 from typer.testing import CliRunner
 
+from arboleda.cli.language import finding_in
 from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskState
 from arboleda_class.exercises import judge_process
+from arboleda_class.exercises.command import DIFFICULTIES, effort
 from arboleda_class.exercises.exercise import LANGUAGES, Exercise, catalog, exercise
+from arboleda_class.exercises.wording import befell, in_english, often, task_is, task_is_to
 from arboleda_class.exercises.work import SHEET, packed, works
 from arboleda_proofs.campaigns.proof.outcome import End
-from arboleda_proofs.campaigns.words import task_is, task_is_to
-from arboleda_proofs.simulator.faults import KINDS
+from arboleda_proofs.simulator.faults import KINDS, Fault
 
 from ..exercises.works import Sample, handed_in, samples, two
 
@@ -39,6 +41,7 @@ def test_an_exercise_has_all_that_belongs_to_it(each: Exercise) -> None:
     assert all(set(text) == set(LANGUAGES) and all(text.values()) for text in texts)
     assert each.trials and len(each.hints) >= 2 and set(each.yours) <= set(each.start)
     assert all(fault.fault.kind in KINDS for trial in each.trials for fault in trial.faults)
+    assert each.minutes > 0 and each.difficulty in DIFFICULTIES
     assert all(len(trial.ends) == len(trial.tasks) for trial in each.trials)
     assert all(set(proving.kinds) <= set(KINDS) for proving in each.proving)
 
@@ -50,7 +53,10 @@ def test_the_exercises_are_numbered_one_after_the_other() -> None:
 @pytest.mark.parametrize(("language", "page"), [("en", "exercises.md"), ("es", "exercises.es.md")])
 def test_how_to_pages_list_the_exercises_with_their_titles(language: str, page: str) -> None:
     text = (Path(__file__).parents[4] / "docs/how-to" / page).read_text("utf-8")
-    rows = [f"| `{each.name}` | {each.title[language]} |" for each in catalog().values()]
+    rows = [
+        f"| `{each.name}` | {each.title[language]} | {effort(each, language)} |"
+        for each in catalog().values()
+    ]
     assert [line for line in text.splitlines() if line in rows] == rows
 
 
@@ -126,6 +132,13 @@ def test_a_plant_that_was_changed_elsewhere_does_not_pass() -> None:
     assert "kinds.press.verbs.press.takes_s of plant.yaml was changed" in verdict.findings[0].evidence
 
 
+def kinds_in(each: Exercise) -> set[str]:
+    """The kinds of the faults with which an exercise is judged."""
+    trials = [*each.trials, *([each.record] if each.record else [])]
+    tried = {fault.fault.kind for trial in trials for fault in trial.faults}
+    return tried | {kind for proving in each.proving for kind in proving.kinds}
+
+
 def check(*arguments: str) -> tuple[int, str]:
     done = CliRunner().invoke(cli, ["exercise", *arguments], env={"ARBOLEDA_LANG": "", "LANG": "C"})
     return done.exit_code, done.output
@@ -136,8 +149,8 @@ def refusal(*arguments: str) -> str:
 
 
 def test_an_exercise_is_listed_written_and_hinted_at(tmp_path: Path) -> None:
-    assert "retry                 Add a retry" in check("list")[1]
-    assert "Agregar un reintento" in check("list", "--lang", "es")[1]
+    assert "retry           10 min, easy     Add a retry" in check("list")[1]
+    assert "retry           10 min, fácil    Agregar un reintento" in check("list", "--lang", "es")[1]
     assert check("start", "night", str(tmp_path / "night"))[0] == 0
     assert {each.name for each in (tmp_path / "night").iterdir()} == {
         *("work.yaml", "TASK.md", "TAREA.md", "failed.mcap"),
@@ -159,4 +172,45 @@ def test_every_end_that_an_exercise_allows_can_be_said() -> None:
     for each in catalog().values():
         allowed = [*(words for trial in each.trials for words in trial.ends)]
         allowed += [words for proving in each.proving for words in proving.ends.values()]
-        assert all(task_is_to(words).startswith("it is to ") for words in allowed), each.name
+        assert all(task_is_to("it", words).startswith("it is to ") for words in allowed), each.name
+
+
+@pytest.mark.parametrize(
+    ("english", "spanish"),
+    [
+        (often("lamp light true", 1, 0, 0), "'lamp light true' no debe hacerse; se hace una vez"),
+        (often("camera look", 1, 2, 3), "'camera look' debe hacerse de 2 a 3 veces; se hace una vez"),
+        (often("pump dispense", 0, 2, 2), "'pump dispense' debe hacerse 2 veces; no se hace"),
+        (often("ana", 0, 1, 1), "a ana se le debe preguntar una vez, y no se le pregunta"),
+        (
+            f"{task_is_to('bench inspect', ['failed', 'held'])}; {task_is('it', 'done')}",
+            "bench inspect debe fallar o debe quedar retenida; se ha hecho",
+        ),
+        (
+            f"{task_is_to('bench inspect', ['done'])}; {task_is('it', 'failed')}: "
+            + in_english("camera: gave up (atasco) while doing look"),
+            "bench inspect debe hacerse; ha fallado: "
+            "camera: se dio por vencido (atascado) mientras estaba con la orden «look»",
+        ),
+        (
+            in_english("scale: refused the command for doing weigh (ocupado)"),
+            "scale: orden rechazada, con la orden «weigh» (ocupado)",
+        ),
+        (
+            "box is to have 1 part at the end; it has 0 parts",
+            "box debe tener 1 pieza al final; tiene 0 piezas",
+        ),
+    ],
+)
+def test_a_verdict_is_whole_in_both_languages(english: str, spanish: str) -> None:
+    assert not any(word in english for word in ("1 times", "0 times", "atasco", "ocupado"))
+    assert finding_in("es", english) == spanish
+
+
+@pytest.mark.parametrize("kind", sorted({kind for each in catalog().values() for kind in kinds_in(each)}))
+def test_a_fault_of_an_exercise_has_a_sentence(kind: str) -> None:
+    line = befell(Fault(kind=kind, target="oven", word="", at=0.0, seconds=2.5, amount=4.0))
+    assert line.startswith("FAULT for 2.5 s: ") and f"{kind} oven" not in line
+    what = line.removeprefix("FAULT for 2.5 s: ")
+    assert finding_in("es", what) != what
+    assert finding_in("es", line) == f"FALLO durante 2.5 s: {finding_in('es', what)}"

@@ -70,6 +70,8 @@ def test_a_program_prints_draws_and_is_given_what_is_typed(ask: Ask) -> None:
     found = ask("program", **request, arguments="--grid malla_A --code 0B --picture tree", typed="")
     assert "walk path: node 7" in found["output"] and found["problem"] is None
     assert found["pictures"]["tree.svg"].startswith("<svg")
+    spanish = ask("program", **request, arguments="--grid malla_A --code 0B", typed="", language="es")
+    assert "recorrer el camino: nodo 7" in spanish["output"]
     asked = ask("program", **request, arguments="", typed="malla_A\n 0b \n")
     assert "walk path: node 7" in asked["output"]
 
@@ -99,7 +101,8 @@ def test_a_work_is_judged_and_what_is_not_so_can_be_gone_through(ask: Ask) -> No
     wrong = next(each for each in samples("query_first") if not each.right)
     files = {name: content.decode() for name, content in wrong.files.items()}
     verdict = ask("judge", shares.append, exercise="query_first", files=files, language="es")
-    assert verdict["findings"][0]["seen"] == "'pump dispense' se hace una vez; debe hacerse 0 veces"
+    assert verdict["findings"][0]["seen"] == "'pump dispense' no debe hacerse; se hace una vez"
+    assert any("bench top_up está en cola" in line for line in verdict["findings"][0]["story"])
     assert not verdict["passes"] and verdict["film"] and shares == sorted(shares)
     assert "play-mishaps" not in ask("open", plant="story", **OPENED)["html"]
     clock = ask("step")["frame"]["clock"]

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import shlex
 from pathlib import Path
 
+import pytest
+from tests.tutorial_pages import ROOT, commands, differs
 from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
@@ -12,7 +15,7 @@ from arboleda_class.exercises import judge_process
 from arboleda_class.exercises.exercise import exercise
 from arboleda_class.exercises.work import Work
 
-from ..exercises.works import handed_in
+from ..exercises.works import handed_in, samples
 
 FOREVER = """
 import sys
@@ -35,8 +38,8 @@ def test_python_that_ends_the_judge_gets_no_verdict() -> None:
     assert [each.says["en"] for each in verdict.findings] == ["The work can be judged"]
 
 
-def check(*arguments: str) -> tuple[int, str]:
-    done = CliRunner().invoke(cli, ["exercise", *arguments], env={"ARBOLEDA_LANG": "", "LANG": "C"})
+def check(*arguments: str, language: str = "") -> tuple[int, str]:
+    done = CliRunner().invoke(cli, ["exercise", *arguments], env={"ARBOLEDA_LANG": language, "LANG": "C"})
     return done.exit_code, done.output
 
 
@@ -58,3 +61,20 @@ def test_a_work_of_ones_own_is_told_with_its_story(tmp_path: Path) -> None:
     status, output = check("check", str(folder), "--lang", "es")
     assert status == 1 and "aún no aprueba" in output and "camera look" in output
     assert (folder / "story.mcap").stat().st_size > 1000
+
+
+@pytest.mark.parametrize(("language", "page"), [("en", "exercises.md"), ("es", "exercises.es.md")])
+def test_the_commands_of_the_page_print_what_it_says(
+    language: str, page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("sys.argv", ["arboleda"])
+    handed_in(tmp_path / "handed-in", "retry", "Ana")
+    bea = handed_in(tmp_path / "handed-in", "retry", "Bea")
+    [many] = [each for each in samples("retry") if each.about == "far too many tries"]
+    (bea / "recipes.py").write_bytes(many.files["recipes.py"])
+    for command, expected in commands(ROOT / "docs/how-to" / page):
+        program, group, *arguments = shlex.split(command)
+        assert (program, group) == ("arboleda", "exercise")
+        output = check(*arguments, language=language)[1]
+        assert not (printed := differs(expected, output)), f"$ {command}\n{printed}"

@@ -55,11 +55,11 @@ def test_a_tab_runs_a_plant_and_the_program_of_a_lesson_and_judges_an_exercise(a
         {"do": "open", **PLANT},
         {"do": "advance", "ticks": 32},
         {"do": "befall", "name": "reboot", "target": "ra_1", "seconds": 1},
-        {"do": "program", "typed": "", **program},
+        {"do": "program", "typed": "", "language": "es", **program},
         {"do": "judge", "exercise": "retry", "files": exercise["files"], "language": "es"},
     )
     assert "part-twin" in opened["html"]
     assert advanced["frame"]["clock"]["tick"] == 32
     assert befallen["frame"]["clock"]["marks"] == [32]
-    assert printed["output"] and printed["problem"] is None
+    assert "recorrer el camino: nodo" in printed["output"] and printed["problem"] is None
     assert verdict["findings"] and verdict["film"]

@@ -204,6 +204,11 @@ def check_choices(step: Step, making: Making) -> None:
         first = order.get(id(next(node.iterate())), -1)  # -1: the choice is not used
         if first >= 0 and order.get(id(question), first) >= first:
             how = "let it stand before, as in work(seen, cell.choose(seen, ...))"
+            if id(question) not in order and any(each.name == question.name for each in step.iterate()):
+                how = (
+                    "each call makes a step of its own, and another one stands in the recipe: "
+                    "use one name for both, as in work(cell.retry(seen), cell.choose(seen, ...))"
+                )
             raise RecipeError(
                 f"choose looks at the answer of {question.name}, which is not asked by then; {how}"
             )

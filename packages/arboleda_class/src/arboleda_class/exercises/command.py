@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,6 +18,8 @@ from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_writable
 from arboleda.runtime import invocation
 
+from .wording import in_story
+
 if TYPE_CHECKING:
     from .exercise import Exercise, Text
     from .judge import Verdict
@@ -28,7 +31,13 @@ STATUS = "Exit status: 0 all works pass, 1 one does not, 2 bad input."
 PASSES = Phrase("cli.exercise.passes", "passes")
 FAILS = Phrase("cli.exercise.fails", "does not pass yet")
 TO_BE_SO = Phrase("cli.exercise.to_be_so", "To be so: {what}")
-SEEN = Phrase("cli.exercise.seen", "Seen: {what}")
+NOT_SO = Phrase("cli.exercise.not_so", "Not so: {what}")
+EFFORT = Phrase("cli.exercise.effort", "{minutes} min, {difficulty}")
+DIFFICULTIES = {
+    "easy": Phrase("cli.exercise.easy", "easy"),
+    "medium": Phrase("cli.exercise.medium", "medium"),
+    "hard": Phrase("cli.exercise.hard", "hard"),
+}
 NO_HINT = Phrase("cli.exercise.no_hint", "{name} has {all} hints; there is no hint {number}")
 NO_LANGUAGE = Phrase("cli.exercise.no_language", "--lang: {asked} is not there; {others}")
 LANGUAGE = "ARBOLEDA_LANG"
@@ -53,7 +62,7 @@ def list_exercises(lang: Lang = "") -> None:
 
     language = _language(lang)
     for each in catalog().values():
-        typer.echo(f"{each.number:3}  {each.name:22}{each.title[language]}")
+        typer.echo(f"{each.number:3}  {each.name:16}{effort(each, language):17}{each.title[language]}")
     typer.echo(f"\n{invocation.command()} exercise start NAME")
 
 
@@ -160,7 +169,14 @@ def pack(
 
 def page(exercise: Exercise, language: str) -> str:
     """The task of an exercise as Markdown."""
-    return f"# {exercise.title[language]}\n\n{exercise.task[language].strip()}\n"
+    return (
+        f"# {exercise.title[language]}\n\n{effort(exercise, language)}\n\n{exercise.task[language].strip()}\n"
+    )
+
+
+def effort(exercise: Exercise, language: str) -> str:
+    """`15 min, easy`."""
+    return say_in(language, EFFORT(minutes=exercise.minutes, difficulty=DIFFICULTIES[exercise.difficulty]()))
 
 
 def _record(exercise: Exercise, folder: Path) -> None:
@@ -198,25 +214,23 @@ def _row(work: Work, verdict: Verdict) -> dict[str, Any]:
 def _line(work: Work, verdict: Verdict, language: str) -> str:
     word = say_in(language, PASSES() if verdict.passes else FAILS())
     first = verdict.findings[0] if verdict.findings else None
-    why = "" if first is None else f"  {_in(first.says, language)}: {finding_in(language, first.evidence)}"
+    seen = "" if first is None else finding_in(language, first.evidence.partition("\n")[0])
+    why = "" if first is None else f"  {_in(first.says, language)}: {seen}"
     return f"{work.student or str(work.where):24} {work.exercise:20} {word}{why}"
 
 
 def _tell(work: Work, verdict: Verdict, language: str) -> None:
     for each in verdict.findings:
         typer.echo(say_in(language, TO_BE_SO(what=_in(each.says, language))))
-        typer.echo(say_in(language, SEEN(what=finding_in(language, each.evidence))) + "\n")
-    if verdict.findings and verdict.findings[0].story:
-        typer.echo("\n".join(_in_story(each, language) for each in verdict.findings[0].story) + "\n")
+        for line in each.evidence.splitlines():
+            typer.echo(say_in(language, NOT_SO(what=finding_in(language, line))))
+        typer.echo()
+    story = verdict.findings[0].story if verdict.findings else ()
+    if story:
+        typer.echo("\n".join(in_story(each, partial(finding_in, language)) for each in story) + "\n")
     if (work.where / STORY).is_file() and not verdict.passes:
         typer.echo(f"{invocation.command()} replay {shlex.quote(str(work.where / STORY))} --page\n")
     typer.echo(f"{work.exercise}: {say_in(language, PASSES() if verdict.passes else FAILS())}")
-
-
-def _in_story(line: str, language: str) -> str:
-    """A line of a story: its time, and what happened then."""
-    time, found, what = line.partition(" s  ")
-    return f"{time}{found}{finding_in(language, what)}" if found else line
 
 
 def _in(text: Text, language: str) -> str:

@@ -78,13 +78,16 @@ class Proving:
 
 @dataclass(frozen=True, kw_only=True)
 class Exercise:
-    """Exercise: `start` are its files by name, of which `yours` are the student's; `keeps` has the keys of
+    """Exercise: `minutes` and `difficulty` (easy, medium, hard) are for somebody who knows the lessons before
+    it; `start` are its files by name, of which `yours` are the student's; `keeps` has the keys of
     the plant file, where it is theirs, that stay as they are. `declares` has by recipe what it has to say of
     its end. `record` is the trial of which the student gets a record.
     """
 
     name: str
     number: int
+    minutes: int
+    difficulty: str
     title: Text
     task: Text
     hints: tuple[Text, ...]
@@ -125,6 +128,8 @@ def _read(folder: Traversable) -> Exercise:
     return Exercise(
         name=folder.name,
         number=sheet["number"],
+        minutes=sheet["minutes"],
+        difficulty=sheet["difficulty"],
         title=sheet["title"],
         task=sheet["task"],
         hints=tuple(sheet["hints"]),

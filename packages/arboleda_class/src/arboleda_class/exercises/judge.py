@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -25,11 +25,11 @@ from arboleda_proofs.campaigns.proof.proof import Proof
 from arboleda_proofs.campaigns.proof.proof_tally import Case, ProofTally
 from arboleda_proofs.campaigns.proof.scenario import scenarios
 from arboleda_proofs.campaigns.proof.stage import Stage
-from arboleda_proofs.campaigns.words import fault_words, task_is, task_is_to
 from arboleda_proofs.simulator.faults import KINDS, Fault
 
 from .exercise import PLANT, Exercise, Proving, Text, TimedFault, Trial
 from .trial_run import Course, run_trial
+from .wording import fault_is, in_english, task_is, task_is_to
 
 LAST = 30  # lines of a story
 SHORT = (" asked ", " FAULT ", " fault over ", " task ", " carries out ", " cell ")
@@ -53,7 +53,7 @@ Progress = Callable[[int], object]
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """Finding: what was to be so, what was seen instead, and the last things that happened."""
+    """Finding: what was to be so, what was not, a line for each thing, and the last things that happened."""
 
     says: Text
     evidence: str
@@ -134,7 +134,8 @@ class Judge:
     def _find(self, finding: Finding, again: Again | None = None) -> None:
         if not self.verdict.findings:
             self.verdict.again = again
-        self.verdict.findings.append(finding)
+        story = tuple(map(in_english, finding.story))
+        self.verdict.findings.append(replace(finding, evidence=in_english(finding.evidence), story=story))
 
     def _changed(self) -> None:
         """Find what of the plant file was changed that is no part of the exercise."""
@@ -172,7 +173,7 @@ class Judge:
             recorded = self._run(model, self._exercise.record, self._exercise.record.faults)
             course.objections += _others(recorded, course)
         if course.objections:
-            evidence = plain("; ".join(course.objections[:MOST]), LONGEST)
+            evidence = "\n".join(plain(each, LONGEST) for each in course.objections[:MOST])
             finding = Finding(says=trial.says, evidence=evidence, story=tuple(course.story[-LAST:]))
             self._find(finding, lambda make: run_trial(model, trial, faults, make_plant=make))
 
@@ -205,7 +206,8 @@ class Judge:
         tally = _tally(proof, proving.runs, lambda: self._count(1))
         for breach in breaches_of(tally)[:1]:
             name, sentence = breach.run.outcome.broken or ("", "")
-            evidence = f"{breach.scenario.name}: {breach.befell}, {breach.instant.name}: {name}: {sentence}"
+            befell = f"{fault_is(breach.fault)}, {breach.instant.name}"
+            evidence = f"{breach.scenario.name}: {befell}: {name}: {sentence}"
             finding = Finding(
                 says=HOLDS,
                 evidence=plain(evidence, LONGEST),
@@ -249,11 +251,11 @@ def _wrong_ends(tally: ProofTally, proving: Proving) -> Iterator[tuple[Case, str
     """Cases in which a task ends otherwise than it may, or is done and nobody notices what is not so."""
     for case in tally.cases():
         allowed = proving.ends.get(case.fault.kind)
-        what = f"{case.scenario.name}: {fault_words(case.fault)}, {case.instant.name}"
+        what = f"{case.scenario.name}: {fault_is(case.fault)}, {case.instant.name}"
         outcome = case.outcome
         why = f": {outcome.cause}" if outcome.cause else ""
         if allowed is not None and outcome.end.value not in allowed:
-            yield case, f"{what}: {task_is('the task', outcome.end.value)}{why}; {task_is_to(allowed)}"
+            yield case, f"{what}: {task_is_to('the task', allowed)}; {task_is('it', outcome.end.value)}{why}"
         if case.fault.kind in proving.noticed and outcome.end in IS_DONE and outcome.untrue:
             yield case, f"{what}: the task is called done, but {'; '.join(outcome.untrue)}"
 

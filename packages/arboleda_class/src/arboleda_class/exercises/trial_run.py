@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from arboleda.engine import Entry, Plant
+from arboleda.model.counting import counted
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import ENDED, TaskChanged, TaskState
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.sim.machine import MachineBody
-from arboleda_proofs.campaigns import words
 from arboleda_proofs.campaigns.plants import ELSEWHERE
 from arboleda_proofs.campaigns.proof.stage import ASKED_AT_S, HEARD_S, STUCK, entry_name
 from arboleda_proofs.simulator.faults import Fault
@@ -19,6 +19,7 @@ from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda_proofs.simulator.people import FixedAnswers, answer_in_turn
 from arboleda_proofs.simulator.run import NO_EXCEPTION
 
+from . import wording
 from .exercise import TimedFault, Trial
 
 HELD, OPEN = "held", "not ended"
@@ -140,9 +141,9 @@ class _Run:
             if entry.open and not self._met:
                 self._met = next(self._amiss(entry), "")
         if self._trial.apart and not self._met and all(map(self._is_at, self._trial.apart)):
-            self._met = f"at {self._watched.seconds - ASKED_AT_S:.1f} s " + " while ".join(
-                f"{robot} is at {target}" for robot, target in self._trial.apart
-            )
+            (one, here), (other, there) = self._trial.apart
+            at_s = self._watched.seconds - ASKED_AT_S
+            self._met = f"at {at_s:.1f} s {one} is at {here} while {other} is at {there}"
 
     def _follow(self, change: TaskChanged) -> None:
         known = {each.task: request for request, each in self._last_changes.items() if each.task}
@@ -150,10 +151,11 @@ class _Run:
         before = self._last_changes.get(request or "")
         if request is not None and (before is None or before.state not in OVER):
             self._last_changes[request] = change
-            self._tell(_joined(words.task_is(self._tasks[request], change.state.value), str(change.sentence)))
+            said = str(change.sentence)
+            self._tell(_joined(wording.task_is(self._tasks[request], change.state.value), said))
 
     def _begin(self, fault: Fault) -> None:
-        self._tell(f"FAULT: {' '.join(words.fault_words(fault).split())}")
+        self._tell(wording.befell(fault))
         self._watched.begin(fault)
 
     def _tell(self, what: str) -> None:
@@ -175,7 +177,7 @@ class _Run:
             for what, wanted in facts.items() if _means(during, act) else ():
                 found = self._fact(what)
                 if found != wanted:
-                    yield f"{what} is {shown(found)} while '{act}' is done; it is to be {shown(wanted)}"
+                    yield f"{what} is to be {shown(wanted)} while '{act}' is done; it is {shown(found)}"
 
     def _fact(self, what: str) -> Value:
         """The true value of a fact, by its device."""
@@ -205,41 +207,41 @@ class _Run:
         trial = self._trial
         rows = zip(trial.tasks, trial.ends, course.ends, course.reasons, course.sentences, strict=False)
         for task, allowed, end, reason, sentence in rows:
-            why = _joined(words.task_is(task, end), sentence)
             if end not in allowed:
-                yield f"{why}; {words.task_is_to(allowed)}"
+                yield f"{wording.task_is_to(task, allowed)}; {_joined(wording.task_is('it', end), sentence)}"
             elif trial.reason is not None and end != "done" and reason != trial.reason:
-                yield f"{why} ({reason}); the reason is to be {trial.reason}"
+                yield f"the reason is to be {trial.reason}; it is {reason}: {sentence}"
 
     def _of_facts(self) -> Iterator[str]:
         for what, wanted in self._trial.facts.items():
             found = self._fact(what)
             if found != wanted:
-                yield f"{what} is {shown(found)} at the end; it is to be {shown(wanted)}"
+                yield f"{what} is to be {shown(wanted)} at the end; it is {shown(found)}"
         for place, parts in self._trial.parts.items():
             cells = self._watched.truth.places.cells.values()
             count = next((each.parts[place] for each in cells if place in each.parts), None)
             if count is None:
-                yield f"{place} is no place, so nobody counts its parts; there are to be {parts} at the end"
+                yield f"{place} is to have {counted(parts, 'part')} at the end; it is no place"
             elif count != parts:
-                yield f"at {place} there are {count} parts at the end; there are to be {parts}"
+                to_have, has = counted(parts, "part"), counted(count, "part")
+                yield f"{place} is to have {to_have} at the end; it has {has}"
 
     def _of_acts(self, acts: Sequence[str]) -> Iterator[str]:
         for act, (least, most) in self._trial.acts.items():
-            often = sum(_means(act, each) for each in acts)
-            if not least <= often <= most:
-                yield f"'{act}' is done {words.times(often)}; it is to be done {words.times(least, most)}"
+            times = sum(_means(act, each) for each in acts)
+            if not least <= times <= most:
+                yield wording.often(act, times, least, most)
         rest = iter(acts)
         for act in self._trial.order:
             if not any(_means(act, each) for each in rest):
                 order, was = ", ".join(self._trial.order), ", ".join(acts)
-                yield f"the order of what is done is to be: {order}; it was: {was}"
+                yield f"the order of what is done is to be '{order}'; it is '{was}'"
                 return
 
     def _of_time(self) -> Iterator[str]:
         most, took = self._trial.in_s, self._ended_at - ASKED_AT_S
         if most is not None and took > most:
-            yield f"it takes {took:.1f} s; it is to take at most {most:g} s"
+            yield f"it is to take at most {most:g} s; it takes {took:.1f} s"
 
 
 def _plain(name: str) -> str:

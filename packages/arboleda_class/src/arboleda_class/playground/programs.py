@@ -16,6 +16,7 @@ from unittest import mock
 
 from .building import Texts, written
 
+LANGUAGE = "ARBOLEDA_LANG"
 MOST = 200_000  # characters that a program may print
 
 
@@ -32,8 +33,9 @@ class _Paper(StringIO):
         return super().write(text)
 
 
-def run(texts: Texts, program: str, arguments: str, typed: str) -> dict[str, Any]:
-    """Run a program with what follows its name on a command line, and with the lines that a person types.
+def run(texts: Texts, program: str, arguments: str, typed: str, language: str) -> dict[str, Any]:
+    """Run a program with what follows its name on a command line, and with the lines that a person types;
+    what a lesson prints is in this language.
 
     The answer has its `output`, `pictures` (SVG by the name of the file), and a `problem` {file, line, text}
     or None.
@@ -41,7 +43,8 @@ def run(texts: Texts, program: str, arguments: str, typed: str) -> dict[str, Any
     paper, found = _Paper(), None
     with written(texts) as folder:
         try:
-            with _alone(folder), redirect_stdout(paper), redirect_stderr(paper):
+            spoken = mock.patch.dict(os.environ, {LANGUAGE: language})
+            with _alone(folder), spoken, redirect_stdout(paper), redirect_stderr(paper):
                 _run(folder / program, [program, *shlex.split(arguments)], typed)
         except TooMuch:
             found = {"file": "", "line": 0, "text": f"the program printed more than {MOST} characters"}

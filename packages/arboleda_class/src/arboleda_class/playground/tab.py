@@ -6,6 +6,7 @@ import json
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from arboleda.dashboard.findings import findings
@@ -14,6 +15,7 @@ from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import in_json
 from arboleda.web.languages import spoken
+from arboleda_class.exercises.wording import in_story
 from arboleda_proofs.campaigns.request import Request
 from arboleda_proofs.simulator import mishaps
 
@@ -133,7 +135,9 @@ class Tab:
 
     def program(self, request: Row) -> Row:
         """Run a program of a lesson."""
-        found = programs.run(request["files"], request["program"], request["arguments"], request["typed"])
+        language = spoken([request.get("language")])
+        words = request["arguments"], request["typed"], language
+        found = programs.run(request["files"], request["program"], *words)
         problem = found["problem"]
         return found | {"problem": None if problem is None else _problem(request, problem)}
 
@@ -142,6 +146,7 @@ class Tab:
         verdict, film, model = judging.judged(request["exercise"], request["files"], self._progress)
         for finding in verdict["findings"]:
             finding["seen"] = _translate(request, finding["seen"])
+            finding["story"] = [in_story(each, partial(_translate, request)) for each in finding["story"]]
         return verdict | self._filmed(film, model)
 
     def record(self, request: Row) -> Row:

@@ -261,7 +261,8 @@ async function judge() {
   const verdict = await ask("judge", { exercise: book.name, files: own() }, (share) => (at("book-progress").value = share));
   report(verdict.passes ? "passes" : "fails", verdict.passes);
   for (const { says, seen, story } of verdict.findings) {
-    at("book-said").append(made("p", `${say("to")} ${says[language] ?? says.en}`), made("p", `${say("seen")} ${seen}`, "is-bad"));
+    const lines = seen.split("\n").map((line) => made("p", `${say("not_so")} ${line}`, "is-bad"));
+    at("book-said").append(made("p", `${say("to")} ${says[language] ?? says.en}`), ...lines);
     if (story.length) at("book-said").append(made("pre", story.join("\n")));
   }
   if (!verdict.film) return;
