@@ -57,6 +57,9 @@ BY_HAND: dict[Verb, Phrase] = {
     for verb in Verb
     if verb.row.by_hand
 }
+ADVISE = {each: Phrase(f"advise.{each.value}", act.english) for each, act in DO.items()}
+ADVISE_BY_HAND = {verb: Phrase(f"advise.{verb.value}_by_hand", act.english) for verb, act in BY_HAND.items()}
+"""What a person is asked to do: in Spanish in other words than what was done."""
 THEN = Phrase("do.then", "{first}, then {second}")
 OR = Phrase("do.or", "{first} or {second}")
 AND = Phrase("do.and", "{first} and {second}")
@@ -65,7 +68,7 @@ AND = Phrase("do.and", "{first} and {second}")
 def in_words(advice: Advice) -> Sentence:
     """The act, as a person types or says it."""
     by_hand = advice.by_hand and isinstance(advice.do, Verb)
-    return (BY_HAND[Verb(advice.do)] if by_hand else DO[advice.do])(scope=advice.scope)
+    return (ADVISE_BY_HAND[Verb(advice.do)] if by_hand else ADVISE[advice.do])(scope=advice.scope)
 
 
 def sentence(advices: Iterable[Advice]) -> Sentence:
