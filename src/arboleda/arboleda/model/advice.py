@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -67,8 +67,7 @@ AND = Phrase("do.and", "{first} and {second}")
 
 def in_words(advice: Advice) -> Sentence:
     """The act, as a person types or says it."""
-    by_hand = advice.by_hand and isinstance(advice.do, Verb)
-    return (ADVISE_BY_HAND[Verb(advice.do)] if by_hand else ADVISE[advice.do])(scope=advice.scope)
+    return _phrase(advice, DO, BY_HAND)(scope=advice.scope)
 
 
 def sentence(advices: Iterable[Advice]) -> Sentence:
@@ -76,5 +75,11 @@ def sentence(advices: Iterable[Advice]) -> Sentence:
     whole = NOTHING
     for each in advices:
         joined = OR if each.instead else THEN
-        whole = joined(first=whole, second=in_words(each)) if whole else in_words(each)
+        asked = _phrase(each, ADVISE, ADVISE_BY_HAND)(scope=each.scope)
+        whole = joined(first=whole, second=asked) if whole else asked
     return whole
+
+
+def _phrase(advice: Advice, acts: Mapping[Verb | Hand, Phrase], by_hand: Mapping[Verb, Phrase]) -> Phrase:
+    is_by_hand = advice.by_hand and isinstance(advice.do, Verb)
+    return by_hand[Verb(advice.do)] if is_by_hand else acts[advice.do]
