@@ -86,7 +86,10 @@ def test_both_languages_name_the_same_keys_and_files(page: str) -> None:
 
 @pytest.mark.parametrize("page", PAGES)
 def test_labels_are_those_of_the_page(page: str) -> None:
-    ours, theirs = (words(each).flat | contents(each, "playground") for each in ("es", "en"))
+    ours, theirs = (
+        words(each).flat | {f"workbook.{key}": text for key, text in contents(each, "workbook").items()}
+        for each in ("es", "en")
+    )
     labels: dict[str, set[str]] = {}
     for key, text in theirs.items():
         labels.setdefault(text, set()).add(ours.get(key, text))
