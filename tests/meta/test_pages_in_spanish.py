@@ -25,7 +25,9 @@ PAGES = [
 ]
 HOW_TOS = [page for page in PAGES if page.startswith("docs/how-to/")]
 BOXES = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-COMMENT = re.compile(r"(?:^|\s+)(?:#|//)\s.*|(?<=\S) {3,}\S.*|^\s*state \".*|: \w+( \w+)+$")  # as a word of a diagram
+COMMENT = re.compile(
+    r"(?:^|\s+)(?:#|//)\s.*|(?<=\S) {3,}\S.*|^\s*state \".*|: \w+( \w+)+$"
+)  # as a word of a diagram
 WORDS = re.compile(r"`([^`\n]+)`")
 LABEL = re.compile(r"(?<![*\w])\*([^*\n]+)\*(?![*\w])")
 TYPED = re.compile(r"(?:arboleda|curl|make|pip|podman|python|ros2|sudo|\.venv/\S+) ")
@@ -79,7 +81,9 @@ def test_a_box_has_the_same_code_and_what_a_terminal_says_in_spanish(page: str) 
 @pytest.mark.parametrize("page", PAGES)
 def test_both_languages_name_the_same_keys_and_files(page: str) -> None:
     english, spanish = (set(WORDS.findall(BOXES.sub("", text))) for text in both(page))
-    others = {word for word in english ^ spanish if " " not in word}  # those with blanks are sentences of the plant
+    others = {
+        word for word in english ^ spanish if " " not in word
+    }  # those with blanks are sentences of the plant
     assert {word for word in others if not word.startswith("NotSent(")} == set()
     assert [word for word in spanish - english if ENGLISH.search(word)] == []
 

@@ -136,10 +136,10 @@ ABOUT: dict[Verb, VerbWords] = {
         brief="Run a robot's homing routine.",
         does="runs the homing routine, of a cell without what is only drawn or has no homing. `--by-hand`: "
         "nothing moves, you declare that the robot stands at its reference",
-        refused="while its cell works on a task, the robot is latched, in fault, offline, only drawn or being "
-        "homed, or another robot holds a zone that the arm may cross on its way. By hand it is refused where the "
-        "robot reports itself whether it is homed (not with `assume_homed`), or says that it is not. Below "
-        "`evidence: ids` a robot is homed by hand only",
+        refused="while its cell works on a task, the robot is latched, in fault, offline, only drawn or "
+        "being homed, or another robot holds a zone that the arm may cross on its way. By hand it is "
+        "refused where the robot reports itself whether it is homed (not with `assume_homed`), or says that "
+        "it is not. Below `evidence: ids` a robot is homed by hand only",
     ),
     Verb.OVERRIDE: VerbWords(
         label="Override",
