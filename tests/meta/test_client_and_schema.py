@@ -15,13 +15,14 @@ from arboleda.client.calls import Flow, Following, Route
 from arboleda.web import api, stream
 from arboleda.web.routes import routers
 from arboleda.web.schema.answers import model_of
+from arboleda.web.schema.openapi import described_route
 
 SIDE: Any = None  # nothing is asked of it
 PUBLIC: list[APIRouter] = [api.routes(SIDE), *routers(SIDE), stream.routes(SIDE, 1)]
 ROUTES = {
     f"{method} {each.path}": each
     for router in PUBLIC
-    for each in router.routes
+    for each in map(described_route, router.routes)
     if isinstance(each, APIRoute)
     for method in each.methods
 }

@@ -6,10 +6,19 @@ from pathlib import Path
 
 import pytest
 
+from arboleda.host import abilities, forks
 from arboleda.plant_file import recipe_trial
 
 from ..unit.plant_file import test_own_kinds as kinds
 from ..unit.plant_file.test_own_recipes import GOOD, HEAD, MISTAKES, PLANT, load, refused, write
+
+
+@pytest.fixture(params=[True, False], ids=["in a fork", "in another Python"], autouse=True)
+def _process(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The two kinds of process in which a trial is made."""
+    if request.param and not abilities.FORKS:
+        pytest.skip("this system has no forks")
+    monkeypatch.setattr(forks, "can_fork", lambda: request.param)
 
 
 @pytest.mark.parametrize(

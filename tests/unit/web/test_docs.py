@@ -6,11 +6,14 @@ import json
 import re
 
 import pytest
-from tests.guarded_plant import shared_app
-from tests.in_process import Caller
+from tests.guarded_plant import PRESENT, shared_app
+from tests.in_process import Caller, without_threads
 
+from arboleda.client.answers.plant import Snapshot
 from arboleda.model.messages import Verb
-from arboleda.web.schema import openapi
+from arboleda.web.api import make_app
+from arboleda.web.schema import openapi, queries
+from arboleda.web.schema.answers import model_of
 
 DRAFT_STEPS = (
     "take",
@@ -90,6 +93,22 @@ def test_the_description_has_every_route_and_what_it_takes_and_gives(web: Caller
     assert not [name for name in api["components"]["schemas"] if "Validation" in name]
 
 
+def test_models_of_answers_are_made_once_somebody_reads_the_description(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    described: list[object] = []
+
+    def noted(answer: object) -> object:
+        described.append(answer)
+        return model_of(answer)
+
+    monkeypatch.setattr(queries, "model_of", noted)
+    app = make_app(PRESENT)
+    assert described == []
+    assert app.openapi() is app.openapi()
+    assert Snapshot in described and described.count(Snapshot) == 1
+
+
 def test_each_reference_leads_to_a_shape() -> None:
     api = shared_app().openapi()
     text = json.dumps(api)
@@ -99,7 +118,9 @@ def test_each_reference_leads_to_a_shape() -> None:
 
 @pytest.fixture(scope="module")
 def page() -> str:
-    return Caller(shared_app()).get("/api/docs").text
+    with pytest.MonkeyPatch.context() as patch:
+        without_threads(patch)
+        return Caller(shared_app()).get("/api/docs").text
 
 
 def test_the_page_for_people_loads_nothing_and_links_lead_somewhere(page: str) -> None:

@@ -28,6 +28,7 @@ from arboleda.runtime.web_options import WebOptions
 from arboleda.web.access.names import DEFAULT_PORT
 
 from .language import say
+from .loading import loading
 from .misplaced_plant import no_plant_file
 from .plant_options import PlantFile, StateFolder, StoreAddress, folder
 from .up_options import (
@@ -256,7 +257,8 @@ def _options(
     web: WebOptions,
     recording: Recording | None,
 ) -> Options:
-    from arboleda.runtime.build import Options  # slow to load, and only needed to run a plant
+    with loading():
+        from arboleda.runtime.build import Options  # slow to load, and only needed to run a plant
 
     if broker and host:
         raise typer.BadParameter(say(TWO_BROKERS()))

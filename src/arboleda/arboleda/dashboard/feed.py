@@ -6,7 +6,7 @@ import asyncio
 import logging
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from typing import Any
 
@@ -15,22 +15,30 @@ from arboleda.store.task_rows import TaskRow
 from .faces import Face
 from .faces.moment import Moment
 from .frames import BEAT_S, Frames, Viewer
-from .page_api import PageApi
+from .page_api import WAITING, PageApi, Seen
 from .page_state import PageState, nothing_added
 
 FRAMES_HZ = 10.0
-WAITING = 200  # snapshots between two frames; past that the oldest are dropped
 
 log = logging.getLogger(__name__)
 
 
 class Feed:
-    """`add` and `remove` viewers, `run` in the server's event loop. The plant's thread only appends."""
+    """`add` and `remove` viewers, `run` in the server's event loop. The plant's thread only appends.
 
-    def __init__(self, plant: PageApi, added: Callable[[Moment], Face] = nothing_added) -> None:
+    `seen` gives what the plant did before it is listened to.
+    """
+
+    def __init__(
+        self,
+        plant: PageApi,
+        added: Callable[[Moment], Face] = nothing_added,
+        seen: Callable[[], Iterable[Seen]] = tuple,
+    ) -> None:
         self._plant = plant
         self._added = added
-        self._snapshots: deque[tuple[float, dict[str, Any]]] = deque(maxlen=WAITING)
+        self._seen = seen
+        self._snapshots: deque[Seen] = deque(maxlen=WAITING)
         self._story: PageState | None = None
         self._frames = Frames()
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -67,6 +75,7 @@ class Feed:
     def begin(self) -> None:
         """Listen to the plant; `turn` takes in its news."""
         self._story = PageState(self._plant.layout(), self._plant.past_acts(), self._added)
+        self._snapshots.extend(self._seen())
         self._unwatch = self._plant.watch(self._tell)
         self._tell(self._plant.snapshot())
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Annotated
 
@@ -20,7 +21,7 @@ from .desk import Desk
 from .faces import history
 from .feed import Feed
 from .frames import Background
-from .page_api import Layout, PageApi
+from .page_api import Layout, PageApi, Seen
 from .page_part import Place, Put
 from .past import page as past_page
 from .past.frame_queue import BESIDE_S, FrameQueue
@@ -37,11 +38,17 @@ Asked = Annotated[str, Query(alias="words", max_length=100)]
 Most = Annotated[int, Query(ge=1, le=200)]
 
 
-def mount(server: FastAPI, plant: PageApi, leave_out: LeaveOut | None = None) -> None:
+def mount(
+    server: FastAPI,
+    plant: PageApi,
+    leave_out: LeaveOut | None = None,
+    seen: Callable[[], Iterable[Seen]] = tuple,
+) -> None:
     """Put the page at `/` of this app; StartError where this process shows a page already. `leave_out` is
-    told of a package that breaks, and is called in the server's event loop, too."""
+    told of a package that breaks, and is called in the server's event loop, too. `seen` gives what the plant
+    did before."""
     added = AddedParts(leave_out)
-    feed, show = Feed(plant, added.face), Show(plant)
+    feed, show = Feed(plant, added.face, seen), Show(plant)
     stills, turns = Stills(), FrameQueue(BESIDE_S)
     others = {name: LastOther(partial(each.side, plant)) for name, each in added.records.items()}
     shown: dict[tuple[object, ...], tuple[Layout, Parts, str]] = {}

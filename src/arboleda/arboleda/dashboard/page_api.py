@@ -13,6 +13,8 @@ if TYPE_CHECKING:  # without a record, the libraries that read one are not neede
 
 Layout = dict[str, Any]
 Links = dict[str, Any]
+Seen = tuple[float, dict[str, Any]]  # Unix time in seconds, and the snapshot that came then
+WAITING = 200  # snapshots that wait for a page, or between two frames; past that the oldest are dropped
 
 
 class PageApi(PlantApi, Protocol):

@@ -1,4 +1,4 @@
-"""Trial of recipes and kinds in a process of its own.
+"""Trial of recipes and kinds in a process of its own: a fork where one is safe, else another Python.
 
 So a recipe that never ends, or that ends Python, is a problem of its file.
 """
@@ -14,11 +14,13 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from arboleda.host import abilities
+from arboleda.host import abilities, forks
+from arboleda.host.forks import Fork
 from arboleda.host.limits import ProcessorAlarm, ended_by_alarm
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Recipe
@@ -184,16 +186,23 @@ def watching(folder: Path, longest_s: float, by_clock_s: float) -> Iterator[Any]
 
 
 def _run(folder: Path) -> int | None:
-    command = [sys.executable, "-I", "-c", START, json.dumps(sys.path), str(folder)]
-    null = subprocess.DEVNULL
-    with subprocess.Popen(command, stdin=null, stdout=null, stderr=null) as process:
+    with _begun(folder) as process:
         try:
             return _ended(process, folder / PHASE)
         finally:
             process.kill()
 
 
-def _ended(process: subprocess.Popen[bytes], phase: Path) -> int | None:
+def _begun(folder: Path) -> Fork | subprocess.Popen[bytes]:
+    """The other process: a fork, which has loaded all that it needs, or where none is safe another Python."""
+    if forks.can_fork():
+        return Fork(partial(main, str(folder)))
+    command = [sys.executable, "-I", "-c", START, json.dumps(sys.path), str(folder)]
+    null = subprocess.DEVNULL
+    return subprocess.Popen(command, stdin=null, stdout=null, stderr=null)
+
+
+def _ended(process: Fork | subprocess.Popen[bytes], phase: Path) -> int | None:
     """The exit status of the process; None if it neither ends nor begins another piece of work for long."""
     before: float | None = None
     while True:

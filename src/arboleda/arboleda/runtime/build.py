@@ -8,12 +8,12 @@ import threading
 import time
 from collections.abc import Callable, Collection
 from datetime import datetime, timezone
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from arboleda.adapters import descriptors
 from arboleda.engine import Plant
+from arboleda.host.garbage import none_collected
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import TaskChanged
 from arboleda.model.plant_model import PlantModel
@@ -94,8 +94,6 @@ class App:
             now = datetime.now(timezone.utc).isoformat(timespec="seconds")
             files = options.recording.files if options.recording else None
             at_work.keep(self._holdings.state.path, files, now)
-        if "web" in parts and options.page:
-            import_module("arboleda.dashboard.page")  # takes longer than a leader may say nothing
         return Assembly(
             model=self.model,
             parts=parts,
@@ -229,4 +227,5 @@ def build(model: PlantModel, parts: Collection[str], options: Options) -> App:
     alarms = options.of(AlarmOptions)
     if alarms is not None:
         alarms.check(model, has_broker=model.has_boards or options.broker is not None)
-    return App(model, wanted, options)
+    with none_collected():
+        return App(model, wanted, options)

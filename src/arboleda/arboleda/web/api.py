@@ -43,7 +43,6 @@ from .request import METRICS, is_api
 from .routes import LeaveOut, installed
 from .routes import routers as looks
 from .schema import openapi
-from .schema.answers import model_of
 from .schema.bodies import AnyVerbArguments, Sentence, TaskFilter, TaskForm, TaskText, VerbArguments
 from .schema.plain_json import PlainJson, explained
 from .schema.queries import (
@@ -113,7 +112,7 @@ REFUSED: Answers = {
 }
 ACCEPTED: Answers = {
     202: {
-        "model": model_of(Done),
+        "model": Done,
         "description": "Devices do it now, and its act tells its end; or it is a stop that has left for its "
         "robots, and the plant cannot keep it, or not yet.",
     }
@@ -137,6 +136,7 @@ def make_app(
     `leave_out` is told of a package whose routes break.
     """
     app = openapi.DescribedApp(
+        OTHERS,
         title="Arboleda",
         version=__version__,
         description=ABOUT,
@@ -149,10 +149,8 @@ def make_app(
     routers = [routes(side), *looks(side, leave_out), stream.routes(side, streams)]
     routers += [login.routes(), openapi.routes(app)]
     routers += [_metrics(counts)] if counts is not None else []
-    for router in routers:
-        app.include_router(router, responses=OTHERS)
+    app.serve(routers)
     app.router.routes.append(NotFound([route for router in routers for route in router.routes]))
-    _read_routes(app)
     return app
 
 
@@ -162,12 +160,6 @@ def answer_in_sentences(app: FastAPI) -> None:
     app.add_exception_handler(HTTPException, refuse)
     app.add_exception_handler(RequestValidationError, refuse_parameter)
     app.add_exception_handler(Exception, own_up)
-
-
-def _read_routes(app: FastAPI) -> None:
-    """Have FastAPI read the included routes now, and not while somebody waits for the first answer."""
-    for route in app.routes:
-        route.matches({"type": "http", "method": "GET", "path": "", "root_path": "", "headers": []})
 
 
 def _metrics(counts: Callable[[], bytes]) -> APIRouter:
@@ -214,7 +206,7 @@ def _look(api: APIRouter, side: PlantApi) -> None:
 
     table_or_wrong = WRONG | text_answer(CSV, "The table.")
 
-    @api.get("/history.csv", response_class=Response, responses=table_or_wrong, openapi_extra=takes)
+    @api.get("/history.csv", response_class=Response, **answering(None, table_or_wrong, takes))
     async def history_as_table(request: Request) -> PlainTextResponse:
         """Tasks of all starts as a table for other programs, with a line of names."""
         rows = await run_in_threadpool(side.history, query_of(request, TaskFilter).query())

@@ -106,7 +106,7 @@ def _look(api: APIRouter, side: PlantApi) -> None:
         """The cells of the draft: devices, targets, recipes. It waits for a process that reads the draft."""
         return PlainJson(await run_in_threadpool(_make(side, request).cells))
 
-    @api.get("/recipe", responses=REFUSED, openapi_extra=described(Recipe))
+    @api.get("/recipe", **answering(None, REFUSED, described(Recipe)))
     async def recipe(request: Request) -> Response:
         """The tree of a recipe, whoever wrote it, as XML that viewers show."""
         make, wanted = _make(side, request), query_of(request, Recipe)
@@ -185,7 +185,7 @@ def _run(api: APIRouter, side: PlantApi) -> None:
         """End it, wherever it is."""
         return PlainJson(await run_in_threadpool(_make(side, request).end, what))
 
-    @api.get("/runs/{what}/result", response_model=dict[str, Any], responses=REFUSED)
+    @api.get("/runs/{what}/result", **answering(dict[str, Any], REFUSED))
     async def result(request: Request, what: What) -> Response:
         """Result of the last run."""
         file = _make(side, request).result(what)

@@ -4,9 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from types import TracebackType
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
 Tick = Callable[[], None]
+
+
+class SoFar(NamedTuple):
+    """How much was simulated so far, in seeds under way too."""
+
+    minutes: int = 0
+    cycles: int = 0
+    faults: int = 0
+
+
+class Passed(Protocol):
+    """Function that is called now and then by a run, with what passed in it since the call before."""
+
+    def __call__(self, minutes: int = 1, cycles: int = 0, faults: int = 0, /) -> None: ...
 
 
 class Judged(Protocol):
@@ -23,13 +37,13 @@ Made = TypeVar("Made", covariant=True)
 class Runs(Protocol[Made]):
     """Runs of numbers, which are seeds, in this process or in others: all of it can be pickled."""
 
-    def run(self, seed: int, *, tick: Tick | None = None) -> Made: ...
+    def run(self, seed: int, *, tick: Passed | None = None) -> Made: ...
 
 
 class Campaign(Generic[R]):
     """Campaign: runs `seeds` in turn, to the first broken one with `until_failure`.
 
-    `minutes` is the number simulated so far; `tick` is called now and then meanwhile.
+    `so_far` is how much was simulated; `tick` is called now and then meanwhile.
     """
 
     def __init__(
@@ -39,7 +53,7 @@ class Campaign(Generic[R]):
         self.seeds = iter(seeds)
         self.tick = tick
         self._until_failure = until_failure
-        self._minutes = 0
+        self._so_far = SoFar()
 
     def __enter__(self) -> Campaign[R]:
         return self
@@ -51,7 +65,11 @@ class Campaign(Generic[R]):
 
     @property
     def minutes(self) -> int:
-        return self._minutes
+        return self.so_far.minutes
+
+    @property
+    def so_far(self) -> SoFar:
+        return self._so_far
 
     def results(self) -> Iterator[R]:
         """Results of seeds in the order of their ends; after a failure, seeds that had begun still end."""
@@ -64,6 +82,7 @@ class Campaign(Generic[R]):
         while (seed := next(self.seeds, None)) is not None:
             yield self.setting.run(seed, tick=self._passed)
 
-    def _passed(self) -> None:
-        self._minutes += 1
+    def _passed(self, minutes: int = 1, cycles: int = 0, faults: int = 0, /) -> None:
+        before = self._so_far
+        self._so_far = SoFar(before.minutes + minutes, before.cycles + cycles, before.faults + faults)
         self.tick()

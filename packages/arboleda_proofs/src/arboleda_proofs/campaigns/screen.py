@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any
 
 from rich.console import Console
@@ -18,6 +18,7 @@ from arboleda.web.languages import FIRST
 from arboleda.web.languages.templates import heading
 
 EVERY_S = 5.0  # between plain lines
+FIRST_S = 1.0  # until the first of a command that loads for a second before
 WIDTH = 120  # columns where there is no terminal that has a width
 Show = Callable[[str, int], None]  # (what to say, how much is done)
 
@@ -66,32 +67,50 @@ def ends_of(console: Console) -> Callable[[str], str]:
     return console.end if isinstance(console, SpeakingConsole) else str
 
 
+def waiting(console: SpeakingConsole, doing: str) -> AbstractContextManager[object]:
+    """A line in a terminal that says so, for as long as it takes."""
+    return console.status(Text(console.say(doing))) if console.is_terminal else nullcontext()
+
+
 @contextmanager
-def progress(console: Console, doing: str, total: int | None) -> Iterator[Show]:
-    """The function that shows the progress towards `total`; None: the end is unknown."""
+def progress(
+    console: Console,
+    doing: str,
+    total: int | None,
+    *,
+    first_s: float = EVERY_S,
+    forks: bool = False,
+    clock: Callable[[], float] = time.monotonic,
+) -> Iterator[Show]:
+    """The function that shows the progress towards `total`; None: the end is unknown.
+
+    `first_s`: when the first plain line comes. `forks`: processes are forked meanwhile, so no thread draws.
+    """
     say = console.say if isinstance(console, SpeakingConsole) else str
     shown = say(doing)
-    with _bar(console, shown, total) if console.is_terminal else _lines(console, shown) as show:
+    bar = _bar(console, shown, total, refreshed_by_thread=not forks) if console.is_terminal else None
+    with bar or _lines(console, shown, first_s, clock) as show:
         yield lambda sentence, done: show(say(sentence), done)
 
 
 @contextmanager
-def _bar(console: Console, doing: str, total: int | None) -> Iterator[Show]:
+def _bar(console: Console, doing: str, total: int | None, *, refreshed_by_thread: bool) -> Iterator[Show]:
     elapsed = TimeElapsedColumn(table_column=Column(no_wrap=True, min_width=len("0:00:00")))
-    words = (TextColumn("{task.description}"), elapsed, TextColumn("{task.fields[said]}"))
-    with Progress(SpinnerColumn(), BarColumn(bar_width=20), *words, console=console, transient=True) as bar:
+    said = TextColumn("{task.fields[said]}", table_column=Column(no_wrap=True))
+    columns = (SpinnerColumn(), BarColumn(bar_width=20), TextColumn("{task.description}"), elapsed, said)
+    with Progress(*columns, console=console, transient=True, auto_refresh=refreshed_by_thread) as bar:
         task = bar.add_task(doing, total=total, said="")
-        yield lambda text, done: bar.update(task, said=text, completed=done)
+        yield lambda text, done: bar.update(task, said=text, completed=done, refresh=not refreshed_by_thread)
 
 
 @contextmanager
-def _lines(console: Console, doing: str) -> Iterator[Show]:
-    last = time.monotonic()
+def _lines(console: Console, doing: str, first_s: float, clock: Callable[[], float]) -> Iterator[Show]:
+    due = clock() + first_s
 
     def show(text: str, done: int) -> None:
-        nonlocal last
-        if time.monotonic() - last >= EVERY_S:
-            last = time.monotonic()
+        nonlocal due
+        if clock() >= due:
+            due = clock() + EVERY_S
             console.print(Text(f"{doing}: {text}"), soft_wrap=True)
 
     yield show

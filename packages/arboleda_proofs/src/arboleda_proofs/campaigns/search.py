@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda_proofs.simulator.checks import BadFaults
 from arboleda_proofs.simulator.faults import KINDS, Fault
-from arboleda_proofs.simulator.run import MINUTE_S, Plan, Result
-from arboleda_proofs.simulator.shrink import Progress, explicit, shrink
+from arboleda_proofs.simulator.run import MINUTE_S, Result
+from arboleda_proofs.simulator.shrink import Progress, breaks_alike, explicit, shrink
 
+from .attempts import Attempts, until_s
+from .campaign import Tick
 from .plants import Plant
 from .setting import Setting
 
@@ -20,38 +22,54 @@ ATTEMPTS = 250  # runs on smaller plants, at most
 
 @dataclass(frozen=True, kw_only=True)
 class ShrunkBreach:
-    """A breach reduced to its needs: its run, with the lines of its last seconds, and the plant."""
+    """A breach reduced to its needs: its run, with the lines of its last seconds, and the plant.
+
+    `complete`: False after Ctrl-C, when less may do.
+    """
 
     result: Result
     plant: Plant
+    complete: bool = True
 
 
-def shrunk(setting: Setting, broken: Result, progress: Progress) -> ShrunkBreach:
-    """The same breach with as few faults, and as little of its plant, as could be found."""
-    search = _Search(setting, broken, progress)
-    search.fewer_faults()
-    if search.smaller_plant():
+def shrunk(
+    setting: Setting, broken: Result, progress: Progress, *, tick: Tick = lambda: None, jobs: int = 1
+) -> ShrunkBreach:
+    """The same breach with as few faults, and as little of its plant, as could be found, or until Ctrl-C.
+
+    `progress` is called after every run, `tick` now and then.
+    """
+    search = _Search(setting, broken, progress, tick, jobs)
+    complete = False
+    try:
         search.fewer_faults()
-    found, plant = search.best, search.plant
-    again = setting.attempt(plant, broken.seed, explicit(found.faults), found.minutes * MINUTE_S, keep=True)
-    if again.broken:
-        return ShrunkBreach(result=again, plant=plant)
-    return ShrunkBreach(result=setting.run(broken.seed, keep=True), plant=setting.plants.of(broken.seed))
+        if search.smaller_plant():
+            search.fewer_faults()
+        complete = True
+    except KeyboardInterrupt:
+        pass  # what was found until here is told
+    best, plant = search.best, search.plant
+    again = setting.attempt(plant, broken.seed, explicit(best.faults), best.minutes * MINUTE_S, keep=True)
+    if not again.broken:
+        again, plant = setting.run(broken.seed, keep=True), setting.plants.of(broken.seed)
+    return ShrunkBreach(result=again, plant=plant, complete=complete)
 
 
 class _Search:
     """`best` is the smallest run found that breaks the same, on `plant`."""
 
-    def __init__(self, setting: Setting, broken: Result, progress: Progress) -> None:
+    def __init__(self, setting: Setting, broken: Result, progress: Progress, tick: Tick, jobs: int) -> None:
         self.best = broken
         self.plant = setting.plants.of(broken.seed)
         self._setting = setting
         self._progress = progress
+        self._tick = tick
+        self._jobs = jobs
         self._runs = 0
 
     def fewer_faults(self) -> None:
         """Leave out faults, as long as what remains still breaks."""
-        self.best = shrink(self.best, self._on_this_plant, self._progress)
+        shrink(self.best, self._on_this_plant, self._better)
 
     def smaller_plant(self) -> bool:
         """Leave out part after part of the plant, again while that helps; True if any could go."""
@@ -67,8 +85,13 @@ class _Search:
                 break
         return found
 
-    def _on_this_plant(self, plan: Plan, seconds: float) -> Result:
-        return self._setting.attempt(self.plant, self.best.seed, plan, seconds)
+    def _on_this_plant(self, best: Result, lists: Sequence[Sequence[Fault]]) -> Iterator[Result]:
+        attempts = Attempts(setting=self._setting, plant=self.plant, best=best, lists=lists)
+        return attempts.in_turn(self._tick, self._jobs)
+
+    def _better(self, runs: int, best: Result) -> None:
+        self.best = best
+        self._progress(runs, best)
 
     def _breaks(self, less: Callable[[], Plant]) -> bool:
         try:
@@ -76,15 +99,16 @@ class _Search:
             self._setting.script(plant.model)
         except (ConfigError, BadFaults):
             return False
-        if self._runs >= ATTEMPTS or self.best.broken is None:
+        if self._runs >= ATTEMPTS:
             return False
         self._runs += 1
         plan = explicit(_possible(self.best.faults, plant.model))
-        found = self._setting.attempt(plant, self.best.seed, plan, self.best.minutes * MINUTE_S)
-        same = found.broken is not None and found.broken.invariant == self.best.broken.invariant
+        seconds = self.best.minutes * MINUTE_S
+        found = self._setting.attempt(plant, self.best.seed, plan, seconds, until_s=until_s(self.best))
+        same = breaks_alike(found, self.best)
         if same:
             self.best, self.plant = found, plant
-        self._progress(self._runs, len(self.best.faults))
+        self._progress(self._runs, self.best)
         return same
 
 

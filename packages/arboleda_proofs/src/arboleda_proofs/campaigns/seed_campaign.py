@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from rich.console import Console
@@ -12,11 +13,11 @@ from arboleda.model.counting import counted
 from arboleda_proofs.simulator.run import Result
 
 from . import breach_text, report, summary
-from .campaign import Campaign
+from .campaign import Campaign, SoFar, Tick
 from .request import Request
-from .screen import ends_of, progress
+from .screen import FIRST_S, ends_of, progress
 from .search import ShrunkBreach, shrunk
-from .setting import Tick
+from .setting import rules
 from .tally import Tally
 from .words import short
 from .workers import Workers
@@ -27,36 +28,49 @@ HELD, BROKEN, INTERRUPTED = 0, 1, 130  # exit statuses
 class SeedCampaign:
     """SeedCampaign: a campaign in a terminal; `file` gets its result, `shrunk` is a breach of it."""
 
-    def __init__(self, request: Request, console: Console, file: Path | None) -> None:
+    def __init__(
+        self,
+        request: Request,
+        console: Console,
+        file: Path | None,
+        *,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
         self._request = request
         self._console = console
         self._file = file
         self._tally = Tally(setting=request.setting)
-        self._began = time.monotonic()
+        self._clock = clock
+        self._began = clock()
         self._elapsed_s = 0.0
         self.shrunk: ShrunkBreach | None = None
         self._tick: Tick = lambda: None
 
     def run(self, jobs: int) -> int:
-        """Run all seeds and return the exit status. Ctrl-C ends the campaign with the seeds done so far."""
+        """Run all seeds and return the exit status. Ctrl-C ends the campaign with the seeds done so far, or
+        with the fewest faults so far that break one.
+        """
         status = INTERRUPTED
         try:
             self._simulate(jobs)
-            self._shrink()
+            self._shrink(jobs)
             status = BROKEN if self._tally.broken or self._tally.findings else HELD
         except KeyboardInterrupt:
             self._say("interrupted; so far:", "yellow")
         self._report()
         if self._file is not None:
-            complete = status != INTERRUPTED
+            complete = status != INTERRUPTED and (self.shrunk is None or self.shrunk.complete)
             summary.write(self._file, self._request, self._tally, self.shrunk, complete=complete)
         return status
 
     def _simulate(self, jobs: int) -> None:
         tally, count = self._tally, self._request.count
         try:
-            with self._campaign(jobs) as campaign, progress(self._console, "simulating", count) as show:
-                self._tick = lambda: show(self._so_far(campaign.minutes), len(tally.rows))
+            with (
+                self._campaign(jobs) as campaign,
+                progress(self._console, "simulating", count, first_s=FIRST_S, clock=self._clock) as show,
+            ):
+                self._tick = lambda: show(self._so_far(campaign.so_far), len(tally.rows))
                 for result in campaign.results():
                     tally.add(result)
                     if result.broken:
@@ -73,33 +87,47 @@ class SeedCampaign:
             return Campaign(request.setting, request.turn, until_failure=until_failure, tick=tick)
         return Workers(request.setting, request.turn, until_failure=until_failure, tick=tick, jobs=jobs)
 
-    def _so_far(self, minutes: int) -> str:
+    def _so_far(self, passed: SoFar) -> str:
         tally, count = self._tally, self._request.count
         done = len(tally.rows)
         parts = [
             f"{done:,} of {counted(count, 'seed')}" if count else counted(done, "seed"),
-            f"{minutes:,} min",
-            counted(tally.cycles, "cycle"),
-            f"{tally.cycles / self._since():,.0f}/s",
-            counted(tally.faults.total(), "fault"),
+            f"{passed.minutes:,} min",
+            counted(passed.cycles, "cycle"),
+            f"{passed.cycles / self._since():,.0f}/s",
+            counted(passed.faults, "fault"),
             *([f"{short(tally.checks)} checks"] if tally.checks else []),
             *([f"{len(tally.broken)} BROKEN"] if tally.broken else []),
         ]
         return ", ".join(parts)
 
-    def _shrink(self) -> None:
+    def _shrink(self, jobs: int) -> None:
         lowest = self._tally.lowest
         if lowest is None:
             return
-        injected = len(lowest.faults)
-        with progress(self._console, f"shrinking seed {lowest.seed}", None) as show:
-            all_of_them = counted(injected, "fault")
-            show(all_of_them, 0)
-            self.shrunk = shrunk(
-                self._request.setting,
-                lowest,
-                lambda runs, left: show(f"{left} of {all_of_them} left after {counted(runs, 'run')}", runs),
-            )
+        runs, best = 0, lowest
+        doing = f"shrinking seed {lowest.seed}"
+        with progress(self._console, doing, None, first_s=FIRST_S, forks=True, clock=self._clock) as show:
+
+            def tick() -> None:
+                show(self._shrunk_so_far(lowest, runs, best), runs)
+
+            def better(runs_so_far: int, best_so_far: Result) -> None:
+                nonlocal runs, best
+                runs, best = runs_so_far, best_so_far
+                tick()
+
+            tick()
+            self.shrunk = shrunk(self._request.setting, lowest, better, tick=tick, jobs=jobs)
+        if not self.shrunk.complete:
+            self._say("interrupted; the fewest faults so far:", "yellow")
+
+    def _shrunk_so_far(self, broken: Result, runs: int, best: Result) -> str:
+        assert broken.broken is not None
+        plant = self._request.plants.of(broken.seed)
+        must_hold = rules(plant).get(broken.broken.invariant, broken.broken.invariant)
+        drawn, few = counted(len(broken.faults), "fault"), len(best.faults)
+        return f"{drawn} to {few} so far, {counted(runs, 'run')}, still breaks: {must_hold}"
 
     def _report(self) -> None:
         tally = self._tally
@@ -131,7 +159,7 @@ class SeedCampaign:
         self._say(f"seed {seed} breaks {result.broken}; replay: {self._request.replay(seed)}", "red")
 
     def _since(self) -> float:
-        return max(time.monotonic() - self._began, 1e-3)
+        return max(self._clock() - self._began, 1e-3)
 
     def _say(self, line: str, style: str = "") -> None:
         self._console.print(Text(line, style=style), soft_wrap=True)

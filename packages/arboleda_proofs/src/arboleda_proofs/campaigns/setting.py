@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import copyreg
-from collections.abc import Callable, Iterable
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from arboleda.engine import Plant as CorePlant
 from arboleda.model.plant_model import PlantModel
 from arboleda_proofs.simulator.climate import Climate
-from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.invariants import Invariant
 from arboleda_proofs.simulator.judged import judged_by
 from arboleda_proofs.simulator.judged_world import BrokenInvariant
 from arboleda_proofs.simulator.run import NO_EXCEPTION, Plan, Result, Simulation
 from arboleda_proofs.simulator.scripted_people import Script, script_from
 
-from .campaign import Tick as Tick
+from .campaign import Passed
 from .plants import Plant, Plants
+from .under_way import TimePassed, UnderWay, cut_after
 
 Tell = Callable[[str], None]
 MakePlant = Callable[..., CorePlant]
@@ -64,54 +65,57 @@ class Setting:
         *,
         keep: bool = False,
         tell: Tell | None = None,
-        tick: Tick | None = None,
+        tick: Passed | None = None,
         make_plant: MakePlant | None = None,
     ) -> Result:
         """One seed from its first step to rest; `keep` and `tell` are those of the trace.
 
-        `tick` is called for every minute that it simulates, `make_plant` makes the plant of each start.
+        `tick` is called for every second that it simulates, `make_plant` makes the plant of each start.
         """
-        drawn = self.climate(seed).faults
-
-        def plan(minute: int) -> Iterable[Fault]:
-            if tick is not None:
-                tick()
-            return drawn(minute)
-
-        model = self.plant(seed)
-        script = self.script(model)
-        simulation = Simulation(
-            model,
-            seed,
-            plan,
-            invariants=self._judges(self.plants.of(seed)),
-            keep=keep,
-            tell=tell,
-            make_plant=make_plant,
-            script=script,
-            any_of=self.any_of,
-            standby=self.standby,
-            revises=self.revises,
-        )
+        plant = self.plants.of(seed)
+        plan = self.climate(seed).faults
+        simulation = self._simulation(plant, seed, plan, keep=keep, tell=tell, make_plant=make_plant)
+        under_way = None if tick is None else UnderWay(simulation, tick)
         result = simulation.run(seconds=self.seconds, cycles=self.cycles)
-        _leave_out_intended(result, self.plants.of(seed))
+        if under_way is not None:
+            under_way.tell()
+        _leave_out_intended(result, plant)
         return result
 
-    def attempt(self, plant: Plant, seed: int, plan: Plan, seconds: float, *, keep: bool = False) -> Result:
-        """A seed on such a plant with these faults, for so long."""
-        script = self.script(plant.model)
-        simulation = Simulation(
+    def attempt(
+        self,
+        plant: Plant,
+        seed: int,
+        plan: Plan,
+        seconds: float,
+        *,
+        keep: bool = False,
+        until_s: float = math.inf,
+        tick: Passed | None = None,
+    ) -> Result:
+        """A seed on such a plant with these faults, for so long; what has not broken by `until_s` holds."""
+        simulation = self._simulation(plant, seed, plan, keep=keep)
+        if until_s < math.inf:
+            cut_after(simulation, until_s)
+        if tick is not None:
+            UnderWay(simulation, tick)
+        try:
+            return simulation.run(seconds=seconds)
+        except TimePassed:
+            return simulation.result
+
+    def _simulation(self, plant: Plant, seed: int, plan: Plan, **options: Any) -> Simulation:
+        return Simulation(
             plant.model,
             seed,
             plan,
             invariants=self._judges(plant),
-            keep=keep,
-            script=script,
+            script=self.script(plant.model),
             any_of=self.any_of,
             standby=self.standby,
             revises=self.revises,
+            **options,
         )
-        return simulation.run(seconds=seconds)
 
     def _judges(self, plant: Plant) -> tuple[Invariant, ...]:
         return (*judged_by(standby=self.standby, revises=self.revises), *plant.rules)

@@ -16,7 +16,7 @@ from typing import Any
 
 from arboleda.model.errors import ArboledaError
 
-from .campaign import Campaign, R, Runs
+from .campaign import Campaign, R, Runs, SoFar
 
 AHEAD = 2  # seeds that are handed out to each worker
 TICK_S = 0.5
@@ -47,7 +47,7 @@ class Workers(Campaign[R]):
         super().__init__(*arguments, **options)
         context = get_context("fork" if "fork" in get_all_start_methods() else "spawn")
         self._others = frozenset(active_children())
-        self._passed_by = context.Value("Q", 0)  # minutes, of all workers
+        self._passed_by = context.Array("Q", SoFar())  # of all workers
         self._pool = ProcessPoolExecutor(jobs, context, _Worker.prepare, (self.setting, self._passed_by))
         self._under_way: dict[Future[R], int] = {}
         self._jobs, self._ahead = jobs, ahead
@@ -65,8 +65,8 @@ class Workers(Campaign[R]):
         self._pool.shutdown(cancel_futures=True)
 
     @property
-    def minutes(self) -> int:
-        return int(self._passed_by.get_obj().value)  # without the lock, which a killed worker may hold
+    def so_far(self) -> SoFar:
+        return SoFar(*self._passed_by.get_obj())  # without the lock, which a killed worker may hold
 
     def _run(self) -> Iterator[R]:
         while self._under_way:
@@ -94,11 +94,11 @@ class _Worker:
     """The data and the work of a worker process."""
 
     setting: Runs[Any]
-    minutes: Any  # of all workers
+    so_far: Any  # of all workers, an array shared with the parent
 
     @classmethod
-    def prepare(cls, setting: Runs[Any], minutes: Any) -> None:
-        cls.setting, cls.minutes = setting, minutes
+    def prepare(cls, setting: Runs[Any], so_far: Any) -> None:
+        cls.setting, cls.so_far = setting, so_far
         collect_rarely()
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, who ends the workers
         Thread(target=_end_with_parent, daemon=True).start()
@@ -108,9 +108,10 @@ class _Worker:
         return cls.setting.run(seed, tick=cls.passed)
 
     @classmethod
-    def passed(cls) -> None:
-        with cls.minutes.get_lock():
-            cls.minutes.value += 1
+    def passed(cls, minutes: int = 1, cycles: int = 0, faults: int = 0, /) -> None:
+        with cls.so_far.get_lock():
+            for number, more in enumerate((minutes, cycles, faults)):
+                cls.so_far[number] += more
 
 
 def _end_with_parent() -> None:

@@ -32,7 +32,8 @@ arboleda simulate --faults out.json --trace  what broke in there, with the fault
 arboleda simulate --faults night.yaml        what a plant did: arboleda record export night.yaml
 
 Exit status: 0 every invariant held, 1 one was broken, or a task failed where nothing had
-gone wrong, 2 bad input, 130 Ctrl-C."""
+gone wrong, 2 bad input, 130 Ctrl-C; 1 where Ctrl-C ends the search for
+fewer faults in a broken seed."""
 
 Plant = Annotated[
     Path | None,
@@ -145,15 +146,15 @@ def simulate(
     drawn_plants: DrawnPlants = False,
     keep_plant: KeepPlant = None,
 ) -> None:
-    # the simulator takes a while to load, and only this command needs it
-    from arboleda_proofs.campaigns import (
-        screen,
-        single_seed,
-    )
-    from arboleda_proofs.campaigns.flight import SUFFIX
-    from arboleda_proofs.campaigns.request import Request
-    from arboleda_proofs.campaigns.seed_campaign import SeedCampaign
-    from arboleda_proofs.campaigns.workers import processors
+    from arboleda_proofs.campaigns import screen
+
+    console = screen.console(language=language())
+    with screen.waiting(console, "loading the simulator"):  # a second or two, and only this command needs it
+        from arboleda_proofs.campaigns import single_seed
+        from arboleda_proofs.campaigns.flight import SUFFIX
+        from arboleda_proofs.campaigns.request import Request
+        from arboleda_proofs.campaigns.seed_campaign import SeedCampaign
+        from arboleda_proofs.campaigns.workers import processors
 
     if drawn_plants or keep_plant is not None:
         raise typer.BadParameter(say(FOR_DEVELOPERS()))
@@ -188,7 +189,6 @@ def simulate(
         check_writable(json)
     if record is not None:
         (check_new if record.suffix == SUFFIX else check_writable)(record)
-    console = screen.console(language=language())
     for note in request.notes:
         console.print(Text(note, style="dim"), soft_wrap=True)
     if worker:

@@ -17,7 +17,6 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.packages import PROOFS
 from arboleda.web.missing import missing
 from arboleda.web.plant_api import PlantApi
-from arboleda.web.schema.answers import model_of
 from arboleda.web.schema.bodies import Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, answering
@@ -36,7 +35,7 @@ class AwaitedReport:
     state: Literal["waiting"]
 
 
-LATER: Answers = {202: {"model": model_of(AwaitedReport), "description": "It is not written yet; ask again."}}
+LATER: Answers = {202: {"model": AwaitedReport, "description": "It is not written yet; ask again."}}
 
 
 def routes(side: PlantApi) -> APIRouter:

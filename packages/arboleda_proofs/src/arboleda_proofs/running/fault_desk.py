@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as NotInTime
 from functools import cached_property
 from itertools import count
-from typing import Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Event, FaultByHand
@@ -22,7 +22,9 @@ from arboleda_proofs.simulator.fault_bench import (
     MishapNote,
     MishapOver,
 )
-from arboleda_proofs.simulator.mishaps import MISHAPS, Mishap
+
+if TYPE_CHECKING:
+    from arboleda_proofs.simulator.mishaps import Mishap
 
 LOG = logging.getLogger("arboleda.operators")
 USUAL_S, SHORTEST_S, LONGEST_S = 5.0, 0.1, 3600.0
@@ -30,7 +32,6 @@ ANSWER_S = 5.0
 BEGAN = Phrase("fault.began", "fault by hand: {what}, for {seconds:g} s")
 INSTANT = Phrase("fault.instant", "fault by hand: {what}")
 OVER = Phrase("fault.over", "fault by hand is over: {what}")
-PHRASES = {each.key: each for each in (BEGAN, INSTANT, OVER, *(mishap.phrase for mishap in MISHAPS.values()))}
 NOT_VIRTUAL = Phrase(
     "fault.not_virtual",
     "faults can be provoked only at virtual devices, and this start of the plant has none in its process",
@@ -80,7 +81,7 @@ class FaultDesk(FaultsApi):
     @cached_property
     def _possible(self) -> dict[str, list[Mishap]]:
         """The mishaps that can befall each virtual robot, by its name."""
-        of_boards = [mishap for mishap in MISHAPS.values() if mishap.is_of_boards]
+        of_boards = [mishap for mishap in _mishaps().values() if mishap.is_of_boards]
         targets = {mishap.name: mishap.targets(self._model) for mishap in of_boards}
         return {
             robot.name: [mishap for mishap in of_boards if board in targets[mishap.name]]
@@ -105,7 +106,7 @@ class FaultDesk(FaultsApi):
         if seconds is not None and not mishap.lasts:
             if not mishap.longer:
                 raise FaultRefused(AN_INSTANT(kind=kind))
-            mishap = MISHAPS[mishap.longer]
+            mishap = _mishaps()[mishap.longer]
         lasting = (USUAL_S if seconds is None else seconds) if mishap.lasts else 0.0
         if mishap.lasts and not SHORTEST_S <= lasting <= LONGEST_S:
             raise FaultRefused(TOO_LONG(least=SHORTEST_S, most=LONGEST_S, seconds=lasting))
@@ -135,7 +136,7 @@ class FaultDesk(FaultsApi):
             awaited.set_result(note)
 
     def _tell_plant(self, note: MishapNote) -> None:
-        robot, what = self._robots[note.board].name, MISHAPS[note.name].sentence
+        robot, what = self._robots[note.board].name, _mishaps()[note.name].sentence
         sentence = _sentence(note, what)
         self._tell(FaultByHand(at=note.at, robot=robot, sentence=sentence, is_over=note.is_over))
         LOG.info("%s: %s", robot, sentence)
@@ -173,9 +174,16 @@ class FaultDesk(FaultsApi):
             number=note.number,
             robot=self._robots[note.board].name,
             kind=note.name,
-            about=MISHAPS[note.name].sentence,
+            about=_mishaps()[note.name].sentence,
             left_s=left_s,
         )
+
+
+def _mishaps() -> Mapping[str, Mishap]:
+    """What can go wrong, by name; it loads the whole simulator, which most plants never need."""
+    from arboleda_proofs.simulator.mishaps import MISHAPS
+
+    return MISHAPS
 
 
 def _going_on(bench: FaultBench) -> list[MishapNote]:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from heapq import heappop, heappush
 from itertools import count
+from typing import TYPE_CHECKING
 
 from arboleda.model.facts import Facts
 from arboleda.model.plant_model import PlantModel
@@ -18,9 +19,10 @@ from arboleda.wire.payloads import Presence, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Connection, Delivery, Publication
 
-from .faults import OF_BOARDS, End
-from .mishaps import MISHAPS
 from .network import Client, Line
+
+if TYPE_CHECKING:
+    from .faults import End
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -184,6 +186,9 @@ class FaultBench:
             self._devices.wake(process)
 
     def _begin(self, event: MishapBegins) -> None:
+        from .faults import OF_BOARDS  # loads the whole simulator, for what most plants are never asked for
+        from .mishaps import MISHAPS
+
         mishap = MISHAPS[event.name]
         begun = (
             OF_BOARDS[each.kind].begin(self, each)

@@ -98,6 +98,11 @@ class Simulation:
     def _scripted(self, script: Script, seed: int) -> ScriptedPeople:
         return ScriptedPeople(self.world, script, lambda: Attendant(self.world, seed))
 
+    @property
+    def cycles(self) -> int:
+        """The number of tasks that were begun and have ended so far."""
+        return self._people.cycles
+
     def run(self, *, cycles: int | None = None, seconds: float | None = None) -> Result:
         """Run by the minute until `cycles` or `seconds` are reached, then to rest; a breach ends it."""
         if seconds is None and self._script is not None:

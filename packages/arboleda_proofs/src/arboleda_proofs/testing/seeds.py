@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders
 from arboleda_proofs.simulator.climate import Climate
+from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.invariants import Invariant
 from arboleda_proofs.simulator.run import MINUTE_S, Plan, Result, Simulation
 from arboleda_proofs.simulator.shrink import explicit, shrink
@@ -33,11 +35,15 @@ class Seeds:
     def shrunk(self, broken: Result) -> Result:
         """The same breach with as few faults as could be found, and its timeline."""
 
-        def attempt(plan: Plan, seconds: float, *, keep: bool = False) -> Result:
-            return self._simulation(broken.seed, plan, keep=keep).run(seconds=seconds)
+        def attempt(best: Result, faults: Sequence[Fault], *, keep: bool = False) -> Result:
+            simulation = self._simulation(best.seed, explicit(faults), keep=keep)
+            return simulation.run(seconds=best.minutes * MINUTE_S)
 
-        found = shrink(broken, attempt)
-        again = attempt(explicit(found.faults), found.minutes * MINUTE_S, keep=True)
+        def attempts(best: Result, lists: Sequence[Sequence[Fault]]) -> Iterator[Result]:
+            return (attempt(best, faults) for faults in lists)
+
+        found = shrink(broken, attempts)
+        again = attempt(found, found.faults, keep=True)
         return again if again.broken else self.run(broken.seed, keep=True)
 
     def _simulation(self, seed: int, plan: Plan, *, keep: bool = False) -> Simulation:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +17,9 @@ import pytest
 from arboleda.cli.main import main
 from arboleda.model.plant_model import Evidence
 from arboleda.plant_file import loader
-from arboleda_proofs.campaigns import setting
+from arboleda_proofs.campaigns import screen, setting
 from arboleda_proofs.campaigns.request import Request, shared
+from arboleda_proofs.campaigns.seed_campaign import SeedCampaign
 from arboleda_proofs.simulator import judged
 from arboleda_proofs.simulator.faults import KINDS
 from arboleda_proofs.simulator.invariants import Invariant
@@ -154,7 +157,8 @@ def test_a_breach_is_told_with_the_one_fault_it_takes(
 @pytest.mark.long
 @pytest.mark.usefixtures("brittle")
 def test_a_breach_is_named_before_the_other_seeds_have_ended(arboleda: Arboleda, faults: Path) -> None:
-    lines = arboleda("--seed", 3, "--seeds", 2, "--faults", faults).said.splitlines()
+    said = arboleda("--seed", 3, "--seeds", 2, "--faults", faults).said.splitlines()
+    lines = [line for line in said if not line.startswith("simulating: ")]
     assert lines[:2] == ["seed 3 breaks unbooted", "seed 4 breaks unbooted"]
 
 
@@ -256,6 +260,74 @@ def test_ctrl_c_says_what_was_done_so_far(
     said = json.loads((tmp_path / "out.json").read_text())
     assert said["complete"] is False and [row["seed"] for row in said["seeds"]] == [1, 2]
     assert arboleda("--seed", 3, "--trace") == Ended(130, "interrupted\n", "")
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("brittle")
+def test_ctrl_c_while_shrinking_tells_the_fewest_faults_so_far(
+    arboleda: Arboleda, faults: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    attempt, runs = setting.Setting.attempt, count(1)
+
+    def interrupted(self: Any, *what: Any, keep: bool = False, **options: Any) -> Any:
+        if not keep and next(runs) == 3:
+            raise KeyboardInterrupt
+        return attempt(self, *what, keep=keep, **options)
+
+    monkeypatch.setattr(setting.Setting, "attempt", interrupted)
+    out = tmp_path / "out.json"
+    ended = arboleda("--seed", 3, "--seeds", 1, "--faults", faults, "--json", out)
+    assert ended.status == 1
+    for line in (
+        "interrupted; the fewest faults so far:",
+        "seed 3 breaks unbooted after 33.250 s of plant small",
+        "3 of 7 faults are enough:",
+        "things that happened before it",
+        f"--seed 3 --faults {out}",
+        "BROKEN: an invariant did not hold in 1 seed of 1",
+    ):
+        assert line in ended.said
+    said = json.loads(out.read_text())
+    assert said["complete"] is False and len(said["seeds"][0]["broken"]["faults"]) == 3
+
+
+def campaign(plant: Path, faults: object, second: float) -> str:
+    """What a campaign of one seed says, with a clock that moves on by `second` whenever it is read."""
+    console = screen.console()
+    console.file = io.StringIO()
+    request = Request(plant=plant, seed=3, seeds=1, cycles=1, faults=str(faults))
+    clock = count(0.0, second)
+    SeedCampaign(request, console, None, clock=lambda: float(next(clock))).run(1)
+    return console.file.getvalue()
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("arboleda")
+def test_progress_is_told_within_a_seed(plant: Path) -> None:
+    lines = [line for line in campaign(plant, "none", 0.5).splitlines() if line.startswith("simulating: ")]
+    assert lines[0].startswith("simulating: 0 of 1 seed, 0 min, 0 cycles, 0/s, 0 faults")
+    assert any(", 1 cycle, " in line for line in lines)
+    quiet = campaign(plant, "none", 1e-6)
+    assert "simulating: " not in quiet
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("brittle")
+def test_what_shrinking_has_so_far_is_told(plant: Path, faults: Path) -> None:
+    said = campaign(plant, faults, 3.0)
+    lines = [line for line in said.splitlines() if line.startswith("shrinking seed 3: ")]
+    end = "still breaks: Nothing reboots, ever."
+    assert lines[0] == f"shrinking seed 3: 7 faults to 7 so far, 0 runs, {end}"
+    assert any(" to 3 so far, 2 runs, " in line for line in lines), "also while a run is under way"
+
+
+def test_plain_lines_come_every_five_seconds() -> None:
+    console, at = screen.console(), 0.0
+    console.file = io.StringIO()
+    with screen.progress(console, "simulating", None, first_s=1.0, clock=lambda: at) as show:
+        for at in (0.5, 1.0, 3.0, 5.9, 6.0, 10.0, 11.5):
+            show(f"{at} s", 0)
+    assert console.file.getvalue().splitlines() == [f"simulating: {at} s" for at in (1.0, 6.0, 11.5)]
 
 
 @pytest.mark.parametrize(

@@ -12,11 +12,17 @@ MOST_YOUNG = 10_000  # objects at which Python collects by itself, as where the 
 SHARE = 0.01  # of the time for collections of everything, at most: one of a large plant takes 0.1 s
 
 
+def leave_out_more() -> None:
+    """Leave out what was loaded later, too, in a process that leaves anything out."""
+    if gc.get_freeze_count():
+        gc.freeze()
+
+
 class Garbage:
     """Garbage: collects once a step is over and its commands have left, as often as Python would.
 
-    `start` leaves out for good what is there by then: a collection of everything would look at every library
-    again, and no thread of Python runs meanwhile.
+    `start` leaves out for good what is there by then, which is hardly any garbage: a collection of everything
+    would look at every library again, and no thread of Python runs meanwhile.
     """
 
     def __init__(self) -> None:
@@ -28,7 +34,6 @@ class Garbage:
         """Begin; without steps Python collects as ever."""
         if gc.get_freeze_count():  # whoever runs this process has seen to it
             return
-        gc.collect()
         gc.freeze()
         if has_steps:
             gc.set_threshold(MOST_YOUNG, *self._often[1:])

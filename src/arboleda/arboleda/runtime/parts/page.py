@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from fastapi import FastAPI
 
+from arboleda.dashboard.late_page import LatePage
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file.urdf import robot_urdf
@@ -15,6 +16,7 @@ from arboleda.recorder.errors import NoRecord
 from arboleda.views import view
 
 from ..registry import Assembly
+from . import garbage
 from .local_plant import LocalPlant
 from .orchestrator import Orchestrator
 
@@ -46,9 +48,7 @@ class PagePlant(LocalPlant):
 
     def mount(self, app: FastAPI) -> None:
         """Put the page on the server's application."""
-        from arboleda.dashboard import page  # it takes most of a second, and not all plants have a page
-
-        page.mount(app, self, self._leave_out)
+        LatePage(self, self._leave_out, garbage.leave_out_more).mount(app)
 
     def layout(self) -> dict[str, Any]:
         if self._drawn is not self.model:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable, Sequence
+from copy import copy
 from html import escape
 from typing import Any
 
 from fastapi import APIRouter, FastAPI
 from fastapi.responses import HTMLResponse, JSONResponse
+from starlette.routing import BaseRoute
 
 from arboleda.model.messages import Verb
 from arboleda.views.verb_words import ABOUT, argument_names, scope_words
@@ -20,12 +23,56 @@ VERB = Verb.__name__
 SHAPES = "#/components/schemas/"  # before the name of a shape in a reference
 
 
+LATER = "arboleda.later"  # in `openapi_extra` of a route: what makes its description
+
+
+def described_later(made: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    """The arguments for the decorator of a route whose description is made once somebody reads it."""
+    return {"openapi_extra": {LATER: made}}
+
+
+def described_route(route: BaseRoute) -> BaseRoute:
+    """A route with its description, if that was to be made later; any other as it is."""
+    made = (getattr(route, "openapi_extra", None) or {}).get(LATER)
+    if made is None:
+        return route
+    described = copy(route)
+    vars(described).update(made())
+    return described
+
+
 class DescribedApp(FastAPI):
-    """Application that describes the shapes within bodies beside all others, where references lead to."""
+    """Application that makes its description once somebody reads it: models of all answers take as long as
+    all the rest of a start.
+
+    `others` are answers of every route. Shapes within bodies stand beside all others, where references lead
+    to.
+    """
+
+    def __init__(self, others: dict[int | str, dict[str, Any]], **about: Any) -> None:
+        super().__init__(**about)
+        self._others = others
+        self._routers: list[APIRouter] = []
+
+    def serve(self, routers: Sequence[APIRouter]) -> None:
+        """Serve the routes of these routers, as they are: FastAPI would make each that it includes anew."""
+        for router in routers:
+            self.router.routes += router.routes
+        self._routers += routers
 
     def openapi(self) -> Schema:
         """The description as OpenAPI."""
-        api = super().openapi()
+        if self.openapi_schema is None:
+            self.openapi_schema = self._described()
+        return self.openapi_schema
+
+    def _described(self) -> Schema:
+        described = FastAPI(title=self.title, version=self.version, description=self.description)
+        for router in self._routers:
+            beside = APIRouter()
+            beside.routes += map(described_route, router.routes)
+            described.include_router(beside, responses=self._others)
+        api = described.openapi()
         for route in (route for methods in api["paths"].values() for route in methods.values()):
             for body in route.get("requestBody", {}).get("content", {}).values():
                 for shape in body["schema"].get("anyOf", [body["schema"]]):
@@ -38,11 +85,11 @@ def routes(app: FastAPI) -> APIRouter:
     pages = APIRouter(prefix="/api", include_in_schema=False)
 
     @pages.get("/openapi.json")
-    async def openapi() -> JSONResponse:
+    def openapi() -> JSONResponse:
         return JSONResponse(app.openapi())
 
     @pages.get("/docs")
-    async def docs() -> HTMLResponse:
+    def docs() -> HTMLResponse:
         return page("Arboleda HTTP API", render(app.openapi()))
 
     return pages

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from fastapi import Request
@@ -13,19 +13,31 @@ from arboleda.model.outside import quoted
 
 from .answers import model_of
 from .bodies import Sentence
-from .openapi import SHAPES
+from .openapi import SHAPES, described_later
 
 Query = TypeVar("Query", bound=BaseModel)
 Answers = dict[int | str, dict[str, Any]]
+Taken = Callable[[], dict[str, Any]]
 WRONG: Answers = {422: {"model": Sentence, "description": "The request is wrong."}}
 
 
-def answering(
-    answer: Any, others: Answers | None = None, takes: dict[str, Any] | None = None
-) -> dict[str, Any]:
-    """The description of a route, for its decorator: the type of its answer, its other answers, and the query
-    or body that it takes, as `described` and `described_body` describe them."""
-    return {"response_model": model_of(answer), "responses": others or {}, "openapi_extra": takes}
+def answering(answer: Any, others: Answers | None = None, takes: Taken | None = None) -> dict[str, Any]:
+    """The description of a route, for its decorator: the type of its answer, None for text, its other
+    answers, and the query or body that it takes, by `described` or `described_body`.
+
+    It is made once somebody reads the description of the API.
+    """
+    return described_later(
+        lambda: {
+            "response_model": None if answer is None else model_of(answer),
+            "responses": {status: _modelled(each) for status, each in (others or {}).items()},
+            "openapi_extra": takes and takes(),
+        }
+    )
+
+
+def _modelled(answer: dict[str, Any]) -> dict[str, Any]:
+    return {**answer, "model": model_of(answer["model"])} if "model" in answer else answer
 
 
 def query_of(request: Request, model: type[Query]) -> Query:
@@ -55,12 +67,15 @@ def text_answer(media_type: str, about: str) -> Answers:
     return {200: {"description": about, "content": {media_type: {"schema": {"type": "string"}}}}}
 
 
-def described(model: type[BaseModel]) -> dict[str, Any]:
-    """The OpenAPI description of the query parameters of `model`."""
-    properties = model.model_json_schema()["properties"]
-    return {
-        "parameters": [{"name": name, "in": "query", "schema": each} for name, each in properties.items()]
-    }
+def described(model: type[BaseModel]) -> Taken:
+    """What makes the OpenAPI description of the query parameters of `model`."""
+
+    def made() -> dict[str, Any]:
+        properties = model.model_json_schema()["properties"]
+        rows = [{"name": name, "in": "query", "schema": each} for name, each in properties.items()]
+        return {"parameters": rows}
+
+    return made
 
 
 def read_body(body: bytes, model: type[Query]) -> Query:
@@ -73,11 +88,15 @@ def read_body(body: bytes, model: type[Query]) -> Query:
         raise PayloadError(f"{name}: {_begun(found['msg'])}; /api/docs says what is allowed.") from None
 
 
-def described_body(*models: type[BaseModel], required: bool = True) -> dict[str, Any]:
-    """The OpenAPI description of a body that is one of these models."""
-    schemas = [model.model_json_schema(ref_template=f"{SHAPES}{{model}}") for model in models]
-    schema = schemas[0] if len(schemas) == 1 else {"anyOf": schemas}
-    return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": required}}
+def described_body(*models: type[BaseModel], required: bool = True) -> Taken:
+    """What makes the OpenAPI description of a body that is one of these models."""
+
+    def made() -> dict[str, Any]:
+        schemas = [model.model_json_schema(ref_template=f"{SHAPES}{{model}}") for model in models]
+        schema = schemas[0] if len(schemas) == 1 else {"anyOf": schemas}
+        return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": required}}
+
+    return made
 
 
 def _begun(sentence: str) -> str:

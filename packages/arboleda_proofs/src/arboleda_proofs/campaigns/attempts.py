@@ -1,0 +1,71 @@
+"""Attempts to break the same with fewer faults: a campaign of them, on all processors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from arboleda_proofs.simulator.faults import Fault
+from arboleda_proofs.simulator.run import MINUTE_S, Result
+from arboleda_proofs.simulator.shrink import breaks_alike, explicit
+
+from .campaign import Campaign, Passed, Tick
+from .plants import Plant
+from .setting import Setting
+from .workers import Workers
+
+GRACE_S = 20.0  # of plant time: with fewer faults it may break later by so much
+
+
+@dataclass(frozen=True, kw_only=True)
+class Attempt:
+    """Run of one list of faults; `broken`: as the best run so far breaks."""
+
+    number: int
+    result: Result
+    broken: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Attempts:
+    """Attempts to break as `best` does, on a plant: one for each of `lists`, by its number."""
+
+    setting: Setting
+    plant: Plant
+    best: Result
+    lists: Sequence[Sequence[Fault]]
+
+    def run(self, seed: int, *, tick: Passed | None = None) -> Attempt:
+        """The attempt of this number."""
+        result = self.setting.attempt(
+            self.plant,
+            self.best.seed,
+            explicit(self.lists[seed]),
+            self.best.minutes * MINUTE_S,
+            until_s=until_s(self.best),
+            tick=tick,
+        )
+        return Attempt(number=seed, result=result, broken=breaks_alike(result, self.best))
+
+    def in_turn(self, tick: Tick, jobs: int) -> Iterator[Result]:
+        """Their results in the order of the lists; none begins after one has broken."""
+        ended: dict[int, Result] = {}
+        following = 0
+        with self._campaign(tick, min(jobs, len(self.lists))) as campaign:
+            for attempt in campaign.results():
+                ended[attempt.number] = attempt.result
+                while following in ended:
+                    yield ended.pop(following)
+                    following += 1
+
+    def _campaign(self, tick: Tick, jobs: int) -> Campaign[Attempt]:
+        numbers = range(len(self.lists))
+        if jobs == 1:
+            return Campaign(self, numbers, until_failure=True, tick=tick)
+        return Workers(self, numbers, until_failure=True, tick=tick, jobs=jobs, ahead=1)
+
+
+def until_s(best: Result) -> float:
+    """The plant time at which an attempt to break as `best` does ends; inf where that broke at rest."""
+    return best.seconds + GRACE_S if best.seconds < best.minutes * MINUTE_S else math.inf
