@@ -15,6 +15,7 @@ from arboleda.web.languages import contents
 from ..documents import ENGLISH
 
 ROOT = Path(__file__).parents[2]
+NOT_FOR_USERS = ("ARCHITECTURE.md", "CHANGELOG.md", "CONTRIBUTING.md", "history.md", "performance-studies.md")
 FOLDERS = (
     ".",
     "docs",
@@ -33,7 +34,7 @@ PAGES = sorted(
         ".",
     )
     for page in (ROOT / folder).glob("*.md")
-    if page.name not in ("CHANGELOG.md", "CONTRIBUTING.md", "ARCHITECTURE.md", "history.md")
+    if page.name not in NOT_FOR_USERS
 )
 SPANISH = [page for page in PAGES if page.endswith(".es.md")]
 LANGUAGES = ROOT / "src/arboleda/arboleda/web/languages"
@@ -42,7 +43,6 @@ MOST = 40  # words of a sentence
 LONGER = {  # sentences of a page that are longer still: mend one, and lower the number
     "docs/how-to/prove.md": 7,
     "docs/how-to/prove.es.md": 6,
-    "docs/performance-studies.md": 25,
     "docs/reference/proof.md": 1,
 }
 BOX = re.compile(r"^```.*?^```$|^    .*$", re.MULTILINE | re.DOTALL)
