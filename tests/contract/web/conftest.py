@@ -22,7 +22,8 @@ from arboleda.web.access.auth import Door, Role
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import names_for
 from arboleda.web.api import make_app
-from arboleda.web.server import SecondLoop, Server
+from arboleda.web.second_loop import SecondLoop
+from arboleda.web.server import Server
 
 
 class Web:

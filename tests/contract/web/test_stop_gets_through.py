@@ -19,7 +19,7 @@ from tests.patience import PATIENCE_S
 from tests.web_plant import TOKENS, VIEW, Plant
 
 from arboleda.model.messages import Verb
-from arboleda.web import server
+from arboleda.web import second_loop, server
 from arboleda.web.access.auth import Role
 from arboleda.web.server import Server
 
@@ -167,7 +167,7 @@ def test_while_something_else_is_made_that_takes_long(serve, plant: Plant) -> No
 @pytest.fixture
 def hanging(serve, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Web, Event]]:
     """A server whose page is never made, and the event that lets its thread go."""
-    monkeypatch.setattr(server, "END_S", 0.1)
+    monkeypatch.setattr(second_loop, "END_S", 0.1)
     making, going_on = Event(), Event()
 
     def slow(app: FastAPI) -> None:
@@ -195,7 +195,7 @@ def test_the_server_ends_while_a_page_is_made_for_ever(hanging: tuple[Web, Event
 
 
 def test_the_server_ends_with_an_application_that_does_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server, "END_S", 0.1)
+    monkeypatch.setattr(second_loop, "END_S", 0.1)
     monkeypatch.setattr(server, "STOP_S", PATIENCE_S)
 
     async def endless(scope: Scope, receive: Receive, send: Send) -> None:
@@ -204,7 +204,7 @@ def test_the_server_ends_with_an_application_that_does_not(monkeypatch: pytest.M
         await receive()
         await asyncio.Event().wait()
 
-    served = Server(server.SecondLoop(endless), port=0)
+    served = Server(second_loop.SecondLoop(endless), port=0)
     served.start()
     served.stop()
     assert not {"http", "http pages"} & {thread.name for thread in threading.enumerate()}

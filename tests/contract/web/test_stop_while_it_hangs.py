@@ -1,4 +1,4 @@
-"""A real plant with its server: a stop takes effect, and is answered, while the disk hangs."""
+"""A real plant with its server: a stop takes effect, and is answered as a hold is, while the disk hangs."""
 
 from __future__ import annotations
 
@@ -86,6 +86,8 @@ def test_whoever_asks_is_told_that_the_stop_has_left_and_is_not_kept_yet(
         answer = client.post(f"{url}/stop")
         assert answer.status_code == 202 and "has not kept it" in answer.json()["why"]
         assert robots.stopped == {"ra1", "rm_sis_a"}
+        held = client.post(f"{url.replace('plant', 'cells/sis_a')}/hold")
+        assert held.status_code == 202 and "has not done it yet" in held.json()["why"]
         seen = client.get(url).json()
         assert seen["tasks"] == [] and not any(robot["latched"] for robot in seen["robots"])
         unknown = client.get(url.replace("plant", "tasks/a"))

@@ -11,6 +11,8 @@ from typing import Any
 
 import pytest
 from fastapi import FastAPI
+from nicegui import json
+from nicegui.client import HTML_ESCAPE_TABLE
 from tests.added_package import install
 
 from arboleda.dashboard import added, page, shell
@@ -179,6 +181,11 @@ def test_files_of_packages_lie_below_those_of_the_page() -> None:
     head = shell.head(words("en"), own("page.js"), added=loaded().assets)
     below = own("").rstrip("/")
     assert f'"{below}/arboleda_make.page-' in head and "/part.js" in head and "/draw.css" in head
+
+
+def test_parts_are_written_into_the_page_as_nicegui_would_write_them() -> None:
+    parts = html(loaded()) + '<p>`${1}` & \\ "2" ñ \n</p>'
+    assert shell.in_page(parts) == json.dumps(parts)[1:-1].translate(HTML_ESCAPE_TABLE).encode()
 
 
 def test_without_packages_the_page_names_what_installs_them(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -109,6 +109,28 @@ def test_who_asked_hears_in_time_that_an_act_has_happened_and_is_not_kept(lane: 
     assert lane.next_deadline is None
 
 
+def asked_to_hold(scope: str) -> Opened:
+    return Opened(request=OperatorRequest(at=10.0, verb=Verb.HOLD, scope=scope, request="a"))
+
+
+def test_who_asked_for_a_hold_hears_in_time_that_the_plant_has_yet_to_do_it(lane: StopLane) -> None:
+    assert lane.step(10.0, [asked_to_hold("sis_a")]) == []
+    (said,) = lane.step(10.0 + ANSWERED_WITHIN_S, [])
+    assert isinstance(said, Unkept) and (said.request, said.outcome) == ("a", Outcome.SENT)
+    assert str(said.why).startswith("hold sis_a has reached the plant, which has not done it yet (its disk")
+
+
+def test_who_asked_for_a_hold_that_is_done_hears_that_it_is(lane: StopLane) -> None:
+    lane.step(10.0, [asked_to_hold("sis_a"), Happened(at=10.5, answer=HOLD)])
+    assert lane.step(10.0 + ANSWERED_WITHIN_S, []) == []
+    (said,) = lane.step(10.5 + ANSWERED_WITHIN_S, [])
+    assert str(said.why).startswith("hold sis_a is done, and the plant has not kept it")
+
+
+def test_nobody_hears_that_a_hold_of_an_unknown_cell_waits(lane: StopLane) -> None:
+    assert lane.step(10.0, [asked_to_hold("sis_z")]) == [] and lane.next_deadline is None
+
+
 def test_an_act_with_commands_of_its_own_has_not_happened_before_these_leave() -> None:
     clear = Stop(id="7-1", robot="ra1", mode=StopMode.CLEAR)
     halt = Stop(id="7-1", robot="ra1", mode=StopMode.HALT)

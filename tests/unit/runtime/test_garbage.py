@@ -10,9 +10,11 @@ from unittest import mock
 import pytest
 
 from arboleda.adapters import clock
-from arboleda.runtime.parts.garbage import MOST_YOUNG, SHARE, Garbage, leave_out_more
+from arboleda.runtime.parts import garbage as garbage_part
+from arboleda.runtime.parts.garbage import SHARE, Garbage, leave_out_more
 
 OFTEN = (700, 10, 10)
+MOST_YOUNG = 10_000
 PLANT: Any = None  # nothing is asked of it
 
 
@@ -44,8 +46,10 @@ def collections(monkeypatch: pytest.MonkeyPatch) -> Iterator[Collections]:
 
 
 @pytest.fixture
-def garbage(collections: Collections) -> Iterator[Garbage]:
+def garbage(collections: Collections, monkeypatch: pytest.MonkeyPatch) -> Iterator[Garbage]:
     """What other tests have made stays left out meanwhile: it takes long to look at."""
+    monkeypatch.setattr(garbage_part, "YOUNG", OFTEN[0])
+    monkeypatch.setattr(garbage_part, "MOST_YOUNG", MOST_YOUNG)
     made = Garbage()
     with mock.patch.object(gc, "get_freeze_count", return_value=0), mock.patch.object(gc, "unfreeze"):
         made.start(has_steps=True)

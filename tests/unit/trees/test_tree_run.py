@@ -1,7 +1,10 @@
-"""How often a tree is ticked until it rests: once where another tick could change nothing."""
+"""How often a tree is ticked until it rests: once where another tick could change nothing; and its end."""
 
 from __future__ import annotations
 
+import gc
+import weakref
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -114,3 +117,20 @@ def test_tries_that_take_no_time_are_not_all_at_one_instant() -> None:
         status = run.tick()
     assert failures.last is not None and failures.last.reason is Reason.LINK_LOST
     assert context.commands.sent == len(acts) * 11
+
+
+def test_a_tree_that_has_ended_is_given_back_without_a_collection_of_garbage() -> None:
+    context: Any = SimpleNamespace(time=SimpleNamespace(now=0.0), commands=Refused())
+    run = TreeRun(context)
+    ways = Selector("ways", memory=False, children=[Known()])
+    run.begin(partial(Sequence, "work", memory=True, children=[ways]))
+    nodes = [weakref.ref(node) for node in run.nodes]
+    del ways
+    gc.disable()
+    try:
+        run.drop()
+        assert None not in [node() for node in nodes]
+        run.take_apart()
+        assert [node() for node in nodes] == [None] * 3
+    finally:
+        gc.enable()

@@ -24,11 +24,16 @@ class Screen:
         self._shown: dict[str, Any] = {}
 
     def kept(self) -> set[str]:
-        """The cells whose rows are those of the last look; what is shown is as in a view made anew."""
+        """The cells whose rows are those of the last look."""
+        before = self._shown
+        return {name for name, row in self.rows().items() if row is before.get(name)}
+
+    def rows(self) -> dict[str, Any]:
+        """The rows of the cells, by name; what is shown is as in a view made anew."""
         view_now = view.snapshot(self._rig.plant, self._resting.part)
-        assert view_now == self._rig.snapshot()
-        before, self._shown = self._shown, {row["name"]: row for row in view_now["cells"]}
-        return {name for name, row in self._shown.items() if row is before.get(name)}
+        assert view_now == view.snapshot(self._rig.plant)
+        self._shown = {row["name"]: row for row in view_now["cells"]}
+        return self._shown
 
 
 @pytest.fixture
@@ -49,13 +54,26 @@ def test_cells_at_rest_are_remembered_while_their_robots_repeat_themselves(scree
     assert screen.kept() == CELLS
 
 
-def test_a_cell_at_work_is_made_anew_in_every_view_and_the_others_are_not(screen: Screen, rig: Rig) -> None:
+def test_a_cell_at_work_is_another_row_in_every_view_and_the_others_are_not(screen: Screen, rig: Rig) -> None:
     screen.kept()
     rig.submit("sis_a 0B 7")
     rig.wait_for("sis_a", "move to pick-up")
     screen.kept()
     rig.wait(0.1)
     assert screen.kept() == CELLS - {"sis_a"}
+
+
+def test_a_cell_at_work_to_which_nothing_happens_is_shown_with_the_times_of_now(
+    screen: Screen, rig: Rig
+) -> None:
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "move to pick-up")
+    before = screen.rows()["sis_a"]
+    rig.plant.step(rig.plant.now + 0.01, [])
+    later = screen.rows()["sis_a"]
+    assert later["refused"] is before["refused"]
+    assert later["task"]["elapsed_s"] > before["task"]["elapsed_s"]
+    assert later["tree"] != before["tree"]
 
 
 def test_a_robot_that_falls_silent_is_shown_so(screen: Screen, rig: Rig) -> None:

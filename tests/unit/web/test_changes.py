@@ -64,6 +64,6 @@ def test_a_task_in_a_cell_is_told_by_its_id(before: dict) -> None:
 def test_a_reader_that_does_not_keep_up_is_ended_and_keeps_nothing_more() -> None:
     reader = Reader()
     for number in range(stream.WAITING + 50):
-        reader.put(stream.event(str(number), "task", {}))
+        reader.put(stream.event(str(number), "task", {}).text)
     assert reader.dropped and reader.waiting == stream.WAITING
     assert asyncio.run(reader.next()) is None

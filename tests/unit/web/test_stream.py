@@ -25,8 +25,13 @@ async def heard(stream: AsyncIterator[str]) -> tuple[str, str, dict]:
     return fields["id"], fields["event"], json.loads(fields["data"])
 
 
-def reader(changes: Changes, last: str = "", alive: Callable[[], bool] = lambda: True) -> AsyncIterator[str]:
-    return tell(changes, last, alive)
+async def reader(
+    changes: Changes, last: str = "", alive: Callable[[], bool] = lambda: True
+) -> AsyncIterator[str]:
+    """The events one by one, which may leave together."""
+    async for text in tell(changes, last, alive):
+        for each in text.removesuffix("\n\n").split("\n\n"):
+            yield f"{each}\n\n"
 
 
 def test_it_begins_with_the_plant_and_goes_on_with_changes(plant: Plant) -> None:
@@ -50,6 +55,29 @@ def test_two_readers_hear_the_same(plant: Plant) -> None:
         assert await heard(one) == await heard(other)
         plant.becomes(tasks=task("failed"))
         assert await heard(one) == await heard(other)
+
+    asyncio.run(listen())
+
+
+def test_whoever_begins_with_the_plant_is_given_a_snapshot_that_is_made_once(plant: Plant) -> None:
+    async def listen() -> None:
+        changes = Changes(plant)
+        one, other = tell(changes, "", lambda: True), tell(changes, "", lambda: True)
+        assert await anext(one) is await anext(other)
+        plant.becomes(tasks=task("running"))
+        await anext(one)
+        later = await heard(reader(changes))
+        assert later[0] == "7-1" and later[2]["tasks"] == task("running")
+
+    asyncio.run(listen())
+
+
+def test_what_changed_in_one_moment_leaves_together(plant: Plant) -> None:
+    async def listen() -> None:
+        stream = tell(Changes(plant), "", lambda: True)
+        await anext(stream)
+        plant.becomes(tasks=task("done"), ending=True)
+        assert (await anext(stream)).count("event: ") == 2
 
     asyncio.run(listen())
 

@@ -7,7 +7,9 @@ in microseconds of processor time of this thread, each the median of many:
 - a step with a report of an arm that moves: only its position is new, so no tree is ticked;
 - a step with the report that ends a move: the tree is ticked until it rests, and the next command leaves;
 - one waking of the tree while it runs and nothing has changed: what we put around py_trees' tick;
-- one view while the task runs, as the orchestrator makes it: cells at rest are remembered from the last one.
+- one view while the task runs, after such a report, as the orchestrator makes it: cells to which nothing has
+  happened are remembered from the last one;
+- the same where nothing has happened to any cell, as where several people look at once.
 
 The floor is `tick_once` of py_trees, which the user of a ticked tree calls at every period, of the very same
 tree (the shipped storage recipe) in the same state: a move under way. For the report that ends a move it is
@@ -70,7 +72,12 @@ def _costs(model: PlantModel, calls: int) -> Iterator[tuple[str, Costs]]:
     yield "step: the report that ends a move", _ends_of_moves(Yard(model), calls)
     yield "waking of a tree that waits on", (_cost(_run(yard).tick, calls), tick)
     resting = RestingCells()
-    yield "view", (_cost(lambda: view.snapshot(yard.plant, resting.part), calls), tick)
+
+    def look() -> object:
+        return view.snapshot(yard.plant, resting.part)
+
+    yield "view", (_cost_after_reports(yard, move, look, calls), tick)
+    yield "view, nothing new", (_cost(look, calls), tick)
 
 
 def _cost(act: Callable[[], object], calls: int) -> float:
@@ -88,6 +95,15 @@ def _cost_of_batch(acts: Sequence[Callable[[], object]]) -> float:
 def _cost_of_reports(yard: Yard, move: Command, calls: int, by_rad: float) -> float:
     """The median time of a step with one report of an arm under way, a bit further on in each."""
     return median(_cost_of_batch(_steps(yard, move, by_rad)) for _ in range(calls // BATCH))
+
+
+def _cost_after_reports(yard: Yard, move: Command, act: Callable[[], object], calls: int) -> float:
+    """The median time of a call after a report of an arm under way, a bit further on in each."""
+    costs = []
+    for _ in range(calls):
+        _step(yard, move.robot, FURTHER_RAD)()
+        costs.append(_cost_of_batch([act]))
+    return median(costs)
 
 
 def _steps(yard: Yard, move: Command, by_rad: float) -> list[Callable[[], object]]:

@@ -272,7 +272,7 @@ class Proposals(Side):
 
     @route("POST", "/api/proposals/{hash}/prove", RunState)
     def prove_proposal(self, hash: str, recipes: Sequence[str] = (), budget_s: float = 60) -> None:
-        """Begin to try every single fault at every moment of it; its result is in `proposal`."""
+        """Begin to try every single fault at every kind of moment of it; its result is in `proposal`."""
 
     @route("POST", "/api/proposals/{hash}/simulate", RunState)
     def simulate_proposal(self, hash: str, seeds: int = 5, cycles: int = 4) -> None:

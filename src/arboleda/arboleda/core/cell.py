@@ -306,6 +306,7 @@ class CellRun:
         self.keeping.end()
         task.become(state, self.context.time.plant_now)
         self._changed(task)
+        self.run.take_apart()
 
 
 BETWEEN_TASKS = (CellState.IDLE, CellState.STOPPED, CellState.ABORTED)

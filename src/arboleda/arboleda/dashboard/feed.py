@@ -6,7 +6,7 @@ import asyncio
 import logging
 import time
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from typing import Any
 
@@ -92,7 +92,8 @@ class Feed:
                     quiet and self._frames.languages
                 ):  # one that does not answer raises, and no page gets a beat
                     self._snapshots.append((time.time(), self._plant.snapshot()))
-                self.turn(time.monotonic())
+                for _ in self._parts(time.monotonic()):
+                    await asyncio.sleep(0)  # a stop may come between two parts
             except Exception:  # one frame that cannot be made does not end the page
                 log.exception("a frame of the page failed")
             await asyncio.sleep(1 / FRAMES_HZ)
@@ -104,14 +105,24 @@ class Feed:
 
     def turn(self, now_s: float) -> None:
         """Take in the plant's news, and send each viewer what it lacks, or that nothing is new."""
+        for _ in self._parts(now_s):
+            pass
+
+    def _parts(self, now_s: float) -> Iterator[None]:
+        """The parts of a turn, each of some milliseconds where there are 100 cells."""
         story = self._story
         if story is None:
             return
         self._take_in()
+        yield
         languages = self._frames.languages
         links = self._plant.links() if languages else {}
         for language in languages:
-            self._frames.send(language, story.face(language, links), now_s)
+            face = story.face(language, links)
+            yield
+            if language in self._frames.languages:  # else its last viewer has left meanwhile
+                self._frames.send(language, face, now_s)
+            yield
 
     def _take_in(self) -> None:
         while self._snapshots and self._story is not None:

@@ -61,17 +61,17 @@ def mount(
             shown[of] = (layout, *drawn(added, plant, layout, words(language), role))
         return shown[of][1:]
 
-    def build(request: Request, client: Client) -> None:
+    def build(request: Request, client: Client) -> str:
         if past_page.is_of_record(request):
             other = others.get(past_page.record_named(request)) if is_operator(request) else None
             side, drawings = (plant, stills) if other is None else other.last()
-            past_page.open_page(client, side, drawings, turns, request, beside=True)
-            return
+            return past_page.open_page(client, side, drawings, turns, request, beside=True)
         wording, layout = words(language_of(request)), plant.layout()
         window.open_window(client, show)
         open_page(client, Desk(client, plant, feed, wording, added.acts), feed)
         parts, html = made(layout, wording.language, role_shown(request))
-        shell.fill(layout, wording, parts, script=own("page.js"), made=html, added=added.assets)
+        shell.fill(layout, wording, parts, script=own("page.js"), added=added.assets)
+        return html
 
     scenes = {
         name: window.OtherScene(last=others[name].last, may=each.may) for name, each in added.records.items()

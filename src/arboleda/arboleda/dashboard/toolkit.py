@@ -26,6 +26,7 @@ def without(*modules: str) -> Iterator[None]:
 # installed. aiohttp always is: 0.1 s of each start, and 10 MB of each plant.
 with without("aiohttp", "requests", "tornado"):
     from nicegui import Client, app, ui
+    from nicegui.client import HTML_ESCAPE_TABLE
     from nicegui.events import GenericEventArguments
 
-__all__ = ["Client", "GenericEventArguments", "app", "ui"]
+__all__ = ["HTML_ESCAPE_TABLE", "Client", "GenericEventArguments", "app", "ui"]

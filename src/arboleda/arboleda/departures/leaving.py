@@ -22,6 +22,10 @@ DONE_UNKEPT = Phrase(
     "act.done_unkept",
     "{verb} {scope} is done, and the plant has not kept it ({why}); a restart would not know of it",
 )
+TAKEN_UP_LATER = Phrase(
+    "act.taken_up_later",
+    "{verb} {scope} has reached the plant, which has not done it yet ({why}); look again",
+)
 WORTH_TELLING_S = 0.02  # a commit takes a few ms
 EVERYTHING = Phrase("stop.everything", "the whole plant")
 SYNCED_WITHIN_S = 0.01  # from a write to its sync where nobody waits, so that writes of all cells share one
@@ -29,7 +33,7 @@ MOST_UNSYNCED_S = 0.1  # a plant with a write that has not been durable for so l
 
 
 class Unkept(OperatorAnswer):
-    """Answer to an act that has happened and is not kept, as `why` says."""
+    """Answer to an act that has happened and is not kept, or that the plant has yet to do, as `why` says."""
 
 
 class StopLeft(Unkept):
@@ -77,6 +81,15 @@ def done_unkept(answer: OperatorAnswer, why: Sentence) -> Unkept:
     values = {each.name: getattr(answer, each.name) for each in fields(answer)}
     scope = answer.scope.strip() or EVERYTHING()
     return Unkept(**{**values, "why": DONE_UNKEPT(verb=answer.verb.value, scope=scope, why=why)})
+
+
+def taken_up_later(request: OperatorRequest, why: Sentence) -> Unkept:
+    """Answer to a request that the plant has, and that waits in it because of `why`."""
+    scope = request.scope.strip() or EVERYTHING()
+    waits = TAKEN_UP_LATER(verb=request.verb.value, scope=scope, why=why)
+    return Unkept(
+        verb=request.verb, scope=request.scope, request=request.request, outcome=Outcome.SENT, why=waits
+    )
 
 
 def done_at_once(messages: Sequence[Command | Notice]) -> list[OperatorAnswer]:

@@ -2,7 +2,7 @@
 
 The plant's thread may hang at a disk, a database or a log when somebody asks for a stop. The lane has a
 thread of its own, and needs nothing but the plant's model. It also answers a request for another act that has
-happened and that the plant does not keep in time.
+happened and that the plant does not keep in time, and for a hold that the plant does not do in time.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import OperatorAnswer, OperatorRequest
 from arboleda.model.plant_model import PlantModel
 
-from .leaving import STILL_WAITS, Unkept, done_unkept, stop_left
+from .leaving import STILL_WAITS, Unkept, done_unkept, stop_left, taken_up_later
 
 ANSWERED_WITHIN_S = (
     0.8  # within it a stop is kept, or whoever asked hears that it is not; a service of ROS 2 waits 1 s
@@ -24,7 +24,7 @@ ANSWERED_WITHIN_S = (
 
 @dataclass(frozen=True, kw_only=True)
 class Opened:
-    """A request for a stop has come, and is on its way to the plant."""
+    """A request for a stop or for a hold has come, and is on its way to the plant."""
 
     request: OperatorRequest
 
@@ -70,7 +70,10 @@ Event = Opened | Blocked | Departed | Happened | Closed | Overrun
 
 @dataclass(kw_only=True)
 class OpenAct:
-    """A request that is not answered yet, with the answer for an act that is not kept at `due`."""
+    """A request that is not answered yet, with the answer for an act that is not kept at `due`.
+
+    `has_left` is False for a stop of which no robot was told, and for an unknown scope: then none is true.
+    """
 
     request: OperatorRequest | OperatorAnswer
     unkept: Unkept
@@ -109,9 +112,7 @@ class StopLane:
 
     def _take(self, event: Event) -> list[Stop | Unkept]:
         if isinstance(event, Opened):
-            token, due = event.request.request or "", event.request.at + ANSWERED_WITHIN_S
-            answer = stop_left(event.request, STILL_WAITS())
-            self._open[token] = OpenAct(request=event.request, unkept=answer, due=due)
+            self._open_act(event.request)
         elif isinstance(event, Happened):
             token, due = event.answer.request or "", event.at + ANSWERED_WITHIN_S
             unkept = done_unkept(event.answer, STILL_WAITS())
@@ -125,6 +126,16 @@ class StopLane:
             act.has_left = bool(reached)
             return self._stops(reached) if isinstance(event, Blocked) else []
         return []
+
+    def _open_act(self, request: OperatorRequest) -> None:
+        is_stop = request.verb.row.stops
+        answer = stop_left(request, STILL_WAITS()) if is_stop else taken_up_later(request, STILL_WAITS())
+        self._open[request.request or ""] = OpenAct(
+            request=request,
+            unkept=answer,
+            due=request.at + ANSWERED_WITHIN_S,
+            has_left=not is_stop and bool(self.reached(request)),
+        )
 
     def _stops(self, names: frozenset[str]) -> list[Stop | Unkept]:
         """A stop for each of these robots that anything leaves for."""

@@ -36,6 +36,7 @@ class TreeRun:
         self.keepers: list[tuple[int, Keeps]] = []  # nodes with more than a status to keep, by number
         self._acts: list[Act] = []
         self._recoveries: list[Behaviour] = []
+        self._ended: list[Behaviour] = []  # nodes of trees that were dropped
         self._began: float | None = None  # in this start of the plant, s of the cell's time
         self.rested: tuple[object, ...] = ()  # the signature with which it came to rest last
         self._context = context
@@ -76,6 +77,7 @@ class TreeRun:
         """End the tree, and halt what moves for it."""
         tree, self.tree = self.tree, None
         self._began = None
+        self._ended += self.nodes
         self.nodes, self.keepers, self._acts, self._recoveries = [], [], [], []
         try:
             if tree is not None:
@@ -83,6 +85,15 @@ class TreeRun:
         except Exception as error:  # noqa: BLE001 - a leaf may be user code: whatever moves is halted all the same
             self._tell(error)
         self._context.commands.cancel_all()  # py_trees does not terminate a leaf that raised
+
+    def take_apart(self) -> None:
+        """Have the trees that have ended be given back at once; nobody asks for the path of a node any more.
+
+        Their nodes refer to one another: a collector of garbage would look for them between two reactions.
+        """
+        for node in self._ended:
+            node.parent, node.children, node.iterator = None, [], iter(())  # py_trees' own refers to its node
+        self._ended.clear()
 
     @property
     def acts(self) -> list[Act]:

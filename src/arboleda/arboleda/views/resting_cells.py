@@ -1,4 +1,4 @@
-"""Parts of views for cells at rest, kept from one view to the next."""
+"""Parts of views for cells to which nothing has happened, kept from one view to the next."""
 
 from __future__ import annotations
 
@@ -6,26 +6,30 @@ from dataclasses import dataclass
 from typing import Any
 
 from arboleda.engine import Belief, CellRun, Entry, Plant
-from arboleda.model.cell_states import CellState
 
-from .view import CellPart, cell_part
+from . import tree_view
+from .view import CellPart, cell_part, elapsed_s, left_s, teaching
 
 
 @dataclass(frozen=True, kw_only=True)
 class PartRevision:
-    """A part as of one revision of its cell, with the sources of the times in it."""
+    """A part as of one revision of its cell, with the sources of the times in it.
+
+    `has_times` is False for the row of a cell in which no time passes: then all views have it as it is.
+    """
 
     revision: int
     part: CellPart
     robots: list[tuple[dict[str, Any], Belief, Entry | None]]
+    has_times: bool
 
 
 class RestingCells:
-    """Parts of one plant's views: those of cells at rest are made anew only once their revision has changed.
+    """Parts of one plant's views: made anew only for cells whose revision is not that of the view before.
 
-    Their times and rates of reports are of now in every view. A cell at work is always made anew, and so is
-    one that shares something: what it waits for may be with any other cell. The rows of two views may be the
-    same objects, so nobody may change them.
+    Their times and rates of reports are of now in every view. A cell that shares something is always made
+    anew: what it waits for may be with any other cell. The rows of two views may be the same objects, so
+    nobody may change them.
     """
 
     def __init__(self) -> None:
@@ -43,16 +47,26 @@ class RestingCells:
             aged["telemetry_hz"] = belief.rate.hz if belief.online else None
             if last is not None and command is not None:
                 aged["command"] = {**command, "age_s": now - last.sent_at}
+            if row["question"] is not None and (asked := plant.dispatcher.ledger.question(row["name"])):
+                aged["question"] = {**row["question"], "left_s": left_s(asked, now)}
             robots.append(aged)
-        return CellPart(known.part.cell, robots, known.part.tasks)
+        if not known.has_times:
+            return CellPart(known.part.cell, robots, known.part.tasks)
+        tasks = _aged_tasks(plant, known.part.tasks)
+        return CellPart(_aged(plant, cell, known.part.cell), robots, tasks)
 
     def _made_anew(self, plant: Plant, cell: CellRun) -> CellPart:
-        """The part of a cell as it is now, remembered where it rests."""
+        """The part of a cell as it is now, remembered where the cell shares nothing."""
         name, part = cell.cell.name, cell_part(plant, cell)
         self._known.pop(name, None)
-        if _rests(plant, cell):
-            robots = [_with_sources(plant, row) for row in part.robots]
-            self._known[name] = PartRevision(revision=plant.revisions[name], part=part, robots=robots)
+        if not (cell.cell.zone_users or cell.cell.interlocked or cell.cell.shared):
+            begun = any(row["started_at"] is not None for row in part.tasks.values())
+            self._known[name] = PartRevision(
+                revision=plant.revisions[name],
+                part=part,
+                robots=[_with_sources(plant, row) for row in part.robots],
+                has_times=begun or cell.tree is not None or cell.manual.teaching is not None,
+            )
         return part
 
 
@@ -62,10 +76,18 @@ def _with_sources(plant: Plant, row: dict[str, Any]) -> tuple[dict[str, Any], Be
     return row, dispatcher.beliefs[name], dispatcher.ledger.last_sent.get(name)
 
 
-def _rests(plant: Plant, cell: CellRun) -> bool:
-    """True for an idle cell that shares nothing, while nothing of it has a time that passes."""
-    shares = cell.cell.zone_users or cell.cell.interlocked or cell.cell.shared
-    if cell.state is not CellState.IDLE or cell.tree is not None or shares:
-        return False
-    begun = any(task.started_at is not None for task in cell.queue)
-    return not begun and not any(plant.dispatcher.ledger.of_robot(robot.name) for robot in cell.cell.robots)
+def _aged(plant: Plant, cell: CellRun, row: dict[str, Any]) -> dict[str, Any]:
+    """The row of a cell with the times of now."""
+    aged, task, now = row.copy(), cell.task, plant.now
+    if cell.tree is not None:
+        aged["tree"] = tree_view.aged(cell.tree, row["tree"], now)
+    if task is not None:
+        aged["task"] = {**row["task"], "elapsed_s": elapsed_s(task, now)}
+    aged["teaching"] = teaching(plant, cell)
+    return aged
+
+
+def _aged_tasks(plant: Plant, tasks: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """The rows of open tasks with the times of now."""
+    now, known = plant.now, plant.intake.tasks
+    return {id: {**row, "elapsed_s": elapsed_s(known[id], now)} for id, row in tasks.items()}

@@ -26,16 +26,35 @@ from arboleda.engine import (
 )
 from arboleda.model.commands import Command
 
+Rows = list[dict[str, Any]]
 Times = tuple["float | None", "float | None"]  # s since it began, s left until it is given up
+ROOT = "root"  # the path of the root
 UNKNOWN: Times = (None, None)
 WORDS = {status: status.value for status in Status}
+RUNS = WORDS[Status.RUNNING]
 
 
-def rows(tree: Behaviour, now: float) -> list[dict[str, Any]]:
+def rows(tree: Behaviour, now: float) -> Rows:
     """The rows of a tree in depth-first order; a node is named by its path of child numbers, e.g. `0.2.1`."""
-    found: list[dict[str, Any]] = []
+    found: Rows = []
     _add(tree, "", now, found)
     return found
+
+
+def aged(tree: Behaviour, rows: Rows, now: float) -> Rows:
+    """The rows of a tree, to whose nodes nothing has happened since, with the times of now."""
+    aged = rows.copy()
+    for number, row in enumerate(rows):
+        if row["status"] == RUNS:
+            since_s, deadline_s = _times(_at(tree, row["path"]), now)
+            aged[number] = {**row, "since_s": since_s, "deadline_s": deadline_s}
+    return aged
+
+
+def _at(tree: Behaviour, path: str) -> Behaviour:
+    for number in path.split(".") if path != ROOT else ():
+        tree = tree.children[int(number)]
+    return tree
 
 
 def progress_of(tree: Behaviour | None) -> float | None:
@@ -61,7 +80,7 @@ def _steps(frame: Behaviour, *, done: bool) -> list[bool]:
     return found or [done]
 
 
-def _add(node: Behaviour, path: str, now: float, found: list[dict[str, Any]]) -> None:
+def _add(node: Behaviour, path: str, now: float, found: Rows) -> None:
     status: Status = node.status
     since_s, deadline_s = _times(node, now) if status is Status.RUNNING else UNKNOWN
     sign, text = _KIND_OF.get(type(node)) or kind(node), getattr(node, "feedback", None)
@@ -69,7 +88,7 @@ def _add(node: Behaviour, path: str, now: float, found: list[dict[str, Any]]) ->
     failure = feedback if feedback and status is Status.FAILURE else getattr(node, "last_failure", None)
     found.append(
         {
-            "path": path or "root",
+            "path": path or ROOT,
             "name": title_of(node),
             "phase": node.name if node.name in PHASES else None,
             "kind": sign,

@@ -353,9 +353,14 @@ def waited_for(snapshot: dict[str, Any]) -> dict[str, list[str]]:
     return {cell: names for cell, names in waits.items() if names}
 
 
+def elapsed_s(task: Task, now: float) -> float | None:
+    """The time that a task takes or took; None before its begin."""
+    if task.started_at is None:
+        return None
+    return (task.ended_at if task.ended_at is not None else now) - task.started_at
+
+
 def _task(task: Task, now: float) -> dict[str, Any]:
-    started = task.started_at
-    ended = task.ended_at if task.ended_at is not None else now
     return {
         "id": task.id,
         "text": task.order.text,
@@ -364,8 +369,8 @@ def _task(task: Task, now: float) -> dict[str, Any]:
         "reason": task.failure.reason.value if task.failure else None,
         "sentence": task.remark,
         "failed_in": task.failed_in,
-        "elapsed_s": None if started is None else ended - started,
-        "started_at": started,
+        "elapsed_s": elapsed_s(task, now),
+        "started_at": task.started_at,
         "ended_at": task.ended_at,
         "answers": [dict(vars(each)) for each in task.answers],
         "choice": task.choice,
@@ -421,8 +426,13 @@ def _question(entry: Entry | None, now: float) -> dict[str, Any] | None:
         "id": question.id,
         "text": question.text,
         "answers": list(question.answers),
-        "left_s": max(entry.deadline - now, 0.0),
+        "left_s": left_s(entry, now),
     }
+
+
+def left_s(entry: Entry, now: float) -> float:
+    """The time left until a command is given up."""
+    return max(entry.deadline - now, 0.0)
 
 
 def _facts(belief: Belief) -> dict[str, Value | None]:

@@ -114,7 +114,7 @@ ACCEPTED: Answers = {
     202: {
         "model": Done,
         "description": "Devices do it now, and its act tells its end; or it is a stop that has left for its "
-        "robots, and the plant cannot keep it, or not yet.",
+        "robots, and the plant cannot keep it, or not yet; or a hold that the plant has yet to do.",
     }
 }
 CONFLICT: Answers = {409: {"model": Sentence, "description": "The plant does not do this now."}}

@@ -40,7 +40,7 @@ def mount(server: FastAPI, site: SiteSide) -> None:
     shows a page already."""
     frames, opened = Frames(), asyncio.Event()
 
-    def build(request: Request, client: Client) -> None:
+    def build(request: Request, client: Client) -> str:
         wording = words(language_of(request))
         desk = Desk(client, site, frames, wording)
         ui.on("arboleda", desk.hear)
@@ -48,9 +48,8 @@ def mount(server: FastAPI, site: SiteSide) -> None:
         client.on_connect(opened.set)
         client.on_delete(lambda: frames.remove(desk))
         role = role_shown(request)
-        made = body(NOTHING_DRAWN, wording, PARTS, header=lambda parts: header.of_site(wording, parts, role))
-        script = ASSETS.of("site.js")
-        shell.fill(NOTHING_DRAWN, wording, PARTS, script=script, made=made, added=[ASSETS])
+        shell.fill(NOTHING_DRAWN, wording, PARTS, script=ASSETS.of("site.js"), added=[ASSETS])
+        return body(NOTHING_DRAWN, wording, PARTS, header=lambda parts: header.of_site(wording, parts, role))
 
     _serve(server, site)
     shell.serve(server, {"plant": words("en")("site.title")}, build, [ASSETS])

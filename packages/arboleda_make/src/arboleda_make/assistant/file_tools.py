@@ -29,8 +29,8 @@ class FileTools:
         return await self._desk.look(call, lambda _: self._bench.simulate(seeds, cycles))
 
     async def prove(self, call: Call, recipes: list[str] | None = None, budget_s: int = 30) -> Reply:
-        """Try every single fault at every moment of these recipes (none named: of all), for 1 to 300 s: what
-        breaks, what nobody would notice, and in `mend` edits that mend it, where some were found."""
+        """Try every single fault at every kind of moment of these recipes (none: of all), for 1 to 300 s:
+        what breaks, what nobody would notice, and in `mend` edits that mend it, where some were found."""
         return await self._desk.look(call, lambda _: self._bench.prove(recipes or [], budget_s))
 
     async def twin(self, call: Call, cell: str) -> Reply:

@@ -122,7 +122,7 @@ def _propose(api: APIRouter, side: PlantApi) -> None:
 
     @api.post("/proposals/{hash}/prove", **answering(RunState, REFUSED, described_body(ProofRequest)))
     async def prove(request: Request, hash: Hash) -> JSONResponse:
-        """Begin to try every single fault at every moment of it, in a process beside the plant."""
+        """Begin to try every single fault at every kind of moment of it, in a process beside the plant."""
         desk, wanted = _desk(side, request, PROPOSE), read_body(await request.body(), ProofRequest)
         return PlainJson(await run_in_threadpool(desk.prove, hash, wanted.recipes, wanted.budget_s))
 

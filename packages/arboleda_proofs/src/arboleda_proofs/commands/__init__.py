@@ -13,7 +13,7 @@ COMMANDS = {
     ),
     "prove": Command(
         "arboleda_proofs.commands.prove",
-        "Try every single fault at every moment of every recipe, and judge each run.",
+        "Try every single fault at every kind of moment of every recipe, and judge each run.",
         section=TEST,
     ),
     "fault": Command(

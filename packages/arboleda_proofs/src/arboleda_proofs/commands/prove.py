@@ -18,7 +18,7 @@ from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_writable
 
 BUDGET = "10m"
-HELP = f"""Try every single fault at every moment of every recipe, and judge each run.
+HELP = f"""Try every single fault at every kind of moment of every recipe, and judge each run.
 
 \b
 arboleda prove                          the plant of this folder, for {BUDGET}
@@ -28,7 +28,8 @@ arboleda prove my_plant.yaml --html out.html --tests test_found.py
 
 Each recipe runs once without faults, for each class of parameters and each answer that can lead elsewhere.
 Then each kind of fault begins before and after each event of that run, and in the middle between two,
-one run each. Steps' beginnings come first, so that a short budget is spent well.
+one run each. Of moments at which it would meet the same it begins at one. One fault of each kind at each
+kind of step comes first, so that a short budget is spent well.
 
 Exit status: 0 every invariant held, 1 one was broken, or a task failed where nothing had
 gone wrong, 2 bad input or nothing was run, 130 Ctrl-C."""
@@ -88,6 +89,12 @@ Badge = Annotated[
     Path | None, typer.Option("--badge", metavar="FILE", help="Write a badge as SVG, for one's own README.")
 ]
 Anew = Annotated[bool, typer.Option("--anew", help="Run again also what was run before.")]
+AllInstants = Annotated[
+    bool,
+    typer.Option(
+        "--all-instants", help="Try each fault at every instant; else at one of those that are alike for it."
+    ),
+]
 Pairs = Annotated[
     bool,
     typer.Option(
@@ -130,6 +137,7 @@ def prove(
     junit: JUnit = None,
     tests: Tests = None,
     badge: Badge = None,
+    all_instants: AllInstants = False,
     pairs: Pairs = False,
     mend: Mend = False,
     anew: Anew = False,
@@ -161,6 +169,7 @@ def prove(
         budget_s=seconds_of(budget),
         folder=folder(plant, state) / "prove",
         anew=anew,
+        every=all_instants,
         pairs=pairs,
         mend=mend,
         json=json,

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from functools import partial
 from typing import cast
 
@@ -67,20 +66,24 @@ class TwoTopics:
         self._skipped_s = skipped_s
         self._latest_s = {which: dice.pick((0.0, APART_S)) for which in ("state", "position")}
         self._last = {"state": 0.0, "position": 0.0}  # when the last of each comes, less what was skipped
+        self._place: Report | None = None  # the last position, as reports are made of others at less cost
 
     def parted(self, report: Report) -> Iterable[Report]:
         """The parts of a report, each stamped with its time of arrival."""
-        place = report.q is not None or report.node is not None
-        if place:
-            position = Report(at=0.0, robot=report.robot, q=report.q, node=report.node)
-            yield self._late("position", position, report.at)
-        rest = replace(report, q=None, node=None) if place else report
-        yield self._late("state", rest, report.at)
+        at = report.at
+        if report.q is None and report.node is None:
+            yield report.again(self._arrival("state", at))
+            return
+        place = self._place or Report(at=0.0, robot=report.robot)
+        self._place = place.again(self._arrival("position", at), q=report.q, node=report.node)
+        yield self._place
+        yield report.again(self._arrival("state", at), q=None, node=None)
 
-    def _late(self, which: str, part: Report, at: float) -> Report:
+    def _arrival(self, which: str, at: float) -> float:
+        """The time at which a part comes of a report of this time."""
         late_s, skipped_s = self._dice.between(0.0, self._latest_s[which]), self._skipped_s()
         self._last[which] = max(self._last[which], at + late_s - skipped_s)
-        return part.again(self._last[which] + skipped_s)
+        return self._last[which] + skipped_s
 
 
 def _two_instants(world: World, robot: Robot, dice: Dice) -> None:

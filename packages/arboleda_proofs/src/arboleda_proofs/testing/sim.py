@@ -186,7 +186,7 @@ class Sim:
                 raise self._failure(wording.seed(drawn.shrunk(result), drawn, len(result.faults)))
 
     def prove(self, recipe: str, *faults: str, at_most: int | None = single_faults.RUNS) -> float:
-        """Try every single fault at every moment of a recipe, one run each, in plants of their own.
+        """Try every single fault at every kind of moment of a recipe, one run each, in plants of their own.
 
         `faults` are the kinds that are tried, none: all; `at_most`: so many runs or a few more, the
         beginnings of steps first, None: all. Raises AssertionError where a run breaks an

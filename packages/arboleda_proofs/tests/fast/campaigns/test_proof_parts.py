@@ -291,7 +291,7 @@ def test_the_shipped_plant_calls_no_task_done_whose_part_is_lost_missed_or_was_n
     model: PlantModel,
 ) -> None:
     calm = calm_run(model, next(scenarios(model, ["storage"])))
-    proof = Proof(model=model, calm=(calm,), kinds=("no_part", "no_grip", "lost_part"))
+    proof = Proof(model=model, calm=(calm,), kinds=("no_part", "no_grip", "lost_part"), every=True)
     rows = [(proof.instant(each), number) for number, each in enumerate(proof.portions)]
     begins = [number for at, number in sorted(rows, key=lambda row: row[0].at) if "ra1" in at.what]
     outcomes = [each for number in begins[::6] for each in proof.run(number).each]

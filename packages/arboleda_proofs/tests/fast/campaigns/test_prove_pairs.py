@@ -58,7 +58,7 @@ def test_what_pairs_break_counts_where_no_single_fault_breaks_it(plant: Path) ->
 
 def test_a_share_of_all_pairs_is_never_called_more_than_a_sample(plant: Path) -> None:
     tally = PairTally(pairs=pairs_of(plant, "forgets"))
-    assert "0 of 10 (a share of 0), the most likely first: a sample" in str(pairs_line(tally, 0))
+    assert "0 of 6 (a share of 0), the most likely first: a sample" in str(pairs_line(tally, 0))
 
 
 def test_the_command_runs_pairs_after_all_single_faults_and_goes_on_the_next_time(
@@ -70,15 +70,15 @@ def test_the_command_runs_pairs_after_all_single_faults_and_goes_on_the_next_tim
     monkeypatch.setattr(
         "sys.argv", ["arboleda", "prove", str(plant), "--html", str(page), "--badge", str(drawn), *words]
     )
-    for said in ("15 runs in", "15 runs, 15 of them kept from before"):
+    for said in ("10 runs in", "10 runs, 10 of them kept from before"):
         with pytest.raises(SystemExit) as ended:
             main()
         assert ended.value.code == 0
         shown = capsys.readouterr().out
-        assert said in shown and "pairs: all 10, the most likely first; no breaches beyond" in shown
-    assert "held: all 5" in drawn.read_text()
-    assert "se probaron 10 de 10 pares" in page.read_text()
-    assert json.loads(out.read_text())["pairs"] == {"done": 10, "of": 10}
+        assert said in shown and "pairs: all 6, the most likely first; no breaches beyond" in shown
+    assert "held: each class, 4" in drawn.read_text()
+    assert "se probaron 6 de 6 pares" in page.read_text()
+    assert json.loads(out.read_text())["pairs"] == {"done": 6, "of": 6}
 
 
 def test_all_pairs_are_not_asked_for(

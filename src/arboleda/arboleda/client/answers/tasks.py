@@ -12,8 +12,8 @@ VerbWord = Annotated[str, Verb]
 OutcomeWord = Annotated[str, Outcome]
 
 OUTCOME = (
-    "sent: a stop; whether robots stand shows in what they report. under_way: devices were told to. done. "
-    "unchecked: devices were told, and report nothing of it. failed."
+    "sent: a stop; whether robots stand shows in what they report; or a hold that the plant has yet to do. "
+    "under_way: devices were told to. done. unchecked: devices were told, and report nothing of it. failed."
 )
 KEPT_CHOICE = "Why it was given to its cell, if others were allowed; of an assistant's, who approved it."
 CHOICE = "Why it is done in this cell, where several were allowed."

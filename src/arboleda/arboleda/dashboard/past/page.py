@@ -44,8 +44,8 @@ def mount(server: FastAPI, side: PastSide) -> None:
     shows a page already."""
     stills, turns = Stills(), FrameQueue()
 
-    def build(request: Request, client: Client) -> None:
-        open_page(client, side, stills, turns, request)
+    def build(request: Request, client: Client) -> str:
+        return open_page(client, side, stills, turns, request)
 
     window.serve(server, side, stills)
     shell.serve(server, side.layout(), build)
@@ -59,8 +59,9 @@ def open_page(
     request: Request,
     *,
     beside: bool = False,
-) -> None:
-    """Build the page of one browser on a record; `beside` a plant that runs it has a link to that."""
+) -> str:
+    """Build the page of one browser on a record, and return the HTML of its parts; `beside` a plant that runs
+    it has a link to that."""
     layout, wording = {**side.layout(), "recorded": False}, words(shell.language_of(request))
     visitor = Visitor(client, side, stills, turns, wording, arrival(request))
     ui.on("arboleda-past", visitor.hear)
@@ -68,14 +69,14 @@ def open_page(
     window.bring_three()
     client.on_connect(visitor.come)
     role = shell.role_shown(request)
-    made = body(
+    shell.fill(layout, wording, PARTS, script=own("record.js"))
+    return body(
         layout,
         wording,
         PARTS,
         header=lambda parts: header.of_record(layout, wording, parts, role, beside=beside),
         footer=lambda: bar.build(layout, wording),
     )
-    shell.fill(layout, wording, PARTS, script=own("record.js"), made=made)
 
 
 def arrival(request: Request) -> Arrival:

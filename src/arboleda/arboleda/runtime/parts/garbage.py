@@ -8,8 +8,9 @@ import math
 from arboleda.adapters import clock
 from arboleda.engine import Plant
 
-MOST_YOUNG = 10_000  # objects at which Python collects by itself, as where the plant's thread hangs
-SHARE = 0.01  # of the time for collections of everything, at most: one of a large plant takes 0.1 s
+YOUNG = 10_000  # objects more than before at which they are looked at, for some milliseconds
+MOST_YOUNG = 50_000  # objects at which Python collects by itself, as where the plant's thread hangs
+SHARE = 0.001  # of the time for collections of everything, at most: one of a large plant takes 0.1 s
 
 
 def leave_out_more() -> None:
@@ -19,10 +20,12 @@ def leave_out_more() -> None:
 
 
 class Garbage:
-    """Garbage: collects once a step is over and its commands have left, as often as Python would.
+    """Garbage: collects once a step is over and its commands have left.
 
-    `start` leaves out for good what is there by then, which is hardly any garbage: a collection of everything
-    would look at every library again, and no thread of Python runs meanwhile.
+    What ends is given back without it, trees of tasks as well; left are pages and what exceptions refer to.
+    So it collects seldom: no thread of Python runs meanwhile, not even for a stop. `start` leaves out for
+    good what is there by then, which is hardly any garbage: a collection of everything would look at every
+    library again.
     """
 
     def __init__(self) -> None:
@@ -49,7 +52,8 @@ class Garbage:
         """Collect what is due."""
         if not self._runs:
             return
-        young, middle, old = (count > most for count, most in zip(gc.get_count(), self._often, strict=True))
+        most = (YOUNG, *self._often[1:])
+        young, middle, old = (count > limit for count, limit in zip(gc.get_count(), most, strict=True))
         if old and clock.seconds() >= self._all_from:
             self._collect_all()
         elif middle:

@@ -252,6 +252,8 @@ class Orchestrator:
     def _take(self, request: OperatorRequest) -> None:
         """Give the plant an operator's request; a stop does not wait until the plant's thread is free."""
         if not request.verb.row.stops:
+            if request.verb is Verb.HOLD and request.request:
+                self.stops.expect(request)
             self.loop.post(request)
             return
         request = self.stops.open(request)

@@ -59,6 +59,10 @@ class Stops:
             self.ahead = {**self.ahead, token: self._lane.reached(request)}
         return request
 
+    def expect(self, request: OperatorRequest) -> None:
+        """Have who asked for a hold answered in time, even if the plant cannot do it yet."""
+        self.loop.post(Opened(request=request))
+
     def leave_beside(self, request: OperatorRequest) -> None:
         """Have stops leave at once for a request that the plant has, unless a step has taken it already."""
         if request.request in self.ahead:

@@ -15,7 +15,8 @@ from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import DEFAULT_PORT, is_loopback, names_for
 from arboleda.web.api import make_app
 from arboleda.web.routes import LeaveOut
-from arboleda.web.server import SecondLoop, Server
+from arboleda.web.second_loop import SecondLoop
+from arboleda.web.server import Server
 
 from .. import tokens
 from ..web_options import WebOptions

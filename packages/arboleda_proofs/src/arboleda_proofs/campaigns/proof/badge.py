@@ -23,7 +23,8 @@ SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height
 def badge(tally: ProofTally, total: int, *, broken: bool) -> str:
     """The content of the file; never more than a sample where not all was run."""
     runs = tally.runs
-    share = "all" if tally.is_whole(total) else f"{runs:,} of"
+    each = "all" if tally.proof.is_at_every_instant else "each class,"
+    share = each if tally.is_whole(total) else f"{runs:,} of"
     text = "broken" if broken else f"held: {share} {total:,}" if runs else "nothing was run"
     color = BROKEN if broken else HELD if tally.is_whole(total) else SAMPLE
     middle = round(len(LABEL) * LETTER + 2 * MARGIN)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from arboleda.engine import Entry
@@ -19,9 +19,11 @@ from .end_state import EndState
 from .instants import Instant, Mark, instants
 from .outcome import End, Run
 from .scenario import Scenario
+from .sights import Sights, Watch
 from .stage import ASKED_AT_S, Stage, entry_name
 
 FAR = 10**9  # commits: as many as no run has
+Tick = Callable[[], None]
 MOST_SCENARIOS = 64  # of one recipe, with all answers
 
 
@@ -42,6 +44,7 @@ class Calm:
     state: EndState
     lasts_s: float
     questions: tuple[tuple[str, tuple[Value, ...]], ...]
+    sights: Sights
     finding: str = ""
     again: str = ""
 
@@ -101,10 +104,11 @@ class _Marks:
             self.questions[command.robot] = command.definition.answers
 
 
-def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
-    """Run a scenario where nothing goes wrong."""
+def calm_run(model: PlantModel, scenario: Scenario, tick: Tick = lambda: None) -> Calm:
+    """Run a scenario where nothing goes wrong; `tick` is called now and then."""
     stage = Stage(model, scenario)
-    marks = _Marks(stage)
+    stage.on_its_way = tick
+    marks, watch = _Marks(stage), Watch(stage)
     run = calm_play(stage)
     finding = next((f"{each.step}: {each.sentence}" for each in stage.watched.findings.found), "")
     rows = [Mark(at=ASKED_AT_S, what="the request", begins=True, commits=0), *marks.rows]
@@ -123,6 +127,7 @@ def calm_run(model: PlantModel, scenario: Scenario) -> Calm:
         state=stage.state,
         lasts_s=rows[-1].at - ASKED_AT_S,
         questions=tuple(questions.items()),
+        sights=watch.sights,
     )
     return replace(calm, again=stage.again(calm.lasts_s)) if run.outcome.end is End.DONE else calm
 
@@ -132,13 +137,13 @@ def calm_play(stage: Stage) -> Run:
     return stage.play(ASKED_AT_S, lambda: None, expected={}, commands=None, lasts_s=0.0)
 
 
-def calm_runs(model: PlantModel, scenarios: Iterable[Scenario]) -> Iterator[Calm]:
+def calm_runs(model: PlantModel, scenarios: Iterable[Scenario], tick: Tick = lambda: None) -> Iterator[Calm]:
     """The calm runs of scenarios, and of each answer in them after which something else is done."""
     for first in scenarios:
         known: set[Hashable] = set()
         waiting, tried = deque([first]), {first.answers}
         while waiting and len(known) < MOST_SCENARIOS:
-            calm = calm_run(model, waiting.popleft())
+            calm = calm_run(model, waiting.popleft(), tick)
             ending = calm.commands, calm.run.outcome.end
             if ending in known:
                 continue

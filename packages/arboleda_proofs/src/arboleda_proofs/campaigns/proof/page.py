@@ -97,7 +97,9 @@ def _parts(proof: ProofPage) -> Iterator[str]:
 def _amount(proof: ProofPage) -> Iterator[str]:
     done, share = proof.tally.runs, f"{proof.tally.runs / max(proof.total, 1):.0%}"
     is_whole = proof.tally.is_whole(proof.total)
-    amount = _each("all" if is_whole else "some", done=f"{done:,}", total=f"{proof.total:,}", share=share)
+    shown = ("all" if proof.tally.proof.is_at_every_instant else "classes") if is_whole else "some"
+    represented = f"{proof.tally.proof.represented:,}"
+    amount = _each(shown, done=f"{done:,}", total=f"{proof.total:,}", share=share, represented=represented)
     kinds = proof.tally.proof.kinds
     only = f" {_each('kinds', kinds=', '.join(kinds))}" if kinds else ""
     alone = _each("alone", share=f"{proof.tally.alone:.1%}") if done else ""

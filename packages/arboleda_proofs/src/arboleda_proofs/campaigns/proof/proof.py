@@ -1,7 +1,8 @@
-"""Proof: all single faults at all instants of all scenarios of a plant, as numbered parts of the work."""
+"""Proof: single faults at instants of all scenarios of a plant, as numbered parts of the work."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -16,8 +17,8 @@ from .course import Course, course_of
 from .forks import run_all
 from .instants import Instant
 from .outcome import Outcome, Run
+from .representatives import Representatives
 from .scenario import Scenario
-from .single_faults import single_faults
 
 T = TypeVar("T")
 Tick = Callable[[], None]
@@ -58,17 +59,19 @@ class Proved:
 class Proof:
     """Proof of a plant: calm runs that are sound, and `portions` in the order in which they are worth it.
 
-    `kinds`: only faults of these; none: of all.
+    `kinds`: only faults of these; none: of all. `every`: at every instant, not at one of each class.
     """
 
     model: PlantModel
     calm: Sequence[Calm] = field(default_factory=tuple)
     kinds: tuple[str, ...] = ()
+    every: bool = False
 
     @cached_property
     def portions(self) -> list[Portion]:
-        """All portions: one form of each fault in the work of the device at work first, then of its board,
-        then on others, then all other forms; of each the beginnings of steps first.
+        """All portions: one fault of each kind at each step first, then one form of each in the work of the
+        device at work, then of its board, then on others, then all other forms; of each the beginnings of
+        steps first.
 
         Portions of one rank are spread over all tasks and instants, so that a short budget meets each.
         """
@@ -129,20 +132,41 @@ class Proof:
         return [
             (instant, fault)
             for number, instant in enumerate(instants)
-            for part in self._parts[row, number]
+            for part in self._parts.get((row, number), ())
             for fault in part
         ]
 
-    @cached_property
+    @property
     def _parts(self) -> dict[tuple[int, int], list[list[Fault]]]:
         """The faults of each instant of each scenario, in their parts."""
-        return {
-            (row, number): single_faults(
-                self.model, self.model.cell(calm.scenario.cell), instant, number=number, only=self.kinds
-            )
-            for row, calm in enumerate(self.calm)
-            for number, instant in enumerate(calm.instants)
-        }
+        return self._tried.parts
+
+    @cached_property
+    def _tried(self) -> Representatives:
+        return Representatives(model=self.model, calm=self.calm, kinds=self.kinds, every=self.every)
+
+    @cached_property
+    def total(self) -> int:
+        """The number of all runs."""
+        return self.by_scenario.total()
+
+    @cached_property
+    def by_scenario(self) -> Counter[int]:
+        """The number of runs of each scenario, by its number."""
+        counts = Counter[int]()
+        for (row, _), parts in self._parts.items():
+            counts[row] += sum(map(len, parts))
+        return counts
+
+    @property
+    def represented(self) -> int:
+        """The number of single faults at all instants, for which all runs stand."""
+        return self._tried.total
+
+    @property
+    def is_at_every_instant(self) -> bool:
+        """True where each fault is tried at every instant, and no run stands for another one."""
+        return self.total == self.represented
 
     def _ranked(self) -> Iterator[tuple[int, int, Portion]]:
         for (row, number), parts in self._parts.items():

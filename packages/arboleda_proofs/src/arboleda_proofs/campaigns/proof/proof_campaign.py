@@ -25,6 +25,7 @@ from .badge import badge
 from .breaches import breaches_of
 from .calm import Calm, calm_runs, run_findings
 from .checks import checks
+from .forecast import Forecast
 from .junit import as_junit
 from .kept import Kept
 from .outcome import End
@@ -40,6 +41,7 @@ from .scenario import scenarios
 
 MEND_S = 120.0  # a mend is looked for so long
 CALM_SHARE = 0.5  # of the budget, in which runs without faults begin
+SAID_BY_S = 6.0  # when it is said what is known so far, if that is not all by then
 Work = TypeVar("Work")
 NOTHING_RUN = 2  # exit status: of nothing it cannot be said that it held
 
@@ -58,18 +60,22 @@ class ProofCampaign:
         self._is_cut = False  # the budget left no time for all tasks without faults
         self._known = 0  # runs that were kept from before
         self._total = 0
-        self._began = time.monotonic()
+        self._jobs = 1
+        self._simulated_s = 0.0  # without faults
+        self._is_said = False  # how much there is to do, as far as it was known
+        self._began, self._began_work = time.monotonic(), time.process_time()
 
     def run(self, jobs: int) -> int:
         """Prove, and return the exit status. Ctrl-C ends it with what was done so far."""
+        self._jobs = jobs
         for note in notes([self._plant]):
             self._say(note, "dim")
         status = INTERRUPTED
         try:
             self._run_calmly()
-            self._prove(jobs)
+            self._prove()
             if self._request.pairs:
-                self._prove_pairs(jobs)
+                self._prove_pairs()
             held = HELD if self._tally.runs else NOTHING_RUN
             status = BROKEN if self._bad_calm or self._breaks else held
         except KeyboardInterrupt:
@@ -89,27 +95,47 @@ class ProofCampaign:
 
     def _run_calmly(self) -> None:
         found = scenarios(self._plant.model, self._request.recipes)
-        doing = "running without faults"
+        doing, self._began_work = "running without faults", time.process_time()
         with progress(self._console, doing, None) as show, self._lines.progress(doing) as tell:
-            for calm in self._within(CALM_SHARE, calm_runs(self._plant.model, found)):
+            for calm in self._within(CALM_SHARE, calm_runs(self._plant.model, found, self._say_in_time)):
                 self._calm.append(calm)
+                self._simulated_s += calm.run.seconds + calm.lasts_s
                 show(counted(len(self._calm), "task"), len(self._calm))
                 tell(len(self._calm), None)
 
-    def _prove(self, jobs: int) -> None:
+    def _say_in_time(self) -> None:
+        """Say how much there is to do in the recipes that have run so far, where the others take long."""
+        if self._is_said or time.monotonic() - self._began < SAID_BY_S:
+            return
+        self._is_said = True
+        tasks = f"{counted(len(self._calm), 'task')} without faults so far"
+        self._say(f"{tasks}: {self._forecast(self._proof()).words}" if self._calm else tasks)
+
+    def _proof(self) -> Proof:
         sound = tuple(each for each in self._calm if each.is_sound)
-        proof = Proof(model=self._plant.model, calm=sound, kinds=self._request.kinds)
+        request = self._request
+        return Proof(model=self._plant.model, calm=sound, kinds=request.kinds, every=request.every)
+
+    def _forecast(self, proof: Proof, kept: int = 0) -> Forecast:
+        pace = (time.process_time() - self._began_work) / max(self._simulated_s, 1.0)
+        left_s = self._request.budget_s - (time.monotonic() - self._began)
+        return Forecast(proof=proof, pace=pace, jobs=self._jobs, budget_s=max(left_s, 0.0), kept=kept)
+
+    def _prove(self) -> None:
+        proof = self._proof()
         kept = Kept(self._request.folder, recipe_digests(self._plant.model, self._request.files), proof)
         kept.forget(all=self._request.anew)
         self._tally = ProofTally(proof=proof, proved=kept.known(), is_cut=self._is_cut)
-        self._total = sum(len(proof.faults(each)) for each in proof.portions)
-        self._run(proof, range(len(proof.portions)), self._tally, kept, total=self._total, jobs=jobs)
+        self._total = proof.total
+        if self._total:
+            self._say(self._forecast(proof, self._tally.runs).words)
+        self._run(proof, range(len(proof.portions)), self._tally, kept, total=self._total)
 
-    def _prove_pairs(self, jobs: int) -> None:
+    def _prove_pairs(self) -> None:
         pairs = PairProof(proof=self._tally.proof)
         kept = Kept(self._request.folder, recipe_digests(self._plant.model, self._request.files), pairs)
         self._pairs = PairTally(pairs=pairs, proved=kept.known())
-        self._run(pairs, pairs.numbers(), self._pairs, kept, total=pairs.total, jobs=jobs)
+        self._run(pairs, pairs.numbers(), self._pairs, kept, total=pairs.total)
 
     def _run(
         self,
@@ -119,7 +145,6 @@ class ProofCampaign:
         kept: Kept,
         *,
         total: int,
-        jobs: int,
     ) -> None:
         """Run the portions of these numbers that are not in the tally, as long as the budget lasts."""
         known = tally.runs
@@ -129,7 +154,7 @@ class ProofCampaign:
         with (
             progress(self._console, name, total) as show,
             self._lines.progress(name) as tell,
-            self._campaign(proof, self._within(1.0, waiting), jobs, (known, total), show) as campaign,
+            self._campaign(proof, self._within(1.0, waiting), (known, total), show) as campaign,
         ):
             tell(known, total)
             for proved in campaign.results():
@@ -142,7 +167,7 @@ class ProofCampaign:
             self._say(f"not all is kept for the next time: {kept.trouble}", "yellow")
 
     def _campaign(
-        self, proof: Runs[Proved], numbers: Iterator[int], jobs: int, so_far: tuple[int, int], show: Show
+        self, proof: Runs[Proved], numbers: Iterator[int], so_far: tuple[int, int], show: Show
     ) -> Campaign[Proved]:
         began, (known, total) = time.monotonic(), so_far
 
@@ -151,10 +176,12 @@ class ProofCampaign:
             show(_progress(known, campaign.minutes, total, seconds), known + campaign.minutes)
 
         campaign: Campaign[Proved]
-        if jobs == 1:
+        if self._jobs == 1:
             campaign = Campaign(proof, numbers, tick=tick)
         else:
-            campaign = Workers(proof, numbers, tick=tick, jobs=jobs, ahead=1)  # none begins after the budget
+            campaign = Workers(
+                proof, numbers, tick=tick, jobs=self._jobs, ahead=1
+            )  # none begins after the budget
         return campaign
 
     def _within(self, share: float, work: Iterable[Work]) -> Iterator[Work]:

@@ -156,4 +156,10 @@ def verdict(tally: ProofTally, total: int, *, bad_calm: int) -> Text:
         return Text(sentence, "bold yellow")
     kinds = f" of {counted(len(tally.proof.kinds), 'kind')}" if tally.proof.kinds else ""
     held = f"HELD: all {counted(total, 'run')}, every single fault{kinds} at every instant"
+    if not tally.proof.is_at_every_instant:
+        every = f"{tally.proof.represented:,}"
+        held = (
+            f"HELD: all {counted(total, 'run')}, every single fault{kinds} at one instant of each class; "
+            f"--all-instants tries {every}"
+        )
     return Text(held, "bold green")

@@ -18,7 +18,7 @@ from .single_faults import possible_kinds
 class ProofRequest:
     """Request: the options. `budget_s`: how long runs begin, infinite for all; `anew`: nothing kept in
     `folder` counts; `pairs`: what is left of the time is for two faults in one run; `mend`: a change of the
-    files is looked for that mends what is found.
+    files is looked for that mends what is found; `every`: at every instant, not at one of each class.
     """
 
     plant: Path | None
@@ -29,6 +29,7 @@ class ProofRequest:
     anew: bool = False
     pairs: bool = False
     mend: bool = False
+    every: bool = False
     json: Path | None = None
     html: Path | None = None
     junit: Path | None = None

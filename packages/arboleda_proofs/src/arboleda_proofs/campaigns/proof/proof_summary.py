@@ -50,7 +50,7 @@ def summary(
         "arboleda": __version__,
         "plant": str(plant) if plant else None,
         "complete": complete,
-        "runs": {"done": tally.runs, "of": total},
+        "runs": {"done": tally.runs, "of": total, "represented": tally.proof.represented},
         "pairs": None if pairs is None else {"done": pairs.runs, "of": pairs.pairs.total},
         "alone": round(tally.alone, 4),
         "unknown": list(unknowns(tally.proof.model)),

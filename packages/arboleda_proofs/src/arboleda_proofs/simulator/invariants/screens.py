@@ -151,8 +151,9 @@ def _time_line(look: Look, shown: Row) -> Iterator[str]:
         if known != state and not (event is None and state in AT_FIRST):
             yield f"the last event of {kind} {subject} is {known}, it is {state}"
     for act in shown["acts"]:
-        times = [each["at"] for each in line.acts if each["sentence"] == act["sentence"]]
-        if not any(abs(at - UNIX_S - act["at"]) <= EXACT for at in times):
+        then = (each for each in line.acts if abs(each["at"] - UNIX_S - act["at"]) <= EXACT)
+        if not any(each["sentence"] == act["sentence"] for each in then):
+            times = [each["at"] for each in line.acts if each["sentence"] == act["sentence"]]
             yield f"there is no event of {act['sentence']!r} at {act['at']}, but at {times}"
     if line.foreign < len(shown["interference"]):
         yield f"there are {line.foreign} events of others that commanded, shown are {shown['interference']}"

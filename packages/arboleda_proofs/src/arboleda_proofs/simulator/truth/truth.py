@@ -116,7 +116,12 @@ class Truth(RobotsTruth):
         if self.places.cells and plant.dispatcher.not_given_count:
             for refused in self._refused_commands.fresh(plant):
                 self.places.take_refusal(refused)
-        for passed in self.world.moment.bridged if self._orders else ():
+        if self._orders:
+            self._look_at_questions()
+
+    def _look_at_questions(self) -> None:
+        """Take in what devices were asked, and what they answered."""
+        for passed in self.world.moment.bridged:
             self._follow_questions(passed.events, passed.out)
         for client, publication in self.world.moment.published:
             if client and b'"respuesta"' in publication.payload and publication.topic in self._telemetry:

@@ -1,0 +1,196 @@
+"""Sights of a calm run: what a fault meets that begins at an instant. Instants of one sight are one for it.
+
+A sight has what the engine tells apart, as far as the fault can touch that:
+
+- what its target does: the kind of each open command, and how far that is (sent, taken, at work); of a
+  fault of the plant, the bridge, the broker or a cell: of all devices of the cell;
+- the facts that the plant believes of a target that is a device;
+- the state of the cell, and the grips of its robots: they decide what a failure leads to;
+- whether its target gets any command later, and again one of the kind at which it is: that decides what
+  becomes of what went wrong;
+- the first event of its target while the fault lasts, and whether the fault lasts beyond that.
+
+It leaves out where a robot goes and which zones it has, which values a device gets, what other devices do,
+and how far away that event is. So a step that comes again with another place, and each round of a loop but
+the last, has the sight of the first one. What that costs is measured in decision 72.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from arboleda.engine import Entry, Plant
+from arboleda.model.messages import TaskChanged
+from arboleda.model.plant_model import Cell
+
+from .instants import LONG_S, US, Instant, Side
+from .stage import Stage
+
+Words = tuple[Hashable, ...]
+BEGINS, ENDS = "begins", "ends"
+TASK = ""  # to which something happens that happens to no robot
+
+
+@dataclass(frozen=True, kw_only=True)
+class Standing:
+    """Standing of a cell: what each of its robots does and says, its state, and the grips of its robots."""
+
+    doing: Mapping[str, tuple[Words, ...]] = field(default_factory=dict)
+    saying: Mapping[str, Words] = field(default_factory=dict)
+    state: Words = ()
+    grips: Words = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Happening:
+    """Event of a run `at` s: it happens to a robot, or to the `TASK`."""
+
+    at: float
+    robot: str
+    words: Words
+
+
+class Track:
+    """What happens to one robot, or to all, in the order of time."""
+
+    def __init__(self, happenings: Sequence[Happening]) -> None:
+        self._happenings = happenings
+        self._times = [round(each.at, 6) for each in happenings]
+        kinds = [frozenset[Words]()]
+        for each in reversed(happenings):
+            begins = {(each.robot, *each.words[1:])} if each.words[0] == BEGINS else frozenset[Words]()
+            kinds.append(kinds[-1] | begins)
+        self._to_come = kinds[::-1]
+
+    def later(self, instant: Instant, events: int) -> frozenset[Words]:
+        """The kinds of the commands that are given behind so many events from an instant on."""
+        return self._to_come[_find(instant)(self._times, instant.at) + events]
+
+    def first(self, instant: Instant, lasts_s: float) -> Iterator[Words]:
+        """The first thing that happens while a fault lasts that begins at an instant, with all at that time.
+
+        Each with whether the fault lasts beyond it, and so meets what follows.
+        """
+        ends = until = instant.at + lasts_s + US
+        for number in range(_find(instant)(self._times, instant.at), len(self._times)):
+            each = self._happenings[number]
+            if each.at > until:
+                return
+            until = each.at + US
+            yield each.robot, *each.words, each.at + LONG_S < ends
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sights:
+    """Sights of a run: how a cell stood, each with the time from which it stood so, and what happened."""
+
+    standings: tuple[tuple[float, Standing], ...]
+    happenings: tuple[Happening, ...]
+
+    def of(self, instant: Instant, robot: str | None, lasts_s: float) -> Words:
+        """What a fault of a robot meets that begins at an instant and lasts so long.
+
+        None: a fault of all robots; `TASK`: of none.
+        """
+        standing, track = self._standing(instant), self._track(robot)
+        first = tuple(track.first(instant, lasts_s))
+        if robot == TASK:
+            return standing.state, first
+        names = standing.doing if robot is None else (robot,)
+        own = tuple((name, standing.doing.get(name)) for name in names)
+        says = standing.saying.get(robot) if robot else None
+        return standing.state, standing.grips, own, says, self._again(instant, robot, first), first
+
+    def _again(self, instant: Instant, robot: str | None, first: tuple[Words, ...]) -> Words:
+        """The kinds of commands that are open or given with the first event and that are given again later;
+        and whether any is.
+        """
+        doing = self._standing(instant).doing
+        names = doing if robot is None else (robot,)
+        now = {(name, *words[:2]) for name in names for words in doing.get(name, ())}
+        now |= {(who, *words[:2]) for who, what, *words in first if what == BEGINS}
+        later = self._track(robot).later(instant, len(first))
+        return *sorted(now & later), bool(later)
+
+    def step(self, instant: Instant) -> Words:
+        """The kind of step at which the cell is."""
+        ahead = self._track(None).first(instant, 0.0) if instant.side is Side.BEFORE else ()
+        return tuple(self._standing(instant).doing.items()), *ahead
+
+    def _standing(self, instant: Instant) -> Standing:
+        number = _find(instant)(self._times, instant.at)
+        return self.standings[number - 1][1] if number else Standing()
+
+    def _track(self, robot: str | None) -> Track:
+        if robot not in self._tracks:
+            self._tracks[robot] = Track([each for each in self.happenings if robot in (None, each.robot)])
+        return self._tracks[robot]
+
+    @cached_property
+    def _tracks(self) -> dict[str | None, Track]:
+        return {}
+
+    @cached_property
+    def _times(self) -> list[float]:
+        return [round(at, 6) for at, _ in self.standings]
+
+
+def _find(instant: Instant) -> Callable[[Sequence[float], float], int]:
+    """How many times lie before an instant: those of its event only where it lies after that."""
+    return bisect_left if instant.side is Side.BEFORE else bisect_right
+
+
+class Watch:
+    """Watch of a stage: takes its sights until its task has ended."""
+
+    def __init__(self, stage: Stage) -> None:
+        self._stage, self._standings, self._happenings = stage, [(0.0, Standing())], list[Happening]()
+        stage.world.watchers.append(self._look)
+
+    @property
+    def sights(self) -> Sights:
+        """The sights so far."""
+        return Sights(standings=tuple(self._standings), happenings=tuple(self._happenings))
+
+    def _look(self) -> None:
+        now = standing(self._stage.world.plant, self._stage.cell)
+        if now != self._standings[-1][1]:
+            self._standings.append((self._stage.watched.seconds, now))
+        for robot, words in self._happened():
+            self._happenings.append(Happening(at=self._stage.watched.seconds, robot=robot, words=words))
+
+    def _happened(self) -> Iterator[tuple[str, Words]]:
+        moment, entries = self._stage.world.moment, self._stage.world.plant.dispatcher.ledger.entries
+        for message in moment.sent:
+            entry = entries.get(getattr(message, "id", ""))
+            if entry is not None:
+                yield entry.command.robot, (BEGINS, *kind(entry))
+            elif isinstance(message, TaskChanged):
+                yield TASK, (message.state.value,)
+        for ended in self._stage.watched.truth.books.ended:
+            yield ended.entry.command.robot, (ENDS, *kind(ended.entry))
+        yield from ((TASK, (type(request).__qualname__,)) for request in moment.requests)
+
+
+def standing(plant: Plant, cell: Cell) -> Standing:
+    """How a cell stands now."""
+    run, dispatcher = plant.cells[cell.name], plant.dispatcher
+    grips, names = dispatcher.effectors.grips.by_holder, [robot.name for robot in cell.robots]
+    return Standing(
+        doing={name: tuple(map(_doing, dispatcher.ledger.of_robot(name))) for name in names},
+        saying={name: tuple(dispatcher.beliefs[name].facts.items()) for name in names},
+        state=(run.state.value, run.task is not None),
+        grips=tuple((name, grips[name].value) for name in names if name in grips),
+    )
+
+
+def kind(entry: Entry) -> Words:
+    """The kind of a command: its class, and the verb or the word that a plant file has for it."""
+    return type(entry.command).__qualname__, entry.command.word
+
+
+def _doing(entry: Entry) -> Words:
+    return *kind(entry), entry.state.value, entry.observations.moving
