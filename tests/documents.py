@@ -8,6 +8,8 @@ from pathlib import Path
 from .scripts import load
 
 SITE = load("docs_links.py")
+ENGLISH = re.compile(r"\b(?:the|and|of|with|which|that|are|its|from|was|where|until|this|there|what)\b")
+"""Words that no Spanish sentence has."""
 BOXES = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 TYPED = re.compile(r"^\$ .*\n", re.MULTILINE)
 

@@ -14,7 +14,7 @@ from ..documents import SITE
 ROOT = Path(__file__).parents[2]
 CODE = re.compile(r"^```.*?^```$|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 TARGET = re.compile(r"\]\((?!\w+:)([^)#\s]*)(?:#([^)\s]+))?\)")
-READMES = ("src/*/README.md", "packages/*/README.md", "tools/**/README.md")
+READMES = ("src/*/README.md", "packages/*/README.md", "tools/**/README.md", "firmware/**/README*.md")
 PAGES = sorted(
     [
         *ROOT.glob("*.md"),

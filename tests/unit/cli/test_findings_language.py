@@ -92,7 +92,7 @@ def test_each_sentence_has_the_values_of_its_english() -> None:
         ),
         (
             'table.turn.needs: there is no fact "clmp"; did you mean "clamp"?; facts: angle, clamp',
-            'table.turn.needs: no hay ningún hecho "clmp"; ¿quiso decir "clamp"?; hechos: angle, clamp',
+            'table.turn.needs: no hay ningún dato "clmp"; ¿quiso decir "clamp"?; datos: angle, clamp',
         ),
         (
             "2 seeds (1 to 2), 38 cycles, 0 faults, 203 s of plant time in 2 s (a, b)",

@@ -101,7 +101,7 @@ def test_a_storage_cell_has_no_list_of_answers() -> None:
 def test_an_effector_is_on_or_off_where_other_facts_are_so_or_not() -> None:
     row = {"facts": {"effector": False, "piece": True, "lid": "open"}, "holding": False, "holder": None}
     assert says(words("en"), row) == "effector off, piece yes, lid open"
-    assert says(words("es"), row) == "efector desactivado, pieza sí, lid open"
+    assert says(words("es"), row) == "efector apagado, pieza sí, lid open"
 
 
 def test_the_bar_of_a_recipe_of_ones_own_grows_with_its_steps() -> None:

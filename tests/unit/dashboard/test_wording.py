@@ -144,11 +144,11 @@ def test_what_is_no_sentence_stays_as_it_is() -> None:
     [
         (
             FAILED(driver="pylabrobot", error="its setup has not come back for 30 s"),
-            "su controlador pylabrobot falló (su setup no ha vuelto en 30 s) y se inicia de nuevo",
+            "su driver pylabrobot falló (su setup no ha vuelto en 30 s) y se inicia de nuevo",
         ),
         (
             NOT_SENT(driver="vda5050", error=OWN(text="the vehicle is still at its order a-1")),
-            "su controlador vda5050 no pudo enviar una orden (el vehículo sigue con su orden a-1)",
+            "su driver vda5050 no pudo enviar una orden (el vehículo sigue con su orden a-1)",
         ),
         (
             OWN(text="10.0.0.7: its feedback has stood still for 1 s"),

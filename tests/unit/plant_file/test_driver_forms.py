@@ -96,7 +96,7 @@ def test_a_driver_whose_package_is_not_installed_has_the_line_that_installs_it_a
     why = rows["modbus"]["why_not"]
     assert "pip install 'arboleda[drivers]'" in why and rows["modbus"]["keys"] == []
     assert findings("es")(why) == (
-        "el controlador modbus necesita el paquete drivers, que no está instalado aquí: "
+        "el driver modbus necesita el paquete drivers, que no está instalado aquí: "
         "escriba pip install 'arboleda[drivers]'"
     )
     assert findings("en")(why) == why

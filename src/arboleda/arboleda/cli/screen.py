@@ -206,7 +206,8 @@ def _columns(cells: list[dict[str, Any]]) -> list[str]:
 
 
 def _heading(device: dict[str, Any]) -> str:
-    return ", ".join(filter(None, (device["role"], device["holds"])))
+    words = (word("device_kind", device["role"]), word("fact", device["holds"] or ""))
+    return ", ".join(filter(None, words))
 
 
 def _devices(cells: list[dict[str, Any]], robots: dict[str, dict[str, Any]]) -> Table:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -57,6 +57,9 @@ BY_HAND: dict[Verb, Phrase] = {
     for verb in Verb
     if verb.row.by_hand
 }
+ADVISE = {each: Phrase(f"advise.{each.value}", act.english) for each, act in DO.items()}
+ADVISE_BY_HAND = {verb: Phrase(f"advise.{verb.value}_by_hand", act.english) for verb, act in BY_HAND.items()}
+"""What a person is asked to do: in Spanish in other words than what was done."""
 THEN = Phrase("do.then", "{first}, then {second}")
 OR = Phrase("do.or", "{first} or {second}")
 AND = Phrase("do.and", "{first} and {second}")
@@ -64,8 +67,7 @@ AND = Phrase("do.and", "{first} and {second}")
 
 def in_words(advice: Advice) -> Sentence:
     """The act, as a person types or says it."""
-    by_hand = advice.by_hand and isinstance(advice.do, Verb)
-    return (BY_HAND[Verb(advice.do)] if by_hand else DO[advice.do])(scope=advice.scope)
+    return _phrase(advice, DO, BY_HAND)(scope=advice.scope)
 
 
 def sentence(advices: Iterable[Advice]) -> Sentence:
@@ -73,5 +75,11 @@ def sentence(advices: Iterable[Advice]) -> Sentence:
     whole = NOTHING
     for each in advices:
         joined = OR if each.instead else THEN
-        whole = joined(first=whole, second=in_words(each)) if whole else in_words(each)
+        asked = _phrase(each, ADVISE, ADVISE_BY_HAND)(scope=each.scope)
+        whole = joined(first=whole, second=asked) if whole else asked
     return whole
+
+
+def _phrase(advice: Advice, acts: Mapping[Verb | Hand, Phrase], by_hand: Mapping[Verb, Phrase]) -> Phrase:
+    is_by_hand = advice.by_hand and isinstance(advice.do, Verb)
+    return by_hand[Verb(advice.do)] if is_by_hand else acts[advice.do]

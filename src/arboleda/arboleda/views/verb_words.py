@@ -136,10 +136,10 @@ ABOUT: dict[Verb, VerbWords] = {
         brief="Run a robot's homing routine.",
         does="runs the homing routine, of a cell without what is only drawn or has no homing. `--by-hand`: "
         "nothing moves, you declare that the robot stands at its reference",
-        refused="while its cell works on a task, the robot is latched, in fault, offline or only drawn, "
-        "or another robot holds a zone that the arm may cross on its way; while it is being "
-        "homed; by hand where the robot reports itself whether it is homed (not with "
-        "`assume_homed`), or says that it is not; only by hand below `evidence: ids`",
+        refused="while its cell works on a task, the robot is latched, in fault, offline, only drawn or "
+        "being homed, or another robot holds a zone that the arm may cross on its way. By hand it is "
+        "refused where the robot reports itself whether it is homed (not with `assume_homed`), or says that "
+        "it is not. Below `evidence: ids` a robot is homed by hand only",
     ),
     Verb.OVERRIDE: VerbWords(
         label="Override",
@@ -195,7 +195,7 @@ ABOUT: dict[Verb, VerbWords] = {
         arguments={"teacher": "The name of who teaches, which all screens show."},
         brief="Begin to teach a cell by hand, as in `sis_a ana`; its queue pauses.",
         does="begins the manual mode of a cell for one person: its queue pauses, no task starts, its zones "
-        "are held, and nothing moves but what that person holds; it ends by `automatic`, by a stop, or when "
+        "are held, and nothing moves but what that person holds. It ends by `automatic`, by a stop, or when "
         "nobody touches it for some minutes",
         refused="while a task runs or is held, something still moves, somebody else teaches, a robot is not "
         "heard, or a robot of another cell is where one of this cell may get",

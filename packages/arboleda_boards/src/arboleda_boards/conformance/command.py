@@ -25,7 +25,8 @@ HELP = """Test the board of an arm or of a declared kind against the contract, a
 
 It moves the arm: from one limit to the other and to its reference. Of a device of a declared kind it tries
 every verb, as often as it has to. Nobody may be near it, no part in its effector or its clamp, and no plant
-on the broker. A halt in software is not a safety function: have the button that removes power at hand.
+on the broker. Stop (software) is not a safety function. A hard-wired latching button that removes motor power
+is required: have it at hand.
 
 Exit status: 0 it does all that belongs to the level it speaks at, 1 it does not, 2 bad input."""
 MEANING = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import reduce
 
-from arboleda.model.advice import AND, DO
+from arboleda.model.advice import ADVISE, AND
 from arboleda.model.cell_states import Cause, CellState
 from arboleda.model.messages import Failure, Reason, Verb
 from arboleda.model.sentence import Phrase, Sentence
@@ -115,6 +115,6 @@ def _release_first(holding: list[str]) -> Sentence:
     """The sentence that each device that may hold a part is to be released first."""
     if len(holding) == 1:
         return RELEASE_FIRST(arm=holding[0])
-    releases = [DO[Verb.RELEASE](scope=robot) for robot in holding]
+    releases = [ADVISE[Verb.RELEASE](scope=robot) for robot in holding]
     all_releases = reduce(lambda first, second: AND(first=first, second=second), releases)
     return RELEASE_ALL_FIRST(devices=tuple(holding), releases=all_releases)
