@@ -24,7 +24,7 @@ from .mutant import SHARED, edit, mutant
 BEAT = """if now >= self._next_beat:
         self._next_beat = now + HEARTBEAT_S
         self.dispatcher.outbox.append(Heartbeat(epoch=self.epoch))
-    self.next_deadline = self._earliest()"""
+    self._due = None"""
 COLLECT = "out = self.dispatcher.outbox.copy()\n    self.dispatcher.outbox.clear()"
 STAYS_SHORT = (
     " or at < observed.stopped_since + QUIET_S:\n"

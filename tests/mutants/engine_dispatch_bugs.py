@@ -21,14 +21,15 @@ OF_EVIDENCE = (
     bug(
         EVIDENCE,
         "The goal of a command with two facts is reached with one of them.",
-        "if entry.sets and any(belief.fact(name) != value for name, value in entry.sets):",
-        "if entry.sets and all(belief.fact(name) != value for name, value in entry.sets):",
+        "        if belief.fact(name) != value:\n            return False\n",
+        "        if belief.fact(name) == value:\n            break\n"
+        "    else:\n        if entry.sets:\n            return False\n",
     ),
     bug(
         EVIDENCE,
         "A way counts as driven at its last node but one.",
-        "entry.observations.passed == len(entry.positions) - 1",
-        "entry.observations.passed >= len(entry.positions) - 2",
+        "observed.passed == len(entry.positions) - 1",
+        "observed.passed >= len(entry.positions) - 2",
     ),
     bug(
         EVIDENCE,
@@ -51,14 +52,14 @@ OF_EVIDENCE = (
     bug(
         EVIDENCE,
         "A refused command stays open.",
-        "    ended = _refused(entry, report) or _gave_up(entry, report)",
-        "    ended = _gave_up(entry, report)",
+        "        verdict = _refused(entry, report)\n",
+        "        verdict = None\n",
     ),
     bug(
         EVIDENCE,
         "That a device gave up is not read.",
-        "    ended = _refused(entry, report) or _gave_up(entry, report)",
-        "    ended = _refused(entry, report)",
+        "        verdict = _gave_up(entry, report)\n",
+        "        verdict = None\n",
     ),
     bug(
         EVIDENCE,
@@ -94,8 +95,8 @@ OF_EVIDENCE = (
     bug(
         EVIDENCE,
         "A switch is confirmed by any of its facts.",
-        "    is_set = all(report.fact(name) == value for name, value in entry.sets)\n",
-        "    is_set = any(report.fact(name) == value for name, value in entry.sets)\n",
+        "        if report.fact(name) != value:\n            return None\n",
+        "        if report.fact(name) == value:\n            break\n    else:\n        return None\n",
     ),
     bug(
         EVIDENCE,
@@ -314,7 +315,7 @@ OF_EFFECTORS = (
     bug(
         EFFECTORS,
         "Grips are not kept.",
-        "            self._memory.remember(Fact.EFFECTOR, robot, grip.value)\n",
+        "            self._memory.remember(Fact.EFFECTOR, robot, grip._value_)  # a call less than `value`\n",
         "",
     ),
     bug(

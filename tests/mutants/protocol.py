@@ -50,7 +50,7 @@ COMMANDS = (
     mutant(
         "one_motion_per_robot",
         "Nobody asks whether the last move has ended, neither who sends nor who recovers.",
-        edit(Obstacles._busy_with, "return self._ledger.work_of(command.robot)", "return None"),
+        edit(Obstacles.to, "else self._ledger.work_of(robot)", "else None"),
         edit(steps._settle, "return not ending and not any", "return not any"),
         likely=6,
     ),

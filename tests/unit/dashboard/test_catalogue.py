@@ -19,6 +19,7 @@ import arboleda
 import arboleda.dashboard.toolkit  # its library starts a process as it is imported, and no test here may
 from arboleda.dashboard.wording import LANGUAGES, tree_of, words
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda_proofs.simulator.mishaps import Mishap
 
 TOLD_BY = (
     "model",
@@ -52,7 +53,7 @@ def modules() -> Iterator[ModuleType]:
 def phrases_in(value: Any) -> Iterator[Phrase]:
     if isinstance(value, Phrase):
         yield value
-    elif isinstance(value, Sentence):
+    elif isinstance(value, Sentence | Mishap):
         yield value.phrase
     elif isinstance(value, dict | tuple):
         for each in value.values() if isinstance(value, dict) else value:

@@ -116,11 +116,8 @@ class Truth(RobotsTruth):
         if self.places.cells and plant.dispatcher.not_given_count:
             for refused in self._refused_commands.fresh(plant):
                 self.places.take_refusal(refused)
-        if self._orders:
-            self._look_at_questions()
-
-    def _look_at_questions(self) -> None:
-        """Take in what devices were asked, and what they answered."""
+        if not self._orders:
+            return
         for passed in self.world.moment.bridged:
             self._follow_questions(passed.events, passed.out)
         for client, publication in self.world.moment.published:
