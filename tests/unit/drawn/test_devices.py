@@ -261,7 +261,7 @@ def test_check_says_where_arms_on_one_base_can_meet(drawn: list[DrawnDevices]) -
 BUGS = {
     "a command passes over a need of late work": (
         26,
-        edit(Obstacles.to, "obstacle = None  # its last", "return None  # its last"),
+        edit(Obstacles.to, 'obstacle = None  # "moving"', 'return None  # "moving"'),
     ),
     "a task answers for the part in a hand that another cell has": (
         16,
