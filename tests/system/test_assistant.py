@@ -102,7 +102,7 @@ def test_what_it_proposes_moves_nothing_before_a_person_has_approved_it(
                 wanted["words"] = "it goes home twice"
                 tree = TREE.format(step=f"<{loader}_home/><{loader}_home/>")
                 second = (await data(client, "propose", **wanted, trees={"rest.xml": tree}))["hash"]
-                await data(client, "prove_proposal", hash=second, recipes=["rest"], budget_s=2)
+                await data(client, "prove_proposal", hash=second, recipes=["rest"], budget_s=10)
                 proof = None
                 while proof is None:
                     proof = (await data(client, "proposal", hash=second))["proof"]
