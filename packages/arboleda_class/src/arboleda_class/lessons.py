@@ -31,7 +31,7 @@ def spoken(main: Callable[[], None]) -> None:
 
 
 def said(text: str) -> str:
-    """What a lesson says, as the name of a node, in the language of the terminal."""
+    """A text of a lesson, as the name of a node, in the language of the terminal."""
     if language() == FIRST:
         return text
     return "\n".join(map(_line, text.split("\n")))

@@ -1,4 +1,4 @@
-"""What the judge says to a student: how tasks end, how often something is done, and what befell the plant."""
+"""Sentences of the judge to a student: ends of tasks, counts of acts, faults of the plant."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ Tick = Callable[[], None]
 
 
 class SoFar(NamedTuple):
-    """How much was simulated so far, in seeds under way too."""
+    """Amount that was simulated so far, in seeds under way too."""
 
     minutes: int = 0
     cycles: int = 0

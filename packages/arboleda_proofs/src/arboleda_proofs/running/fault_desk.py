@@ -180,7 +180,7 @@ class FaultDesk(FaultsApi):
 
 
 def _mishaps() -> Mapping[str, Mishap]:
-    """What can go wrong, by name; it loads the whole simulator, which most plants never need."""
+    """The mishaps by name; this loads the whole simulator, which most plants never need."""
     from arboleda_proofs.simulator.mishaps import MISHAPS
 
     return MISHAPS

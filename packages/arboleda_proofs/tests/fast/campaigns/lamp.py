@@ -1,4 +1,4 @@
-"""A plant of one lamp, in files; its recipe is proved, by the command or step by step."""
+"""Plants of one lamp or one press, in files; their recipe is proved, by the command or step by step."""
 
 from __future__ import annotations
 
@@ -29,6 +29,18 @@ kinds:
       test: {effect: query, answers: [good, bad], takes_s: 1}
 cells:
   bench: {devices: {lamp: {kind: lamp}}}
+"""
+PRESS = """
+name: small
+uses: [small.py]
+kinds:
+  press:
+    facts: {ram: [up, down]}
+    verbs:
+      press: {effect: motion, sets: {ram: down}, takes_s: 2}
+      lift: {effect: motion, sets: {ram: up}, takes_s: 1}
+cells:
+  bench: {devices: {press: {kind: press}}}
 """
 GOOD = """
 from arboleda.recipes import recipe, work

@@ -34,7 +34,7 @@ from arboleda_proofs.campaigns.proof.single_faults import single_faults
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.testing import Sim
 
-from .lamp import GOOD, PLANT, Prove, calm_of, model_of, summary
+from .lamp import GOOD, PLANT, PRESS, Prove, calm_of, model_of, summary
 from .lamp import plant as plant
 from .lamp import prove as prove
 
@@ -54,18 +54,6 @@ def shine(cell):
     lamp = cell.device("lamp")
     seen = lamp.test()
     return work(seen, cell.choose(seen, {"good": lamp.light(on=True), "bad": cell.fail("a bad lamp")}))
-"""
-PRESS = """
-name: small
-uses: [small.py]
-kinds:
-  press:
-    facts: {ram: [up, down]}
-    verbs:
-      press: {effect: motion, sets: {ram: down}, takes_s: 2}
-      lift: {effect: motion, sets: {ram: up}, takes_s: 1}
-cells:
-  bench: {devices: {press: {kind: press}}}
 """
 STAMP = """
 from arboleda.recipes import recipe, work

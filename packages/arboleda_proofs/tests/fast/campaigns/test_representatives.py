@@ -23,22 +23,10 @@ from arboleda_proofs.campaigns.proof.representatives import FIRSTS, Representati
 from arboleda_proofs.campaigns.proof.single_faults import single_faults
 from arboleda_proofs.simulator.faults import Fault
 
-from .lamp import GOOD, Prove, calm_of, summary
+from .lamp import GOOD, PRESS, Prove, calm_of, summary
 from .lamp import plant as plant
 from .lamp import prove as prove
 
-PRESS = """
-name: small
-uses: [small.py]
-kinds:
-  press:
-    facts: {ram: [up, down]}
-    verbs:
-      press: {effect: motion, sets: {ram: down}, takes_s: 2}
-      lift: {effect: motion, sets: {ram: up}, takes_s: 1}
-cells:
-  bench: {devices: {press: {kind: press}}}
-"""
 ROUNDS = """
 from arboleda.recipes import recipe, work
 

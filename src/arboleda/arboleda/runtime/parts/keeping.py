@@ -1,4 +1,4 @@
-"""What a plant keeps while it runs, and whether it still leads."""
+"""Keeping of the facts, acts and tasks of a plant that runs, as long as it leads."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ DAY_S = 86_400.0
 
 
 class Keeping:
-    """What the plant does, in its `store` before anything after it leaves.
+    """Keeping of what the plant does, in its `store` before anything after it leaves.
 
     Nothing is kept without a store. Once something could not be kept, `failure` says why; `crash` is told,
     and nothing is kept any more. `tell` gets what is durable, as `Durability` says.
@@ -54,9 +54,8 @@ class Keeping:
         even a stop; if it cannot find out, it stops what moves, and ends. A command does not wait to find out
         while this process leads for certain: the files are looked at when its step is committed, right after
         it, and at each heartbeat."""
-        if isinstance(message, Command) and self.failure is None and self.leads_for_certain:
-            return True
-        if ends_motion(message) and self.leads_for_certain:
+        goes_at_once = ends_motion(message) or (isinstance(message, Command) and self.failure is None)
+        if goes_at_once and self.leads_for_certain:
             return True
         if self.store is not None and self.failure is None:
             try:

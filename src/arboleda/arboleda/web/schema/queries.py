@@ -68,7 +68,7 @@ def text_answer(media_type: str, about: str) -> Answers:
 
 
 def described(model: type[BaseModel]) -> Taken:
-    """What makes the OpenAPI description of the query parameters of `model`."""
+    """The function that makes the OpenAPI description of the query parameters of `model`."""
 
     def made() -> dict[str, Any]:
         properties = model.model_json_schema()["properties"]
@@ -89,7 +89,7 @@ def read_body(body: bytes, model: type[Query]) -> Query:
 
 
 def described_body(*models: type[BaseModel], required: bool = True) -> Taken:
-    """What makes the OpenAPI description of a body that is one of these models."""
+    """The function that makes the OpenAPI description of a body that is one of these models."""
 
     def made() -> dict[str, Any]:
         schemas = [model.model_json_schema(ref_template=f"{SHAPES}{{model}}") for model in models]

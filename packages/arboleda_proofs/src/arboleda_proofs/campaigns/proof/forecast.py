@@ -25,7 +25,7 @@ class Forecast:
 
     @property
     def words(self) -> str:
-        """How much there is to do, in one line."""
+        """The runs that are to be done and their time, in one line."""
         recipes = counted(
             len({(each.scenario.cell, each.scenario.recipe) for each in self.proof.calm}), "recipe"
         )
@@ -38,7 +38,7 @@ class Forecast:
 
     @property
     def seconds(self) -> float:
-        """How long the runs take on all cores: from its instant to its end a run takes a third of a calm one.
+        """The time that the runs take on all cores, s: each takes a third of a calm one from its instant on.
 
         It would take half of that, but many fail soon, or soon are as the calm one again.
         """

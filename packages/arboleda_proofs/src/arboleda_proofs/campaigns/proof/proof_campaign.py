@@ -179,9 +179,8 @@ class ProofCampaign:
         if self._jobs == 1:
             campaign = Campaign(proof, numbers, tick=tick)
         else:
-            campaign = Workers(
-                proof, numbers, tick=tick, jobs=self._jobs, ahead=1
-            )  # none begins after the budget
+            # one ahead: none begins after the budget
+            campaign = Workers(proof, numbers, tick=tick, jobs=self._jobs, ahead=1)
         return campaign
 
     def _within(self, share: float, work: Iterable[Work]) -> Iterator[Work]:

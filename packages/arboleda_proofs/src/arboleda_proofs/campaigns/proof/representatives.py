@@ -105,7 +105,7 @@ class Representatives:
         return self._sights[key]
 
     def class_of(self, place: Place, fault: Fault) -> Hashable:
-        """What the faults and instants have in common of which one is tried."""
+        """The class of a fault at an instant; of each class one fault is tried, at one instant."""
         scenario = self.calm[place[0]].scenario
         sight = self._sight(place, self._targets.get(fault.target), fault.seconds)
         form = fault.kind, fault.target, fault.word, fault.seconds, fault.amount

@@ -54,7 +54,7 @@ class Happening:
 
 
 class Track:
-    """What happens to one robot, or to all, in the order of time."""
+    """Events of one robot, or of all, in the order of time."""
 
     def __init__(self, happenings: Sequence[Happening]) -> None:
         self._happenings = happenings
@@ -85,13 +85,13 @@ class Track:
 
 @dataclass(frozen=True, kw_only=True)
 class Sights:
-    """Sights of a run: how a cell stood, each with the time from which it stood so, and what happened."""
+    """Sights of a run: the standings of a cell, each with the time from which it stood so, and the events."""
 
     standings: tuple[tuple[float, Standing], ...]
     happenings: tuple[Happening, ...]
 
     def of(self, instant: Instant, robot: str | None, lasts_s: float) -> Words:
-        """What a fault of a robot meets that begins at an instant and lasts so long.
+        """The sight of a fault of a robot that begins at an instant and lasts so long.
 
         None: a fault of all robots; `TASK`: of none.
         """
@@ -139,7 +139,7 @@ class Sights:
 
 
 def _find(instant: Instant) -> Callable[[Sequence[float], float], int]:
-    """How many times lie before an instant: those of its event only where it lies after that."""
+    """The function that counts the times before an instant, with its event's where it lies after that."""
     return bisect_left if instant.side is Side.BEFORE else bisect_right
 
 
@@ -176,7 +176,7 @@ class Watch:
 
 
 def standing(plant: Plant, cell: Cell) -> Standing:
-    """How a cell stands now."""
+    """The standing of a cell now."""
     run, dispatcher = plant.cells[cell.name], plant.dispatcher
     grips, names = dispatcher.effectors.grips.by_holder, [robot.name for robot in cell.robots]
     return Standing(
