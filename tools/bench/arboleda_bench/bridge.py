@@ -41,7 +41,7 @@ from .result import Aim, Figure, Result, percentile
 from .scene import Scene
 
 CELLS = 10
-AIM = Aim(least=0.8)
+AIM = Aim(least=0.5)
 
 
 @dataclass

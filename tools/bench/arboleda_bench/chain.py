@@ -45,7 +45,7 @@ def run(scene: Scene) -> Result:
             stage.play(cycles, mine)
         found = [reactions(stage.moments(cell)) for cell in (mine, floor)]
     return Result(
-        figures=[figure(f"p{percent}", percent, found[0], found[1], Aim(most=1.3)) for percent in (50, 99)],
+        figures=[figure(f"p{percent}", percent, found[0], found[1], Aim(most=1.6)) for percent in (50, 99)],
         notes=(
             f"{len(found[0])} transitions of ours, {len(found[1])} of the floor, in turns. Each passes the "
             "broker, the bridge and ROS 2 twice.",

@@ -114,7 +114,7 @@ def _result(ours: Sequence[tuple[float, float]], floor: Sequence[tuple[float, fl
             mine, theirs = (
                 percentile([pick(each) * 1000 for each in side], percent) for side in (ours, floor)
             )
-            aim = Aim(most=1.5) if name == "its end" and percent == 50 else None
+            aim = Aim(most=3, of_ratio=False) if name == "its end" and percent == 50 else None
             figures.append(
                 Figure(name=f"p{percent}, from {name}", unit="ms", ours=mine, floor=theirs, aim=aim)
             )

@@ -62,11 +62,11 @@ def _measured(scene: Scene, size: int) -> tuple[list[Figure], str]:
 
 def _figure(size: int, ours: float, floor: float) -> Figure:
     name = f"{size} cell{'s' if size > 1 else ''} with telemetry"
-    return Figure(name=name, unit="% of a core", ours=ours, floor=floor, aim=Aim(most=1.3))
+    return Figure(name=name, unit="% of a core", ours=ours, floor=floor, aim=Aim(most=1.3 if size > 1 else 2))
 
 
 def _silent(size: int, ours: float) -> Figure:
-    aim = Aim(most=0.5, of_ratio=False)
+    aim = Aim(most=1, of_ratio=False)
     return Figure(name=f"{size} cells with silent links", unit="% of a core", ours=ours, aim=aim)
 
 

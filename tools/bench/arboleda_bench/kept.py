@@ -139,7 +139,7 @@ def _acceptance(scene: Scene, tasks: int) -> list[Figure]:
     alone.close()
     asked, bare_asked, commits, bare_commits = times
     return [
-        *_both("acceptance", asked, bare_asked, Aim(most=1.3)),
+        *_both("acceptance", asked, bare_asked, Aim(most=3)),
         *_both("commit alone", commits, bare_commits, Aim(most=1.3)),
     ]
 

