@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,13 +12,14 @@ from arboleda.model.outside import plain
 from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.files import parts_in
 from arboleda.recorder.incident import Incident, Reader
-from arboleda.recorder.reader import Record, opened
+from arboleda.recorder.reader import Record, opened, steps_there
 from arboleda.recorder.replay import plant_of
 from arboleda.recorder.writing import FLUSH_S
 
 from ..recorded_plant import model_of, versions_of
 
 LOOK_S = 0.5  # between two looks at a record that is being written
+TOLD_STEPS = 200  # between two words on how far it is
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,10 +31,13 @@ class TaskRecord:
     incident: Incident
 
 
-def read(task: str, record: Path | None, folder: Path) -> TaskRecord:
+def read(
+    task: str, record: Path | None, folder: Path, tell: Callable[[float], None] = lambda _: None
+) -> TaskRecord:
     """The task in this record, or in the newest of a folder that has it; ConfigError where none has.
 
-    Parts of the record that a running plant has not written yet are waited for, some seconds.
+    Parts of the record that a running plant has not written yet are waited for, some seconds. `tell` is
+    told the share of the record that was executed again.
     """
     until = time.monotonic() + FLUSH_S + 2.0
     while True:
@@ -41,7 +45,7 @@ def read(task: str, record: Path | None, folder: Path) -> TaskRecord:
         found = next((path for path in paths if _has(path, task)), None)
         if found is not None:
             whole = opened(found)
-            incident = incident_of(task, whole)
+            incident = incident_of(task, whole, tell)
             if incident.ended_at is not None or time.monotonic() > until:
                 return TaskRecord(record=whole, model=model_of(whole.first.beginning), incident=incident)
         elif time.monotonic() > until or not paths or not _is_written(paths[0]):
@@ -68,12 +72,15 @@ def _is_written(path: Path) -> bool:
     return time.time() - path.stat().st_mtime < 2 * FLUSH_S
 
 
-def incident_of(task: str, record: Record) -> Incident:
+def incident_of(task: str, record: Record, tell: Callable[[float], None] = lambda _: None) -> Incident:
     """The incident of a task, from executing the record again up to the task's end."""
     beginning = record.first.beginning
     model = model_of(beginning)
     plant, reader = plant_of(beginning, model, versions_of(record)), Reader(task, model)
-    for step in record.steps():
+    there = steps_there(record.paths) or 0
+    for number, step in enumerate(record.steps()):
+        if there and number % TOLD_STEPS == 0:
+            tell(min(1.0, number / there))
         reader.take(plant, step.unix_ns, step.now, step.events, plant.step(step.now, step.events))
         if reader.over:
             break
