@@ -36,7 +36,7 @@ def happened(file: str) -> tuple[Asked, list[tuple[str, str]]]:
             if row["type"] == "TaskChanged" and row["state"] == "queued":
                 asked.setdefault(row["task"], (round(step.now, 3), row["text"]))
             elif row["type"] == "TaskChanged" and row["state"] == "failed":
-                cause = incident_of(row["task"], record).cause
+                cause = incident_of(row["task"], record)[0].cause
                 failed.append((row["text"], f"{cause.kind} {cause.robot}"))
     return [*asked.values()], failed
 

@@ -81,7 +81,7 @@ def _tried(read: TaskRecord, what: str, value: float, model: PlantModel, options
         task=incident.task,
         known=what == HEALTHY,
     )
-    found = forked(record.first.beginning, record.steps(), request, sentence_of)
+    found = forked(record.first.beginning, read.steps(), request, sentence_of)
     fork, recorded = (_last(row, incident.task) for row in (found.fork, found.recorded))
     end = fork.text if fork else "?"
     alike = fork is not None and recorded is not None and fork.what == recorded.what
