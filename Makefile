@@ -161,8 +161,8 @@ playground:  ## write a plant in a tab of a browser, as files alone, to build/pl
 	@scripts/install test
 	$(BIN)/python scripts/playground
 
-install:  ## make .venv with the arboleda command; PYTHON=python3.12 chooses the interpreter
-	@scripts/install
+install:  ## make .venv with the arboleda command; PYTHON=python3.12 chooses the interpreter, ROS=1 brings ROS 2, too
+	@scripts/install $(if $(ROS),ros)
 
 lint:  ## check style, format, types and the import rules
 	@scripts/install test

@@ -11,7 +11,7 @@ FOLDER = ROOT / "docs" / "tutorial"
 CONSOLE = re.compile(r"^```console\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LEFT_OUT = "..."
 REAL = ("07_ros2_cell", "09_mqtt_board", "14_break_it", "15_read_a_record")  # their lessons have real clocks
-LIVE = ("examples/10_plant.py", "arboleda run")  # so do these commands
+LIVE = ("examples/10_plant.py", "arboleda up")  # so do these commands
 LONG = ("examples/11_first_recipe.py", "examples/13_declared_device.py", "examples/16_drawn_tree.py")
 """Commands that compute for a second, and try recipes in processes of their own."""
 SHELL = frozenset("|>;&")

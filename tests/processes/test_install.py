@@ -10,11 +10,11 @@ ROOT = Path(__file__).parents[2]
 
 
 def install(
-    folder: Path, python: str, *words: str, tools: tuple[str, ...] = (), **environ: str
+    folder: Path, python: str, *words: str, tools: tuple[str, ...] = (), uv: str = "", **environ: str
 ) -> subprocess.CompletedProcess[str]:
-    """Run the script in a copy of the project where `python3` is the given shell script, without uv or c++.
+    """Run the script in a copy of the project where `python3` is the given shell script, without c++.
 
-    Programs named in `tools` are there, but do nothing.
+    Programs named in `tools` are there, but do nothing; `uv` is another shell script, or not there.
     """
     (folder / "scripts").mkdir()
     for name in ("install", "ros-prefix"):
@@ -26,9 +26,10 @@ def install(
         shutil.copy(each, folder / each.relative_to(ROOT))
     path = folder / "tools"
     path.mkdir()
-    for name in ("sh", "dirname", "cat", "cksum"):
+    for name in ("sh", "dirname", "cat", "chmod", "cksum", "mkdir", "rm", "tail"):
         (path / name).symlink_to(str(shutil.which(name)))
-    for name, script in {"python3": python, **dict.fromkeys(tools, "")}.items():
+    programs = {"python3": python, **dict.fromkeys(tools, ""), **({"uv": uv} if uv else {})}
+    for name, script in programs.items():
         (path / name).write_text(f"#!/bin/sh\n{script}\n")
         (path / name).chmod(0o755)
     command = [folder / "scripts/install", *words]
@@ -66,3 +67,31 @@ def test_a_sourced_ros_of_another_python_gets_one_sentence(tmp_path: Path) -> No
     assert result.returncode == 1
     assert "ROS 2 jazzy is sourced, but Python 3.11" in result.stderr
     assert result.stderr.count("\n") == 1
+
+
+UV = """
+case "$1" in
+venv) mkdir -p .venv/bin && cat /dev/null >.venv/bin/python && chmod +x .venv/bin/python ;;
+pip)
+    for each in a b c d e f; do echo "Downloading $each"; done
+    echo "Installed 6 packages"
+    exit {status}
+    ;;
+esac"""
+
+
+def test_an_installation_takes_a_few_lines_and_a_log_has_the_other_ones(tmp_path: Path) -> None:
+    result = install(tmp_path, python("3.11"), uv=UV.replace("{status}", "0"))
+    assert (result.returncode, result.stderr) == (0, "")
+    lines = result.stdout.splitlines()
+    assert lines[-2:] == ["install: Installed 6 packages", "install: done: .venv/bin/arboleda"]
+    assert len(lines) == 4
+    assert "Downloading f" in (tmp_path / ".venv/install.log").read_text("utf-8")
+
+
+def test_an_installation_that_fails_names_its_log_and_shows_its_end(tmp_path: Path) -> None:
+    result = install(tmp_path, python("3.11"), uv=UV.replace("{status}", "1"))
+    assert result.returncode == 1
+    assert "Downloading f" in result.stderr and "Downloading a" not in result.stderr
+    assert "(.venv/install.log says more); try again when it is" in result.stderr
+    assert not (tmp_path / ".venv/installed-run").exists()

@@ -1,4 +1,4 @@
-"""`arboleda record` and `arboleda replay` on what a plant has written that does not run any more."""
+"""`arboleda record` and `arboleda record replay` on what a plant has written that does not run any more."""
 
 from __future__ import annotations
 

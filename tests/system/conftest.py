@@ -125,7 +125,7 @@ def start() -> Iterator[Callable[..., Process]]:
 
 @pytest.fixture
 def arboleda(start: Callable[..., Process], tmp_path: Path) -> Callable[..., Process]:
-    """`arboleda("run", "sis_a 0B 7")`: the command, with a state directory of the test's own."""
+    """`arboleda("up", "--once", "sis_a 0B 7")`: the command, with a state directory of the test's own."""
 
     def go(verb: str, *args: str) -> Process:
         own = verb not in ("check", "conformance", "new", "tree") and "--state" not in args

@@ -23,6 +23,6 @@ def plant(tmp_path: Path) -> str:
 
 
 def test_its_driver_turns_the_table(arboleda: Callable[..., Any], plant: str) -> None:
-    run = arboleda("run", "bay left", "--plant", plant, "--no-ros")
+    run = arboleda("up", "--once", "bay left", "--plant", plant, "--no-ros")
     assert run.wait() == 0, run.output
     assert "done      bay left" in run.output and "Traceback" not in run.output

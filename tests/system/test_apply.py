@@ -61,7 +61,7 @@ def test_a_plant_that_runs_takes_a_change_when_its_task_has_ended_and_its_record
     put = by_signal(up, plant, "-75.5,", "-75.4,")
     assert "version 3 was put to work by SIGHUP" in put
     assert up.interrupt() == 0
-    replayed = arboleda("replay", *map(str, sorted((tmp_path / "state" / "record").glob("*.mcap"))))
+    replayed = arboleda("record", "replay", *map(str, sorted((tmp_path / "state" / "record").glob("*.mcap"))))
     assert replayed.wait() == 0 and "all equal" in replayed.output, replayed.output
 
 
@@ -112,6 +112,6 @@ def copied(folder: Path) -> Path:
 
 def at_work(typed: Typed, plant: Path) -> list[str]:
     """The numbers of the versions that are listed as at work, as they begin their lines."""
-    status, listed = typed("versions", "--plant", str(plant))
+    status, listed = typed("apply", "--list", "--plant", str(plant))
     assert status == 0, listed
     return [line[:5] for line in listed.splitlines() if "at work" in line]

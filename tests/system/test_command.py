@@ -19,7 +19,7 @@ DEMO = ("sis_a 0B 7", "sis_b 1C 3", "sis_c 2A 5")
 @pytest.mark.requires("rclpy")
 @pytest.mark.smoke
 def test_run_does_three_tasks_over_ros_2_and_mqtt(arboleda: Callable[..., Any], ros_domain: int) -> None:
-    run = arboleda("run", *DEMO, "--rate", "5")
+    run = arboleda("up", "--once", *DEMO, "--rate", "5")
     assert run.wait() == 0, run.output
     for task in DEMO:
         assert f"done      {task}" in run.output
@@ -33,7 +33,7 @@ def test_run_works_on_a_real_mosquitto(
     arboleda: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int
 ) -> None:
     mosquitto(free_port)
-    run = arboleda("run", *DEMO, "--rate", "10", "--no-ros", "--broker", f"127.0.0.1:{free_port}")
+    run = arboleda("up", "--once", *DEMO, "--rate", "10", "--no-ros", "--broker", f"127.0.0.1:{free_port}")
     assert run.wait() == 0, run.output
 
 
@@ -106,7 +106,7 @@ def test_virtual_boards_do_not_fight_boards_that_are_there(
     broker = ("--no-ros", "--broker", f"127.0.0.1:{free_port}")
     first = arboleda("up", *broker, "--rate", "10")
     first.wait_for("HTTP API")
-    second = arboleda("run", "sis_a 0B 7", *broker, "--state", str(tmp_path / "second"))
+    second = arboleda("up", "--once", "sis_a 0B 7", *broker, "--state", str(tmp_path / "second"))
     assert second.wait() == 1
     assert "already live on this broker" in second.output and "--boards real" in second.output
     assert arboleda("submit", "sis_a 0B 7").wait() == 0

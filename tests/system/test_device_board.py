@@ -43,12 +43,12 @@ def test_the_firmwares_board_sticks_remembers_nothing_after_a_reboot_does_a_task
     desk.wait(lambda said: not said["datos"]["clamped"])
     where = ("--plant", str(PRESS), "--broker", f"127.0.0.1:{free_port}", "--boards", "real", "--no-ros")
     desk.type("input part_in 1")
-    good = arboleda("run", "bench stamp 2", *where)
+    good = arboleda("up", "--once", "bench stamp 2", *where)
     assert good.wait() == 0, good.output
     data = desk.wait(lambda said: True)["datos"]
     found = {name: data[name] for name in ("gate", "clamped", "program", "pressed")}
     assert found == {"gate": "open", "clamped": False, "program": 2, "pressed": False}
     desk.type("input part_in 0")
-    empty = arboleda("run", "bench stamp 1", *where)
+    empty = arboleda("up", "--once", "bench stamp 1", *where)
     assert empty.wait() == 1
     assert "there is no part" in " ".join(empty.output.split())

@@ -80,7 +80,7 @@ def test_the_page_finds_tasks_of_an_earlier_start_and_shows_the_oee_that_the_com
     arboleda: Callable[..., Any], browser: Any, tmp_path: Path
 ) -> None:
     many = [f"sis_{cell} 0B {1 if cell == 'a' else number}" for number in range(1, 9) for cell in "abc"]
-    first = arboleda("run", "--no-ros", "--rate", "50", *many)
+    first = arboleda("up", "--once", "--no-ros", "--rate", "50", *many)
     assert first.wait() == 0, first.output
     listed = arboleda("oee", "--json")
     assert listed.wait() == 0, listed.output

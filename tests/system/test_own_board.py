@@ -24,7 +24,7 @@ def test_a_plant_works_with_the_board_and_notices_when_it_is_gone(
     try:
         board = start(sys.executable, str(EXAMPLE / "board.py"), "--broker", address)
         plant = ("--plant", str(EXAMPLE / "plant.yaml"), "--broker", address, "--boards", "real", "--no-ros")
-        run = arboleda("run", "bench fill 5", *plant)
+        run = arboleda("up", "--once", "bench fill 5", *plant)
         assert run.wait() == 0, run.output
         assert "done      bench 5" in run.output
         up = arboleda("up", "bench fill 10", *plant)

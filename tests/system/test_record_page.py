@@ -1,4 +1,4 @@
-"""The page on a record, from `arboleda replay --page` and beside the plant that writes it."""
+"""The page on a record, from `arboleda record replay --page` and beside the plant that writes it."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def kept(state: Path) -> set[tuple[str, str]]:
 @pytest.fixture(scope="module")
 def replay(plant: tuple[str, Path]) -> Iterator[str]:
     """The address of the page on that record."""
-    command = (MAIN, "replay", "--page", "--port", "0", "--state", str(plant[1]))
+    command = (MAIN, "record", "replay", "--page", "--port", "0", "--state", str(plant[1]))
     process = Process(sys.executable, "-c", *command, env={"PYTHONPATH": paths()})
     try:
         process.wait_for("Ctrl-C ends it.")

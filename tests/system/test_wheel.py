@@ -103,7 +103,7 @@ def test_the_wheel_of_a_package_beside_it_holds_the_package(name: str, clone: Pa
 @pytest.mark.system
 @pytest.mark.smoke
 def test_it_runs_a_plant_where_nothing_else_is(installed: Command) -> None:
-    ran = installed("run", "sis_a 0B 7", "--no-ros", "--rate", "10")
+    ran = installed("up", "--once", "sis_a 0B 7", "--no-ros", "--rate", "10")
     assert ran.returncode == 0, ran.stderr
 
 

@@ -36,7 +36,7 @@ def equal_neighbours(folder: Path, **arm: Any) -> str:
 
 def must_be_done(arboleda: Start, plant: str, *options: str) -> None:
     tasks = [f"{cell} palletizing #{cell}{number}" for number in range(TASKS) for cell in CELLS]
-    run = arboleda("run", *tasks, "--plant", plant, *options)
+    run = arboleda("up", "--once", *tasks, "--plant", plant, *options)
     assert run.wait() == 0, run.output
 
 

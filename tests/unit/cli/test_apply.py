@@ -1,4 +1,4 @@
-"""`arboleda apply` and `arboleda versions`."""
+"""`arboleda apply` and `arboleda apply --list`."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_the_first_version_is_kept_and_then_nothing_is_new(plant: Path) -> None:
     assert first.exit_code == 0 and "version 1 is kept; the next start of the plant has it" in first.output
     again = run(plant, "apply", "--yes")
     assert again.exit_code == 0 and "there is nothing to put to work" in again.output
-    assert "as delivered" in run(plant, "versions").output
+    assert "as delivered" in run(plant, "apply", "--list").output
 
 
 @pytest.mark.long
@@ -59,9 +59,9 @@ def test_what_changed_is_shown_before_anything_is_kept(plant: Path) -> None:
     change(plant, "takes_s: 20", "takes_s: 25")
     refused = run(plant, "apply", says="n\n")
     assert refused.exit_code == 1 and "kinds.mill.verbs.run.takes_s: from 20 to 25" in refused.output
-    assert "takes_s" not in run(plant, "versions").output
+    assert "takes_s" not in run(plant, "apply", "--list").output
     assert "version 2 is kept" in run(plant, "apply", says="y\n").output
-    assert "from 20 to 25" in run(plant, "versions").output
+    assert "from 20 to 25" in run(plant, "apply", "--list").output
 
 
 def test_what_check_refuses_changes_nothing(plant: Path) -> None:
@@ -82,7 +82,7 @@ def test_a_version_comes_back_as_a_new_one(plant: Path) -> None:
     assert back.exit_code == 0 and "version 3 is kept" in back.output and "from 25 to 20" in back.output
     assert plant.read_bytes() == before
     assert (plant.parent / "tend.xml").read_bytes() == (SOURCE / "tend.xml").read_bytes()
-    assert "version 1 again" in run(plant, "versions").output
+    assert "version 1 again" in run(plant, "apply", "--list").output
 
 
 @pytest.mark.long
@@ -112,7 +112,7 @@ def test_a_running_plant_is_what_is_compared_with_and_it_can_be_gone_back_to(sta
     assert "from 20 to 25" in shown.output and "what a device can do is agreed" in shown.output
     assert "version 2 is kept" in shown.output and shown.exit_code == 1
     assert "goes on as it is, and has it from its next start on" in shown.output  # it has no server here
-    listed = run(started, "versions").output.splitlines()
+    listed = run(started, "apply", "--list").output.splitlines()
     assert [line for line in listed if "at work" in line] == [
         listed[0]
     ] and "as the plant was started" in listed[0]

@@ -24,7 +24,7 @@ def complained(args: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.
 def test_a_task_reaches_no_terminal_as_it_is(
     task: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    said = complained(["run", "--no-ros", "--state", str(tmp_path), task], monkeypatch, capsys)
+    said = complained(["up", "--once", "--no-ros", "--state", str(tmp_path), task], monkeypatch, capsys)
     assert said.startswith("arboleda: ") and len(said) < 2000
     assert all(line.isprintable() for line in said.splitlines())
 
@@ -46,17 +46,20 @@ def test_a_plant_file_reaches_no_terminal_as_it_is(
     assert all(line.isprintable() and len(line) <= 1000 for line in said.splitlines())
 
 
-@pytest.mark.parametrize("command", ["simulate", "up", "run", "status", "tree", "submit", "apply"])
-def test_a_plant_file_in_the_place_of_something_else_is_told_its_option(
-    command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("command", ["simulate", "prove", "up", "status", "submit", "apply"])
+def test_a_plant_file_without_its_option_is_taken_and_told_the_option(
+    command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    said = complained([command, f"my{EVIL}.yaml"], monkeypatch, capsys)
-    assert "a plant file is named with --plant: --plant my" in said
+    monkeypatch.chdir(tmp_path)
+    task = ["sis_a 0B 7"] if command == "submit" else []
+    said = complained([command, *task, f"my{EVIL}.yaml"], monkeypatch, capsys)
+    assert said.startswith("a plant file is named with --plant: --plant my")
+    assert "there is no such file" in said
     assert all(line.isprintable() for line in said.splitlines())
 
 
 @pytest.mark.parametrize("command", ["check", "prove"])
-def test_where_the_plant_file_is_an_argument_the_option_does_too(
+def test_the_option_names_the_plant_file(
     command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -64,16 +67,9 @@ def test_where_the_plant_file_is_an_argument_the_option_does_too(
     assert said == "arboleda: mine.yaml: there is no such file\n"
 
 
-def test_of_two_plant_files_to_prove_none_is_taken(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    said = complained(["prove", "mine.yaml", "--plant", "yours.yaml"], monkeypatch, capsys)
-    assert "two plant files are named, mine.yaml and yours.yaml; name one" in said
-
-
-@pytest.mark.parametrize("command", ["up", "run"])
+@pytest.mark.parametrize("command", ["up", "up --once"])
 def test_a_task_without_quotes_is_shown_with_them(
     command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    said = complained([command, "--state", str(tmp_path), "sis_a", "0B", "7"], monkeypatch, capsys)
+    said = complained([*command.split(), "--state", str(tmp_path), "sis_a", "0B", "7"], monkeypatch, capsys)
     assert said == "arboleda: a task of several words needs quotes: 'sis_a 0B 7'\n"

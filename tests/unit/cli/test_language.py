@@ -7,7 +7,6 @@ import typer.testing
 
 from arboleda.cli.language import VARIABLES, language, say_error, say_row
 from arboleda.cli.main import cli
-from arboleda.cli.overview import SECTIONS
 from arboleda.cli.screen import says
 from arboleda.client.errors import Conflict
 from arboleda.model.errors import ArboledaError
@@ -45,10 +44,10 @@ def test_the_overview_is_in_the_language(spanish: None) -> None:
     shown = typer.testing.CliRunner().invoke(cli, ["--help"]).output
     words = " ".join(shown.split())
     assert "Maneja celdas de robots" in words
-    assert "Poner en marcha una planta:" in words
-    assert "Lleva un robot a su referencia." in words
-    for title in SECTIONS:
-        assert f"{title}:" not in words
+    assert "Comandos:" in words and "Da una tarea a la planta en marcha" in words
+    shown = typer.testing.CliRunner().invoke(cli, ["help", "operate"]).output
+    words = " ".join(shown.split())
+    assert words.startswith("Operarla:") and "Lleva un robot a su referencia." in words
 
 
 def test_errors_of_this_process_and_of_a_plant_are_said_in_it(spanish: None) -> None:

@@ -42,12 +42,13 @@ def typed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], t
         (("sis_a 0B 7", "--plant", "nowhere.yaml"), "nowhere.yaml: there is no such file"),
         (("sis_a 0B 7", "--rate", "0"), "0 is not a rate; allowed: 0.1 to 100"),
         (("sis_a 0B 7", "--broker", "host:port"), "is not a broker address"),
-        ((), "Missing argument"),
+        ((), "--once does the tasks that are named, and ends"),
+        (("sis_a 0B 7", "--demo"), "--once does the tasks that are named, and ends"),
     ],
-    ids=["cell", "station", "plant", "rate", "broker", "no task"],
+    ids=["cell", "station", "plant", "rate", "broker", "no task", "no end"],
 )
-def test_run_refuses_bad_input(typed: Typed, args: tuple[str, ...], sentence: str) -> None:
-    status, said = typed("run", *args)
+def test_up_once_refuses_bad_input(typed: Typed, args: tuple[str, ...], sentence: str) -> None:
+    status, said = typed("up", "--once", *args)
     assert status == 2 and sentence in said
 
 
@@ -79,7 +80,7 @@ def test_options_of_tls_that_do_not_fit_are_refused(
     typed: Typed, shown: tuple[str, ...], words: tuple[str, ...], sentence: str
 ) -> None:
     given = [each for word in words for each in (shown if word == "--shown" else (word,))]
-    status, said = typed("run", "sis_a 0B 7", "--no-ros", *given)
+    status, said = typed("up", "--once", "sis_a 0B 7", "--no-ros", *given)
     assert status in (1, 2) and sentence in said
 
 
@@ -89,7 +90,7 @@ def test_the_firmwares_boards_are_refused_where_the_own_broker_speaks_tls(
     users = tmp_path / "users.txt"
     users.write_text("ra_9:secret\n")
     broker = ("--broker-host", "127.0.0.1", "--broker-users", str(users), "--broker-tls")
-    status, said = typed("run", "sis_a 0B 7", "--no-ros", "--boards", "linux", *broker, *shown)
+    status, said = typed("up", "--once", "sis_a 0B 7", "--no-ros", "--boards", "linux", *broker, *shown)
     assert status == 1 and "the firmware's boards speak no TLS" in said
 
 

@@ -9,15 +9,17 @@ import pytest
 from typer.testing import CliRunner
 
 from arboleda.cli import verbs
+from arboleda.cli.commands import BY_OPTION
 from arboleda.cli.main import cli, main
 from arboleda.model.errors import ArboledaError, TextError
 from arboleda.model.messages import Verb
 from arboleda.model.verbs import Arguments
 from arboleda.views.verb_words import ABOUT
 
-OF_ONE_CELL = [Verb.CANCEL, Verb.RETRY, Verb.ABANDON, Verb.LOAD, Verb.TEACH, Verb.AUTOMATIC]
+OF_ONE_CELL = [Verb.CANCEL, Verb.RETRY, Verb.ABANDON, Verb.LOAD, Verb.TEACH]
+OPTIONS = [*BY_OPTION.values()]
 NEED_A_SCOPE = [*OF_ONE_CELL, Verb.RELEASE, Verb.HOME, Verb.OVERRIDE, Verb.ANSWER]
-PLANT_WIDE = [verb for verb in Verb if verb not in NEED_A_SCOPE]
+PLANT_WIDE = [verb for verb in Verb if verb not in (*NEED_A_SCOPE, *OPTIONS)]
 
 
 class Notes(list):
@@ -53,13 +55,13 @@ def test_every_verb_has_words() -> None:
     assert list(ABOUT) == list(Verb)
 
 
-@pytest.mark.parametrize("verb", Verb)
+@pytest.mark.parametrize("verb", [verb for verb in Verb if verb not in OPTIONS])
 def test_every_verb_is_a_command_that_says_what_it_does(verb: Verb) -> None:
     status, said = arboleda(verb.value, "--help")
     assert status == 0
     words = " ".join(said.split())
-    assert " ".join(verbs.about(ABOUT[verb]).split()) in words and verbs.STATUS in words
-    assert ABOUT[verb].brief in " ".join(arboleda("--help")[1].split())
+    assert " ".join(verbs.about(verb).split()) in words and verbs.STATUS in words
+    assert ABOUT[verb].brief in " ".join(arboleda("help", "operate")[1].split())
     assert ("[default: the whole plant]" in words) is (verb not in NEED_A_SCOPE)
 
 
@@ -82,7 +84,7 @@ def test_what_acts_on_one_thing_does_not_guess_which(acts: Notes, verb: Verb) ->
     assert acts == []
 
 
-ASKS_MORE = (Verb.OVERRIDE, Verb.ANSWER, Verb.LOAD, Verb.TEACH)
+ASKS_MORE = (Verb.OVERRIDE, Verb.ANSWER, Verb.LOAD, Verb.TEACH, *OPTIONS)
 
 
 @pytest.mark.parametrize("verb", [verb for verb in Verb if verb not in ASKS_MORE])
@@ -101,16 +103,24 @@ def test_a_person_and_an_answer_are_passed_on(acts: Notes) -> None:
 
 @pytest.mark.parametrize("words", [("sis_a", "7"), ("sis_a 7",)])
 def test_a_station_is_passed_on(acts: Notes, words: tuple[str, ...]) -> None:
-    assert arboleda("unload", *words) == (0, "done: unload, sis_a 7\n")
+    assert arboleda("load", "--out", *words) == (0, "done: unload, sis_a 7\n")
     assert acts == [(Verb.UNLOAD, "sis_a", False, ("station", 7))]
 
 
 def test_a_place_and_a_number_of_parts_are_passed_on(acts: Notes) -> None:
-    assert arboleda("unload", "lab", "nest") == (0, "done: unload, lab nest\n")
+    assert arboleda("load", "--out", "lab", "nest") == (0, "done: unload, lab nest\n")
     assert arboleda("load", "lab", "bin", "3") == (0, "done: load, lab bin 3\n")
     emptied = (Verb.UNLOAD, "lab", False, ("place", "nest"))
     assert acts == [emptied, (Verb.LOAD, "lab", False, ("place", "bin"), ("parts", 3))]
     assert arboleda("load", "lab")[0] == 2
+    assert len(acts) == 2
+
+
+def test_the_end_of_teaching_and_an_empty_plant_need_no_more_than_they_are_about(acts: Notes) -> None:
+    assert arboleda("teach", "--end", "sis_a")[0] == 0
+    assert arboleda("load", "--out")[0] == 0
+    assert acts == [(Verb.AUTOMATIC, "sis_a", False), (Verb.UNLOAD, "", False)]
+    assert arboleda("teach", "--end")[0] == 2
 
 
 @pytest.mark.parametrize("scope", ["", " "])

@@ -150,20 +150,20 @@ def test_what_a_plant_left_behind_is_not_taken_for_one_that_runs(up, tmp_path: P
     assert running_plants() == []
 
 
-def test_run_beside_a_plant_that_is_up_says_what_to_type(up, typed: Typed, tmp_path: Path) -> None:
+def test_tasks_beside_a_plant_that_is_up_says_what_to_type(up, typed: Typed, tmp_path: Path) -> None:
     up("arboleda")
-    status, _, said = typed("run", "--no-ros", "sis_a 0B 7", "sis_b 1C 3 #lot")
+    status, _, said = typed("up", "--once", "--no-ros", "sis_a 0B 7", "sis_b 1C 3 #lot")
     lines = said.splitlines()
     assert status == 1
     assert lines[0].startswith("arboleda: A plant is already running on ")
     assert lines[0].endswith("To have it do this, type:")
     assert lines[1:3] == ["  arboleda submit 'sis_a 0B 7'", "  arboleda submit 'sis_b 1C 3 #lot'"]
-    assert lines[3].endswith("ROS_DOMAIN_ID=N arboleda run --state DIR ...")
+    assert lines[3].endswith("ROS_DOMAIN_ID=N arboleda up --once --state DIR ...")
 
 
-def test_run_names_the_state_directory_that_was_given(up, typed: Typed, tmp_path: Path) -> None:
+def test_up_once_names_the_state_directory_that_was_given(up, typed: Typed, tmp_path: Path) -> None:
     with StateDir(tmp_path / "own place"):
-        _, _, said = typed("run", "--state", str(tmp_path / "own place"), "sis_a 0B 7")
+        _, _, said = typed("up", "--once", "--state", str(tmp_path / "own place"), "sis_a 0B 7")
     assert f"  arboleda submit --state '{tmp_path}/own place' 'sis_a 0B 7'" in said.splitlines()
 
 
@@ -271,6 +271,6 @@ def test_the_plant_of_the_environment_is_checked_where_none_is_named(lab: Path, 
 def test_an_option_is_no_second_plant_file_beside_that_of_the_environment(lab: Path, typed: Typed) -> None:
     for words in (("--plant", "nowhere.yaml"), ("nowhere.yaml",)):
         _, _, complaint = typed("prove", *words, "--budget", "1s")
-        assert "nowhere.yaml" in complaint and "two plant files" not in complaint
-    _, _, complaint = typed("prove", "nowhere.yaml", "--plant", str(lab))
-    assert "two plant files are named, nowhere.yaml and" in complaint
+        assert "nowhere.yaml: there is no such file" in complaint
+    status, _, complaint = typed("prove", "nowhere.yaml", "--plant", str(lab))
+    assert status == 2 and "nowhere.yaml" in complaint

@@ -350,7 +350,7 @@ def test_check_and_tree_take_the_same_way_in(tmp_path: Path) -> None:
     for command in (
         ["check", str(file)],
         ["tree", "heat", "--plant", str(file)],
-        ["run", "--plant", str(file), "bench heat 40"],
+        ["up", "--once", "--plant", str(file), "bench heat 40"],
     ):
         outcome = CliRunner().invoke(cli, command)
         assert isinstance(outcome.exception, ConfigError) and "recipes.py:5:1: " in str(outcome.exception)

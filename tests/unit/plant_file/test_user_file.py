@@ -16,7 +16,7 @@ from arboleda.plant_file import user_file
 
 READS = {
     "check": lambda file: ["check", file],
-    "plant": lambda file: ["run", "sis_a 0B 7", "--no-ros", "--plant", file],
+    "plant": lambda file: ["up", "--once", "sis_a 0B 7", "--no-ros", "--plant", file],
     "users": lambda file: ["up", "--no-ros", "--broker-host", "127.0.0.1", "--broker-users", file],
     "faults": lambda file: ["simulate", "--faults", file],
 }

@@ -49,7 +49,7 @@ def started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.Capt
     return start
 
 
-@pytest.mark.parametrize("command", [("up",), ("run", "sis_a 0B 1")])
+@pytest.mark.parametrize("command", [("up",), ("up", "--once", "sis_a 0B 1")])
 def test_a_plant_runs_without_ros_where_it_is_missing_and_says_so(
     started: Started, command: tuple[str, ...]
 ) -> None:

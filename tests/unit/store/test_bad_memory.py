@@ -20,7 +20,7 @@ from arboleda.store import row_sums
 from arboleda.store.memory_file import VERSION
 from arboleda.store.sqlite import Store
 
-STARTS = ("up", "run")
+STARTS = ("up", "up --once")
 ALL = (*STARTS, "tasks", "backup", "restore")
 SHIPPED = files("arboleda").joinpath("plants/plant.yaml")
 LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
@@ -81,7 +81,7 @@ def carried_out(
     folder = memory.parent.parent
     words = {
         "up": ["--no-ros"],
-        "run": ["--no-ros", "sis_a 0B 1"],
+        "up --once": ["--no-ros", "sis_a 0B 1"],
         "tasks": [],
         "backup": [str(folder / "other" / "new.sqlite")],
         "restore": [str(folder / "backup.sqlite")],
@@ -89,7 +89,7 @@ def carried_out(
     status = 0
     with pytest.MonkeyPatch.context() as patch:
         where = ["--state", str(memory.parent)]
-        patch.setattr(sys, "argv", ["arboleda", command, *words[command], *where, *more])
+        patch.setattr(sys, "argv", ["arboleda", *command.split(), *words[command], *where, *more])
         try:
             main.main()
         except SystemExit as end:

@@ -1,6 +1,6 @@
 """From the end of a Dobot's move to the next one, over the driver and the plant, as its controller sees it.
 
-Ours is `arboleda run` with the driver `dobot`; the floor (`floor_dobot.py`) is a bare client of two sockets
+Ours is `arboleda up` with the driver `dobot`; the floor (`floor_dobot.py`) is a bare client of two sockets
 that looks at the same three things in each frame and has its next line ready. Each has a virtual controller
 of its own in this process, and they have turns. A controller tells of an end with its next frame, every 8 ms:
 figures are from that frame, which is what software adds, and from the end itself, which the arm waits.
@@ -97,7 +97,9 @@ def _ours(scene: Scene, server: Server) -> Process:
     (folder / "plant.yaml").write_text(text, "utf-8")
     (folder / "recipes.py").write_text(RECIPES, "utf-8")
     options = ["--plant", str(folder / "plant.yaml"), "--state", str(folder / "state"), "--boards", "real"]
-    return Process([sys.executable, "-c", RUN, "run", "shop", "--no-ros", *options], folder / "ours.log")
+    return Process(
+        [sys.executable, "-c", RUN, "up", "--once", "shop", "--no-ros", *options], folder / "ours.log"
+    )
 
 
 def _floor(scene: Scene, server: Server) -> Process:

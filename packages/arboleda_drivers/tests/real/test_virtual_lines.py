@@ -56,7 +56,9 @@ def test_a_task_is_done_at_a_serial_line(
     assert taken
     second = start(sys.executable, "-c", COMMAND, *played, taken[1])
     assert second.wait() != 0 and "name another port" in second.output
-    run = arboleda("run", task, "--plant", example(tmp_path, plant, line), "--boards", "drivers", "--no-ros")
+    run = arboleda(
+        "up", "--once", task, "--plant", example(tmp_path, plant, line), "--boards", "drivers", "--no-ros"
+    )
     assert run.wait() == 0, run.output
     assert controller.interrupt() == 0 and "Traceback" not in run.output + controller.output
     assert not line.is_symlink()
@@ -76,6 +78,6 @@ def test_a_task_is_done_at_a_websocket(
     (tmp_path / "plant.yaml").write_text(plant.replace("port: 7125", f"port: {taken[1]}"), "utf-8")
     (tmp_path / "recipes.py").symlink_to(EXAMPLES / "gantry/recipes.py")
     where = ("--plant", str(tmp_path / "plant.yaml"), "--boards", "drivers", "--no-ros")
-    run = arboleda("run", "bench visit rack drill", *where)
+    run = arboleda("up", "--once", "bench visit rack drill", *where)
     assert run.wait() == 0, run.output
     assert controller.interrupt() == 0 and "Traceback" not in run.output + controller.output

@@ -23,6 +23,7 @@ from arboleda.plant_file.user_file import check_writable
 from . import nodes
 from .language import finding, say
 from .plant_options import IN_FOLDER, PLANT_VARIABLE, is_typed, plant_here
+from .working import working
 
 MEND_S = 120.0  # a mend is looked for so long
 TO_SCREEN = "-"
@@ -96,8 +97,10 @@ def check(
     if tree_file.is_tree_file(file):
         if json is not None or mend:
             raise typer.BadParameter(say(FOR_PLANTS()))
-        model = None if plant is None else loader.load(plant)
-        print(finding("\n".join(_of_trees(file, model, cell))))
+        with working():
+            model = None if plant is None else loader.load(plant)
+            lines = _of_trees(file, model, cell)
+        print(finding("\n".join(lines)))
         return
     if (plant is not None and is_typed(context, "plant")) or cell is not None:
         raise typer.BadParameter(say(FOR_TREES()))
@@ -138,7 +141,8 @@ def _as_data(file: Path, json: Path | None, *, mend: bool) -> None:
     to_screen = json is not None and str(json) == TO_SCREEN
     if json is not None and not to_screen:
         check_writable(json)
-    answer = check_answer(file, mending=mending and partial(mending, within_s=MEND_S))
+    with working():
+        answer = check_answer(file, mending=mending and partial(mending, within_s=MEND_S))
     text = plain_json.dumps(answer.plain, indent=1, ensure_ascii=False)
     if to_screen:
         print(text)
@@ -153,7 +157,8 @@ def _as_data(file: Path, json: Path | None, *, mend: bool) -> None:
 
 def _in_words(file: Path, *, ends: bool) -> None:
     """Print what the plant is, and what it is warned of; ConfigError with every problem."""
-    model, missed = loader.load_with_offers(file)
+    with working():
+        model, missed = loader.load_with_offers(file)
     for note in (*loader.notes(model), *unstated.notes(model)):
         print(say(NOTE(file=str(file), note=finding(note))))
     for warning in plant_check.warnings(model):

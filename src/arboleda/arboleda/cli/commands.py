@@ -18,6 +18,7 @@ from arboleda.host.packages import entry_points
 from arboleda.model.outside import quoted
 from arboleda.model.packages import BOARDS, CLASS, DRIVERS, FLEET, MAKE, MISSING, PROOFS, PackageMissing
 from arboleda.model.sentence import Phrase
+from arboleda.model.verbs import Verb
 from arboleda.views.verb_words import ABOUT
 
 from .language import say
@@ -37,11 +38,10 @@ OF_PACKAGES = {  # extras of `arboleda`, by command
     "mcp": MAKE,
     "oee": FLEET,
     "prove": PROOFS,
-    "replay": PROOFS,
+    "record replay": PROOFS,
     "report": PROOFS,
     "simulate": PROOFS,
     "site": FLEET,
-    "versions": MAKE,
     "virtual": DRIVERS,
 }
 
@@ -49,8 +49,8 @@ OF_PACKAGES = {  # extras of `arboleda`, by command
 class Command(NamedTuple):
     """Command: the module whose `add_to` adds it, and what it does in a sentence.
 
-    A module without a dot is of this room. `section` is the heading of the overview under which a package has
-    its command.
+    The command of a group is named with it, as `record replay`. A module without a dot is of this room.
+    `section` is the heading of the overview under which a package has its command.
     """
 
     module: str
@@ -58,11 +58,13 @@ class Command(NamedTuple):
     section: str = "Make it yours"
 
 
+BY_OPTION: Mapping[Verb, Verb] = {Verb.LOAD: Verb.UNLOAD, Verb.TEACH: Verb.AUTOMATIC}
+"""The verb that an option of the command of another verb stands for."""
 OURS: Mapping[str, Command] = {
     "up": Command(
-        "up", "Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or ROS 2 (/task_request)."
+        "up", "Run the plant until Ctrl-C, or until the tasks that are named have ended (`--once`)."
     ),
-    "run": Command("up", "Start the plant, do the tasks, end."),
+    "help": Command("topics", "List the commands of a topic, or explain a command."),
     "submit": Command(
         "submit", "Send a task to the plant that runs on this machine, or that another host leads."
     ),
@@ -76,7 +78,7 @@ OURS: Mapping[str, Command] = {
     "bench": Command(
         "bench", "Measure this machine: our figures beside the least that the same run can take."
     ),
-    **{verb.value: Command("verbs", words.brief) for verb, words in ABOUT.items()},
+    **{verb.value: Command("verbs", ABOUT[verb].brief) for verb in Verb if verb not in BY_OPTION.values()},
     "check": Command(
         "check",
         "Check a plant file, or behavior trees in the XML of BehaviorTree.CPP; every problem at "
@@ -100,7 +102,7 @@ OURS: Mapping[str, Command] = {
     ),
     "backup": Command("backup", "Copy the plant's memory to a file, while the plant runs or not."),
     "restore": Command("backup", "Put a backup in the place of the plant's memory; the plant must not run."),
-    "logs": Command(
+    "record logs": Command(
         "logs", "Show what became of tasks and cells and what operators did, of all starts that are recorded."
     ),
     "urdf": Command("urdf", "Print a robot of the plant as URDF."),
@@ -127,24 +129,35 @@ def commands() -> Mapping[str, Command]:
 
 
 class LoadedCommands(Mapping[str, Any]):
-    """Commands by name; the module of each is loaded when it is looked up."""
+    """Commands by name, of a `group` beside those that it has itself; the module of each is loaded when it is
+    looked up.
+    """
 
-    def __init__(self) -> None:
+    def __init__(self, group: str = "", own: Mapping[str, Any] | None = None) -> None:
+        self._before = f"{group} " if group else ""
+        self._own = own or {}
         self._loaded: dict[str, Any] = {}
 
     def __getitem__(self, name: str) -> Any:
-        if name not in self._loaded:
-            self._loaded |= _commands_of(_known(name).module)
-        return self._loaded[name]
+        if name in self._own:
+            return self._own[name]
+        whole = f"{self._before}{name}"
+        if whole not in self._loaded:
+            group = whole.rpartition(" ")[0]
+            added = _commands_of(_known(whole).module)
+            self._loaded |= {f"{group} {each}".lstrip(): command for each, command in added.items()}
+        return self._loaded[whole]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(commands())
+        before = self._before
+        named = (each.removeprefix(before) for each in commands() if each.startswith(before))
+        return iter([*self._own, *(each for each in named if " " not in each)])
 
     def __len__(self) -> int:
-        return len(commands())
+        return sum(1 for _ in self)
 
     def __contains__(self, name: object) -> bool:
-        return name in commands() or name in OF_PACKAGES
+        return name in self._own or f"{self._before}{name}" in {*commands(), *OF_PACKAGES}
 
 
 def _known(name: str) -> Command:
@@ -162,6 +175,9 @@ def _commands_of(module: str) -> Mapping[str, Any]:
         loaded = import_module(module if "." in module else f".{module}", __package__)
     loaded.add_to(cli)
     group: Any = typer.main.get_command(cli)
+    for name, each in group.commands.items():
+        if hasattr(each, "commands"):
+            each.commands = LoadedCommands(name, each.commands)
     found: Mapping[str, Any] = group.commands
     return found
 

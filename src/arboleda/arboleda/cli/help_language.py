@@ -13,7 +13,6 @@ from click import HelpFormatter
 from arboleda.web.languages.templates import Templates
 
 from .language import help_words
-from .misplaced_plant import advised
 
 WrongUse: type[Exception] = typer.BadParameter.__bases__[0]  # typer exports only that one of its errors
 VERBATIM = "\b"  # typer keeps the lines of such a paragraph as they are
@@ -123,11 +122,8 @@ def _frame(word: str) -> str:
 
 @cache
 def _speaking(context: Any, *, has_words: bool) -> Any:
-    def fail(self: Any, message: str) -> None:
-        context.fail(self, advised(message, self.command))
-
     writer = HelpWriter if has_words else context.formatter_class
-    return type(context.__name__, (context,), {"formatter_class": writer, "fail": fail})
+    return type(context.__name__, (context,), {"formatter_class": writer})
 
 
 @cache

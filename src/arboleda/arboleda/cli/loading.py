@@ -9,12 +9,14 @@ from contextlib import contextmanager
 
 from arboleda.host.garbage import none_collected
 
+from .working import working
+
 
 @contextmanager
 def loading() -> Iterator[None]:
     """Time in which modules are loaded: nothing has begun that Ctrl-C would have to end in order, and there
     is no garbage."""
-    with none_collected(), _ended_by_interrupt():
+    with working(), none_collected(), _ended_by_interrupt():
         yield
 
 

@@ -1,4 +1,4 @@
-"""`arboleda logs`: the history of tasks and cells and the acts of operators, from the flight records."""
+"""`arboleda record logs`: what became of tasks and cells and what operators did, from the flight records."""
 
 from __future__ import annotations
 

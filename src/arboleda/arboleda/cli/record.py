@@ -23,6 +23,7 @@ from arboleda.recorder.record_text import moment
 from .language import say, word
 from .overview import WholeSentences
 from .plant_options import PlantFile, StateFolder, folder
+from .working import working
 
 LONGEST = 300  # characters of a line
 EXIT = "Exit status: 0 done, 2 no record, or one that cannot be read."
@@ -139,8 +140,9 @@ def info(file: File = None, plant: PlantFile = None, state: StateFolder = None) 
 
     record = reader.opened(last_of(file, plant, state))
     found = Summary(until_ns=record.first.began_ns)
-    for unix_ns, data in record.raw():
-        found.take(unix_ns, data)
+    with working():
+        for unix_ns, data in record.raw():
+            found.take(unix_ns, data)
     for line in _lines(record, found):
         print(plain(line, LONGEST))
 

@@ -16,6 +16,7 @@ from .client import PlantClient, PlantGone
 from .language import finding, step_name
 from .plant_options import RunningPlant, StateFolder, StoreAddress, TokensFile, client
 from .screen import table
+from .working import working
 
 STEP = "step"  # the key of its name
 SENTENCES = frozenset({"held_by", "not_ready", "obstacle", "said", "what"})  # keys of a snapshot
@@ -42,7 +43,8 @@ def status(
     if watch:
         _watch(reached, as_json=as_json)
         return
-    snapshot = reached.status()
+    with working():
+        snapshot = reached.status()
     if as_json:
         print(json.dumps(snapshot, indent=2, ensure_ascii=False))
         return

@@ -13,8 +13,8 @@ from arboleda.model.sentence import Phrase
 
 from .complaint import FAILED, LONGEST, complain
 from .language import say_row, word
-from .misplaced_plant import no_plant_file
 from .plant_options import RunningPlant, StateFolder, StoreAddress, TokensFile, client
+from .working import working
 
 UNDONE = {TaskState.FAILED.value, TaskState.CANCELLED.value}
 TASK_OVER = Phrase("cli.task_over", "the task #{id} is over; give another id to do it once more")
@@ -30,7 +30,6 @@ def submit(
         list[str],
         typer.Argument(
             metavar="TASK",
-            callback=no_plant_file,
             help="The task, e.g. 'sis_a 0B 7' or 'sis_a 0B 7 #lot42'; the id needs quotes.",
         ),
     ],
@@ -48,8 +47,9 @@ def submit(
     --wait also this one; 2 refused. Ctrl-C ends the waiting and not the task. Where another host takes the
     plant over meanwhile, --wait goes on there.
     """
-    reached = client(plant, state, store, tokens)
-    answer = reached.submit(" ".join(words))
+    with working():
+        reached = client(plant, state, store, tokens)
+        answer = reached.submit(" ".join(words))
     _print_task(answer)
     if answer["state"] in UNDONE:
         complain(ArboledaError(TASK_OVER(id=answer["id"])))

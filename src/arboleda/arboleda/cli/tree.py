@@ -21,9 +21,9 @@ from arboleda.views import tree_view
 from .client import PlantClient
 from .draw import Format, draw
 from .language import allowed, say
-from .misplaced_plant import no_plant_file
 from .nodes import NO_CELL
 from .plant_options import PlantFile, StateFolder, StoreAddress, TokensFile, client
+from .working import working
 
 Drawn = Annotated[
     Format, typer.Option("--format", help="How to draw it; svg and png need no Graphviz, xml is for editors.")
@@ -50,7 +50,6 @@ def tree(
         str,
         typer.Argument(
             metavar="RECIPE",
-            callback=no_plant_file,
             help="The recipe to draw: storage, palletizing; or a task of it, 'sis_a 0B 7'; or a file of "
             "trees, tend.xml.",
         ),
@@ -69,15 +68,27 @@ def tree(
     """
     if format is Format.PNG and sys.stdout.isatty():
         raise typer.BadParameter(say(NO_PNG(recipe=recipe)), param_hint="--format")
-    if tree_file.is_tree_file(Path(recipe)) and not live:
-        if format is Format.XML:
-            raise typer.BadParameter(say(XML_ALREADY(recipe=recipe)), param_hint="--format")
-        rows = _of_file(Path(recipe))
-    else:
-        reached = client(plant, state, store, tokens) if live else None
-        rows = _running(recipe, cell, reached) if reached else _planned(recipe, cell, loader.load(plant))
-    sys.stdout.buffer.write(draw(rows, format, statuses=live))
+    if tree_file.is_tree_file(Path(recipe)) and not live and format is Format.XML:
+        raise typer.BadParameter(say(XML_ALREADY(recipe=recipe)), param_hint="--format")
+    with working():
+        drawn = draw(
+            _rows_of(recipe, cell, plant, client(plant, state, store, tokens) if live else None),
+            format,
+            statuses=live,
+        )
+    sys.stdout.buffer.write(drawn)
     sys.stdout.flush()
+
+
+def _rows_of(
+    recipe: str, cell: str | None, plant: Path | None, reached: PlantClient | None
+) -> list[dict[str, Any]]:
+    """The tree that runs in the plant that is reached, if one is; else that of a file or a recipe."""
+    if reached is not None:
+        return _running(recipe, cell, reached)
+    if tree_file.is_tree_file(Path(recipe)):
+        return _of_file(Path(recipe))
+    return _planned(recipe, cell, loader.load(plant))
 
 
 def _of_file(path: Path) -> list[dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""The commands `arboleda up` and `arboleda run`: a plant, with or without an end of its own."""
+"""The command `arboleda up`: a plant, with or without an end of its own."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import shlex
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 from rich.console import Console
@@ -29,7 +29,6 @@ from arboleda.web.access.names import DEFAULT_PORT
 
 from .language import say
 from .loading import loading
-from .misplaced_plant import no_plant_file
 from .plant_options import PlantFile, StateFolder, StoreAddress, folder
 from .up_options import (
     Boards,
@@ -42,6 +41,7 @@ from .up_options import (
     DemoOption,
     Groot2,
     Host,
+    Once,
     Patience,
     Port,
     PublicUrl,
@@ -53,6 +53,7 @@ from .up_options import (
     TlsCert,
     TlsKey,
 )
+from .working import working
 
 if TYPE_CHECKING:
     from arboleda.adapters.server_tls import ServerTls
@@ -81,14 +82,14 @@ TLS_NEEDS_HOST = Phrase(
 )
 RATE_IS_VIRTUAL = Phrase("cli.up.rate", "--rate is for virtual boards; the others have the speed they have")
 DEMO_IS_VIRTUAL = Phrase("cli.up.demo", "--demo has boards fail, so it is for virtual ones alone")
+ONCE = Phrase("cli.up.once", "--once does the tasks that are named, and ends: not with --demo or --standby")
 WITHOUT_ROS = Phrase("cli.up.without_ros", "Without ROS 2, over MQTT alone: {why}")
 SIMULATED = Phrase("cli.up.simulated", "{names}: simulated; with --boards real their drivers reach them")
 
 
 def add_to(cli: typer.Typer) -> None:
-    """Add both commands."""
+    """Add the command."""
     cli.command()(up)
-    cli.command()(run)
 
 
 def up(
@@ -113,12 +114,23 @@ def up(
     store: StoreAddress = "",
     standby: Standby = False,
     demo: DemoOption = False,
+    once: Once = False,
+    wait_for_devices: Patience = 10.0,
 ) -> None:
-    """Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or ROS 2 (/task_request)."""
+    """Run the plant until Ctrl-C, or until the tasks that are named have ended (`--once`).
+
+    Tasks come from here, `arboleda submit` or ROS 2 (/task_request).
+    """
+    tasks = tasks or []
     before = invocation.port_before()
     if before is not None:
         tasks = []  # they were given at the first start
-    model, recording = _model(plant, tasks or [])
+    elif once and (demo or standby or not tasks):
+        raise typer.BadParameter(say(ONCE()))
+    with working():
+        model, recording = _model(plant, tasks)
+    if once:
+        _refuse_beside(tasks, plant, state)
     shown = _Certificates(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
     web = WebOptions(
         host=host,
@@ -130,48 +142,17 @@ def up(
     options = _options(broker, broker_host, broker_users, shown, rate, state, store, web, recording)
     wanted = (*options.of_parts, DemoOptions()) if demo else options.of_parts
     options = replace(options, groot2=groot2, of_parts=wanted, plant_file=plant)
-    _run(model, tasks or [], options, boards=boards, ros=ros, lan=ros_lan, stay=True, standby=standby)
-
-
-def run(
-    tasks: Annotated[
-        list[str],
-        typer.Argument(
-            metavar="TASK", callback=no_plant_file, help="Tasks to do, e.g. 'sis_a 0B 7' 'sis_b 1C 3'."
-        ),
-    ],
-    plant: PlantFile = None,
-    ros: Ros = None,
-    ros_lan: RosLan = False,
-    broker: Broker = None,
-    broker_host: BrokerHost = None,
-    broker_users: BrokerUsers = None,
-    broker_tls: BrokerTls = False,
-    broker_ca: BrokerCa = None,
-    boards: BoardsOption = None,
-    rate: Rate = 1.0,
-    host: Host = "127.0.0.1",
-    port: Port = None,
-    public_url: PublicUrl = None,
-    tls_cert: TlsCert = None,
-    tls_key: TlsKey = None,
-    groot2: Groot2 = None,
-    state: StateFolder = None,
-    store: StoreAddress = "",
-    wait_for_devices: Patience = 10.0,
-) -> None:
-    """Start the plant, do the tasks, end. Exit status: 0 all done, 1 a task failed or could not begin, 2 bad
-    input.
-
-    Not for a plant that is up already: that takes tasks by `arboleda submit`.
-    """
-    model, recording = _model(plant, tasks)
-    _refuse_beside(tasks, plant, state)
-    shown = _Certificates(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
-    web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
-    options = _options(broker, broker_host, broker_users, shown, rate, state, store, web, recording)
-    options = replace(options, groot2=groot2, plant_file=plant)
-    _run(model, tasks, options, boards=boards, ros=ros, lan=ros_lan, stay=False, patience_s=wait_for_devices)
+    _run(
+        model,
+        tasks,
+        options,
+        boards=boards,
+        ros=ros,
+        lan=ros_lan,
+        stay=not once,
+        standby=standby,
+        patience_s=wait_for_devices if once else None,
+    )
 
 
 def _model(plant: Path | None, tasks: list[str]) -> tuple[PlantModel, Recording | None]:
@@ -209,7 +190,9 @@ def _refuse_beside(tasks: list[str], plant: Path | None, state: Path | None) -> 
     chosen = ["--plant", str(plant)] if plant else []
     chosen += ["--state", str(state)] if state else []
     lines = [shlex.join(["arboleda", "submit", *chosen, task]) for task in tasks]
-    beside = shlex.join(["arboleda", "run", *(["--plant", str(plant)] if plant else []), "--state", "DIR"])
+    beside = shlex.join(
+        ["arboleda", "up", "--once", *(["--plant", str(plant)] if plant else []), "--state", "DIR"]
+    )
     raise StartError(
         "\n".join(
             [
@@ -311,7 +294,8 @@ def _run(
     left_out = {"broker"} if options.broker else set()
     left_out |= {"devices"} if boards is Boards.REAL else set()
     left_out |= set() if model.has_boards else OF_BOARDS
-    link, without_ros = _ros(model, ros, lan=lan)
+    with working():
+        link, without_ros = _ros(model, ros, lan=lan)
     options = replace(
         options,
         link=link,
@@ -334,7 +318,8 @@ def _run(
         except KeyboardInterrupt:
             raise typer.Exit from None
     else:
-        app = build(model, parts, options)
+        with working():
+            app = build(model, parts, options)
     status = session.Session(app, tasks, console, stay=stay, patience_s=patience_s).run()
     if app.restart_wanted:
         invocation.restart(app.port)

@@ -1,4 +1,4 @@
-"""Options of the commands that run a plant: `arboleda up` and `arboleda run`."""
+"""Options of the command that runs a plant, `arboleda up`."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ from arboleda.adapters.broker_login import PASSWORD, TLS_PORT, USER, address
 from arboleda.model.errors import StartError
 from arboleda.runtime.rate import check_rate
 from arboleda.web.access.names import listen_address, public_origin
-
-from .misplaced_plant import no_plant_file
 
 
 class Boards(str, Enum):
@@ -131,7 +129,7 @@ Patience = Annotated[
         "--wait-for-devices",
         metavar="SECONDS",
         min=1.0,
-        help="Wait so long for devices that are offline, then end and name them.",
+        help="With --once, wait so long for devices that are offline, then end and name them.",
     ),
 ]
 Host = Annotated[
@@ -176,11 +174,19 @@ Standby = Annotated[
         help="Wait until nobody leads this plant, and lead it then; needs a store that both hosts reach.",
     ),
 ]
+Once = Annotated[
+    bool,
+    typer.Option(
+        "--once",
+        help="Do the tasks that are named, and end. Exit status: 0 all done, 1 a task failed or could not "
+        "begin, 2 bad input. Not for a plant that is up already: that takes tasks by `arboleda submit`.",
+    ),
+]
 DemoOption = Annotated[
     bool,
     typer.Option("--demo", help="Give tasks without end, and have a virtual board fail now and then."),
 ]
 Tasks = Annotated[
     list[str] | None,
-    typer.Argument(metavar="TASK", callback=no_plant_file, help="Tasks to begin with, e.g. 'sis_a 0B 7'."),
+    typer.Argument(metavar="TASK", help="Tasks to begin with, e.g. 'sis_a 0B 7' 'sis_b 1C 3'."),
 ]

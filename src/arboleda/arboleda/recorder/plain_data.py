@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, fields, is_dataclass, replace
 from enum import Enum
-from functools import partial
+from functools import cache, partial
 from operator import attrgetter
 from typing import Any
 
@@ -222,11 +222,22 @@ def _defaults(kind: Any) -> tuple[tuple[str, Any], ...]:
 def _made(kind: type[Any], data: Mapping[str, Any]) -> Any:
     """A dataclass of these fields; raises an error for a missing or unknown one."""
     readers = READERS[kind]
-    values = {name: readers.get(name, _value)(each) for name, each in data.items() if name != TYPE}
-    missing = [each.name for each in fields(kind) if each.default is MISSING and each.name not in values]
+    values = {}
+    for name, each in data.items():
+        if name == TYPE:
+            continue
+        reader = readers.get(name)
+        values[name] = reader(each) if reader is not None else each if type(each) in SAME else _value(each)
+    missing = _needed(kind) - values.keys()
     if missing:
-        raise ValueError(f"{kind.__name__} has no {missing[0]}")
+        raise ValueError(f"{kind.__name__} has no {min(missing)}")
     return kind(**values)
+
+
+@cache
+def _needed(kind: type[Any]) -> frozenset[str]:
+    """The fields of a dataclass that have no default."""
+    return frozenset(each.name for each in fields(kind) if each.default is MISSING)
 
 
 def _value(data: Any) -> Any:

@@ -60,7 +60,7 @@ LESS_THAN_SPOKEN = Phrase(
 Name = Annotated[str, typer.Option(metavar="NAME", help="The robot's name on MQTT, or in the plant file.")]
 Broker = Annotated[
     str,
-    typer.Option(metavar="HOST:PORT", help="The broker that the board is on; login as for `arboleda run`."),
+    typer.Option(metavar="HOST:PORT", help="The broker that the board is on; login as for `arboleda up`."),
 ]
 Yes = Annotated[bool, typer.Option("--yes", help="Do not ask whether it may move.")]
 

@@ -10,10 +10,6 @@ COMMANDS = {
         "Check a plant file and all that it uses, show how it differs from what is at work, and "
         "put it to work.",
     ),
-    "versions": Command(
-        "arboleda_make.commands.apply",
-        "List the versions of a plant file that were put to work, oldest first, with what each has changed.",
-    ),
     "mcp": Command(
         "arboleda_make.commands.mcp",
         "Let an assistant (a language model) look at a plant, try its plant file, and propose changes.",

@@ -1,4 +1,4 @@
-"""The commands `arboleda apply` and `arboleda versions`: what was changed is shown, put to work and kept."""
+"""The command `arboleda apply`: what was changed is shown, put to work and kept."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ import typer
 from arboleda.cli.check import WARNING
 from arboleda.cli.language import finding, say
 from arboleda.cli.plant_options import PlantFile, StateFolder, client
+from arboleda.cli.working import working
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase
@@ -35,6 +36,12 @@ Restart = Annotated[
     bool,
     typer.Option(
         "--restart", help="Where a change needs it, have the plant restart once all its cells rest."
+    ),
+]
+Listed = Annotated[
+    bool,
+    typer.Option(
+        "--list", help="List the versions that were put to work, oldest first, with what each has changed."
     ),
 ]
 Yes = Annotated[bool, typer.Option("--yes", help="Do not ask.")]
@@ -105,9 +112,8 @@ class _Base:
 
 
 def add_to(cli: typer.Typer) -> None:
-    """Add the commands."""
+    """Add the command."""
     cli.command()(apply)
-    cli.command()(versions)
 
 
 def apply(
@@ -116,17 +122,22 @@ def apply(
     note: Note = "",
     restart: Restart = False,
     yes: Yes = False,
+    listed: Listed = False,
     state: StateFolder = None,
 ) -> None:
     """Check a plant file and all that it uses, show how it differs from what is at work, and put it to work.
 
-    Versions are kept in the folder .arboleda beside the plant file. A plant that runs takes the version: each
+    Versions are kept in the folder .arboleda beside the plant file; `--list` has them, `--back N` brings one
+    back. A plant that runs takes the version: each
     cell once its task has ended. What needs a restart is said before anything is done. Exit status: 0 kept,
     or nothing to keep; 1 you said no, or the plant that runs has not taken it; 2 the check refuses it, and
     nothing was changed.
     """
     file = _named(plant)
     kept = Versions(file)
+    if listed:
+        _list(file, kept, state)
+        return
     kept.go_on()
     wanted = _on_disk(file) if back is None else _checked(file, kept, kept.find(back))
     base = _base(wanted.plant_name, kept, state)
@@ -158,13 +169,8 @@ def apply(
     _put_to_work(number, plant, state, restarts=restart)
 
 
-def versions(plant: PlantFile = None, state: StateFolder = None) -> None:
-    """List the versions of a plant file that were put to work, oldest first, with what each has changed.
-
-    `arboleda apply --back N` brings one back.
-    """
-    file = _named(plant)
-    kept = Versions(file)
+def _list(file: Path, kept: Versions, state: Path | None) -> None:
+    """Print the versions, oldest first, with what each has changed."""
     base = _base(loader.load(file, recipes=False).name, kept, state)
     runs = base.version.digest if base.running and base.version else ""
     known = kept.all()
@@ -198,7 +204,8 @@ def _named(plant: Path | None) -> Path:
 
 def _on_disk(file: Path) -> _Wanted:
     """The files as they are now; ConfigError with every problem. Prints what `check` warns of."""
-    model, files = loader.load_with_files(file)
+    with working():
+        model, files = loader.load_with_files(file)
     for warning in plant_check.warnings(model):
         _print(say(WARNING(file=str(file), warning=finding(warning))))
     return _Wanted(version=version_of(files, at=_now()), plant_name=model.name)

@@ -21,7 +21,7 @@ COMMANDS = {
         "Have something go wrong with a virtual device: cut its link, reboot its board, lose its part.",
         section=TEST,
     ),
-    "replay": Command(
+    "record replay": Command(
         "arboleda_proofs.commands.replay",
         "Execute a record again, and compare every step with what it was.",
         section=PAST,

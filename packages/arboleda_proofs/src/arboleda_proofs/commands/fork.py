@@ -1,4 +1,4 @@
-"""The forks of `arboleda replay` (`--fork-at`, `--set`, `--recipe`): runs one and prints the differences."""
+"""The forks of `arboleda record replay` (`--fork-at`, `--set`, `--recipe`): run, and what differs printed."""
 
 from __future__ import annotations
 

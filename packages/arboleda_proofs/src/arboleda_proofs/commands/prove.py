@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 
 from arboleda.cli.language import language, say
-from arboleda.cli.plant_options import IN_FOLDER, PLANT_VARIABLE, StateFolder, folder, is_typed, plant_here
+from arboleda.cli.plant_options import PlantFile, StateFolder, folder
 from arboleda.host.packages import extra
 from arboleda.model.packages import MAKE
 from arboleda.model.sentence import Phrase
@@ -22,9 +22,9 @@ HELP = f"""Try every single fault at every kind of moment of every recipe, and j
 
 \b
 arboleda prove                          the plant of this folder, for {BUDGET}
-arboleda prove my_plant.yaml            your plant; what is kept is not run again
-arboleda prove my_plant.yaml --recipe weigh --budget all
-arboleda prove my_plant.yaml --html out.html --tests test_found.py
+arboleda prove --plant my_plant.yaml    your plant; what is kept is not run again
+arboleda prove --recipe weigh --budget all
+arboleda prove --html out.html --tests test_found.py
 
 Each recipe runs once without faults, for each class of parameters and each answer that can lead elsewhere.
 Then each kind of fault begins before and after each event of that run, and in the middle between two,
@@ -37,22 +37,6 @@ BUDGETS = re.compile(r"(\d+(?:\.\d+)?)(s|m|h)")
 SECONDS = {"s": 1.0, "m": 60.0, "h": 3600.0}
 ALL = "all"
 
-PlantArgument = Annotated[
-    Path | None,
-    typer.Argument(
-        metavar="PLANT",
-        help=f"Plant file. [default: {IN_FOLDER} of this folder, else the shipped plant]",
-    ),
-]
-SamePlant = Annotated[
-    Path | None,
-    typer.Option(
-        "--plant",
-        metavar="FILE",
-        envvar=PLANT_VARIABLE,
-        help="The same as PLANT, as other commands have it.",
-    ),
-]
 Recipes = Annotated[
     list[str] | None,
     typer.Option("--recipe", metavar="NAME", help="Only this recipe; may be given several times."),
@@ -116,7 +100,6 @@ Jobs = Annotated[
 PAIRS_TAKE = Phrase(
     "cli.prove.pairs_take", "--pairs: all pairs take years; give a --budget that is a time, not {all}"
 )
-PLANT_TWICE = Phrase("cli.prove.plant_twice", "two plant files are named, {plant} and {other}; name one")
 NO_BUDGET = Phrase("cli.prove.no_budget", "--budget: {budget} is no time; write 30s, 10m, 2h or {all}")
 
 
@@ -126,9 +109,7 @@ def add_to(cli: typer.Typer) -> None:
 
 
 def prove(
-    context: typer.Context,
-    plant: PlantArgument = None,
-    same_plant: SamePlant = None,
+    plant: PlantFile = None,
     recipe: Recipes = None,
     fault: Faults = None,
     budget: Budget = BUDGET,
@@ -150,9 +131,6 @@ def prove(
     from arboleda_proofs.campaigns.proof.proof_request import ProofRequest
     from arboleda_proofs.campaigns.workers import processors
 
-    if plant is not None and is_typed(context, "same_plant"):
-        raise typer.BadParameter(say(PLANT_TWICE(plant=str(plant), other=str(same_plant))))
-    plant = plant_here(plant or same_plant)
     is_read_along = json is not None and str(json) == STANDARD_OUTPUT
     json = None if is_read_along else json
     for file in (json, html, junit, tests, badge):

@@ -1,4 +1,4 @@
-"""`arboleda replay`: a record executed again through the core that is installed, and compared."""
+"""`arboleda record replay`: a record executed again through the core that is installed, and compared."""
 
 from __future__ import annotations
 

@@ -10,6 +10,7 @@ import typer
 from arboleda.cli.language import say, word
 from arboleda.cli.plant_options import PlantFile, StateFolder, folder
 from arboleda.cli.record import HAS_KB
+from arboleda.cli.working import working
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase
@@ -26,6 +27,8 @@ GONE = Phrase("cli.report.gone", "{file} cannot be replayed: its first files wer
 NOT_FAILED = Phrase("cli.report.not_failed", "{task}: it is {state}, so there is nothing to report")
 NO_STATE = Phrase("cli.report.no_state", "{task}: its state is unknown, so there is nothing to report")
 UNWRITTEN = Phrase("cli.report.unwritten", "{file}: cannot be written: {error}")
+READING = Phrase("cli.report.reading", "executes the record again: {share}")
+TRYING = Phrase("cli.report.trying", "tries what might have saved the task: fork {number}")
 
 
 def add_to(cli: typer.Typer) -> None:
@@ -45,12 +48,13 @@ def report(
     plant: PlantFile = None,
     state: StateFolder = None,
 ) -> None:
-    from arboleda.recorder.files import FOLDER
-    from arboleda_proofs.playback.report.reading import read
-    from arboleda_proofs.playback.report.report_builder import made
+    with working() as tell:
+        from arboleda.recorder.files import FOLDER
+        from arboleda_proofs.playback.report.reading import read
+        from arboleda_proofs.playback.report.report_builder import made
 
-    where = folder(plant, state) / FOLDER if record is None else record.parent
-    found = read(task, record, where)
+        where = folder(plant, state) / FOLDER if record is None else record.parent
+        found = read(task, record, where, lambda share: tell(say(READING(share=f"{share:.0%}"))))
     if found.record.missing:
         raise NoRecord(say(GONE(file=str(found.record.paths[0]))))
     if found.incident.failure is None:
@@ -58,7 +62,8 @@ def report(
         shown = NOT_FAILED(task=named, state=word("task_state", state_now.value)) if state_now else None
         raise ConfigError((say(shown or NO_STATE(task=named)),))
     target = output or Path(f"{plain(task, 80).replace('/', '_')}.html")
-    cause, content = made(found)
+    with working() as tell:
+        cause, content = made(found, lambda number: tell(say(TRYING(number=number))))
     try:
         target.write_text(content, "utf-8")
     except OSError as error:

@@ -25,7 +25,7 @@ arboleda simulate --standby                  on two hosts, of which one stands b
 arboleda simulate --revisions                whose files are changed while they run
 arboleda simulate --until-failure            seed after seed until something breaks
 arboleda simulate --seed 4711 --trace        one seed, line by line, the same every time
-arboleda simulate --seed 4711 --record seed.mcap  and look at it: arboleda replay seed.mcap --page
+arboleda simulate --seed 4711 --record seed.mcap  and look at it: arboleda record replay seed.mcap --page
 arboleda simulate --seeds 500 --json out.json
 arboleda simulate --seeds 9999 --store postgresql://... --worker  on as many hosts as there are
 arboleda simulate --faults out.json --trace  what broke in there, with the faults it takes

@@ -1,4 +1,4 @@
-"""`arboleda replay --page`: the page on a record, for this machine only."""
+"""`arboleda record replay --page`: the page on a record, for this machine only."""
 
 from __future__ import annotations
 

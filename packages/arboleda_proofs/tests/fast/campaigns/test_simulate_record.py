@@ -64,9 +64,9 @@ def test_a_seed_is_a_record_that_is_equal_at_every_step(
         Path("small.yaml").write_text(PLANT.replace("link: mqtt", f"link: {link}"))
         lines = simulated(said, "--record", "seed.mcap")
     (steps,) = (line.split()[2] for line in lines if line.startswith("seed.mcap has "))
-    assert said("replay", "seed.mcap")[-1] == f"{steps.replace(',', '')} steps, all equal"
+    assert said("record", "replay", "seed.mcap")[-1] == f"{steps.replace(',', '')} steps, all equal"
     assert "plant file: small.yaml" in said("record", "info", "seed.mcap")
-    assert any("running   sis_a" in line for line in said("logs", "seed.mcap"))
+    assert any("running   sis_a" in line for line in said("record", "logs", "seed.mcap"))
 
 
 @pytest.mark.long
@@ -95,7 +95,7 @@ def test_each_start_of_a_seed_has_a_record(said: Said) -> None:
     assert [line.split()[0] for line in told] == ["seed.mcap", "seed-2.mcap"]
     assert told[1].endswith(" steps, of start 2 of 2")
     for file in ("seed.mcap", "seed-2.mcap"):
-        assert said("replay", file)[-1].endswith("steps, all equal")
+        assert said("record", "replay", file)[-1].endswith("steps, all equal")
 
 
 def test_a_file_that_is_there_is_not_written_over(said: Said) -> None:

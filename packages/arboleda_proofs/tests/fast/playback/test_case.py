@@ -36,7 +36,7 @@ def happened(file: str) -> tuple[Asked, list[tuple[str, str]]]:
             if row["type"] == "TaskChanged" and row["state"] == "queued":
                 asked.setdefault(row["task"], (round(step.now, 3), row["text"]))
             elif row["type"] == "TaskChanged" and row["state"] == "failed":
-                cause = incident_of(row["task"], record).cause
+                cause = incident_of(row["task"], record)[0].cause
                 failed.append((row["text"], f"{cause.kind} {cause.robot}"))
     return [*asked.values()], failed
 
@@ -71,7 +71,7 @@ def test_the_same_is_asked_at_the_same_times_and_the_same_fails(said: Said, reco
 
 @pytest.mark.long
 def test_a_case_of_one_task_begins_with_it_and_ends_soon_after_it(said: Said, record: str) -> None:
-    line = [line for line in said("replay", record) if " failed " in line][1]
+    line = [line for line in said("record", "replay", record) if " failed " in line][1]
     found = re.search(r" failed +(.*) \(id t-(.*)\) ", line)
     assert found is not None
     said("record", "export", "one.yaml", record, "--task", f"t-{found[2]}")

@@ -1,4 +1,4 @@
-"""`arboleda replay` with a fork: what a person types, and what is said."""
+"""`arboleda record replay` with a fork: what a person types, and what is said."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def failed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def said(*args: str | Path, status: int) -> list[str]:
-    outcome = CliRunner().invoke(cli, ["replay", *map(str, args)], catch_exceptions=False)
+    outcome = CliRunner().invoke(cli, ["record", "replay", *map(str, args)], catch_exceptions=False)
     assert outcome.exit_code == status, outcome.output
     return outcome.output.splitlines()
 

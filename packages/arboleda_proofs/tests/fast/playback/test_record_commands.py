@@ -1,4 +1,4 @@
-"""`arboleda record` and `arboleda replay` on what a plant has written that does not run any more."""
+"""`arboleda record` and `arboleda record replay` on what a plant has written that does not run any more."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_info_says_what_is_in_it(state: Path) -> None:
 
 
 def test_a_replay_tells_what_became_of_tasks_and_that_all_is_equal(state: Path) -> None:
-    *lines, last = said("replay", "--state", str(state)).splitlines()
+    *lines, last = said("record", "replay", "--state", str(state)).splitlines()
     (queued,) = lines
     assert queued[24:] == "queued    sis_a 0B 7 (id lot-1)  ra1 was not heard yet"
     count = sum(1 for _ in reader.opened(files.parts_in(state / files.FOLDER)[0].path).raw())
@@ -83,13 +83,13 @@ def test_a_replay_tells_what_became_of_tasks_and_that_all_is_equal(state: Path) 
 
 
 def test_a_replay_ends_where_it_is_told_to(state: Path) -> None:
-    assert "1 steps" not in said("replay", "--state", str(state), "--task", "lot-1")
+    assert "1 steps" not in said("record", "replay", "--state", str(state), "--task", "lot-1")
     with pytest.raises(NoRecord, match="has no step up to the time that --until names, so that nothing"):
-        said("replay", "--state", str(state), "--until", "2001-01-01T00:00:00")
+        said("record", "replay", "--state", str(state), "--until", "2001-01-01T00:00:00")
     with pytest.raises(ConfigError, match="--until yesterday: is no time"):
-        said("replay", "--state", str(state), "--until", "yesterday")
+        said("record", "replay", "--state", str(state), "--until", "yesterday")
     with pytest.raises(ConfigError, match="--task lot-2: there is no such task"):
-        said("replay", "--state", str(state), "--task", "lot-2")
+        said("record", "replay", "--state", str(state), "--task", "lot-2")
 
 
 def in_small_chunks(source: Path, target: Path) -> int:
@@ -113,10 +113,10 @@ def test_a_replay_of_a_damaged_record_says_how_much_of_it_is_read(state: Path, t
         read = sum(1 for _ in reader.opened(file).raw())
         sentence = f"{count} steps, {read} read, then spoilt.mcap is damaged"
         if read:
-            assert said("replay", str(file), status=1).splitlines()[-1].startswith(sentence), number
+            assert said("record", "replay", str(file), status=1).splitlines()[-1].startswith(sentence), number
         else:
             with pytest.raises(NoRecord, match=f"{sentence}, so that nothing was compared"):
-                said("replay", str(file))
+                said("record", "replay", str(file))
     assert len(chunks) > 2 and 0 < read < count
 
 
@@ -124,7 +124,7 @@ def test_a_replay_at_a_speed_waits(state: Path, monkeypatch: pytest.MonkeyPatch)
     waited: list[float] = []
     monkeypatch.setattr(replay.time, "sleep", waited.append)
     monkeypatch.setattr(replay.time, "monotonic", lambda: 50.0)
-    said("replay", "--state", str(state), "--speed", "10")
+    said("record", "replay", "--state", str(state), "--speed", "10")
     record = reader.opened(files.parts_in(state / files.FOLDER)[0].path)
     times = [step.now for step in record.steps()]
     assert waited == pytest.approx([(at - times[0]) / 10 for at in times])
@@ -134,7 +134,7 @@ def test_another_plant_file_says_where_it_first_does_otherwise(state: Path, tmp_
     assert SHIPPED is not None
     other = tmp_path / "other.yaml"
     other.write_bytes(SHIPPED.files.contents["plant.yaml"].replace(b"sis_a:", b"sis_q:"))
-    lines = said("replay", "--state", str(state), "--plant", str(other), status=1).splitlines()
+    lines = said("record", "replay", "--state", str(state), "--plant", str(other), status=1).splitlines()
     assert lines[0] == f"note: replayed with {other} instead of the plant file of the record"
     assert "steps are equal; step " in lines[-3] and lines[-3].endswith(", is not")
     asked_first = '  messages[0] (TaskChanged).task was "lot-1", is now ""'
@@ -143,14 +143,14 @@ def test_another_plant_file_says_where_it_first_does_otherwise(state: Path, tmp_
 
 def test_another_version_says_so(state: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(replay, "__version__", "99.0")
-    first = said("replay", "--state", str(state)).splitlines()[0]
+    first = said("record", "replay", "--state", str(state)).splitlines()[0]
     assert first.startswith("note: recorded by Arboleda ") and first.endswith(", replayed by 99.0")
 
 
 def test_an_export_can_be_replayed_elsewhere(state: Path, tmp_path: Path) -> None:
     kept = tmp_path / "kept.mcap"
     said("record", "export", str(kept), "--state", str(state))
-    assert said("replay", str(kept)) == said("replay", "--state", str(state))
+    assert said("record", "replay", str(kept)) == said("record", "replay", "--state", str(state))
     with pytest.raises(NoRecord, match="is there already: name another file"):
         said("record", "export", str(kept), "--state", str(state))
     with pytest.raises(ConfigError, match=r"must end in \.mcap, \.jsonl, \.btlog, \.yaml"):
@@ -176,7 +176,7 @@ def test_what_was_not_closed_is_made_whole(state: Path, tmp_path: Path) -> None:
     recovered = tmp_path / f"{cut.stem}.recovered.mcap"
     assert said("record", "recover", str(cut)).startswith(f"{recovered} has ")
     assert "it was not closed" not in said("record", "info", str(recovered))
-    assert said("replay", str(recovered)) == said("replay", "--state", str(state))
+    assert said("record", "replay", str(recovered)) == said("record", "replay", "--state", str(state))
 
 
 def test_a_record_whose_first_files_are_gone_is_read_and_not_replayed(state: Path, tmp_path: Path) -> None:
@@ -186,7 +186,7 @@ def test_a_record_whose_first_files_are_gone_is_read_and_not_replayed(state: Pat
     copying.as_mcap(record, target, (3,))
     assert "its first 2 files are gone" in said("record", "info", str(target))
     with pytest.raises(NoRecord, match="cannot be replayed, only read: its first 2 files were deleted"):
-        said("replay", str(target))
+        said("record", "replay", str(target))
 
 
 def test_a_plant_with_files_of_its_own_is_replayed_with_those() -> None:
@@ -235,20 +235,22 @@ def test_a_plant_file_says_how_much_is_kept_or_that_nothing_is(tmp_path: Path) -
 
 
 def test_logs_are_lines_with_date_of_all_cells_or_of_one(state: Path) -> None:
-    lines = said("logs", "--state", str(state)).splitlines()
+    lines = said("record", "logs", "--state", str(state)).splitlines()
     assert [line[20:].split()[0] for line in lines[:3]] == ["started", "queued", "refused"]
     assert all(re.match(r"20\d\d-\d\d-\d\d \d\d:\d\d:\d\d ", line) for line in lines)
     assert "there is no cell" in lines[2] or "sis_z" in lines[2]
     assert [line for line in lines if "queued" in line] == said(
-        "logs", "--state", str(state), "--cell", "sis_a"
+        "record", "logs", "--state", str(state), "--cell", "sis_a"
     ).splitlines()
-    assert said("logs", "--state", str(state), "--cell", "sis_b") == ""
-    assert said("logs", "--state", str(state), "--follow").splitlines() == lines  # it does not run any more
+    assert said("record", "logs", "--state", str(state), "--cell", "sis_b") == ""
+    assert (
+        said("record", "logs", "--state", str(state), "--follow").splitlines() == lines
+    )  # it does not run any more
 
 
 def test_logs_of_a_cell_that_is_not_there_are_refused(state: Path) -> None:
     with pytest.raises(ConfigError, match="no record has a cell 'sis_d'; there are sis_a, sis_b, sis_c"):
-        said("logs", "--state", str(state), "--cell", "sis_d")
+        said("record", "logs", "--state", str(state), "--cell", "sis_d")
 
 
 def test_logs_have_all_starts_in_order(state: Path, tmp_path: Path) -> None:
@@ -257,12 +259,12 @@ def test_logs_have_all_starts_in_order(state: Path, tmp_path: Path) -> None:
     folder.mkdir()
     for epoch in (part.epoch - 7, part.epoch):
         (folder / f"{epoch}-0001.mcap").write_bytes(part.path.read_bytes())
-    once = said("logs", "--state", str(state)).splitlines()
-    assert said("logs", "--state", str(tmp_path)).splitlines() == once * 2
-    assert said("logs", "--state", str(tmp_path), "--follow").splitlines() == once * 2
-    assert said("logs", str(part.path)).splitlines() == once
+    once = said("record", "logs", "--state", str(state)).splitlines()
+    assert said("record", "logs", "--state", str(tmp_path)).splitlines() == once * 2
+    assert said("record", "logs", "--state", str(tmp_path), "--follow").splitlines() == once * 2
+    assert said("record", "logs", str(part.path)).splitlines() == once
     (folder / f"{part.epoch - 9}-0001.mcap").write_bytes(b"no record")
-    lines = said("logs", "--state", str(tmp_path)).splitlines()
+    lines = said("record", "logs", "--state", str(tmp_path)).splitlines()
     assert lines[0].startswith("left out: ") and lines[1:] == once * 2
 
 

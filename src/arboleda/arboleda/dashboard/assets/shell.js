@@ -1,5 +1,6 @@
 // What every page of ours does: parts, cells, filters, language, look, the browser's tab.
 
+import * as busy from "./busy.js";
 import { drawList, keepingFocus, onChange, setRowFilter, value } from "./live.js";
 import * as place from "./place.js";
 
@@ -10,6 +11,7 @@ export const cells = () => all("[data-choose]").map((card) => card.dataset.choos
 const filters = {};
 
 export function start() {
+  busy.start();
   document.documentElement.lang = window.arboledaPage.language;
   look(lookNow());
   setRowFilter((list, row) => !filters[list] || row?.cell === filters[list]);

@@ -23,7 +23,7 @@ SHOWN = 50  # starts to choose from, the last ones
 NO_START = Phrase(
     "record.no_start",
     "There is no record of this start, or it had another plant file: see `arboleda record list`, then "
-    "`arboleda replay FILE --page`.",
+    "`arboleda record replay FILE --page`.",
 )
 
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 GROUP = "arboleda.languages"
 FIRST = "en"  # in which is said what another language has no words for
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C where there is one, ten times as fast
 
 
 def _found() -> tuple[str, ...]:
@@ -39,7 +40,7 @@ def contents(language: str, part: str) -> dict[str, Any]:
     for folder in _folders():
         file = folder / language / f"{part}.yaml"
         if file.is_file():
-            found = _joined(found, yaml.safe_load(file.read_text(encoding="utf-8")))
+            found = _joined(found, yaml.load(file.read_text(encoding="utf-8"), LOADER))
     return found
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from arboleda.engine import Plant
 from arboleda.model.cell_states import CellState
 from arboleda.model.errors import ConfigError
-from arboleda.model.messages import Event
+from arboleda.model.messages import ENDED, Event
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.model.recipe import Builders
 from arboleda.model.revision import Versions
@@ -27,9 +27,10 @@ from arboleda_proofs.simulator.world import World
 
 from . import device_replay
 from .builders import LateLookup
-from .plant_events import PlantEvent, Words, happenings
+from .plant_events import TASK, PlantEvent, Words, happenings
 
 AFTER_S = 600.0  # for tasks to end after the end of the record
+ENDS = frozenset(each.value for each in ENDED)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +40,8 @@ class ForkRequest:
     `model` is the plant of the fork: the `recorded` one, or a changed one, which gets the recorded inputs
     from the beginning. `builders` make the trees of tasks that begin after the fork. `healthy`: recorded
     troubles after it are not repeated on the virtual devices. `until_ns`: later parts of the record are left
-    out. `versions` are those that it took while it ran, or what stands in for them.
+    out. `versions` are those that it took while it ran, or what stands in for them. With a `task` the fork
+    ends as soon as that has ended. `known`: an earlier fork has compared the steps up to it.
     """
 
     at_ns: int
@@ -49,6 +51,8 @@ class ForkRequest:
     healthy: bool = False
     until_ns: int | None = None
     versions: Versions = field(default_factory=dict)
+    task: str = ""
+    known: bool = False
 
     @property
     def changed(self) -> bool:
@@ -140,6 +144,8 @@ def _execute(
                 found.early = True
                 return [step, *messages]
             continue
+        if request.known:
+            continue
         result = outcome(messages, state_of(plant, found.steps))
         if hash_of(result) != step.hash:
             found.difference = ReplayedStep(found.steps, step, first_difference(step.result, result))
@@ -176,10 +182,21 @@ def _go_on(
         device_replay.ask(world, now, events)
     if not request.healthy:
         device_replay.befall(world, found.troubles)
-    world.watchers.append(lambda: found.fork.extend(happenings(world.now, _plain(world.moment.sent), words)))
-    world.advance(found.until - world.now)
-    world.advance(AFTER_S, lambda: _rests(plant))
+    ends = [each for each in found.fork if _ends(each, request.task)]
+
+    def watch() -> None:
+        news = [*happenings(world.now, _plain(world.moment.sent), words)]
+        found.fork.extend(news)
+        ends.extend(each for each in news if _ends(each, request.task))
+
+    world.watchers.append(watch)
+    world.advance(found.until - world.now, lambda: bool(ends))
+    world.advance(AFTER_S, lambda: bool(ends) or _rests(plant))
     return world
+
+
+def _ends(happened: PlantEvent, task: str) -> bool:
+    return happened.stream == TASK + task and happened.what.partition(" ")[0] in ENDS
 
 
 def _rests(plant: Plant) -> bool:

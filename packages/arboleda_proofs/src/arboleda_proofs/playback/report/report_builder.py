@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Callable
 
 from arboleda.recorder.cause import Cause
 
@@ -12,8 +13,8 @@ from .reading import TaskRecord
 from .tries import tries
 
 
-def made(read: TaskRecord) -> tuple[Cause, str]:
-    """The cause of the failure, and the content of the file."""
+def made(read: TaskRecord, tell: Callable[[int], None] = lambda _: None) -> tuple[Cause, str]:
+    """The cause of the failure, and the content of the file; `tell` is told the number of each fork."""
     found, beginning = read.incident, read.record.first.beginning
     cause = found.cause
     path = shlex.quote(str(read.record.paths[0]))
@@ -21,8 +22,8 @@ def made(read: TaskRecord) -> tuple[Cause, str]:
         incident=found,
         cause=cause,
         model=read.model,
-        tries=tries(read),
+        tries=tries(read, tell),
         case=case_of(found, cause, read.model, "" if beginning.shipped else beginning.files.plant),
-        command=f"arboleda replay {path} --task {shlex.quote(found.task)}",
+        command=f"arboleda record replay {path} --task {shlex.quote(found.task)}",
     )
     return cause, page(report)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder.incident import Incident
+from arboleda.recorder.incident import AFTER_S, Incident
 from arboleda.recorder.record_text import sentence_of
 from arboleda.recorder.troubles import SILENCE
 
@@ -37,11 +37,12 @@ class ForkTrial:
     options: str
 
 
-def tries(read: TaskRecord) -> list[ForkTrial]:
+def tries(read: TaskRecord, tell: Callable[[int], None] = lambda _: None) -> list[ForkTrial]:
     """The forks of a task from its beginning: without any change first. If that one ends otherwise than the
-    record did, other ones would prove nothing, and are not run."""
+    record did, other ones would prove nothing, and are not run. `tell` is told the number of each."""
     found: list[ForkTrial] = []
-    for what, value, model, options in _changes(read.model, read.incident):
+    for number, (what, value, model, options) in enumerate(_changes(read.model, read.incident), start=1):
+        tell(number)
         found.append(_tried(read, what, value, model, options))
         if not found[0].alike:
             break
@@ -75,9 +76,12 @@ def _tried(read: TaskRecord, what: str, value: float, model: PlantModel, options
         model=model,
         recorded=read.model,
         healthy=what == HEALTHY,
+        until_ns=incident.unix_ns + round(AFTER_S * 1e9),
         versions=versions,
+        task=incident.task,
+        known=what == HEALTHY,
     )
-    found = forked(record.first.beginning, record.steps(), request, sentence_of)
+    found = forked(record.first.beginning, read.steps(), request, sentence_of)
     fork, recorded = (_last(row, incident.task) for row in (found.fork, found.recorded))
     end = fork.text if fork else "?"
     alike = fork is not None and recorded is not None and fork.what == recorded.what
