@@ -84,13 +84,14 @@ def test_what_stands_beside_a_state_begins_with_its_word_or_the_cell(state: Cell
     if told is None:
         assert state in (CellState.IDLE, CellState.EXECUTE)
         return
-    word = on_page(language)[state.value]
+    word = words(language).cell(state.value)
     assert told.lower().startswith(f"{word}: ")
 
 
 @pytest.mark.parametrize("state", CellState)
-def test_the_plants_sentences_have_the_word_in_spanish(state: CellState) -> None:
-    assert words("es").say(state.sentence) == on_page("es")[state.value]
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_plants_sentences_have_the_word_of_the_page(state: CellState, language: str) -> None:
+    assert words(language).say(state.sentence) == words(language).cell(state.value)
 
 
 def test_a_sentence_about_a_state_has_its_word_and_no_other_in_spanish() -> None:

@@ -264,6 +264,9 @@ def test_what_is_wrong_is_said_as_text_and_what_cannot_be_sent_is_not_kept(open_
     page.click("#task-send")
     wait_for_answer(page, "'<img/src=x/onerror=window.broken=1>' is not a cell", "bad")
     assert page.evaluate("[window.broken, document.images.length]") == [None, 0]
+    show(page, "cells")
+    assert page.inner_text("#answer") == "", "it was said of another part of the page"
+    show(page, "tasks")
     page.evaluate("window.socket.disconnect()")
     page.fill("#task-text", "sis_a 0B 7")
     page.click("#task-send")
@@ -368,6 +371,9 @@ def test_a_link_to_a_task_shows_the_leaf_that_failed_and_an_idle_cell_offers_to_
     page.focus(".cell.chosen g.node[data-path=root]")
     page.keyboard.press("Enter")
     assert page.inner_text("#node-name") == "sis_b · storage"
+    about = page.text_content(".cell.chosen g.node[data-path=root] title")
+    assert about == "A choice: tries its branches one after the other until one succeeds."
+    assert page.locator(".cell.chosen g.node text:text-is('dwell')").count() == 0
     page.click(".cell.chosen g.node:has-text('move to station 4')")
     given = page.inner_text("#node-given")
     assert "ra2" in given and "joints" in given

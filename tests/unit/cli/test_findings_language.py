@@ -31,9 +31,9 @@ def test_each_sentence_has_the_values_of_its_english() -> None:
     ("english", "spanish"),
     [
         (
-            "  bench fill: forgets jaw: the place of arm is (1.0, 0.0), not (2.0, 0.0); "
+            "  bench fill: jaw: It restarts and forgets: the place of arm is (1.0, 0.0), not (2.0, 0.0); "
             "4 runs, e.g. just before arm: moving to nest (3.200 s)",
-            "  bench fill: forgets jaw: el lugar de arm es (1.0, 0.0), no (2.0, 0.0); "
+            "  bench fill: jaw: Se reinicia y olvida: el lugar de arm es (1.0, 0.0), no (2.0, 0.0); "
             "4 ejecuciones, como justo antes de arm: yendo a nest (3.200 s)",
         ),
         (

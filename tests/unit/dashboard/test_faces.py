@@ -279,7 +279,7 @@ def test_what_only_a_hand_can_do_has_no_button(told: Callable[..., Any]) -> None
     face = rig.face()
     (hand,) = ways(face)
     assert (hand["state"], hand["texts"], hand["acts"]) == ("hand", ["Bring ra1 back", "ra1 is offline"], [])
-    assert face["text/sis_a.state"] == ["idle, blocked", "blocked"]
+    assert face["text/sis_a.state"] == ["idle, blocked", "blocked", ""]
     assert face["text/sis_a.trouble"] == ["ra1 is offline; bring ra1 back", "blocked"]
     assert face["text/title"] == ["⚠ sis_a: idle, blocked - arboleda", "trouble"]
     assert face["text/needs"][0] == "sis_a"
@@ -328,13 +328,15 @@ def test_what_of_a_done_task_nobody_confirmed_is_on_its_row_and_on_its_card(told
     rig.wait(1.0)
     said = "not checked: whether the part was gripped and let go of"
     face = rig.face()
-    assert face["text/sis_a.cause"] == [said, ""]
+    assert face["text/sis_a.cause"] == ["", ""]
+    assert face["text/sis_a.task"] == [f"sis_a 0B 7  done, {said}", "warning"]
     assert face[f"row/tasks/{task}"]["state"] == "done" and said in face[f"row/tasks/{task}"]["texts"]
-    assert rig.story.task_face(task, "en")["text/task.cause"] == [said, "done"]
-    assert rig.face("es")["text/sis_a.cause"][0] == "sin comprobar: si la pieza quedó sujeta y si se soltó"
+    assert rig.story.task_face(task, "en")["text/task.cause"] == [said, "warning"]
+    unchecked = "sin comprobar: si la pieza quedó sujeta y si se soltó"
+    assert rig.face("es")["text/sis_a.task"][0] == f"sis_a 0B 7  hecha, {unchecked}"
     rig.submit("sis_a 0B 1")
     rig.wait(1.0)
-    assert rig.face()["text/sis_a.cause"] == ["", ""]
+    assert rig.face()["text/sis_a.task"] == ["sis_a 0B 1", "running"]
 
 
 def test_the_cause_and_the_failed_step_stay_until_the_cell_works_again(told: Callable[..., Any]) -> None:

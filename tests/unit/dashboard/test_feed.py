@@ -77,7 +77,7 @@ def test_a_page_is_told_everything_first_and_then_what_changed(side: Side, feed:
     news(side, feed)
     (_, first), (_, then) = viewer.frames
     assert "text/sis_b.state" in first and "text/sis_b.state" not in then
-    assert then["text/sis_a.state"] == ["working (execute)", "execute"]
+    assert then["text/sis_a.state"] == ["working", "execute", "PackML: execute"]
 
 
 def test_nothing_new_is_not_told(feed: Feed) -> None:
@@ -141,8 +141,8 @@ def test_each_page_is_told_in_its_language(side: Side, feed: Feed) -> None:
     feed.add(english)
     feed.add(spanish)
     news(side, feed)
-    assert english.frames[-1][1]["text/sis_a.state"][0] == "working (execute)"
-    assert spanish.frames[-1][1]["text/sis_a.state"][0] == "trabajando (en ejecución)"
+    assert english.frames[-1][1]["text/sis_a.state"][0] == "working"
+    assert spanish.frames[-1][1]["text/sis_a.state"][0] == "trabajando"
 
 
 def test_a_page_that_was_away_is_told_everything(side: Side, feed: Feed) -> None:

@@ -64,7 +64,7 @@ def test_title_and_header_tell_who_is_waited_for_as_a_wait(here: Told) -> None:
     assert face["text/title"] == ["? tending: waits for ana - shop", "waits"]
     assert face["text/needs"][0] == "tending"
     assert face["text/sum"] == ["waits for ana", "execute"]
-    assert face["row/counts/execute"]["texts"] == ["working (execute): 1"]
+    assert face["row/counts/execute"]["texts"] == ["working: 1"]
     assert here.face("es")["text/title"][0] == "? tending: espera a ana - shop"
     assert here.operate(Verb.ANSWER, "ana", answer="yes") is None
     assert here.face()["text/title"] == ["shop", "well"]

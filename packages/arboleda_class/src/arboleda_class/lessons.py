@@ -10,7 +10,8 @@ from functools import cache
 from io import TextIOBase
 from typing import TextIO
 
-from arboleda.cli.language import finding_in, language, step_name
+from arboleda.cli.language import finding_in, language
+from arboleda.dashboard.findings import step_names
 from arboleda.web.languages import FIRST, contents
 from arboleda.web.languages.templates import Templates
 
@@ -41,15 +42,17 @@ def _line(line: str) -> str:
     if (parts := PARTS.fullmatch(line)) is None:
         return line
     head, what, status, joint, why = parts.groups(default="")
-    return f"{head}{_words(what)}{status}{joint}{_words(why)}"
-
-
-def _words(text: str) -> str:
-    """A text of a lesson, else a name of a step, else what a plant says."""
     there = language()
+    return f"{head}{said_in(there, what)}{status}{joint}{said_in(there, why)}"
+
+
+def said_in(there: str, text: str) -> str:
+    """A text of a lesson, else a name of a step, else what a plant says, in a language."""
+    if there == FIRST:
+        return text
     if (own := _exact(there).get(text) or _templates(there)(text)) != text:
         return own
-    return name if (name := step_name(text)) != text else finding_in(there, text)
+    return name if (name := step_names(there)(text)) != text else finding_in(there, text)
 
 
 @cache
@@ -61,7 +64,7 @@ def _exact(language: str) -> Mapping[str, str]:
 @cache
 def _templates(language: str) -> Templates:
     slotted = {english: other for english, other in _exact(language).items() if "{" in english}
-    return Templates(slotted, part=lambda _, value: _words(value))
+    return Templates(slotted, part=lambda _, value: said_in(language, value))
 
 
 class _Spoken(TextIOBase):

@@ -256,8 +256,9 @@ class _Parser:
             if not self.take(")"):
                 raise ScriptFault(self._token.at, "a ) is missing")
             return inner
-        instead = f"not {token.text!r}" if token.text else "and the script ends"
-        raise ScriptFault(token.at, f"a value or a variable is expected, {instead}")
+        if token.text:
+            raise ScriptFault(token.at, f"a value or a variable is expected, not {token.text!r}")
+        raise ScriptFault(token.at, "a value or a variable is expected, and the script ends")
 
     def _deeper(self, weakest: int) -> Expression:
         self._depth += 1

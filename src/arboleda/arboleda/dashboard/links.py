@@ -9,7 +9,7 @@ from .page_part import Place, Put, put_nothing
 from .tags import live, rows, tag
 from .wording import Words
 
-COLUMNS = ("robot", "kind", "presence", "telemetry", "ready", "homed", "facts", "command", "boot", "refused")
+COLUMNS = ("robot", "kind", "presence", "telemetry", "ready", "homed", "facts", "command", "refused")
 
 
 def build(layout: Layout, words: Words, put: Put = put_nothing) -> None:

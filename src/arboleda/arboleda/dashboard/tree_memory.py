@@ -7,6 +7,7 @@ from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
+from arboleda.drawing.folding import folded
 from arboleda.drawing.layout import parent
 from arboleda.engine import RECOVERY
 from arboleda.model.sentence import Sentence
@@ -104,9 +105,10 @@ class TreeMemory:
 
     def _show(self, rows: list[Row], statuses: dict[str, str]) -> None:
         """Begin another tree, as far as it has come."""
-        inner = {parent(row["path"]) for row in rows}
+        shown = folded(rows)
+        inner = {parent(row["path"]) for row in shown}
         self.rows, self.statuses = rows, statuses
-        self._steps, self._leaves = set(steps(rows)), {row["path"] for row in rows} - inner
+        self._steps, self._leaves = set(steps(shown)), {row["path"] for row in shown} - inner
 
     def _conclude(self, task: Row, unix_s: float, *, recovered: bool) -> None:
         after = self.statuses | {

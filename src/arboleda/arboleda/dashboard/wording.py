@@ -5,12 +5,14 @@ from __future__ import annotations
 from functools import cache, cached_property
 from typing import Any
 
+from arboleda.model.cell_states import CellState
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.views.verb_words import page_words
 from arboleda.web.languages import FIRST, contents
 from arboleda.web.languages import LANGUAGES as LANGUAGES  # of pages
 from arboleda.web.languages.templates import Templates
 
+PACKML = frozenset(CellState)
 ENDS = ("cell_state", "reason", "task_state")  # of a name in two of them the last one says it
 REASONS = "reasons"  # of drivers, which are words and no phrases
 SENTENCES = "sentences"  # the plant's sentences by key; English ones are in its phrases
@@ -23,7 +25,7 @@ class Words:
         self.language = language
         self._sentences: dict[str, str] = tree.get(SENTENCES, {})
         self._known: dict[Sentence, str] = {}
-        reasons = {} if language == FIRST else contents(language, REASONS)
+        reasons = contents(language, REASONS)
         self._reasons = Templates(reasons, of_devices=reasons)
         self.flat = {**_texts(english), **_texts(tree)}
 
@@ -40,9 +42,13 @@ class Words:
         return self.flat.get(f"{group}.{word}", word)
 
     def cell(self, state: str) -> str:
-        """The word for a state of a cell; a plain one, with PackML's in parentheses, if the page has one."""
-        word, plain = self.of("cell_state", state), self.flat.get(f"cell_plain.{state}")
-        return word if plain is None else f"{plain} ({word})"
+        """The word for a state of a cell."""
+        return self.flat.get(f"cell_plain.{state}") or self.of("cell_state", state)
+
+    def cell_pill(self, state: str) -> list[str]:
+        """The live text of a cell's state: word, state, and PackML's name of it where that is another one."""
+        word = self.cell(state)
+        return [word, state, "" if word == state or state not in PACKML else f"PackML: {state}"]
 
     @cached_property
     def ends(self) -> dict[str, str]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from arboleda.dashboard.wording import REASONS
+from arboleda.web.languages import FIRST, contents
 from arboleda_proofs.campaigns.words import fault_words
 from arboleda_proofs.simulator.faults import Fault
 
 LONG_S = 3600.0  # of a fault that outlasts every trial
-BOARD_WORDS = {"atasco": "jammed", "sin_aire": "no air", "ocupado": "busy", "condicion": "its condition"}
+BOARD_WORDS = contents(FIRST, REASONS)
 
 
 def task_is(task: str, end: str) -> str:

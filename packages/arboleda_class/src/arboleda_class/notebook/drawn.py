@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from html import escape
 from typing import Any, NamedTuple
 
 from py_trees.behaviour import Behaviour
 
 from arboleda.dashboard.wording import words
+from arboleda.drawing.folding import folded
 from arboleda.drawing.picture import Picture, Word, picture
 from arboleda.drawing.svg import svg
 from arboleda.drawing.words import outline
+from arboleda.model.sentence import Sentence
 from arboleda.views import tree_view
 from arboleda.web.languages import FIRST, texts
+from arboleda_class.lessons import said_in
 from arboleda_proofs.campaigns.from_above import HEIGHT, WIDTH, Scene, as_svg
 
 TOLD = ("name", "feedback")  # of a row of a tree: sentences of the plant
@@ -32,8 +36,8 @@ class Drawing:
     def of_tree(cls, tree: Behaviour | Sequence[dict[str, Any]], *, language: str = FIRST) -> Drawing:
         """The drawing of any tree of py_trees, as one of your own; or of its rows."""
         rows = tree_view.rows(tree, 0.0) if isinstance(tree, Behaviour) else tree
-        say = words(language).say
-        translated = [{**row, **{key: say(row[key] or "") for key in TOLD}} for row in rows]
+        say = partial(_said, language)
+        translated = [{**row, **{key: say(row[key] or "") for key in TOLD}} for row in folded(rows)]
         return cls(svg(picture(translated)), outline(translated, statuses=True))
 
     @classmethod
@@ -59,6 +63,12 @@ class Drawing:
         return self.text
 
     __repr__ = __str__
+
+
+def _said(language: str, text: Sentence | str) -> str:
+    """A name of a plant or of a lesson, in a language."""
+    said = words(language).say(text)
+    return said_in(language, said) if said == str(text) else said
 
 
 PAPER = '<rect width="100%" height="100%" fill="#ffffff"/>'

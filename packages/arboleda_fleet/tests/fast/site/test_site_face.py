@@ -79,7 +79,7 @@ def test_the_sum_counts_plants_tasks_and_oee_over_all() -> None:
     said, state = face(plants, words("en"))["text/sum"]
     assert state == "offline"
     assert said.split(" · ") == [
-        *("plants: 3", "idle: 1", "working (execute): 1", "no answer: 1"),
+        *("plants: 3", "idle: 1", "working: 1", "no answer: 1"),
         *("1 running, 1 waiting", "12 done, 2 failed", "OEE 70 %"),
     ]
     assert face(plants, words("en"))["text/title"] == ["⚠ c - Site", "trouble"]

@@ -89,7 +89,7 @@ def test_plants_are_shown_lead_to_their_pages_take_tasks_and_are_stopped(page: A
 
     page.click("#stop")
     page.wait_for_selector(f"#answer[data-s=bad]:has-text('SIN PARAR'):has-text('{NOBODY}')")
-    page.wait_for_selector(row("arboleda", "parada (abortada)"))
+    page.wait_for_selector(row("arboleda", "parada"))
     assert all(cell["state"] == "aborted" for cell in PlantClient(state).status()["cells"])
     page.click("[data-row=arboleda] [data-act=stop]")
     page.wait_for_selector("#answer[data-s=good]:has-text('arboleda ha recibido el paro')")

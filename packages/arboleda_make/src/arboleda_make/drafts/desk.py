@@ -223,7 +223,7 @@ class DraftDesk(DraftApi):
         if self._editor is None:
             raise DraftRefused(NOBODY)
         if self._editor.id != editor:
-            raise DraftRefused(OTHER.format(name=plain(self._editor.name), since=self._editor.since))
+            raise DraftRefused(OTHER.format(name=plain(self._editor.name), since=_hour(self._editor.since)))
         if owns and not self._folder.is_ours:
             raise DraftRefused(NOT_OURS)
 
@@ -271,3 +271,8 @@ def _digest(draft: Draft) -> str:
 
 def _now() -> str:
     return datetime.now(timezone.utc).isoformat(timespec="seconds")
+
+
+def _hour(at: str) -> str:
+    """Hour and minute of such a time, in this machine's time zone."""
+    return datetime.fromisoformat(at).astimezone().strftime("%H:%M")

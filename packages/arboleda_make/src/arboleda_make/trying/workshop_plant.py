@@ -24,7 +24,8 @@ from arboleda.views import forms, tree_view
 from arboleda.web.languages import texts
 from arboleda_make.editing import carry, desk
 from arboleda_make.editing.operations import Operation
-from arboleda_proofs.simulator.faults import ON_ONE_HOST
+from arboleda_proofs.campaigns.proof.single_faults import possible_kinds
+from arboleda_proofs.simulator.faults.titles import title
 
 Row = dict[str, Any]
 UNREAD = "the draft cannot be read yet; its problems say why"
@@ -61,8 +62,8 @@ class WorkshopPlant:
 
     def faults(self) -> list[Row]:
         """The kinds of faults that can befall this plant, with what each is."""
-        kinds = (each for each in ON_ONE_HOST.values() if each.weight and each.targets(self._read))
-        return [{"name": each.name, "about": each.sentence} for each in kinds]
+        kinds = (each for each in possible_kinds() if each.targets(self._read))
+        return [{"name": each.name, "title": title(each.name), "about": each.sentence} for each in kinds]
 
     def palette(self, cell: str, words: Mapping[str, str]) -> list[Row]:
         """As `PlantApi.palette`."""

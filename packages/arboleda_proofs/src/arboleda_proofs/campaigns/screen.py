@@ -67,6 +67,11 @@ def ends_of(console: Console) -> Callable[[str], str]:
     return console.end if isinstance(console, SpeakingConsole) else str
 
 
+def say_of(console: Console) -> Callable[[str], str]:
+    """The function that says a line in the language of this console."""
+    return console.say if isinstance(console, SpeakingConsole) else str
+
+
 def waiting(console: SpeakingConsole, doing: str) -> AbstractContextManager[object]:
     """A line in a terminal that says so, for as long as it takes."""
     return console.status(Text(console.say(doing))) if console.is_terminal else nullcontext()

@@ -6,6 +6,7 @@ from collections.abc import Collection
 
 from arboleda.model.counting import counted
 from arboleda_proofs.simulator.faults import Fault
+from arboleda_proofs.simulator.faults.titles import FORMS, title
 
 
 def seeds(done: Collection[int]) -> str:
@@ -27,3 +28,14 @@ def fault_words(fault: Fault) -> str:
     much = f"{fault.amount:g}" if fault.amount else ""
     lasting = f"for {fault.seconds:.3f} s" if fault.seconds else ""
     return "  ".join(part for part in (fault.kind, fault.target, fault.word, much, lasting) if part)
+
+
+def fault_said(fault: Fault) -> str:
+    """The fault by its name for people: whom it befalls, how, and for how long; without its time."""
+    forms = (
+        "" if (fault.kind, fault.word) in FORMS else fault.word,
+        f"{fault.amount:g}" if fault.amount else "",
+    )
+    how = ", ".join(filter(None, forms))
+    lasting = f", for {fault.seconds:.3f} s" if fault.seconds else ""
+    return f"{fault.target}: {title(fault.kind, fault.word)}{f' ({how})' if how else ''}{lasting}"

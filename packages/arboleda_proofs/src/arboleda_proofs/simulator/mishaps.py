@@ -10,6 +10,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase, Sentence
 
 from .faults import KINDS, OF_BOARDS, Fault
+from .faults.titles import title
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,40 +61,40 @@ def _possible(model: PlantModel, fault: Fault) -> bool:
 
 def _mishap(
     name: str,
-    english: str,
     *faults: tuple[str, str],
+    english: str = "",
     lasts: bool = True,
     amount: float = 0.0,
     longer: str = "",
 ) -> Mishap:
-    phrase = Phrase(f"mishap.{name}", english)
+    phrase = Phrase(f"mishap.{name}", english or title(*faults[0]))
     return Mishap(name=name, phrase=phrase, faults=faults, lasts=lasts, amount=amount, longer=longer)
 
 
 MISHAPS = {
     each.name: each
     for each in (
-        _mishap("reboot", "Reboot its board", ("reboot", "will"), lasts=False, longer="no_power"),
-        _mishap("cut_link", "Cut its link", ("partition", "up, lost"), ("partition", "down, lost")),
-        _mishap("slow_link", "Slow its link down", ("delay", "up"), ("delay", "down"), amount=0.7),
-        _mishap("no_power", "Take its power away", ("brown_out", "")),
-        _mishap("freeze", "Freeze its board", ("board_stall", "")),
-        _mishap("driver_alarm", "Alarm of its motor driver", ("driver_alarm", "")),
-        _mishap("lost_part", "Lose the part", ("lost_part", ""), lasts=False),
-        _mishap("no_part", "No part there to take", ("no_part", "")),
-        _mishap("no_grip", "Grip beside the part", ("no_grip", "")),
-        _mishap("stuck_effector", "The effector sticks", ("stuck_effector", "")),
-        _mishap("opened_effector", "Somebody opens its effector", ("opened_effector", ""), lasts=False),
-        _mishap("lost_steps", "An axis slips", ("lost_steps", "q1"), lasts=False, amount=40.0),
-        _mishap("jam", "It jams", ("gives_up", "atasco")),
-        _mishap("busy", "It refuses its orders", ("refuses", "ocupado")),
-        _mishap("slow", "It takes 5 s longer", ("ends_late", ""), amount=5.0),
-        _mishap("never_ends", "It never ends", ("never_ends", "")),
-        _mishap("only_says_done", "It says done and does nothing", ("only_says_done", "")),
-        _mishap("opened_device", "Somebody takes out what it holds", ("opened_device", ""), lasts=False),
-        _mishap("broker_restart", "It restarts", ("broker_restart", "")),
-        _mishap("bridge_restart", "It restarts", ("bridge_restart", "")),
-        _mishap("plant_crash", "It dies and starts again", ("plant_crash", ""), lasts=False),
+        _mishap("reboot", ("reboot", "will"), lasts=False, longer="no_power"),
+        _mishap("cut_link", ("partition", "up, lost"), ("partition", "down, lost")),
+        _mishap("slow_link", ("delay", "up"), ("delay", "down"), amount=0.7),
+        _mishap("no_power", ("brown_out", "")),
+        _mishap("freeze", ("board_stall", "")),
+        _mishap("driver_alarm", ("driver_alarm", "")),
+        _mishap("lost_part", ("lost_part", ""), lasts=False),
+        _mishap("no_part", ("no_part", "")),
+        _mishap("no_grip", ("no_grip", "")),
+        _mishap("stuck_effector", ("stuck_effector", "")),
+        _mishap("opened_effector", ("opened_effector", ""), lasts=False),
+        _mishap("lost_steps", ("lost_steps", "q1"), lasts=False, amount=40.0),
+        _mishap("jam", ("gives_up", "atasco")),
+        _mishap("busy", ("refuses", "ocupado")),
+        _mishap("slow", ("ends_late", ""), english="It takes 5 s longer", amount=5.0),
+        _mishap("never_ends", ("never_ends", "")),
+        _mishap("only_says_done", ("only_says_done", "")),
+        _mishap("opened_device", ("opened_device", ""), lasts=False),
+        _mishap("broker_restart", ("broker_restart", "")),
+        _mishap("bridge_restart", ("bridge_restart", "")),
+        _mishap("plant_crash", ("plant_crash", ""), lasts=False),
     )
 }
 

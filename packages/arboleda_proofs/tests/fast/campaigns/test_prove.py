@@ -105,7 +105,7 @@ def test_what_holds_is_said_of_every_run(
     assert prove("--fault", "refuses", "--fault", "lying_fact", "--all-instants", "--json", out) == 0
     said = capsys.readouterr().out
     assert "HELD: all 30 runs, every single fault of 2 kinds at every instant" in said
-    assert "lying_fact lamp: lamp.lit is false, not true (its board had not said so)" in said
+    assert "lamp: It tells a false value: lamp.lit is false, not true (its board had not said so)" in said
     assert "a question may: lamp.test()" in said
     found = summary(plant)
     assert found["runs"] == {"done": 30, "of": 30, "represented": 30} and found["complete"]
@@ -144,7 +144,7 @@ def test_a_recipe_that_gives_up_in_silence_is_found_and_its_test_fails_alike(
     assert "shine" in page.read_text().partition("The tree when it broke")[2]
     said = capsys.readouterr().out
     assert "lamp.lit is false, not true (the plant was told: a check would notice)" in said
-    assert "breaks recipes_end_as_they_say" in said and "BROKEN: 1 breach" in said
+    assert "bench breaks a rule" in said and "BROKEN: 1 breach" in said
     namespace: dict[str, Any] = {}
     exec(tests.read_text(), namespace)
     (written,) = [each for name, each in namespace.items() if name.startswith("test_")]
@@ -347,7 +347,9 @@ def test_a_test_tells_what_breaks_a_recipe(plant: Path) -> None:
     (plant.parent / "small.py").write_text(QUIET)
     sim = Sim(plant.parent)
     sim.plant("small.yaml")
-    with pytest.raises(AssertionError, match=r"(?s)bench breaks recipes_end_as_they_say.*the fault: refuses"):
+    with pytest.raises(
+        AssertionError, match=r"(?s)bench breaks recipes_end_as_they_say.*the fault: lamp: It refuses"
+    ):
         sim.prove("shine", "refuses")
     with pytest.raises(ArboledaError, match="'rain' is not a kind of fault"):
         sim.prove("shine", "rain")

@@ -94,7 +94,7 @@ class DraftCells:
     """Cells of the draft."""
 
     cells: Annotated[list[dict[str, Any]], "Name, devices, targets, carriers, recipes."]
-    faults: Annotated[list[dict[str, str]], "The kinds that can befall it: name, about."]
+    faults: Annotated[list[dict[str, str]], "The kinds that can befall it: name, title, about."]
     problems: Annotated[list[str], "Where there are some, the cells are those of before."]
 
 

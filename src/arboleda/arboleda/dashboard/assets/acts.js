@@ -65,15 +65,15 @@ export async function stop(of) {
   const button = document.getElementById("stop");
   question.dismiss();
   button.dataset.s = "asked";
-  answer(words.stopping, false);
+  answer(words.stopping, false, true);
   const second = new SecondWay(of);
   try {
     const sent = await fetch(`/api/${stopOf(of)}/stop`, { method: "POST", keepalive: true, signal: AbortSignal.timeout(PATIENCE_MS) });
     second.forget();
-    answer((await sent.json()).sentence ?? words.stop_heard, sent.ok);
+    answer((await sent.json()).sentence ?? words.stop_heard, sent.ok, true);
   } catch {
     second.go();
-    if (!isUnderWay()) answer(words.stop_lost, false);
+    if (!isUnderWay()) answer(words.stop_lost, false, true);
   } finally {
     delete button.dataset.s;
   }

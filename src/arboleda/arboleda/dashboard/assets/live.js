@@ -29,10 +29,11 @@ export function split(key) {
   return [key.slice(0, at), key.slice(at + 1)];
 }
 
-function applyText(name, [text, state]) {
+function applyText(name, [text, state, about]) {
   for (const element of document.querySelectorAll(`[data-live="${CSS.escape(name)}"]`)) {
     if (element.textContent !== text) element.textContent = text;
     element.dataset.s = state;
+    if (about !== undefined) element.title = about;
     if (element.dataset.ofTask) element.href = ofTask(element.dataset.ofTask, state);
   }
 }

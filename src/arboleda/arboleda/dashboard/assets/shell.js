@@ -20,8 +20,12 @@ export function start() {
   document.querySelector(".cells")?.addEventListener("pointerleave", inOrder);
 }
 
+let isOfPart = false; // whether the answer goes away when its part of the page is left
+
 // A line below the header; `good` is false where the sentence is one of trouble, null where that is not known.
-export function answer(sentence, good) {
+// An answer about a stop `stays`, wherever one goes.
+export function answer(sentence, good, stays = false) {
+  isOfPart = !stays;
   const line = document.getElementById("answer");
   line.textContent = sentence;
   line.dataset.s = good === null ? "open" : good ? "good" : "bad";
@@ -37,7 +41,11 @@ export function settled({ tab, cell, task, lang }) {
   return true;
 }
 
+let part = null;
+
 export function showPart(chosen) {
+  if (part && part !== chosen && isOfPart) answer("", true);
+  part = chosen;
   all("[data-part]").forEach((part) => (part.hidden = part.dataset.part !== chosen));
   all("[data-tab]").forEach((tab) => (tab.dataset.tab === chosen ? tab.setAttribute("aria-current", "page") : tab.removeAttribute("aria-current")));
 }

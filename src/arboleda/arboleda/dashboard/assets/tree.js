@@ -98,7 +98,9 @@ function drawNode(one, node, [x, y, w]) {
   const sign = make("path", { class: "sign", transform: `translate(15 ${HEIGHT / 2})` });
   const name = make("text", { x: 28, y: HEIGHT / 2 + 4.5 });
   name.textContent = node.label;
-  group.append(make("rect", { width: w, height: HEIGHT, rx: round }), sign, name);
+  const about = make("title", {});
+  about.textContent = node.about;
+  group.append(about, make("rect", { width: w, height: HEIGHT, rx: round }), sign, name);
   Object.assign(one.nodes.get(node.path), { group, sign, name: node.name });
   return group;
 }

@@ -2,7 +2,7 @@
 
 | key | value | on the page |
 |---|---|---|
-| `text/<name>` | [text, state] | every element with `data-live="<name>"` |
+| `text/<name>` | [text, state], at times with a tooltip | every element with `data-live="<name>"` |
 | `bar/<name>` | share from 0 to 1 | how full a bar is |
 | `rows/<list>` | [row, ...] | which rows a list has, in order |
 | `row/<list>/<row>` | {state, cell, texts, acts} | one row |

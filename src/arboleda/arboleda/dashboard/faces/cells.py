@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
+from arboleda.drawing.folding import folded, shown_at, small_steps
 from arboleda.drawing.layout import parent
 from arboleda.model.messages import Outcome
 from arboleda.views.view import devices_once, standing
@@ -46,12 +48,12 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
     failed = task is not None and task["state"] == "failed"
     state = "failed" if stands == "idle" and failed else stands
     return {
-        f"text/{name}.state": [words.cell(stands), stands],
+        f"text/{name}.state": words.cell_pill(stands),
         f"text/{name}.cause": [_cause(words, cell, task, memory), "failed" if failed else ""],
         f"text/{name}.report": _report(words, cell, task),
         f"text/{name}.failure": [words("record.link") if name in moment.failed else "", ""],
         **_ways(words, cell),
-        f"text/{name}.task": [_task_line(moment, task), task["state"] if task else "none"],
+        f"text/{name}.task": _task_line(moment, cell, task),
         f"text/{name}.step": [words.say(cell["step"]) if cell["step"] else "", stands],
         f"text/{name}.feedback": [_feedback(words, cell, leaf), ""],
         f"text/{name}.elapsed": [seconds(cell["task"]["elapsed_s"]) if cell["task"] else "", ""],
@@ -84,19 +86,19 @@ def _last_answers(moment: Moment, cell: Row, devices: list[Row]) -> Face:
 
 
 def _cause(words: Words, cell: Row, task: Row | None, memory: TreeMemory) -> str:
-    """The reason for which the last task failed and the step it failed in, or the result of it that nobody
-    confirmed; empty once the cell is at work again.
+    """The reason for which the last task failed and the step it failed in; empty once the cell is at work
+    again.
 
     The reason for a stop is left out, as the cell itself shows it.
     """
     if task is not None and task["reason"] == "stopped" and cell["state"] in ("aborting", "aborted"):
         return ""
-    if task is None or cell["state"] == "execute":
+    if task is None or cell["state"] == "execute" or task["state"] != "failed":
         return ""
-    return failed_in(words, task, memory.rows) if task["state"] == "failed" else _remark(words, task)
+    return failed_in(words, task, memory.rows)
 
 
-def _remark(words: Words, task: Row) -> str:
+def remark(words: Words, task: Row) -> str:
     """The sentence of a task that is done about a result that nobody confirmed."""
     return words.say(task["sentence"]) if task["state"] == "done" else ""
 
@@ -130,7 +132,8 @@ def _report(words: Words, cell: Row, task: Row | None) -> list[str]:
 
 def failed_in(words: Words, task: Row, rows: list[Row]) -> str:
     """The reason for which a task failed, and the step of its tree that it failed in."""
-    step = next((row["name"] for row in rows if row["path"] == task["failed_in"]), None)
+    where = task["failed_in"] and shown_at(task["failed_in"], rows)
+    step = next((row["name"] for row in rows if row["path"] == where), None)
     why = words.say(task["sentence"])
     return why if step is None else words("cells.failed_in", step=words.say(step), why=why)
 
@@ -197,11 +200,16 @@ def _offer(words: Words, advice: Row) -> Row:
     }
 
 
-def _task_line(moment: Moment, task: Row | None) -> str:
+def _task_line(moment: Moment, cell: Row, task: Row | None) -> list[str]:
+    """The task of a card and how it ended: a warning where it is done and nobody confirmed some of it."""
+    words = moment.words
     if task is None:
-        return moment.words("cells.no_task")
-    ended = "" if task["ended_at"] is None else moment.words.of("task_state", task["state"])
-    return f"{task['text']}  {ended}".strip()
+        return [words("cells.no_task"), "none"]
+    ended = "" if task["ended_at"] is None else words.of("task_state", task["state"])
+    line, unconfirmed = f"{task['text']}  {ended}".strip(), remark(words, task)
+    if unconfirmed and cell["state"] != "execute":
+        return [f"{line}, {unconfirmed}", "warning"]
+    return [line, task["state"]]
 
 
 def _last_task(moment: Moment, memory: TreeMemory) -> Row | None:
@@ -273,21 +281,30 @@ def tree_face(
     title: str = "",
 ) -> Face:
     """The face of a tree under this name; `leaf` is the path of the running leaf, `rests` for a held cell."""
+    rows, inside = folded(tree.rows), small_steps(tree.rows)
+    current = leaf and shown_at(leaf, tree.rows)
     nodes = [
         {
             "path": row["path"],
             "name": words.say(row["name"]),
             "label": label(row["name"], row["kind"], words),
             "kind": row["kind"],
-            "about": row["description"] or words.of("kind", row["kind"]),
+            "about": _about(words, row, inside.get(row["path"], ())),
         }
-        for row in tree.rows
+        for row in rows
     ]
-    drawn = drawing(tuple((row["path"], row["name"], row["kind"]) for row in tree.rows), words)
+    drawn = drawing(tuple((row["path"], row["name"], row["kind"]) for row in rows), words)
     found: Face = {f"tree/{name}": {"task": tree.task, "title": title or name, "nodes": nodes, **drawn}}
-    for row in tree.rows:
-        found[f"node/{name}/{row['path']}"] = _node(words, row, tree, leaf, rests=rests)
+    for row in rows:
+        found[f"node/{name}/{row['path']}"] = _node(words, row, tree, current, rests=rests)
     return found
+
+
+def _about(words: Words, row: Row, inside: Sequence[Row]) -> str:
+    """What a node does, and the small steps that it shows."""
+    about = row["description"] or words.of("kind", row["kind"])
+    steps = ", ".join(words.say(each["name"]) for each in inside)
+    return f"{about} {words('node.inside', steps=steps)}".strip() if steps else about
 
 
 def _node(words: Words, row: Row, tree: TreeMemory | EndedTree, leaf: str | None, *, rests: bool) -> Row:

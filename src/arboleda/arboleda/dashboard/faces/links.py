@@ -86,7 +86,6 @@ def _row(moment: Moment, robot: Row, cell: str, position: str | None) -> Row:
             "" if position is None else _yes_or_no(moment, robot["homed"]),
             says(words, robot),
             command(moment, robot),
-            str(robot["boot_id"]) if robot["boot_id"] is not None else "",
             _refused(moment, robot),
         ],
     }

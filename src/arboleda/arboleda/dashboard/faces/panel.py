@@ -20,7 +20,7 @@ def face(moment: Moment) -> Face:
     found: Face = {}
     for cell in moment.snapshot["cells"]:
         name = cell["name"]
-        found[f"text/scope.{name}"] = [moment.words.cell(standing(cell)), standing(cell)]
+        found[f"text/scope.{name}"] = moment.words.cell_pill(standing(cell))
         found[f"text/advice.{name}"] = [trouble(moment, cell), standing(cell)]
         found[f"text/suggested.{name}"] = [" ".join(suggested(cell)), ""]
     cells = moment.snapshot["cells"]

@@ -8,7 +8,7 @@ from arboleda.store.task_rows import TaskRow, answers_of, choice_of, sentence_of
 
 from ..tree_memory import EndedTree
 from . import Face, answers
-from .cells import failed_in, tree_face
+from .cells import failed_in, remark, tree_face
 from .moment import Moment, dated, seconds
 from .tasks import why
 
@@ -24,15 +24,16 @@ def face(moment: Moment, id: str, tree: EndedTree | None, kept: TaskRow | None =
         task = _past(moment, kept)
     words = moment.words
     if task is None:
-        title, state, when, cause = f"#{id}", ["", ""], "", ""
+        title, state, when, cause, tone = f"#{id}", ["", ""], "", "", ""
     else:
         title, state = f"{task['text']} #{id}", [words.of("task_state", task["state"]), task["state"]]
         when, cause = _when(moment, task), _cause(moment, task, tree)
+        tone = "warning" if remark(words, task) else task["state"]
     return {
         "text/task.title": [title, ""],
         "text/task.state": state,
         "text/task.when": [when, ""],
-        "text/task.cause": [cause, state[1]],
+        "text/task.cause": [cause, tone],
         "text/task.choice": [_choice(moment, task), ""],
         "text/task.note": [words("task.past") if is_past else _note(moment, task, tree), ""],
         "text/task.record": [words("record.look") if _ended_here(task, kept=is_past) else "", ""],

@@ -19,6 +19,7 @@ ADDRESS, BRIEF = r"\S*[\d./:]\S*", 16  # of a device; letters of a text that may
 LETTER = re.compile(r"[^\W\d_]")
 BEFORE, AFTER = "before", "after"  # what a template follows, and what follows it
 END = "end"  # begins the names of slots for an end of a task or for its cause, by the plant's own word
+INDENT = "  "  # before a line that stands by itself
 LONGEST = 2000  # characters of a line that is looked at
 DEEPEST = 12  # texts in texts
 MOST_KNOWN = 5000  # texts that are kept
@@ -35,19 +36,20 @@ Part = Callable[[str, str], str]
 class Template:
     """An English text with {slots}, and the same text in another language.
 
-    One that begins with a blank, a comma or a semicolon may stand behind another text; one that ends with a
+    One that begins with one blank, a comma or a semicolon may stand behind another text; one that ends with a
     blank, before another.
     """
 
     def __init__(self, english: str, other: str, *, of_devices: bool = False) -> None:
-        behind, ahead = english[:1] in (" ", ",", ";"), english[-1:] == " "
+        is_line = english.startswith(INDENT)
+        behind, ahead = not is_line and english[:1] in (" ", ",", ";"), english[-1:] == " "
         self._english, self._other = (
             [*([("", BEFORE)] if behind else []), *_pieces(text), *([("", AFTER)] if ahead else [])]
             for text in (english, other)
         )
         self._literals = [text for text, _ in self._english if text]
         self.letters = sum(len(LETTER.findall(text)) for text in self._literals)
-        self._punctuated = any(sign in text for text in self._literals for sign in ",;:()")
+        self._punctuated = is_line or any(sign in text for text in self._literals for sign in ",;:()")
         is_brief = self.letters < BRIEF and not self._punctuated
         self._begins_with_address = of_devices and is_brief and english.startswith("{0} ")
         self.words = _whole_words(self._english)  # between blanks, in every text of this template

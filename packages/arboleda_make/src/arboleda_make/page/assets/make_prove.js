@@ -18,7 +18,7 @@ export function start() {
 function offer() {
   const names = [...new Set(draft.cells.flatMap(({ recipes }) => recipes.map(({ name }) => name)))];
   options(box("prove_recipe"), [["", words.make_what_differs], ...names.map((name) => [name])]);
-  options(box("prove_kind"), [["", words.make_everything], ...draft.faults.map(({ name }) => [name])]);
+  options(box("prove_kind"), [["", words.make_everything], ...draft.faults.map(({ name, title }) => [name, title])]);
 }
 
 // The recipes that are others than at work: those whose file differs; all, where the plant file has more than another
@@ -82,7 +82,7 @@ function drawn() {
   const parts = [
     ...section(words.make_nobody_notices, unnoticed.map(unnoticedRow)),
     ...section(words.make_breaches, breaches.map(breachRow)),
-    ...section(words.make_without_faults, unsound.map(({ task, without_faults: { end, cause, broken } }) => element("li", `${task}: ${broken ? broken.join(": ") : `${end} ${cause}`}`))),
+    ...section(words.make_without_faults, unsound.map(({ task, without_faults: { end, cause, broken } }) => element("li", `${task}: ${broken ? broken[1] : `${end} ${cause}`}`))),
     ...table.map(tableOf),
     link,
   ];
@@ -98,18 +98,20 @@ function section(title, items) {
 
 function unnoticedRow(row) {
   const { task, fault, outcome, instant, runs } = row;
-  const made = element("li", `${task}: ${fault.kind} ${fault.target}: ${outcome.untrue.join("; ")} (${runs}; ${instant}) `);
+  const made = element("li", `${task}: ${named(fault)}: ${outcome.untrue.join("; ")} (${runs}; ${instant}) `);
   made.append(about(fault), storyButton(row), " ", button(words.make_find_check, { findCheck: JSON.stringify(wanted(row)) }));
   return made;
 }
 
 function breachRow(row) {
-  const made = element("li", `${row.task}: ${row.fault.kind} ${row.fault.target}: ${row.invariant}: ${row.seen} (${row.runs}; ${row.instant}) `);
+  const made = element("li", `${row.task}: ${named(row.fault)}: ${row.seen} (${row.runs}; ${row.instant}) `);
   made.append(about(row.fault), storyButton(row));
   return made;
 }
 
-// What such a fault is, in words.
+// A fault by its name, and what it is in words.
+const titleOf = (kind) => draft.faults.find(({ name }) => name === kind)?.title ?? kind;
+const named = ({ kind, target }) => `${target}: ${titleOf(kind)}`;
 const about = ({ kind }) => element("p", draft.faults.find(({ name }) => name === kind)?.about ?? "", { class: "hint" });
 
 const storyButton = (row) => button(words.make_play, { playStory: JSON.stringify(wanted(row)) });
@@ -158,7 +160,7 @@ export function tableOf({ cell, recipe, faults }) {
   made.append(head);
   for (const [kind, row] of Object.entries(faults)) {
     const line = element("tr");
-    line.append(element("th", kind, { scope: "row" }));
+    line.append(element("th", titleOf(kind), { scope: "row" }));
     line.append(...[row.runs, ...ENDS.map((end) => row.ends[end] ?? 0), row.unnoticed, row.broken].map((each) => element("td", each ? `${each}` : "")));
     made.append(line);
   }

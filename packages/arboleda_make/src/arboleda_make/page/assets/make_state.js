@@ -78,7 +78,7 @@ export async function inWords(lines) {
   return lines.map((line) => known.get(line) ?? line);
 }
 
-const FOUND = ["about", "broken", "cause", "problems", "restart", "seen", "sentence", "untrue", "warnings", "why"];
+const FOUND = ["about", "broken", "cause", "problems", "restart", "seen", "sentence", "title", "untrue", "warnings", "why"];
 
 // An answer whose texts on what was found, those of these keys and `more`, are in the language of the page.
 export async function spoken(answer, ...more) {

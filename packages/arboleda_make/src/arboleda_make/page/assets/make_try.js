@@ -70,15 +70,15 @@ export async function ended(what, progress, says) {
 }
 
 function shown({ task, outcome, why, faults, instants, possible }) {
-  const befell = faults.map(({ kind, target }) => `${kind} ${target}`).join(", ");
+  const befell = faults.map(({ title, target }) => `${target}: ${title}`).join(", ");
   const how = [outcome.end, outcome.cause].filter(Boolean).join(": ");
   const untrue = outcome.untrue.length ? ` ${fill(words.make_unnoticed, { what: outcome.untrue.join("; ") })}` : "";
-  const broken = outcome.broken ? ` ${outcome.broken.join(": ")}` : "";
+  const broken = outcome.broken ? ` ${outcome.broken[1]}` : "";
   says(`${task}${befell ? ` + ${befell}` : ""}: ${how}${why ? ` (${why})` : ""}${untrue}${broken}`);
   box("tried").hidden = false;
   box("fault-form").hidden = !possible.length;
   const chosen = box("fault").value;
-  options(box("fault"), possible.map(({ kind, target, word }, n) => [`${n}`, [kind, target, word].filter(Boolean).join(" ")]), chosen);
+  options(box("fault"), possible.map(({ title, target }, n) => [`${n}`, `${target}: ${title}`]), chosen);
   options(box("instant"), instants.map(({ at, name }) => [`${at}`, name]));
   about();
 }

@@ -21,6 +21,7 @@ from arboleda_proofs.campaigns.proof.scenario import Scenario, alone
 from arboleda_proofs.campaigns.proof.single_faults import OTHER_FORMS, single_faults
 from arboleda_proofs.campaigns.proof.stage import ASKED_AT_S, Stage
 from arboleda_proofs.simulator.faults import KINDS, Fault
+from arboleda_proofs.simulator.faults.titles import title
 
 from .process import errand, write
 
@@ -75,7 +76,7 @@ def _possible(model: PlantModel, cell: Cell, instants: Sequence[Instant]) -> Ite
 
 
 def _fault(fault: Fault) -> dict[str, Any]:
-    """A fault as plain data, with what it is in words."""
+    """A fault as plain data, with its name and what it is in words."""
     return {
         "kind": fault.kind,
         "at": fault.at,
@@ -83,6 +84,7 @@ def _fault(fault: Fault) -> dict[str, Any]:
         "target": fault.target,
         "amount": fault.amount,
         "word": fault.word,
+        "title": title(fault.kind, fault.word),
         "about": KINDS[fault.kind].sentence,
     }
 

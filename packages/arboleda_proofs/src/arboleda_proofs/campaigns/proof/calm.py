@@ -159,7 +159,7 @@ def run_findings(calm: Calm) -> Iterator[PlantFinding]:
     """The findings of a run without faults, and of the same task once more."""
     outcome, task = calm.run.outcome, calm.scenario.name
     if not calm.is_sound:
-        words = ": ".join(outcome.broken) if outcome.broken else calm.finding or outcome.words
+        words = outcome.broken[1] if outcome.broken else calm.finding or outcome.words
         yield PlantFinding(source=Source.RUN, sentence=f"{task}: {words}", task=task)
     elif calm.again:
         yield PlantFinding(source=Source.RUN, sentence=f"{task}, once more: {calm.again}", task=task)

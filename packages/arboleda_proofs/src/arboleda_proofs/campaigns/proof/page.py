@@ -10,11 +10,14 @@ from typing import Any
 
 from arboleda.dashboard.findings import findings
 from arboleda.dashboard.wording import Words, words
+from arboleda.drawing.folding import folded
 from arboleda.drawing.words import outline
 from arboleda.web.languages import FIRST, LANGUAGES, texts
+from arboleda_proofs.simulator.faults.titles import title
 
 from ..from_above import as_svg
-from ..words import fault_words
+from ..setting import rules
+from ..words import fault_said
 from .calm import Calm
 from .checks import Check, checks
 from .instants import Instant
@@ -61,10 +64,10 @@ def page(proof: ProofPage) -> str:
     """The content of the file."""
     hidden = ",".join(f"html[lang={each}] body [lang]:not([lang={each}])" for each in LANGUAGES)
     names = " / ".join(escape(texts(each, "page")["name"]) for each in LANGUAGES)
-    title = escape(texts(FIRST, PART)["title"].format(plant=proof.name))
+    head = escape(texts(FIRST, PART)["title"].format(plant=proof.name))
     return "\n".join(
         [
-            f'<!doctype html><html lang="{FIRST}"><head><meta charset="utf-8"><title>{title}</title>',
+            f'<!doctype html><html lang="{FIRST}"><head><meta charset="utf-8"><title>{head}</title>',
             f'<meta name="viewport" content="width=device-width"><meta http-equiv="Content-Security-Policy" '
             f'content="{POLICY}"><style>{STYLE}\n{hidden}{{display:none}}</style></head><body>',
             f'<button id="language">{names}</button>',
@@ -101,7 +104,7 @@ def _amount(proof: ProofPage) -> Iterator[str]:
     represented = f"{proof.tally.proof.represented:,}"
     amount = _each(shown, done=f"{done:,}", total=f"{proof.total:,}", share=share, represented=represented)
     kinds = proof.tally.proof.kinds
-    only = f" {_each('kinds', kinds=', '.join(kinds))}" if kinds else ""
+    only = f" {_kinds(kinds)}" if kinds else ""
     alone = _each("alone", share=f"{proof.tally.alone:.1%}") if done else ""
     yield f"<p>{amount}{only} {alone}</p>"
     if proof.pairs is not None:
@@ -109,10 +112,17 @@ def _amount(proof: ProofPage) -> Iterator[str]:
         yield f"<p>{_each('pairs', **counts)}</p>"
 
 
+def _kinds(kinds: Sequence[str]) -> str:
+    """The kinds of faults that were tried alone, in every language."""
+    named = {each: ", ".join(findings(each)(title(kind)) for kind in kinds) for each in LANGUAGES}
+    said = ((each, texts(each, PART)["kinds"].format(kinds=names)) for each, names in named.items())
+    return "".join(f"<span lang={each}>{escape(text)}</span>" for each, text in said)
+
+
 def _calm(calm: Calm) -> str:
     name, outcome = escape(calm.scenario.name), calm.run.outcome
     if outcome.broken is not None:
-        return f"<li class=bad>{name}: {escape(outcome.broken[0])}: {_found(outcome.broken[1])}</li>"
+        return f"<li class=bad>{name}: {_found(outcome.broken[1])}</li>"
     if outcome.end is End.DONE and calm.is_sound:
         again = f"; {_each('calm_again')} {_found(calm.again)}" if calm.again else ""
         return f"<li>{name}: {_each('calm_good')}{again}</li>"
@@ -130,7 +140,7 @@ def _check(check: Check) -> str:
 
 def _unnoticed(case: Case, count: int, found: Sequence[Check]) -> str:
     what = "; ".join(map(_found, case.outcome.untrue))
-    befell = _found(f"{case.scenario.name}: {fault_words(case.fault)}, {case.instant.name}")
+    befell = _found(f"{case.scenario.name}: {fault_said(case.fault)}; {case.instant.name}")
     check = "; ".join(map(_check, found)) or _each("check_none")
     like = _each("runs_like_it", count=count)
     return f"<li>{what}<br>{check}<br><span class=quiet>{befell} ({like})</span></li>"
@@ -139,7 +149,7 @@ def _unnoticed(case: Case, count: int, found: Sequence[Check]) -> str:
 def _unmended(case: Case, count: int) -> str:
     acts = case.outcome.acts
     what = _each("never_ready") if acts is None else _each("acts", acts=acts)
-    befell = _found(f"{case.scenario.name}: {fault_words(case.fault)}, {case.instant.name}")
+    befell = _found(f"{case.scenario.name}: {fault_said(case.fault)}; {case.instant.name}")
     return f"<li>{what}<br><span class=quiet>{befell} ({_each('runs_like_it', count=count)})</span></li>"
 
 
@@ -147,8 +157,9 @@ def _breach(breach: Breach, plant: Path | None) -> str:
     name, sentence = breach.run.outcome.broken or ("", "")
     lines = "\n".join(map(escape, breach.result.lines[-40:]))
     return (
-        f"<h3 class=bad>{escape(f'{breach.scenario.name}: {name}')}</h3><p>{_found(sentence)}<br>"
-        f"{_found(f'{breach.befell}, {breach.instant.name}')} "
+        f"<h3 class=bad>{escape(breach.scenario.name)}: {_found(rules().get(name, ''))}</h3>"
+        f"<p>{_found(sentence)}<br>"
+        f"{_found(f'{breach.befell}; {breach.instant.name}')} "
         f"({_each('runs_like_it', count=breach.count)})</p><pre>{lines}</pre>{_moment(breach.moment)}"
         f"<p>{_each('test')}</p><pre>{escape(as_tests([breach], plant))}</pre>"
     )
@@ -164,7 +175,7 @@ def _moment(moment: Moment) -> str:
 
 def _outline(moment: Moment, language: Words) -> str:
     shown = ("name", "feedback")
-    rows = [{**row, **{key: language.say(row[key] or "") for key in shown}} for row in moment.tree]
+    rows = [{**row, **{key: language.say(row[key] or "") for key in shown}} for row in folded(moment.tree)]
     return outline(rows, statuses=True)
 
 
@@ -179,12 +190,12 @@ def _table(key: RecipeKey, rows: dict[str, Row]) -> str:
 
 def _turns(kind: str, target: str, turns: Sequence[tuple[Instant, str]]) -> str:
     steps = "".join(f"<li>{_found(instant.name)}: {_ended(end)}</li>" for instant, end in turns)
-    return f"<li>{escape(f'{kind} {target}')}<ol>{steps}</ol></li>"
+    return f"<li>{_found(f'{target}: {title(kind)}')}<ol>{steps}</ol></li>"
 
 
 def _cells(kind: str, row: Row) -> Iterator[str]:
     shown = [row.ends[end.value] for end in SHOWN]
-    yield f"<td>{escape(kind)}</td>"
+    yield f"<td>{_found(title(kind))}</td>"
     for number in (row.runs, *shown, row.runs - sum(shown), row.unnoticed):
         yield f"<td>{f'{number:,}' if number else ''}</td>"
     yield f"<td class=bad>{row.broken or ''}</td><td>{row.alone / row.runs:.0%}</td>"

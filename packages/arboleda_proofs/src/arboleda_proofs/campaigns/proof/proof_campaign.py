@@ -17,7 +17,7 @@ from arboleda.plant_file.check_answer import CheckAnswer
 
 from ..campaign import Campaign, Runs
 from ..plants import notes
-from ..screen import Show, ends_of, progress
+from ..screen import Show, ends_of, progress, say_of
 from ..seed_campaign import BROKEN, HELD, INTERRUPTED
 from ..workers import Workers
 from . import proof_report, proof_summary
@@ -206,7 +206,7 @@ class ProofCampaign:
             self._console.print(line, soft_wrap=True)
         for line in proof_report.unmended_lines(tally.unmended()):
             self._console.print(line, soft_wrap=True)
-        for table in proof_report.tables(tally, ends_of(self._console)):
+        for table in proof_report.tables(tally, ends_of(self._console), say_of(self._console)):
             self._console.print(table)
         for breach in breaches:
             proof_report.story(self._console, breach)

@@ -9,6 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from arboleda.model.counting import counted
+from arboleda_proofs.simulator.faults.titles import title
 
 from .. import breach_text
 from ..setting import rules
@@ -32,7 +33,7 @@ def calm_lines(calm: Sequence[Calm], *, is_cut: bool = False) -> Iterator[Text]:
     for each in (each for each in calm if not each.is_sound):
         outcome, name = each.run.outcome, each.scenario.name
         if outcome.broken:
-            yield Text(f"{name}: breaks {outcome.broken[0]} without any fault: {outcome.broken[1]}", "red")
+            yield Text(f"{name}: breaks a rule without any fault: {outcome.broken[1]}", "red")
         elif outcome.end is End.UNFINISHED:
             sentence = f"{name}: alone it never ends, it waits for what others do: nothing is proved of it"
             yield Text(f"{sentence}{each.why and f' ({each.why})'}", "yellow")
@@ -55,11 +56,15 @@ def unnoticed_lines(tally: ProofTally) -> Iterator[Text]:
     for case, count in found[:MOST_UNNOTICED]:
         what = "; ".join(case.outcome.untrue)
         times = f"{counted(count, 'run')}, e.g. {case.instant.name}"
-        befell = f"{case.fault.kind} {case.fault.target}"
-        yield Text(f"  {case.scenario.task}: {befell}: {what}; {times}", "yellow")
+        yield Text(f"  {case.scenario.task}: {_befell(case)}: {what}; {times}", "yellow")
         yield Text(f"    {_check_words(checks(tally.proof, case))}", "dim")
     if len(found) > MOST_UNNOTICED:
         yield Text(f"  and {len(found) - MOST_UNNOTICED} more; --json has all", "yellow")
+
+
+def _befell(case: Case) -> str:
+    """Whom a fault befell, and its name: of the kind, as cases of all its forms are counted together."""
+    return f"{case.fault.target}: {title(case.fault.kind)}"
 
 
 def _check_words(found: Sequence[Check]) -> str:
@@ -80,9 +85,7 @@ def unmended_lines(found: Sequence[tuple[Case, int]]) -> Iterator[Text]:
     for case, count in found[:MOST_UNNOTICED]:
         acts = "it is never ready" if case.outcome.acts is None else f"it takes {case.outcome.acts} acts"
         times = f"{counted(count, 'run')}, e.g. {case.instant.name}"
-        yield Text(
-            f"  {case.scenario.task}: {case.fault.kind} {case.fault.target}: {acts}; {times}", "yellow"
-        )
+        yield Text(f"  {case.scenario.task}: {_befell(case)}: {acts}; {times}", "yellow")
     if len(found) > MOST_UNNOTICED:
         yield Text(f"  and {len(found) - MOST_UNNOTICED} more; --json has all", "yellow")
 
@@ -92,7 +95,7 @@ def story(console: Console, breach: Breach) -> None:
     name, sentence = breach.run.outcome.broken or ("", "")
     more = f", and {counted(breach.count - 1, 'run')} like it" if breach.count > 1 else ""
     for line, style in (
-        (f"{breach.scenario.name} breaks {name}{more}", "bold red"),
+        (f"{breach.scenario.name} breaks a rule{more}", "bold red"),
         (f"  must hold  {rules().get(name, '')}", ""),
         (f"  was seen   {sentence}", ""),
         (f"  the fault  {breach.befell}", "yellow"),
@@ -102,8 +105,8 @@ def story(console: Console, breach: Breach) -> None:
     breach_text.timeline(console, breach.result)
 
 
-def tables(tally: ProofTally, end: Callable[[str], str]) -> Iterator[Table]:
-    """A table for each recipe; `end` says a cause."""
+def tables(tally: ProofTally, end: Callable[[str], str], say: Callable[[str], str]) -> Iterator[Table]:
+    """A table for each recipe; `end` says a cause, `say` the name of a fault."""
     for (cell, recipe), rows in tally.table().items():
         table = Table(title=f"{cell}: {recipe}", title_justify="left")
         table.add_column("fault", no_wrap=True)
@@ -111,7 +114,7 @@ def tables(tally: ProofTally, end: Callable[[str], str]) -> Iterator[Table]:
             table.add_column(head, justify="right")
         table.add_column("causes")
         for kind, row in rows.items():
-            table.add_row(kind, *_cells(row, end))
+            table.add_row(say(title(kind)), *_cells(row, end))
         yield table
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.run import Result
 
-from ..words import fault_words
+from ..words import fault_said
 from .end_state import EndState
 from .instants import Instant
 from .moment import Moment
@@ -48,8 +48,8 @@ class Breach:
     @property
     def befell(self) -> str:
         """The faults in words."""
-        then = "" if self.then is None else f", then {fault_words(self.then)} at {self.then.at:.3f} s"
-        return f"{fault_words(self.fault)}{then}"
+        then = "" if self.then is None else f", then {fault_said(self.then)} at {self.then.at:.3f} s"
+        return f"{fault_said(self.fault)}{then}"
 
 
 def as_tests(breaches: Iterable[Breach], plant: Path | None) -> str:

@@ -13,6 +13,7 @@ from typing import Any
 
 from arboleda.dashboard.findings import findings
 from arboleda.dashboard.wording import Words, words
+from arboleda.drawing.folding import folded
 from arboleda.drawing.words import outline
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Sentence
@@ -137,7 +138,7 @@ def _tree(found: Incident) -> str:
 
 def _outline(found: Incident, words: Words) -> str:
     columns = ("name", "feedback")
-    rows = [{**row, **{key: words.say(row[key] or "") for key in columns}} for row in found.tree]
+    rows = [{**row, **{key: words.say(row[key] or "") for key in columns}} for row in folded(found.tree)]
     return outline(rows, statuses=True)
 
 
