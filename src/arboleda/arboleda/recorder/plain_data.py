@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, fields, is_dataclass, replace
 from enum import Enum
-from functools import cache, partial
+from functools import partial
 from operator import attrgetter
 from typing import Any
 
@@ -228,16 +228,10 @@ def _made(kind: type[Any], data: Mapping[str, Any]) -> Any:
             continue
         reader = readers.get(name)
         values[name] = reader(each) if reader is not None else each if type(each) in SAME else _value(each)
-    missing = _needed(kind) - values.keys()
+    missing = NEEDED[kind] - values.keys()
     if missing:
         raise ValueError(f"{kind.__name__} has no {min(missing)}")
     return kind(**values)
-
-
-@cache
-def _needed(kind: type[Any]) -> frozenset[str]:
-    """The fields of a dataclass that have no default."""
-    return frozenset(each.name for each in fields(kind) if each.default is MISSING)
 
 
 def _value(data: Any) -> Any:
@@ -334,3 +328,5 @@ READERS: dict[type, dict[str, Reader]] = {
     TaskAnswer: {},
     Course: {"begun": dict},
 }
+NEEDED = {kind: frozenset(each.name for each in fields(kind) if each.default is MISSING) for kind in READERS}
+"""The fields without a default of each dataclass that is read."""

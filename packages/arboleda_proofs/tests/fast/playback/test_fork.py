@@ -15,7 +15,9 @@ from arboleda.model.messages import Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.record_text import sentence_of
 from arboleda.recorder.tape import TapedPlant, recorded
+from arboleda.recorder.troubles import SILENCE, Trouble
 from arboleda_proofs.commands.fork import compared
+from arboleda_proofs.playback.fork.device_replay import befall
 from arboleda_proofs.playback.fork.plant_events import Pair
 from arboleda_proofs.playback.fork.run import ForkRequest, ForkResult, forked
 from arboleda_proofs.simulator.faults import KINDS, Fault
@@ -140,3 +142,19 @@ def test_a_plant_of_other_bits_is_not_forked() -> None:
     asked = ForkRequest(at_ns=round((START_S + 8.0) * 1e9), model=other, recorded=other)
     found = forked(run_of("undisturbed").beginning, recorded(run_of("undisturbed").tape), asked, sentence_of)
     assert found.difference is not None and found.world is None
+
+
+def test_a_fork_for_a_task_is_over_with_the_task() -> None:
+    plant = run_of("undisturbed")
+    whole, found = fork(plant, 3.2), fork(plant, 3.2, task="a")
+    assert end_of(found, "a") == end_of(whole, "a")
+    assert found.world is not None and whole.world is not None
+    assert found.world.now < whole.world.now
+
+
+def test_a_silence_shorter_than_its_margins_is_over_where_it_began() -> None:
+    world = fork(run_of("undisturbed"), 3.2).world
+    assert world is not None
+    befall(world, [Trouble(kind=SILENCE, robot="ra1", at=world.now + 1.0, seconds=0.0015)])
+    world.advance(2.0)
+    assert world.broker.clients["ra_1"].up.troubles == []

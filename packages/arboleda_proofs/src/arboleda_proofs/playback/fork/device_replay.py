@@ -66,7 +66,9 @@ def _silence(world: World, board: str, trouble: Trouble) -> None:
         line.troubles.append(lose)
 
     world.at(trouble.at + INSIDE_S, begin)
-    _later(world, max(trouble.at, trouble.ends - 2 * INSIDE_S) + INSIDE_S, lambda _: line.troubles.remove(lose))
+    _later(
+        world, max(trouble.at, trouble.ends - 2 * INSIDE_S) + INSIDE_S, lambda _: line.troubles.remove(lose)
+    )
     if trouble.cut:
         world.at(_off_at(trouble), lambda _: _present(world, board, b"0"))
         _later(world, trouble.ends, lambda _: _present(world, board, b"1"))

@@ -26,7 +26,7 @@ MOST_KEPT = 10_000  # steps, of some kB each, that are read once and not for eac
 
 @dataclass(frozen=True, kw_only=True)
 class TaskRecord:
-    """A record, its plant, and its incident of the task; `read` are the steps up to its end, if they are few."""
+    """A record, its plant, and its incident of the task; `read` are the steps up to its end, if few."""
 
     record: Record
     model: PlantModel
@@ -83,8 +83,9 @@ def _is_written(path: Path) -> bool:
 def incident_of(
     task: str, record: Record, tell: Callable[[float], None] = lambda _: None
 ) -> tuple[Incident, Sequence[RecordedStep]]:
-    """The incident of a task, from executing the record again up to the task's end, and the steps that were read;
-    none of them if they are many."""
+    """The incident of a task, from executing the record again up to the task's end, and the steps that were
+    read; none of them if they are many.
+    """
     beginning = record.first.beginning
     model = model_of(beginning)
     plant, reader = plant_of(beginning, model, versions_of(record)), Reader(task, model)
