@@ -15,7 +15,7 @@ from arboleda.drivers.supervisor import FAILED, NOT_SENT
 from arboleda.model import text
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Reason, TaskState, Verb
-from arboleda.model.sentence import OWN, Sentence
+from arboleda.model.sentence import OWN, Phrase, Sentence
 from arboleda.plant_file.poses import HOME, STATION
 from arboleda.recipes import storage
 from arboleda.trees import paths, steps
@@ -174,6 +174,20 @@ def test_reasons_of_drivers_have_the_values_of_their_english(language: str) -> N
 
     rows = contents(language, REASONS).items()
     assert [english for english, other in rows if fields(english) != fields(other)] == []
+
+
+@pytest.mark.parametrize(
+    ("language", "said"),
+    [
+        ("en", "press: gave up (jammed) while homing"),
+        ("es", "press: se dio por vencido (atasco) mientras estaba"),
+    ],
+)
+def test_a_word_of_a_board_is_said_in_the_language_of_the_page(language: str, said: str) -> None:
+    doing = Phrase("doing.home", "homing")()
+    sentence = evidence.GAVE_UP(robot="press", word="atasco", doing=doing)
+    assert words(language).say(sentence).startswith(said)
+    assert str(sentence) == "press: gave up (atasco) while homing", "as records and programs have it"
 
 
 def test_an_unknown_language_is_english() -> None:

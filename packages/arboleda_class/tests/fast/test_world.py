@@ -63,8 +63,9 @@ def test_the_table_has_tasks_steps_cells_and_faults_in_their_order(world: World)
     world.run(until=lambda: task.ended)
     table = world.table()
     assert [row.at for row in table] == sorted(row.at for row in table)
-    faults = [(row.what, row.sentence.split()[0]) for row in table if row.kind == "fault"]
-    assert faults == [("begins", "mute"), ("over", "mute")]
+    faults = [(row.what, row.sentence) for row in table if row.kind == "fault"]
+    muted = "ra_1: Its board is not heard, for 3.000 s"
+    assert faults == [("begins", muted), ("over", muted)]
     assert {"task", "step", "cell", "robot", "fault"} <= {row.kind for row in table}
     assert [row.what for row in table if row.kind == "task"] == ["running", task.state]
 
@@ -168,3 +169,13 @@ def test_without_this_package_they_are_refused_with_the_line_that_installs_it(
     refused = pytest.raises(ImportError, match=r"World needs .* type pip install 'arboleda\[class\]'")
     with pytest.warns(DeprecationWarning, match="World"), refused:
         arboleda_proofs.testing.World  # noqa: B018 - the name is looked up, as by `from ... import`
+
+
+def test_in_spanish_nodes_of_lessons_and_faults_have_spanish_names() -> None:
+    tree = Sequence("walk path", memory=True, children=[Success("move to station"), Success("polish")])
+    drawn = str(Drawing.of_tree(tree, language="es"))
+    assert "recorrer el camino" in drawn and "ir a la estación" in drawn and "polish" in drawn
+    world = World(shipped("sis_a"), language="es")
+    world.fault("reboot", "ra1", at=0.1)
+    world.run(0.5)
+    assert "ra_1: Reiniciar su placa" in str(world.table())

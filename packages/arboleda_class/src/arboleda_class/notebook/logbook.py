@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
+from arboleda.dashboard.findings import findings
 from arboleda.dashboard.wording import words
 from arboleda.engine import Plant
 from arboleda.views import view
 from arboleda.views.chronicle import Chronicle
 from arboleda.views.resting_cells import RestingCells
+from arboleda_proofs.simulator.faults.titles import title
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 
 from .drawn import Happening
 
 FAULT = "fault"  # the first word of a line of the timeline, in some case
 BEGINS, OVER = "begins", "over"
+LASTING = re.compile(r" (for [\d.]+ s)$")
 
 
 class Logbook:
@@ -28,6 +32,7 @@ class Logbook:
         self.rows: list[Happening] = []
         self.trees: dict[str, list[dict[str, Any]]] = {}
         self._say = words(language).say
+        self._language = language
         self._steps: dict[str, str] = {}
         self._watched: JudgedWorld | None = None
         self._plant: Plant | None = None
@@ -43,8 +48,16 @@ class Logbook:
         _, word, text = line.split(maxsplit=2)
         if word.lower() == FAULT and self._watched is not None:
             what = OVER if text.startswith(OVER) else BEGINS
-            fault = text.removeprefix(OVER).strip()
+            fault = self._named(text.removeprefix(OVER).strip())
             self.rows.append(Happening(self._watched.seconds, "", FAULT, "", what, fault))
+
+    def _named(self, line: str) -> str:
+        """A fault of a line by its name: whom it befalls, how, and for how long."""
+        kind, target, word = (*line.split(" "), "", "")[:3]
+        lasting = LASTING.search(line)
+        return findings(self._language)(
+            f"{target}: {title(kind, word)}{f', {lasting[1]}' if lasting else ''}"
+        )
 
     def _start(self, plant: Plant) -> None:
         """Begin with a plant that has just begun; one that died and began anew knows nothing of before."""
