@@ -33,11 +33,12 @@ METHODS = {
     if isinstance(getattr(side, name), Flow | Following)
 }
 DECLARED = {name: method for name, method in METHODS.items() if isinstance(method, Route)}
-# A button that is held has to be said again every 0.1 s, and an editor of trees asks for what it draws.
+# A button that is held has to be said again every 0.1 s, and an editor asks for what it draws and takes away.
 LEFT_TO_THE_PAGE = {
     *(path for path in ROUTES if "/api/teach/" in path),
     "POST /api/make/drawn/check",
     "POST /api/make/drawn/edit",
+    "POST /api/make/remove",
     "POST /api/make/runs/reach",
 }
 

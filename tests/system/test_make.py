@@ -56,7 +56,9 @@ TAKES = '<loader_visit target="feed"><jaw_close width_mm="30" force_n="20"/></lo
 LAPTOP = {"viewport": {"width": 1366, "height": 900}, "locale": "en"}
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "locale": "es"}
 PANELS = ("draft", "cells", "try", "prove", "device")
+PANEL_NAMES = ("Changes", "Cells and recipes", "Try", "Prove", "Devices", "Proposals")
 LONG_MS = 4 * PATIENCE_MS  # of what takes another process
+OFFER = "#make-offers button:text-is('cells.cell.places: {feed: {supply: true}}')"
 
 
 @pytest.fixture
@@ -220,7 +222,7 @@ def test_a_new_device_with_a_driver_is_reached_before_it_is_added(
     me.write(f"{fact}[data-key=fact]", "guard")
     me.write(f"{fact}[data-key=type]", "open, closed")
     me.write(f"{verb}[data-key=verb]", "open")
-    me.write(f"{verb}[data-key=effect]", "switch")
+    me.page.select_option(f"{verb}[data-key=effect]", "switch")
     me.write(f"{verb}[data-key=sets]", "guard: open")
     me.page.wait_for_selector("#make-driver option[value=modbus]", state="attached", timeout=LONG_MS)
     me.page.select_option("#make-driver", "modbus")
@@ -242,7 +244,7 @@ def test_a_new_device_with_a_driver_is_reached_before_it_is_added(
     me.sees("#make-reach-state", f"door was not reached: 127.0.0.1:{wire.port} is not there")
     assert "door" not in (folder / "plant.yaml").read_text()
     me.press("[data-make=add_device]")
-    me.sees("#make-note", "door is in the draft, a gate")
+    me.sees("#make-note", "door is in the draft, of the kind gate")
     me.panel("draft")
     me.sees("#make-problems", "Nothing to object to")
     me.press("[data-make=keep]")
@@ -255,31 +257,35 @@ def test_a_new_device_with_a_driver_is_reached_before_it_is_added(
     assert DOOR % wire.port in (folder / "plant.yaml").read_text()
 
 
+def enabled(me: Person) -> list[str]:
+    """The names of the buttons of *Make* that can be pressed, in the order of the page."""
+    named = "each => each.ariaLabel ?? each.textContent"
+    return list(me.page.evaluate(f"[...document.querySelectorAll('#make button:enabled')].map({named})"))
+
+
 def test_the_second_person_sees_who_edits_and_takes_over_and_takes_an_offer_and_asks_for_a_restart(
     browser: Any, unsaid: Path, address: str
 ) -> None:
-    offer = "#make-problems button:text-is('cells.cell.places: {feed: {supply: true}}')"
     ana = {"editor": "test-of-ana", "name": "Ana"}
     httpx.post(f"{address}/api/draft/take", json=ana, timeout=PATIENCE_S).raise_for_status()
     me = Person(browser, address, **LAPTOP)
     me.sees("#make-who", "Ana edits the draft since")
-    me.page.wait_for_selector(f"{offer}:disabled", timeout=LONG_MS)
-    me.sees("#make-problems", "cell: nothing is known of where parts lie")
+    me.page.wait_for_selector(f"{OFFER}:disabled", timeout=LONG_MS)
+    me.sees("#make-offers", "cell: nothing is known of where parts lie")
+    assert enabled(me) == ["Take over", *PANEL_NAMES]
     me.panel("cells")
-    me.write(".make-target-name", "tray")
-    me.press("[data-new-target=cell]")
-    me.sees("#make-note", "Ana edits this draft")
     me.press("[data-make=take]")
     me.sees("#make-who", "You edit the draft")
+    me.write(".make-target-name", "tray")
     me.press("[data-new-target=cell]")
     me.page.wait_for_selector("[aria-label='tray loader']")
     me.press("[data-make=undo]")
     me.page.wait_for_selector("[aria-label='tray loader']", state="detached")
     me.panel("draft")
-    me.press(offer)
+    me.press(OFFER)
     me.sees("#make-changes", "cells.cell.places: new, {feed: {supply: true}}")
     me.sees("#make-problems", "rest ends with a part that jaw still holds")
-    assert "nothing is known" not in me.page.text_content("#make-problems")
+    assert "nothing is known" not in me.page.text_content("#make-offers")
     made = httpx.get(f"{address}/api/draft", timeout=PATIENCE_S).json()["values"]
     assert made["cells"]["cell"]["places"] == {"feed": {"supply": True}}
     httpx.post(
@@ -295,6 +301,96 @@ def test_the_second_person_sees_who_edits_and_takes_over_and_takes_an_offer_and_
     restart = httpx.get(f"{address}/api/versions", timeout=PATIENCE_S).json()["restart"]
     assert restart == {"by": "", "can": True}
     me.go()
+
+
+def test_an_offer_that_is_pressed_just_as_the_draft_changes_counts(
+    browser: Any, unsaid: Path, address: str
+) -> None:
+    me = Person(browser, address, **LAPTOP)
+    me.press("[data-make=take]")
+    me.page.wait_for_selector(f"{OFFER}:enabled", timeout=LONG_MS)
+    place = ["cells", "cell", "targets", "feed", "loader", "mm"]
+    step = {
+        "editor": me.page.evaluate("sessionStorage.getItem('arboleda_editor')"),
+        "place": place,
+        "value": 79,
+    }
+    httpx.post(f"{address}/api/draft/set", json=step, timeout=PATIENCE_S).raise_for_status()
+    me.press(OFFER)
+    me.sees("#make-changes", "cells.cell.places: new, {feed: {supply: true}}")
+    me.sees("#make-changes", "target feed of loader: from")
+    me.go()
+
+
+def test_a_device_is_changed_and_taken_away_and_a_cell_made_and_the_form_says_what_is_wrong(
+    browser: Any, address: str
+) -> None:
+    me = Person(browser, address, **LAPTOP)
+    me.panel("cells")
+    me.press("[data-change-device=lamp]")
+    shine = "#make-verbs .make-form >> nth=0 >> "
+    me.write(f"{shine}[data-key=with]", "on: boolean")
+    me.write(f"{shine}[data-key=sets]", "light: $on")
+    me.page.press(f"{shine}[data-key=sets]", "Tab")
+    me.sees("#make-verbs .make-wrong", "There is no fact light; there are: lit.")
+    me.press("[data-make=add_device]")
+    assert me.page.evaluate("document.activeElement.dataset.key") == "sets"
+    me.write(f"{shine}[data-key=sets]", "lit: $on")
+    me.press("[data-make=add_device]")
+    me.sees("#make-note", "lamp is changed in the draft")
+    me.panel("draft")
+    me.sees("#make-changes", "kind lamp, shine.with: new, {on: bool}")
+    me.sees("#make-changes", "kind lamp, shine.sets.lit: from true to $on")
+    me.panel("device")
+    fact = "#make-facts .make-form >> nth=0 >> [data-key=type]"
+    me.page.select_option("#make-kind", "")
+    me.write(fact, "boolean")
+    me.page.press(fact, "Tab")
+    assert me.page.input_value(fact) == "bool"
+    me.page.select_option("#make-device_cell", "")
+    me.write("#make-new_cell", "yard")
+    me.page.select_option("#make-kind", "arm")
+    me.write("#make-role", "Loader")
+    me.page.press("#make-role", "Tab")
+    me.sees("#make-device .make-wrong", "Small letters, digits and single _")
+    me.write("#make-role", "loader")
+    me.write("#make-x_m", "3")
+    me.press("[data-make=add_device]")
+    me.sees("#make-note", "loader is in the draft, of the kind arm")
+    me.panel("cells")
+    me.press("[data-remove-device=lamp]")
+    me.page.wait_for_selector("[data-remove-device=lamp]", state="detached")
+    me.panel("draft")
+    for line in ("new cell yard with loader", "device lamp of cell is gone", "kind lamp is gone"):
+        me.sees("#make-changes", line)
+    me.sees("#make-problems", "Nothing to object to")
+    me.panel("cells")
+    me.press("[data-remove-cell=yard]")
+    me.page.wait_for_selector("[data-remove-cell]", state="detached")
+    made = httpx.get(f"{address}/api/draft", timeout=PATIENCE_S).json()["values"]
+    assert list(made["cells"]) == ["cell"] and "kinds" not in made
+    me.go()
+
+
+def test_what_a_try_found_broken_is_put_to_work_only_when_it_is_said_twice(
+    browser: Any, folder: Path, address: str
+) -> None:
+    me = Person(browser, address, **LAPTOP)
+    me.press("[data-make=take]")
+    editor = me.page.evaluate("sessionStorage.getItem('arboleda_editor')")
+    broken = {"editor": editor, "file": "rest.xml", "text": REST.replace("loader_home", "AlwaysFailure")}
+    httpx.post(f"{address}/api/draft/set_trees", json=broken, timeout=PATIENCE_S).raise_for_status()
+    me.panel("try")
+    me.press("[data-make=try]")
+    me.sees("#make-try-state", ": failed")
+    me.sees("#make-changes", "rest.xml")
+    me.press("[data-make=keep]")
+    me.sees("dialog", "Not proved since the last change.")
+    me.press("dialog button.primary")
+    me.sees("dialog", "It is broken. Put it to work all the same?")
+    me.press("dialog button:not(.primary)")
+    me.go()
+    assert "loader_home" in (folder / "rest.xml").read_text()
 
 
 @pytest.mark.requires("axe_playwright_python")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -40,10 +41,11 @@ def editor(browser: Any, address: str) -> Iterator[Open]:
     troubles: list[str] = []
 
     def go(**options: Any) -> Any:
-        forget_draft(address)
+        since = forget_draft(address)
         contexts.append(browser.new_context(**(options or LAPTOP)))
         page = contexts[-1].new_page()
-        page.add_init_script(f"sessionStorage.setItem('arboleda_editor', '{EDITOR}')")
+        mine = {"arboleda_editor": EDITOR, "arboleda_mine": since}
+        page.add_init_script(f"Object.assign(sessionStorage, {json.dumps(mine)})")
         page.set_default_timeout(PATIENCE_MS)
         page.on("pageerror", lambda error: troubles.append(str(error)))
         page.goto(f"{address}/?tab=draw")
@@ -57,13 +59,13 @@ def editor(browser: Any, address: str) -> Iterator[Open]:
     assert troubles == []
 
 
-def forget_draft(address: str) -> None:
-    """Have the draft of the plant be as its files are."""
+def forget_draft(address: str) -> str:
+    """Have the draft of the plant be as its files are; since when it is edited by EDITOR."""
     editor = {"editor": EDITOR}
-    httpx.post(
-        f"{address}/api/draft/take", json=editor | {"name": "a test"}, timeout=PATIENCE_S
-    ).raise_for_status()
-    httpx.post(f"{address}/api/draft/discard", json=editor, timeout=PATIENCE_S).raise_for_status()
+    taking = editor | {"name": "a test"}
+    httpx.post(f"{address}/api/draft/take", json=taking, timeout=PATIENCE_S).raise_for_status()
+    state = httpx.post(f"{address}/api/draft/discard", json=editor, timeout=PATIENCE_S).raise_for_status()
+    return str(state.json()["editor"]["since"])
 
 
 def row(path: str) -> str:
@@ -241,6 +243,7 @@ def test_a_recipe_in_python_is_copied_as_a_tree_of_the_draft_and_opens(browser: 
         page.set_default_timeout(PATIENCE_MS)
         page.goto(f"{address}/?tab=draw")
         connected(page)
+        page.click("#draw-python-box summary")
         page.select_option("#draw-python", "weigh")
         assert page.input_value("#draw-copy") == "weigh_tree"
         page.click("[data-draw=copy_recipe]")

@@ -8,6 +8,7 @@ import pytest
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.plant_file import advance_check
 from arboleda.plant_file.loader import load
 from arboleda_make.editing import carry, desk
 
@@ -62,3 +63,24 @@ def test_a_tool_is_told_its_own_verbs_with_values_that_it_takes() -> None:
 def test_who_cannot_carry_it_there_is_refused(lab: PlantModel, robot: str, end: str, why: str) -> None:
     with pytest.raises(ArboledaError, match=why):
         carry.tree(lab.cells[0], "x", robot=robot, start="feed", end=end)
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "ends"),
+    [("feed", "press", "press: 1"), ("press", "tray", "press: 0"), ("feed", "tray", "")],
+)
+def test_what_it_leaves_in_a_device_is_stated_so_that_check_warns_of_nothing(
+    tmp_path: Path, start: str, end: str, ends: str
+) -> None:
+    press = (
+        "      press: {arm: {deg: [10, 20], mm: 80}}\n    places: {feed: {supply: true}, press: {of: oven}}\n"
+    )
+    kind = "kinds: {oven: {facts: {hot: bool}, verbs: {heat: {effect: switch, sets: {hot: true}}}}}\ncells:"
+    text = (PLANT + press).replace("cells:", kind).replace("scara}}", "scara}, oven: {kind: oven}}")
+    (tmp_path / "plant.yaml").write_text(text)
+    (tmp_path / "t.xml").write_text(EMPTY)
+    cell = load(tmp_path / "plant.yaml").cells[0]
+    made = carry.tree(cell, "to_tray", robot="arm", start=start, end=end)
+    assert made.count(f'ends_with="{ends}"') == bool(ends)
+    (tmp_path / "t.xml").write_text(made)
+    assert advance_check.warnings(load(tmp_path / "plant.yaml")) == ()

@@ -49,6 +49,32 @@ def test_a_target_is_new_and_another_gone(empty: Draft) -> None:
     ]
 
 
+LAMP = {"facts": {"lit": "bool"}, "verbs": {"shine": {"effect": "switch", "sets": {"lit": True}}}}
+
+
+def test_a_device_its_kind_and_a_cell_are_said_without_their_text(empty: Draft) -> None:
+    place = ("cells", "cell", "devices", "lamp")
+    draft = empty.with_values(
+        [(("kinds", "lamp"), LAMP), (place, {"kind": "lamp", "driver": {"modbus": {}}})]
+    )
+    new = [
+        "new kind lamp: says lit; does shine",
+        "new device lamp of cell: lamp with shine, reached by modbus",
+    ]
+    assert words(draft) == new
+    more = draft_of(draft.files).with_value(("kinds", "lamp", "verbs", "shine", "takes_s"), 2)
+    assert words(more.with_value((*place, "evidence"), "state").without((*place, "driver"))) == [
+        "kind lamp, shine.takes_s: new, 2",
+        "cell cell, driver of lamp: gone, it was {modbus: {}}",
+        "cell cell, evidence of lamp: new, state",
+    ]
+    gone = draft_of(draft.files).without(place).without(("kinds", "lamp"))
+    assert words(gone) == ["kind lamp is gone", "device lamp of cell is gone"]
+    other = empty.with_value(("cells", "dark"), {"devices": {"arm": {"kind": "arm"}}})
+    assert words(other) == ["new cell dark with arm"]
+    assert words(draft_of(other.files).without(("cells", "dark"))) == ["cell dark is gone"]
+
+
 @pytest.mark.parametrize(
     ("before", "after", "said"),
     [

@@ -34,6 +34,7 @@ MAKE_PATHS = (
     "recipe",
     "carry",
     "copy",
+    "remove",
     "palette",
     "drawn/check",
     "drawn/edit",

@@ -19,11 +19,13 @@ CARRY = {"editor": "ana-12345", "cell": "lab", "recipe": "to_tray", "robot": "ar
 FAULT = {"kind": "reboot", "at": 2.5, "seconds": 0.0, "target": "arm", "amount": 0.0, "word": "will"}
 COPY = {"editor": "ana-12345", "cell": "lab", "recipe": "weigh", "name": "weigh_tree"}
 DEVICE = {"cell": "lab", "role": "door", "kind": "gate", "driver": "modbus", "settings": {"host": "10.0.0.2"}}
+DEVICE |= {"keys": {"evidence": "state"}}
 DRIVER = {"name": "modbus", "about": "", "why_not": "", "keys": [{"name": "host", "form": "text"}]}
 POSTS = {
     "carry": CARRY,
     "copy": COPY,
     "device": DEVICE | {"editor": "ana-12345"},
+    "remove": {"editor": "ana-12345", "cell": "lab", "role": "door"},
     "runs/reach": DEVICE,
     "drawn/check": {"cell": "lab", "text": "<root/>"},
     "runs/try": {},
@@ -63,6 +65,10 @@ class Make:
 
     def add_device(self, editor: str, device: dict[str, Any]) -> dict[str, Any]:
         self.asked.append((editor, device))
+        return STATE
+
+    def remove(self, editor: str, cell: str, role: str) -> dict[str, Any]:
+        self.asked.append((editor, cell, role))
         return STATE
 
     def reach(self, device: dict[str, Any]) -> dict[str, Any]:
@@ -142,6 +148,12 @@ def test_a_device_is_added_with_its_driver(web: Any, make: Make) -> None:
     assert web.post("/api/make/device", json=POSTS["device"]).json() == STATE
     [(editor, device)] = make.asked
     assert editor == "ana-12345" and DEVICE.items() <= device.items() and device["declared"] is None
+
+
+def test_a_device_is_taken_away_or_a_whole_cell(web: Any, make: Make) -> None:
+    assert web.post("/api/make/remove", json=POSTS["remove"]).json() == STATE
+    assert web.post("/api/make/remove", json={"editor": "ana-12345", "cell": "lab"}).json() == STATE
+    assert make.asked == [("ana-12345", "lab", "door"), ("ana-12345", "lab", "")]
 
 
 def test_a_device_is_listened_to_without_an_editor(web: Any, make: Make) -> None:

@@ -425,8 +425,9 @@ class DraftAsPlant(Side):
         driver: str = "",
         settings: Mapping[str, str] | None = None,
         declared: Mapping[str, Any] | None = None,
+        keys: Mapping[str, Any] | None = None,
     ) -> None:
-        """Add a device, with its driver, and its kind where that is new."""
+        """Add a device, or change it, with its driver, and its kind where that is new or changed."""
 
     @route("GET", "/api/make/runs/{what}", RunState)
     def run(self, what: str) -> None:

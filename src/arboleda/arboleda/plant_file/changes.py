@@ -1,9 +1,9 @@
-"""Differences between two sets of a plant's files: as data, and in words."""
+"""Differences between two sets of a plant's files."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any
 
 from arboleda.bt_xml import reading
@@ -11,60 +11,10 @@ from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.forest import Node
 from arboleda.model.plant_files import PlantFiles
 
-from .document import Place, dotted
+from .change import CELLS, KINDS, MISSING, TARGETS, VERBS, Change
+from .document import Place
 from .tree_file import ENDING
-from .yaml_flow import flow
-from .yaml_marks import YamlFault, clipped, parse
-
-LONGEST = 120  # characters of a value
-CELLS, TARGETS = "cells", "targets"
-
-
-@dataclass(frozen=True, kw_only=True)
-class Missing:
-    """The value of a key that a file does not have, other than an empty value."""
-
-
-MISSING = Missing()
-
-
-@dataclass(frozen=True, kw_only=True)
-class Change:
-    """One difference: in the plant file's value at `place`, in a tree of `file`, or in a whole file.
-
-    `before` and `after` are plain values, MISSING where there is none. For a tree or a whole file that is
-    there, they are None.
-    """
-
-    file: str
-    place: Place = ()
-    tree: str = ""
-    before: Any
-    after: Any
-
-    @property
-    def words(self) -> str:
-        """The change as one line."""
-        return f"{self._what}: {self._how}"
-
-    @property
-    def _what(self) -> str:
-        if not self.place:
-            return f"{self.file}, tree {self.tree}" if self.tree else self.file
-        if len(self.place) == 5 and (self.place[0], self.place[2]) == (CELLS, TARGETS):
-            _, cell, _, target, robot = map(str, self.place)
-            return f"cell {cell}, target {target} of {robot}"
-        return dotted(self.place)
-
-    @property
-    def _how(self) -> str:
-        if self.before is MISSING:
-            return "new" if self.after is None else f"new, {_short(self.after)}"
-        if self.after is MISSING:
-            return "gone" if self.before is None else f"gone, it was {_short(self.before)}"
-        if self.before is None and self.after is None:
-            return "changed"
-        return f"from {_short(self.before)} to {_short(self.after)}"
+from .yaml_marks import YamlFault, parse
 
 
 def changes(before: PlantFiles, after: PlantFiles) -> tuple[Change, ...]:
@@ -87,7 +37,17 @@ def _of_plant(before: PlantFiles, after: PlantFiles) -> Iterator[Change]:
         if old != new:
             yield Change(file=after.plant, before=None, after=None)
         return
-    yield from _of_values(after.plant, (), *values)
+    for each in _of_values(after.plant, (), *values):
+        is_new_device = each.is_device and isinstance(each.after, dict)
+        yield replace(each, verbs=_verbs(values[1], each.after.get("kind"))) if is_new_device else each
+
+
+def _verbs(plant: Any, kind: Any) -> tuple[str, ...]:
+    """The verbs of a kind that a plant file declares; none where it is written in another way."""
+    node = plant
+    for key in (KINDS, kind, VERBS):
+        node = node.get(key) if isinstance(node, dict) and isinstance(key, str) else None
+    return tuple(map(str, node)) if isinstance(node, dict) else ()
 
 
 def _of_values(file: str, place: Place, before: Any, after: Any) -> Iterator[Change]:
@@ -96,16 +56,17 @@ def _of_values(file: str, place: Place, before: Any, after: Any) -> Iterator[Cha
     if isinstance(before, dict) and isinstance(after, dict) and not is_pose:
         for key in [*before, *(key for key in after if key not in before)]:
             yield from _of_values(file, (*place, key), before.get(key, MISSING), after.get(key, MISSING))
-    elif _is_group_of_poses(place, before, after):
+    elif _is_listed_apart(place, before, after):
         rows = [{} if each is MISSING else each for each in (before, after)]
         yield from _of_values(file, place, *rows)
     elif before != after:
         yield Change(file=file, place=place, before=before, after=after)
 
 
-def _is_group_of_poses(place: Place, before: Any, after: Any) -> bool:
-    """True for a target that is new or gone: then the pose of each robot is listed."""
-    if len(place) != 4 or (place[0], place[2]) != (CELLS, TARGETS):
+def _is_listed_apart(place: Place, before: Any, after: Any) -> bool:
+    """True for all kinds, or a target, new or gone: then each kind, or the pose of each robot, is listed."""
+    is_target = len(place) == 4 and (place[0], place[2]) == (CELLS, TARGETS)
+    if place != (KINDS,) and not is_target:
         return False
     values = [each for each in (before, after) if each is not MISSING]
     return len(values) == 1 and isinstance(values[0], dict) and bool(values[0])
@@ -145,8 +106,3 @@ def _tree_text(node: Node) -> str:
     attributes = {**node.own, **node.ports}
     words = [f"{key}={each.value!r}" for key, each in sorted(attributes.items())]
     return f"({node.kind} {node.name!r} {' '.join(words)} {''.join(map(_tree_text, node.children))})"
-
-
-def _short(value: Any) -> str:
-    text = flow(value)
-    return text if len(text) <= LONGEST else f"{clipped(text)} ({len(text)} characters)"

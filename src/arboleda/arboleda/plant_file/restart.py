@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from .changes import MISSING, Change
+from .change import MISSING, Change
 from .own_recipes import TREES
 
 CELLS, TIMING, USES = "cells", "timing", "uses"

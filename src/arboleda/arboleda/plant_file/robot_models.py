@@ -128,6 +128,18 @@ def mobile_models() -> dict[str, MobileModel]:
     return {name: _mobile(document) for name, document in _documents("mobile").items()}
 
 
+def pose_at_home(kind: str, model: object) -> dict[str, Any] | None:
+    """The pose at home, all joints at 0, as a plant file has it; None for other models."""
+    if kind == "mobile":
+        return {"node": 0}
+    arm = arm_models().get(model) if kind == "arm" and isinstance(model, str) else None
+    if arm is None:
+        return None
+    slides = sum(each.pinion_radius_m is not None for each in arm.joints)
+    pose: dict[str, Any] = {"deg": [0] * (len(arm.joints) - slides)}
+    return pose if not slides else pose | {"mm": 0 if slides == 1 else [0] * slides}
+
+
 def _documents(kind: str) -> dict[str, Document]:
     robots = sorted(files("arboleda_description").joinpath("robots").iterdir(), key=lambda entry: entry.name)
     documents = [

@@ -96,3 +96,6 @@ def test_the_palette_has_all_that_the_devices_of_a_cell_make() -> None:
     assert "mill_says" in names["mill"] and "operator_ask" in names["operator"]
     (run,) = [kind for each in groups for kind in each["kinds"] if kind["name"] == "mill_run"]
     assert run["about"] == "It runs." and run["ports"][0]["words"] == ["1001", "1002"]
+    (usual,) = [each["kinds"] for each in groups if each["sort"] == "usual"]
+    all_names = [kind["name"] for each in groups for kind in each["kinds"]]
+    assert len(usual) == 12 and len(all_names) == len(set(all_names))

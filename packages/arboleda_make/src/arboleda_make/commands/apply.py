@@ -19,7 +19,8 @@ from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file import draft_check, loader, plant_check
-from arboleda.plant_file.changes import Change, changes
+from arboleda.plant_file.change import Change
+from arboleda.plant_file.changes import changes
 from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.versions import Version, Versions, version_of, whole
 from arboleda.runtime import at_work

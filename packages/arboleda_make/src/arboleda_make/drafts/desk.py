@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
@@ -103,11 +103,9 @@ class DraftDesk(DraftApi):
 
         return self._step(editor, step)
 
-    def set_all(self, editor: str, values: Sequence[tuple[Place, Any]]) -> State:
-        """The same as `set` for several values, in one step."""
-        return self._step(
-            editor, lambda draft: draft.with_values((tuple(place), value) for place, value in values)
-        )
+    def rewrite(self, editor: str, change: Callable[[Any], Any]) -> State:
+        """Have the plant file have the values that `change` makes of its values, in one step."""
+        return self._step(editor, lambda draft: draft.rewritten(change))
 
     def remove(self, editor: str, place: Place) -> State:
         return self._step(editor, lambda draft: draft.without(tuple(place)))

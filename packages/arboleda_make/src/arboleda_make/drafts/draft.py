@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 from typing import Any
@@ -11,7 +11,8 @@ from typing import Any
 from arboleda.bt_xml.markup import LARGEST as LARGEST_TREES
 from arboleda.model.outside import quoted
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file.changes import Change, changes
+from arboleda.plant_file.change import MISSING, Change
+from arboleda.plant_file.changes import changes
 from arboleda.plant_file.document import Place
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.yaml_edit import EditRefused, with_value, without
@@ -47,6 +48,14 @@ class Draft:
         text = self._plant_text
         for place, value in values:
             text = with_value(text, place, value)
+        return self._with_plant(text)
+
+    def rewritten(self, change: Callable[[Any], Any]) -> Draft:
+        """The draft whose plant file has the values that `change` makes of its values; only these are cut."""
+        text = self._plant_text
+        before = parse(text)[0].value
+        for place, value in _differences(before, change(before)):
+            text = without(text, place) if value is MISSING else with_value(text, place, value)
         return self._with_plant(text)
 
     def without(self, place: Place) -> Draft:
@@ -152,6 +161,23 @@ def _bounded(past: tuple[Contents, ...]) -> tuple[Contents, ...]:
             return past[len(past) - count :]
         newer = contents
     return past
+
+
+def _differences(before: Any, after: Any, place: Place = ()) -> Iterator[tuple[Place, Any]]:
+    """The values that lead from one mapping to another, by their places; MISSING for a key that goes away.
+
+    What comes stands before what goes, so that no mapping is empty in between.
+    """
+    if not isinstance(before, dict) or not isinstance(after, dict):
+        if before != after:
+            yield place, after
+        return
+    for key, each in after.items():
+        if key in before:
+            yield from _differences(before[key], each, (*place, key))
+        else:
+            yield (*place, key), each
+    yield from (((*place, key), MISSING) for key in before if key not in after)
 
 
 def _uses(text: bytes) -> list[str]:

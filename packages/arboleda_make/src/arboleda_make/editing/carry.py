@@ -24,9 +24,17 @@ FORM = """<?xml version="1.0" encoding="UTF-8"?>
       </{robot}_visit>
       <{robot}_home/>
     </Sequence>
-  </BehaviorTree>
+  </BehaviorTree>{model}
 </root>
 """
+MODEL = """
+  <TreeNodesModel>
+    <SubTree ID="{name}">
+      <MetadataFields>
+        <Metadata ends_with={ends}/>
+      </MetadataFields>
+    </SubTree>
+  </TreeNodesModel>"""
 
 
 def carriers(cell: Cell) -> Iterator[str]:
@@ -48,7 +56,18 @@ def tree(cell: Cell, name: str, *, robot: str, start: str, end: str) -> str:
     grip, let_go = hand
     about = _in_quotes(f"Take a part from {start} to {end}.")
     places = {"start": _in_quotes(start), "end": _in_quotes(end)}
-    return FORM.format(name=tree_name(name), about=about, robot=robot, grip=grip, let_go=let_go, **places)
+    ends = "; ".join(_ends(cell, start, end))
+    model = MODEL.format(name=tree_name(name), ends=_in_quotes(ends)) if ends else ""
+    form = {"name": tree_name(name), "about": about, "robot": robot, "model": model}
+    return FORM.format(**form, grip=grip, let_go=let_go, **places)
+
+
+def _ends(cell: Cell, start: str, end: str) -> Iterator[str]:
+    """The parts that it leaves in or under devices: one where it puts it, none where it took it."""
+    for place in cell.places:
+        is_alone = place.device is not None and not place.by_people and place.holds == 1
+        if place.target in (start, end) and is_alone:  # of several nobody knows how many there were
+            yield f"{place.target}: {int(place.target == end)}"
 
 
 def _hand(cell: Cell, role: str) -> tuple[str, str] | None:

@@ -19,11 +19,15 @@ GROUPS = {
     Category.CONDITION: "condition",
     Category.ACTION: "action",
 }
-DEVICE, PYTHON, OTHERS = "device", "python", "others"
+DEVICE, PYTHON, USUAL, OTHERS = "device", "python", "usual", "others"
+USUAL_KINDS = (
+    *("Sequence", "Fallback", "Parallel", "IfThenElse", "Switch2", "TryCatch"),
+    *("RetryUntilSuccessful", "Repeat", "Timeout", "Inverter", "Sleep", "AlwaysSuccess"),
+)
 
 
 def palette(cell: Cell, own: Iterable[WrittenNode], words: Mapping[str, str]) -> list[Row]:
-    """Groups {sort, name, kinds}: one for each device, by its role; nodes in Python; those of Arboleda.
+    """Groups {sort, name, kinds}: one for each device, by its role; nodes in Python; usual ones; all others.
 
     A kind has `name`, `category`, `fewest` and `most` nodes in it, `about`, and `ports` {name, type, way,
     default, needed, words, lower, upper, about}. `words`: sentences about kinds, by `kind.Sequence`, by what
@@ -34,7 +38,8 @@ def palette(cell: Cell, own: Iterable[WrittenNode], words: Mapping[str, str]) ->
     groups = [_group(DEVICE, role, _of_role(kinds, roles, role), words) for role in cell.roles]
     python = [kinds[each.name] for each in written]
     groups.append(_group(PYTHON, "", python, words))
-    library = [each for each in OF_LIBRARY.values() if each.name not in INSTEAD]
+    groups.append(_group(USUAL, "", [OF_LIBRARY[each] for each in USUAL_KINDS], words))
+    library = [each for each in OF_LIBRARY.values() if each.name not in (*INSTEAD, *USUAL_KINDS)]
     library += leaves.of_places(cell).values()
     for category, name in GROUPS.items():
         groups.append(_group(name, "", [each for each in library if each.category is category], words))

@@ -8,13 +8,14 @@ from contextlib import contextmanager
 from arboleda.dashboard.page_part import Spot
 from arboleda.dashboard.tags import tag, way
 from arboleda.dashboard.wording import Words
+from arboleda.plant_file.robot_models import arm_models
 from arboleda_make.trying.api import MakeApi
 
 PANELS = ("draft", "cells", "try", "prove", "device", "proposals")
+FREE = "proposals"  # whoever edits the draft; all else is for who edits
 STEPS = ("undo", "redo", "check", "discard")
 BUDGETS_S = (30, 120, 600)
-EFFECTS = ("motion", "process", "switch", "query")
-ROWS = 3  # of facts and of verbs in the form of a kind; more are added as they fill
+STANDS = ("x_m", "y_m", "yaw_deg")  # where a robot stands
 
 
 def build(spot: Spot) -> None:
@@ -41,8 +42,9 @@ def build(spot: Spot) -> None:
         for name, build_panel in _BUILD.items():
             label = words(f"make.panel.{name}")
             hidden = {} if name == PANELS[0] else {"hidden": "true"}
+            element = "div" if name == FREE else "fieldset"
             with tag(
-                "div", id=f"make-{name}", classes="make-panel", role="group", aria_label=label, **hidden
+                element, id=f"make-{name}", classes="make-panel", role="group", aria_label=label, **hidden
             ):
                 build_panel(words)
         tag("p", id="make-note", role="status", classes="act-note")
@@ -55,11 +57,11 @@ def _bar(words: Words) -> None:
             with tag("label", words("make.name")):
                 tag("input", id="make-name", type="text", maxlength="60", autocomplete="nickname")
             _button(words, "take")
-        with tag("div", classes="draw-acts"):
+        with tag("fieldset", classes="draw-acts", aria_label=words("make.steps")):
             for step in STEPS:
                 _button(words, step)
             _button(words, "keep", classes="act primary")
-        with tag("div", id="make-not-ours", hidden="true"):
+        with tag("fieldset", id="make-not-ours", hidden="true"):
             tag("p", words("make.not_ours"))
             _button(words, "own", classes="act primary")
 
@@ -70,6 +72,7 @@ def _draft(words: Words) -> None:
         tag("ul", id="make-changes", classes="make-lines")
         tag("h2", words("make.problems"))
         tag("ul", id="make-problems", classes="draw-marks")
+        tag("ul", id="make-offers", classes="draw-marks")
         for name in ("set_aside", "restart", "waiting"):
             with tag("div", id=f"make-{name}-box", hidden="true"):
                 tag("h2", words(f"make.{name}"))
@@ -134,8 +137,17 @@ def _device(words: Words) -> None:
     with _box(words, "device"):
         with tag("div", classes="make-form"):
             _select(words, "device_cell")
+            _field(words, "new_cell", maxlength="32", about=True)
             _field(words, "role", maxlength="32", about=True)
             _select(words, "kind", about=True)
+        with tag("div", classes="make-form"):
+            with tag("label", words("make.field.model")), tag("select", id="make-model"):
+                for name in arm_models():
+                    tag("option", name, value=name)
+            for name in STANDS:
+                _field(words, name, inputmode="decimal")
+            _select(words, "tool_of", about=True)
+            _field(words, "answers", about=True)
         with tag("div", id="make-kind-form"):
             _field(words, "new_kind", maxlength="32", about=True)
             tag("h3", words("make.facts"))
@@ -154,6 +166,7 @@ def _device(words: Words) -> None:
         with tag("div", classes="make-form"):
             _button(words, "add_device", classes="act primary")
             _button(words, "reach")
+            _button(words, "new_device", hidden="true")
         tag("p", words("make.reach_how"), id="make-reach-state", role="status", classes="hint")
 
 
@@ -200,5 +213,5 @@ def _labelled(element: str, words: Words, name: str, *, about: bool, **attribute
             tag("small", words(f"make.about.{name}"), id=f"make-{name}-about")
 
 
-def _button(words: Words, act: str, classes: str = "act") -> None:
-    tag("button", words(f"make.act.{act}"), type="button", classes=classes, data_make=act)
+def _button(words: Words, act: str, classes: str = "act", **attributes: str) -> None:
+    tag("button", words(f"make.act.{act}"), type="button", classes=classes, data_make=act, **attributes)

@@ -16,7 +16,8 @@ def build(spot: Spot) -> None:
     words = spot.words
     with tag("div", id="draw", classes="draw"):
         _bar(spot)
-        with tag("div", classes="draw-desk"):
+        tag("p", words("draw.empty"), id="draw-empty", classes="box", hidden="true")
+        with tag("fieldset", id="draw-desk", classes="draw-desk", aria_label=words("draw.desk")):
             _palette(words)
             _tree(words)
             _form(words)
@@ -31,16 +32,20 @@ def _bar(spot: Spot) -> None:
                 tag("option", cell["name"], value=cell["name"])
         with tag("label", words("draw.file")):
             tag("select", id="draw-file")
-        for act in ("undo", "redo", "download"):
-            _button(words, act)
-        with tag("div", id="draw-python-box", classes="draw-acts", hidden="true"):
-            with tag("label", words("draw.python")):
-                tag("select", id="draw-python")
-            with tag("label", words("draw.copy")):
-                tag("input", id="draw-copy", type="text", maxlength="40", autocomplete="off")
-            _button(words, "copy_recipe")
+        with tag("fieldset", classes="draw-acts", aria_label=words("make.steps")):
+            for act in ("undo", "redo"):
+                _button(words, act)
+        _button(words, "download")
+        with tag("details", id="draw-python-box", classes="draw-python", hidden="true"):
+            tag("summary", words("draw.python"))
+            with tag("fieldset", classes="box draw-acts", aria_label=words("draw.python")):
+                with tag("label", words("draw.python")):
+                    tag("select", id="draw-python")
+                with tag("label", words("draw.copy")):
+                    tag("input", id="draw-copy", type="text", maxlength="40", autocomplete="off")
+                _button(words, "copy_recipe")
         if spot.plant.ask(MakeApi) is not None:
-            way(words("draw.to_make"), {"tab": "make"}, classes="act primary")
+            way(words("draw.to_make"), {"tab": "make"}, classes="act primary", data_to_panel="try")
 
 
 def _palette(words: Words) -> None:

@@ -63,11 +63,21 @@ class NewDevice(RequestModel):
     kind: DeviceName
     driver: Short = ""
     settings: dict[Short, Annotated[str, Field(max_length=20_000)]] = Field(default={}, max_length=100)
-    declared: dict[str, Any] | None = Field(default=None, description="Its kind, where that is new.")
+    declared: dict[str, Any] | None = Field(
+        default=None, description="Its kind, where that is new or changed."
+    )
+    keys: dict[Short, Any] = Field(
+        default={}, max_length=20, description="Other keys of the device in the plant file, such as `model`."
+    )
 
 
 class AddedDevice(Step, NewDevice):
     pass
+
+
+class Removed(Step):
+    cell: Short
+    role: Short = Field(default="", description="Without one the whole cell.")
 
 
 class WantedFault(RequestModel):
@@ -157,9 +167,15 @@ def _device(api: APIRouter, side: PlantApi) -> None:
 
     @api.post("/device", **answering(DraftState, REFUSED, described_body(AddedDevice)))
     async def device(request: Request) -> JSONResponse:
-        """Add a device, with its driver, and its kind where that is new."""
+        """Add a device, or change it, with its driver, and its kind where that is new or changed."""
         make, new = _make(side, request), read_body(await request.body(), AddedDevice)
         return PlainJson(await run_in_threadpool(make.add_device, new.editor, new.model_dump()))
+
+    @api.post("/remove", **answering(DraftState, REFUSED, described_body(Removed)))
+    async def remove(request: Request) -> JSONResponse:
+        """Take a device away with all that names it, or a whole cell."""
+        make, old = _make(side, request), read_body(await request.body(), Removed)
+        return PlainJson(await run_in_threadpool(make.remove, old.editor, old.cell, old.role))
 
     @api.post("/runs/reach", **answering(RunState, REFUSED, described_body(NewDevice)))
     async def reach(request: Request) -> JSONResponse:

@@ -51,8 +51,14 @@ class MakeApi(Protocol):
 
     @abstractmethod
     def add_device(self, editor: str, device: Mapping[str, Any]) -> Row:
-        """Add a device: `cell`, `role`, `kind`, that `declared` has if it is new, its `driver` and what was
-        written for its `settings`. The draft's state."""
+        """Add a device, or change it: `cell`, also a new one, `role`, `kind`, which `declared` has if new
+        or changed, other `keys` of the plant file, its `driver` and what was written for its `settings`. The
+        state of the draft."""
+
+    @abstractmethod
+    def remove(self, editor: str, cell: str, role: str) -> Row:
+        """Take a device away with all that names it, or the whole cell where the role is empty. The draft's
+        state."""
 
     @abstractmethod
     def reach(self, device: Mapping[str, Any]) -> Row:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from arboleda.drivers.address import address
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import Robot
+from arboleda.plant_file.robot_models import pose_at_home
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.web.languages import spoken, texts
@@ -19,6 +20,7 @@ from arboleda_make.editing.operations import Operation
 from arboleda_make.trying.api import MakeApi, Row
 
 from ..drafts.desk import DraftDesk
+from ..drafts.devices import with_device, without_cell, without_device
 from ..drafts.plant_folder import NOT_OURS, PlantFolder
 from .errands import ErrandRun, Work
 from .workshop import Workshop
@@ -89,11 +91,17 @@ class MakeBench(MakeApi):
         return self._workshop.drivers(*self._desk.files, spoken([language]))
 
     def add_device(self, editor: str, device: Mapping[str, Any]) -> Row:
-        return self._desk.set_all(editor, self._values(device))
+        return self._desk.rewrite(editor, self._adding(device))
+
+    def remove(self, editor: str, cell: str, role: str) -> Row:
+        def change(values: Any) -> Any:
+            return without_device(values, cell, role) if role else without_cell(values, cell)
+
+        return self._desk.rewrite(editor, change)
 
     def reach(self, device: Mapping[str, Any]) -> Row:
         try:
-            draft = draft_of(self._desk.files[1]).with_values(self._values(device))
+            draft = draft_of(self._desk.files[1]).rewritten(self._adding(device))
         except EditRefused as error:
             raise DraftRefused(error.sentence) from error
         wanted = {"cell": device["cell"], "role": device["role"], "at_work": self._at_work}
@@ -101,15 +109,14 @@ class MakeBench(MakeApi):
         LOG.info("a new device is listened to: %s, by %s", plain(device["role"]), plain(device["driver"]))
         return self.run("reach")
 
-    def _values(self, device: Mapping[str, Any]) -> list[tuple[tuple[str, ...], Any]]:
-        """The values in the plant file that make a device, by their places; its kind if that is new."""
-        value = {"kind": device["kind"]}
+    def _adding(self, device: Mapping[str, Any]) -> Callable[[Any], Any]:
+        """What adds a device to the values of a plant file, with what was written for its driver."""
+        driver: Any = None
         if device["driver"]:
-            value["driver"] = self._workshop.driver(*self._desk.files, device["driver"], device["settings"])
-        made: list[tuple[tuple[str, ...], Any]] = []
-        if device["declared"] is not None:
-            made.append((("kinds", device["kind"]), device["declared"]))
-        return [*made, (("cells", device["cell"], "devices", device["role"]), value)]
+            driver = self._workshop.driver(*self._desk.files, device["driver"], device["settings"])
+        made = {**device, "driver": driver}
+        home = pose_at_home(device["kind"], device["keys"].get("model"))
+        return lambda values: with_device(values, made, home)
 
     def begin(self, what: str, wanted: Mapping[str, Any]) -> Row:
         kept = {"kept": str(self._kept.absolute())} if what == "prove" else {}

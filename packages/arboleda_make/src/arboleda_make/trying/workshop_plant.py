@@ -118,7 +118,7 @@ def _cell(cell: Cell) -> Row:
     return {
         "name": cell.name,
         "devices": [_device(cell, role, each) for role, each in cell.roles.items()],
-        "targets": [{"name": each, "robots": _robots_at(cell, each)} for each in cell.targets],
+        "targets": [_target(cell, each) for each in cell.targets],
         "carriers": list(carry.carriers(cell)),
         "recipes": [{**each, **_written(written[each["name"]])} for each in forms.recipes(cell)],
     }
@@ -133,6 +133,13 @@ def _device(cell: Cell, role: str, device: Robot) -> Row:
         "goes": device.name in cell.reach,
         "shared": device.name in cell.shared,
     }
+
+
+def _target(cell: Cell, name: str) -> Row:
+    """The robots that go to a target, and whether it can give a part to a task, or take one."""
+    place = next((each for each in cell.places if each.target == name), None)
+    gives, takes = (place is None or not place.output), (place is None or not place.supply)
+    return {"name": name, "robots": _robots_at(cell, name), "gives": gives, "takes": takes}
 
 
 def _robots_at(cell: Cell, target: str) -> list[str]:

@@ -17,7 +17,8 @@ from arboleda.model.outside import plain
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
-from arboleda.plant_file.changes import Change, changes
+from arboleda.plant_file.change import Change
+from arboleda.plant_file.changes import changes
 from arboleda.plant_file.draft_check import DraftCheck
 from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.versions import Version, Versions, version_of, whole

@@ -62,6 +62,6 @@ class TreeCopy:
 class Nodes:
     """Nodes of one sort: of a device, by its role, or of Arboleda."""
 
-    sort: Annotated[str, "device, python, control, decorator, condition, action or others."]
+    sort: Annotated[str, "device, python, usual, control, decorator, condition, action or others."]
     name: Annotated[str, "The role of the device."]
     kinds: Annotated[list[dict[str, Any]], "Name, category, ports, fewest and most nodes in it."]

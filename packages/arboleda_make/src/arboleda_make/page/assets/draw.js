@@ -5,12 +5,11 @@ import * as copies from "./draw_copy.js";
 import * as form from "./draw_form.js";
 import * as palette from "./draw_palette.js";
 import * as rows from "./draw_rows.js";
-import { ask, box, node, say, state, tree } from "./draw_state.js";
+import { NEW, ask, box, node, say, state, tree } from "./draw_state.js";
 import * as make from "./make_state.js";
 import * as question from "../question.js";
 import { words } from "../shell.js";
 
-const NEW = '<?xml version="1.0" encoding="UTF-8"?>\n<root BTCPP_format="4" main_tree_to_execute="Main">\n  <BehaviorTree ID="Main">\n    <Sequence/>\n  </BehaviorTree>\n</root>\n';
 let line = Promise.resolve(); // one operation after the other
 let behind = false; // whether the draft has gone a step back or forward that is not shown yet
 
@@ -25,6 +24,7 @@ export function start() {
   rows.start();
   form.start();
   copies.start();
+  part.querySelector("[data-to-panel]")?.addEventListener("click", ({ target }) => toTry(target.dataset.toPanel));
   make.onDraft(() => state.now && !behind && buttons());
 }
 
@@ -45,6 +45,12 @@ export function show(cell) {
   if (!document.getElementById("draw") || state.past.length || (state.now && !cell && !ofDraft())) return;
   const first = cell ?? (state.cell || box("cell").value);
   if (first !== state.cell || ofDraft()) open(first);
+}
+
+// What is drawn is what is tried.
+function toTry(panel) {
+  make.draft.latest = `${state.cell} ${state.file}`;
+  make.remember(panel);
 }
 
 // Begin with a recipe of the draft.
@@ -72,7 +78,9 @@ async function open(cell) {
   state.kinds = new Map(groups.flatMap(({ kinds }) => kinds.map((kind) => [kind.name, kind])));
   palette.fill(groups);
   const options = state.files.map(({ recipe, file }) => new Option(file, recipe));
-  box("file").replaceChildren(...options, ...(ofDraft() && options.length ? [] : [new Option(words.draw_new, "")]));
+  box("file").replaceChildren(...options, ...(ofDraft() ? [] : [new Option(words.draw_new, "")]));
+  box("desk").hidden = ofDraft() && !options.length;
+  box("empty").hidden = !box("desk").hidden;
   const same = ofDraft() && state.files.find(({ recipe }) => recipe === state.file);
   await openFile((same || state.files[0])?.recipe ?? "", same ? mine() : {});
   copies.offer(cell, ofDraft());
@@ -130,7 +138,9 @@ export function edit(make, then) {
 async function keep(text) {
   const file = state.files.find(({ recipe }) => recipe === state.file)?.file;
   if (!file) return say(words.draw_no_recipe);
-  if (!(await make.step("set_trees", { file, text }))) await reload();
+  if (await make.step("set_trees", { file, text })) return;
+  await make.look();
+  await reload();
 }
 
 // Show the tree that the draft has now.

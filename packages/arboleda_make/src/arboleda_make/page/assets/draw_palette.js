@@ -19,13 +19,17 @@ export function start() {
   });
 }
 
+const FIRST = ["device", "python", "usual"]; // the sorts of groups that stand before "More"
 const put = ({ dataset: { kind, id } }) => add(kind, id ? { ID: id } : {});
 
 export function fill(groups) {
-  const made = groups.map(({ sort, name, kinds }, n) => group(name || words[`draw_${sort}`], kinds, n === 0));
-  const others = group(words.draw_trees, [], true);
-  others.id = "draw-own";
-  box().replaceChildren(others, ...made);
+  const made = groups.map(({ sort, name, kinds }, n) => group(name || words[`draw_${sort}`], kinds, n === 0 || sort === "usual"));
+  const [first, others] = [true, false].map((is) => made.filter((_, n) => FIRST.includes(groups[n].sort) === is));
+  const more = group(words.draw_more_kinds, [], false);
+  more.append(...others);
+  const own = group(words.draw_trees, [], true);
+  own.id = "draw-own";
+  box().replaceChildren(own, ...first, more);
 }
 
 function group(title, kinds, open) {
@@ -56,7 +60,7 @@ export function trees() {
 
 function find() {
   const wanted = search().value.trim().toLowerCase();
-  for (const details of box().children) {
+  for (const details of box().querySelectorAll("details")) {
     const kinds = [...details.querySelectorAll("[data-kind]")];
     for (const each of kinds) each.hidden = Boolean(wanted) && !each.textContent.toLowerCase().includes(wanted);
     details.hidden = kinds.every((each) => each.hidden);

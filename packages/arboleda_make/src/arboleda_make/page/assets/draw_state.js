@@ -2,6 +2,9 @@
 
 import * as make from "./make_state.js";
 
+// A tree that does nothing yet, and that the check has nothing to object to.
+export const NEW = '<?xml version="1.0" encoding="UTF-8"?>\n<root BTCPP_format="4" main_tree_to_execute="Main">\n  <BehaviorTree ID="Main">\n    <Sequence>\n      <AlwaysSuccess/>\n    </Sequence>\n  </BehaviorTree>\n</root>\n';
+
 export const state = { cell: null, file: "", files: [], kinds: new Map(), past: [], now: null, future: [], saved: null, tree: null, path: "root", how: "into" };
 
 export const box = (id) => document.getElementById(`draw-${id}`);

@@ -5,17 +5,19 @@ import * as device from "./make_device.js";
 import * as proposals from "./make_proposals.js";
 import * as proof from "./make_prove.js";
 import * as tryout from "./make_try.js";
-import { ask, box, draft, editor, element, fill, inWords, isMine, knownName, look, name, onDraft, say, spoken, step, take, there } from "./make_state.js";
+import { ask, box, draft, editor, element, fill, inWords, isMine, isReading, knownName, look, name, onDraft, remember, remembered, say, spoken, step, take, there } from "./make_state.js";
 import * as question from "../question.js";
 import { all, words } from "../shell.js";
 
 const CHECK_MS = 1200; // after the last change
 const LOOK_MS = 5000; // what others do
 const WAIT_MS = 1500; // while another check is under way, or too many wait
-const PANEL = "arboleda_make_panel"; // where this browser tab was last, also before it looked at a record
 const FIRST = "draft";
 let shown = false;
-let checked = null; // the digest of the draft that was checked last
+let checked = null; // the digest of the draft whose check is shown
+let latest = null; // that check
+let offers = new Map(); // by its text, the step of each offer of the last check
+let pressed = null; // the text of an offer that was pressed just as the draft changed
 let checking = false; // this page has asked, and waits
 let timer = null;
 
@@ -35,7 +37,7 @@ export async function show(is) {
   shown = is && there();
   if (!shown) return;
   box("name").value ||= knownName();
-  open(sessionStorage.getItem(PANEL) ?? FIRST);
+  open(remembered() ?? FIRST);
   await look();
   if (draft.state?.is_ours === false) return;
   await proposals.look();
@@ -64,7 +66,7 @@ function clicked({ target }) {
 }
 
 export function open(panel) {
-  sessionStorage.setItem(PANEL, panel);
+  remember(panel);
   all("[data-make-panel]").forEach((each) => each.setAttribute("aria-pressed", each.dataset.makePanel === panel));
   all(".make-panel").forEach((each) => (each.hidden = each.id !== `make-${panel}`));
 }
@@ -76,7 +78,7 @@ function drawn() {
   const since = who && new Date(who.since).toLocaleTimeString();
   box("who").textContent = !who ? words.make_nobody : isMine() ? words.make_you : fill(words.make_other, { name: who.name, since });
   const taking = button("take");
-  taking.textContent = who && !isMine() ? words.make_take_over : words.make_take;
+  taking.textContent = isReading() ? words.make_take_over : words.make_take;
   taking.hidden = isMine();
   button("undo").disabled = !state.undo;
   button("redo").disabled = !state.redo;
@@ -86,6 +88,7 @@ function drawn() {
   for (const name of ["set_aside", "restart", "waiting"]) tell(name), (box(`${name}-box`).hidden = !state[name].length);
   bar();
   if (state.digest === checked) return;
+  checked = null; // also for the draft to which a step back leads
   clearTimeout(timer);
   timer = setTimeout(check, CHECK_MS);
   lines("problems", [words.make_checking]);
@@ -105,43 +108,65 @@ const lines = (id, rows) => box(id).replaceChildren(...rows.map((text) => elemen
 // What `check` says of the draft; one at a time, and the last change counts.
 async function check() {
   clearTimeout(timer);
-  if (checking) return void (timer = setTimeout(check, WAIT_MS));
+  if (checking) return again();
   checking = true;
   const found = await spoken(await ask("/api/draft/check", {}, () => {}));
   checking = false;
-  if (!found) return void (timer = setTimeout(check, WAIT_MS));
+  if (found && found.digest !== draft.state.digest) await look(); // it was changed meanwhile, here or elsewhere
+  if (found?.digest !== draft.state.digest) return again();
+  clearTimeout(timer);
   checked = found.digest;
+  latest = found;
   draft.problems = found.problems;
   marks(found);
-  box("problems").append(...found.offers.map((offer) => offered(offer, found.digest)));
+  offer(found);
+  if (offers.has(pressed)) stated(pressed);
+  pressed = null;
+}
+
+function again() {
+  clearTimeout(timer);
+  timer = setTimeout(check, WAIT_MS);
+}
+
+// What the plant file could state and does not, with a button for each value; which one is so, a person knows. Buttons
+// that are offered again stay, for somebody may be pressing one.
+function offer({ digest: of, offers: found }) {
+  const choices = found.flatMap(({ place, choices }) => choices.map(({ text, value }) => [text, { place, value, of }]));
+  offers = new Map(choices);
+  const shown = JSON.stringify(found);
+  if (box("offers").dataset.shown !== shown) box("offers").replaceChildren(...found.map(offered));
+  box("offers").dataset.shown = shown;
   bar();
 }
 
-// What the plant file could state and does not, with a button for each value; which one is so, a person knows.
-function offered({ sentence, place, choices }, of) {
+function offered({ sentence, choices }) {
   const line = element("li", fill(words.make_offer, { sentence }), { "data-mark": "offer" });
   const acts = element("div", "", { class: "draw-acts" });
-  for (const { text, value } of choices) {
+  for (const { text } of choices) {
     const made = element("button", text, { type: "button", class: "act" });
-    made.addEventListener("click", () => stated(text, { place, value, of }));
+    made.addEventListener("click", () => stated(text));
     acts.append(made);
   }
   line.append(acts);
   return line;
 }
 
-const offerButtons = () => all("#make-problems button");
-
-// Only who may change the draft can press what it offers.
+// Who reads while somebody else edits can press nothing that changes the draft, nor end what the other one tries.
 function bar() {
-  const { is_ours: isOurs, editor: who } = draft.state;
-  offerButtons().forEach((each) => (each.disabled = !isOurs || (who !== null && !isMine())));
+  all("#make fieldset, #draw fieldset").forEach((each) => (each.disabled = isReading()));
+  all("#make-offers button").forEach((each) => (each.disabled = isReading() || !draft.state.is_ours));
 }
 
-// An offer of another draft than the one that there is now is refused: then that one is checked.
-async function stated(text, setting) {
-  offerButtons().forEach((each) => (each.disabled = true));
-  if (!(await step("set", setting))) return void (await look());
+// An offer of a draft that has changed since is refused. It counts all the same if the next check makes it, too.
+async function stated(text) {
+  const setting = offers.get(text);
+  all("#make-offers button").forEach((each) => (each.disabled = true));
+  if (!(await step("set", setting))) {
+    await look();
+    if (setting.of !== draft.state.digest) pressed = text;
+    return;
+  }
   say(fill(words.make_added, { name: text }));
   await reread();
 }
@@ -163,8 +188,27 @@ async function applied({ version, cells: taken, restart, cancelled }) {
   return [fill(words.make_kept, { version }), ...(restart.length ? [words.make_restart, ...restart] : when), ...lost].join(" ");
 }
 
+// Says first what the check, the last try and the last proof of this draft found; asks twice where one found it broken.
 async function keep() {
-  if (!(await question.confirmed([words.make_keep, ...(await inWords(draft.state.changes))].join("\n")))) return;
+  say(words.make_checking);
+  const found = checked === draft.state.digest ? latest : await spoken(await ask("/api/draft/check", {}));
+  if (!found) return;
+  if (found.problems.length) return marks(found), open("draft"), say(words.make_not_kept);
+  say("");
+  const [tried, proved] = [tryout.verdict(), proof.verdict()];
+  const verdicts = [checkVerdict(found), tried?.text ?? words.make_untried, proved?.text ?? words.make_unproved];
+  const changes = await inWords(draft.state.changes);
+  if (!(await question.confirmed([words.make_keep, ...changes, "", ...verdicts].join("\n")))) return;
+  const broken = [tried, proved].filter((each) => each?.isBroken).map(({ text }) => text);
+  if (broken.length && !(await question.confirmed([words.make_keep_broken, ...broken].join("\n")))) return;
+  await apply();
+}
+
+function checkVerdict({ warnings }) {
+  return warnings.length ? [fill(words.make_warnings, { count: warnings.length }), ...warnings.map((text) => `▲ ${text}`)].join("\n") : words.make_good;
+}
+
+async function apply() {
   say(words.make_checking);
   const kept = await spoken(await ask("/api/draft/apply", { editor: editor(), note: box("version-note").value.trim() }));
   if (!kept) return;

@@ -2,11 +2,11 @@
 
 import { showRecipe } from "./draw.js";
 import { intoDraft } from "./draw_copy.js";
+import { NEW } from "./draw_state.js";
 import { ask, box, draft, element, fill, inWords, options, say, spoken, step } from "./make_state.js";
 import * as place from "../place.js";
 import { words } from "../shell.js";
 
-const NEW = '<?xml version="1.0" encoding="UTF-8"?>\n<root BTCPP_format="4" main_tree_to_execute="Main">\n  <BehaviorTree ID="Main">\n    <Sequence/>\n  </BehaviorTree>\n</root>\n';
 const NAME = /^[a-z][a-z0-9_]{0,39}$/;
 const APPROACH = "approach_mm";
 const listeners = [];
@@ -43,10 +43,12 @@ function offer() {
   const cell = chosen();
   options(box("robot"), (cell?.carriers ?? []).map((each) => [each]));
   const robot = box("robot").value;
-  const targets = (cell?.targets ?? []).filter(({ name, robots }) => robots.includes(robot) && name !== "home").map(({ name }) => [name]);
-  options(box("start"), targets);
-  options(box("end"), targets, box("end").value || targets[1]?.[0]);
-  chooseTaught(targets.map(([name]) => name));
+  const targets = (cell?.targets ?? []).filter(({ name, robots }) => robots.includes(robot) && name !== "home");
+  options(box("start"), targets.filter(({ gives }) => gives).map(({ name }) => [name]));
+  const ends = targets.filter(({ takes }) => takes).map(({ name }) => [name]);
+  const other = ends.find(([each]) => each !== box("start").value);
+  options(box("end"), ends, box("end").value || other?.[0]);
+  chooseTaught(targets.map(({ name }) => name));
 }
 
 // The two targets that were taught last, once: a part goes from the first to the second.
@@ -103,13 +105,15 @@ function draw(cell, recipe) {
 
 function clicked({ target }) {
   const pressed = target.closest("button");
-  const { make: act, drawRecipe, outlineRecipe, copyRecipe, removeRecipe, removePlace, newTarget, cell } = pressed?.dataset ?? {};
+  const { make: act, drawRecipe, outlineRecipe, copyRecipe, removeRecipe, removePlace, removeCell, removeDevice, newTarget, cell } = pressed?.dataset ?? {};
   ACTS[act]?.();
   if (drawRecipe) draw(cell, drawRecipe);
   if (outlineRecipe) outline(pressed, cell, outlineRecipe);
   if (copyRecipe) copy(cell, copyRecipe);
   if (removeRecipe) step("remove_trees", { file: removeRecipe }).then(read);
   if (removePlace) step("remove", { place: JSON.parse(removePlace) }).then(read);
+  if (removeDevice) step("../make/remove", { cell, role: removeDevice }).then(read);
+  if (removeCell) step("../make/remove", { cell: removeCell }).then(read);
   if (newTarget) add(pressed, newTarget);
 }
 
@@ -124,10 +128,27 @@ async function copy(cell, recipe) {
 function drawn({ name, devices, recipes }) {
   const made = element("section", "", { class: "box make-cell" });
   const heading = element("h2", name);
-  const parts = devices.map(({ role, kind, shared }) => element("li", `${role}: ${kind}${shared ? ` (${words.make_shared})` : ""}`));
+  const parts = devices.map((each) => deviceRow(name, each));
+  if (draft.cells.length > 1) heading.append(" ", act(words.make_remove, { removeCell: name }, name));
   made.append(heading, element("h3", words.make_devices), list(parts), element("h3", words.make_recipes));
   made.append(list(recipes.map((each) => recipeRow(name, each))), element("h3", words.make_targets), targets(name));
   return made;
+}
+
+function deviceRow(cell, { role, kind, shared }) {
+  const made = element("li");
+  made.append(element("strong", role), ` ${kind}${shared ? ` (${words.make_shared})` : ""} `);
+  if (!draft.state.values.cells?.[cell]?.devices?.[role]) return made; // of an arm's cell, or gone
+  if (!shared) made.append(act(words.make_change, { cell, changeDevice: role }, role), " ");
+  made.append(act(words.make_remove, { cell, removeDevice: role }, role));
+  return made;
+}
+
+// A button that says of what it is to whoever cannot see where it stands.
+function act(text, data, of) {
+  const button = element("button", text, { type: "button", class: "act", "aria-label": `${text}: ${of}` });
+  Object.assign(button.dataset, data);
+  return button;
 }
 
 function list(items) {
@@ -139,13 +160,8 @@ function list(items) {
 function recipeRow(cell, { name, about, sort, file }) {
   const made = element("li");
   made.append(element("strong", name), ` ${about} `, element("span", words[`make_sort_${sort}`], { class: "make-sort" }), " ");
-  const act = (text, data, label) => {
-    const button = element("button", text, { type: "button", class: "act", "aria-label": `${label ?? text}: ${name}` });
-    Object.assign(button.dataset, { cell, ...data });
-    made.append(button, " ");
-  };
-  if (sort === "drawn") act(words.make_draw, { drawRecipe: name }), act(words.make_remove, { removeRecipe: file });
-  else act(words.make_show, { outlineRecipe: name }), act(words.make_copy, { copyRecipe: name });
+  const acts = sort === "drawn" ? [[words.make_draw, { drawRecipe: name }], [words.make_remove, { removeRecipe: file }]] : [[words.make_show, { outlineRecipe: name }], [words.make_copy, { copyRecipe: name }]];
+  for (const [text, data] of acts) made.append(act(text, { cell, ...data }, name), " ");
   return made;
 }
 
@@ -183,7 +199,7 @@ function targets(cell) {
   const made = element("div");
   for (const [target, robots] of Object.entries(found))
     for (const [robot, pose] of Object.entries(robots ?? {})) made.append(targetRow(cell, target, robot, pose));
-  made.append(newTarget(cell, found));
+  if (Object.keys(found).length) made.append(newTarget(cell, found));
   return made;
 }
 

@@ -1,119 +1,165 @@
-// New devices: a form becomes a kind and a device with its driver in the plant file, as a person would write them.
+// Devices, new or changed: a form becomes a kind and a device with its driver in the plant file, as a person would
+// write them; its cell is made with its first device.
 
 import { onCells, read } from "./make_cells.js";
+import * as kinds from "./make_kind.js";
 import { ask, box, draft, element, fill, options, say, step } from "./make_state.js";
 import { ended } from "./make_try.js";
 import { words } from "../shell.js";
 
-const NAME = /^[a-z][a-z0-9_]{0,31}$/;
-const EFFECTS = ["motion", "process", "switch", "query"];
-const TYPES = ["bool", "number", "int", "text"];
-const SHIPPED = ["camera", "person"]; // kinds that no driver is for
-let made = 0;
+// The kinds that come with Arboleda, with the fields that each has here; no driver is offered for them.
+const SHIPPED = { arm: ["model", "x_m", "y_m", "yaw_deg"], mobile: ["x_m", "y_m", "yaw_deg"], gripper: ["tool_of"], effector: ["tool_of"], conveyor: [], camera: ["answers"], sensor: ["answers"], person: [] };
+const KEYS = ["model", "x_m", "y_m", "yaw_deg", "tool_of", "answers"];
+const TAKEN = { kind: ["arm", "mobile", "person"], cell: ["plant", "system"] };
+let changing = null; // the cell and the role of the device that is changed
 let drivers = null; // as the server has them, once this panel was open
+let reading = null; // while, and once, they are asked for
+let adds = ""; // what the button says of a new device
 
 export function start() {
   document.getElementById("make").addEventListener("click", clicked);
   box("kind").addEventListener("change", chosen);
-  box("driver").addEventListener("change", drawDriver);
+  box("device_cell").addEventListener("change", chosen);
+  box("driver").addEventListener("change", () => drawDriver());
+  box("device").addEventListener("focusout", ({ target }) => judge(target));
   onCells(offer);
-  addFact();
-  addVerb();
+  adds = document.querySelector("#make [data-make=add_device]").textContent;
+  kinds.show(null);
 }
 
+const cellsOf = () => draft.state.values.cells ?? {};
+const declaredKinds = () => draft.state.values.kinds ?? {};
+const cell = () => box("device_cell").value || box("new_cell").value.trim();
+const isShipped = (kind) => kind in SHIPPED && !(kind in declaredKinds());
+
 function offer() {
-  options(box("device_cell"), draft.cells.map(({ name }) => [name]));
-  const declared = Object.keys(draft.state.values.kinds ?? {});
-  options(box("kind"), [["", words.make_new_kind], ...[...declared, ...SHIPPED].map((each) => [each])]);
+  const first = box("device_cell").options.length ? box("device_cell").value : draft.cells[0]?.name;
+  options(box("device_cell"), [...draft.cells.map(({ name }) => [name]), ["", words.make_new_cell]], first);
+  const own = Object.keys(declaredKinds());
+  const shipped = Object.keys(SHIPPED).filter((each) => !own.includes(each));
+  const others = former() ? [former().kind].filter((each) => each && !own.includes(each) && !shipped.includes(each)) : [];
+  options(box("kind"), [["", words.make_new_kind], ...[...own, ...others, ...shipped].map((each) => [each])]);
   chosen();
   offerDrivers();
 }
 
+const former = () => changing && cellsOf()[changing.cell]?.devices?.[changing.role];
+
 function chosen() {
-  box("kind-form").hidden = box("kind").value !== "";
-  box("driver-form").hidden = SHIPPED.includes(box("kind").value);
+  const kind = box("kind").value;
+  box("new_cell").closest("label").hidden = box("device_cell").value !== "";
+  const isOwn = !kind || (changing !== null && kind in declaredKinds());
+  box("kind-form").hidden = !isOwn;
+  box("new_kind").closest("label").hidden = kind !== "";
+  for (const key of KEYS) box(key).closest("label").hidden = !(isShipped(kind) && SHIPPED[kind].includes(key));
+  const robots = Object.entries(cellsOf()[cell()]?.devices ?? {}).filter(([, device]) => ["arm", "mobile"].includes(device?.kind));
+  options(box("tool_of"), [["", words.make_no_driver], ...robots.map(([role]) => [role])]);
+  box("driver-form").hidden = isShipped(kind);
 }
 
+// --- a device that there is
+
+// Fill the form with a device, to be changed.
+async function change(at) {
+  changing = at;
+  const { kind, driver, ...device } = former();
+  offer();
+  box("device_cell").value = at.cell;
+  box("role").value = at.role;
+  box("kind").value = kind;
+  chosen();
+  const { origin_m: [x, y] = [], yaw_deg: yaw } = device.base ?? device.grid ?? {};
+  const values = { ...device, x_m: x, y_m: y, yaw_deg: yaw, answers: device.answers?.join(", ") };
+  for (const key of KEYS) box(key).value = values[key] ?? (key === "model" ? box(key).value : "");
+  kinds.show(declaredKinds()[kind] ?? null);
+  locked();
+  document.querySelector('[data-make-panel="device"]').click();
+  await offerDrivers();
+  const name = driver && typeof driver === "object" ? Object.keys(driver)[0] : driver;
+  box("driver").value = name ?? "";
+  drawDriver(driver?.[name] ?? {});
+  const others = kinds.othersOf(kind, at.cell, at.role);
+  say(kind in declaredKinds() && others.length ? fill(words.make_kind_of_others, { kind, others: others.join(", ") }) : "");
+}
+
+// The form for a new device again.
+function fresh() {
+  changing = null;
+  for (const key of ["role", "new_kind", "new_cell", ...KEYS]) if (key !== "model") box(key).value = "";
+  kinds.show(null);
+  box("driver").value = "";
+  drawDriver();
+  locked();
+  offer();
+}
+
+function locked() {
+  box("role").disabled = box("device_cell").disabled = changing !== null;
+  const act = (name) => document.querySelector(`#make [data-make="${name}"]`);
+  act("add_device").textContent = changing ? fill(words.make_change_device, changing) : adds;
+  act("new_device").hidden = !changing;
+}
+
+// --- its driver
+
 // The drivers, once somebody looks at this panel: some take a moment to be found.
-async function offerDrivers() {
-  if (drivers || box("device").hidden) return;
-  drivers = [];
+function offerDrivers() {
+  if (!box("device").hidden) reading ??= readDrivers();
+  return reading;
+}
+
+async function readDrivers() {
   drivers = await ask(`/api/make/drivers?${new URLSearchParams({ language: window.arboledaPage.language })}`);
+  if (!drivers) reading = null;
   options(box("driver"), [["", words.make_no_driver], ...(drivers ?? []).map(({ name }) => [name])]);
   drawDriver();
 }
 
-function drawDriver() {
+function drawDriver(values = {}) {
   const driver = drivers?.find(({ name }) => name === box("driver").value);
   box("driver-about").textContent = driver ? driver.why_not || driver.about : words.make_no_driver_about;
-  box("settings").replaceChildren(...(driver?.keys ?? []).map(setting));
+  box("settings").replaceChildren(...(driver?.keys ?? []).map((key) => setting(key, values[key.name])));
 }
 
 // A field for a key of a driver's settings, with its default and its meaning beside it.
-function setting({ name, form, choices, required, default: usual, about }) {
+function setting({ name, form, choices, required, default: usual, about }, value) {
   const id = `make-setting-${name}`;
   const label = element("label", name);
   const field = form === "choice" || form === "bool" ? element("select") : element(form === "yaml" ? "textarea" : "input", "", { rows: 2, spellcheck: "false", autocomplete: "off", placeholder: usual });
   if (field.tagName === "SELECT") field.append(...["", ...(form === "bool" ? ["true", "false"] : choices)].map((each) => new Option(each || usual || "-", each)));
+  if (value !== undefined) field.value = typeof value === "object" ? JSON.stringify(value) : value;
   const without = required ? words.make_required : usual ? fill(words.make_default, { value: usual }) : "";
   const meaning = element("small", [about, without].filter(Boolean).join(". "), { id: `${id}-about` });
-  for (const [key, value] of Object.entries({ id, "data-setting": name, "aria-describedby": meaning.id, "aria-required": String(required) })) field.setAttribute(key, value);
+  for (const [key, text] of Object.entries({ id, "data-setting": name, "aria-describedby": meaning.id, "aria-required": String(required) })) field.setAttribute(key, text);
   label.append(field, meaning);
   return label;
 }
 
 const settings = () => Object.fromEntries([...box("settings").querySelectorAll("[data-setting]")].map((each) => [each.dataset.setting, each.value.trim()]).filter(([, text]) => text));
 
+// --- what is pressed
+
 function clicked({ target }) {
-  const { make: act, makePanel } = target.closest("button")?.dataset ?? {};
+  const { make: act, makePanel, changeDevice, cell } = target.closest("button")?.dataset ?? {};
   if (makePanel === "device") offerDrivers();
-  if (act === "add_fact") addFact().querySelector("input").focus();
-  if (act === "add_verb") addVerb().querySelector("input").focus();
+  if (changeDevice) change({ cell, role: changeDevice });
+  if (act === "add_fact") kinds.addFact().querySelector("input").focus();
+  if (act === "add_verb") kinds.addVerb().querySelector("input").focus();
   if (act === "add_device") add();
+  if (act === "new_device") fresh();
   if (act === "reach") reach();
 }
 
-const addFact = () => row("facts", [["fact", ""], ["type", "", TYPES]]);
-const addVerb = () => row("verbs", [["verb", ""], ["effect", "", EFFECTS], ["takes_s", "2"], ["sets", ""], ["needs", ""], ["answers", ""]]);
-
-function row(where, fields) {
-  const around = element("div", "", { class: "make-form" });
-  for (const [name, value, list] of fields) {
-    const id = `make-${where}-${name}-${(made += 1)}`;
-    const label = element("label", words[`make_key_${name}`]);
-    const input = element("input", "", { type: "text", id, autocomplete: "off", maxlength: "200", placeholder: words[`make_like_${name}`] ?? "" });
-    input.value = value;
-    if (list) input.setAttribute("list", listOf(name, list));
-    input.dataset.key = name;
-    label.append(input);
-    around.append(label);
-  }
-  box(where).append(around);
-  return around;
-}
-
-function listOf(name, words) {
-  const id = `make-list-${name}`;
-  if (!document.getElementById(id)) {
-    const list = element("datalist", "", { id });
-    list.append(...words.map((each) => new Option(each)));
-    document.getElementById("make").append(list);
-  }
-  return id;
-}
-
-const rows = (where) => [...box(where).children].map((each) => Object.fromEntries([...each.querySelectorAll("input")].map((input) => [input.dataset.key, input.value.trim()])));
-
 async function add() {
   const device = written();
-  if (!device) return;
-  const { cell, role, kind } = device;
-  if (draft.state.values.cells?.[cell]?.devices?.[role]) return say(fill(words.make_known, { name: role }));
-  if (!(await step("../make/device", device))) return;
-  say(fill(words.make_device_added, { role, name: kind }));
+  if (!device || !(await step("../make/device", device))) return;
+  const said = fill(changing ? words.make_device_changed : words.make_device_added, { role: device.role, name: device.kind });
   await read();
-  box("kind").value = kind;
+  fresh();
+  box("device_cell").value = device.cell;
+  box("kind").value = device.kind;
   chosen();
+  say(said);
 }
 
 // Have its driver listen for a moment, in a process of its own; the draft stays as it is.
@@ -129,35 +175,46 @@ async function reach() {
 
 const heard = ({ facts, missing }) => [...Object.entries(facts).map(([fact, value]) => `${fact}: ${value}`), ...missing.map((fact) => fill(words.make_unsaid, { fact }))].join(", ");
 
-// The device that the form says; null, and it is said, where a name is missing.
+// --- what the form says
+
+// The device that the form says; null where a field is wrong, which then has the focus.
 function written() {
-  const [cell, role, known] = [box("device_cell").value, box("role").value.trim(), box("kind").value];
-  if (!NAME.test(role)) return say(words.make_role_first), box("role").focus(), null;
+  const fields = [...box("device").querySelectorAll("input, select")].filter((each) => each.offsetParent && !each.dataset.setting);
+  const wrong = fields.filter((each) => judge(each) || (isNeeded(each) && !each.value.trim()));
+  if (wrong.length) return say(judge(wrong[0], true)), wrong[0].focus(), null;
+  const known = box("kind").value;
   const kind = known || box("new_kind").value.trim();
-  if (!known && (!NAME.test(kind) || draft.state.values.kinds?.[kind])) return say(words.make_kind_first), box("new_kind").focus(), null;
   const driver = box("driver-form").hidden ? "" : box("driver").value;
-  return { cell, role, kind, driver, settings: driver ? settings() : {}, ...(known ? {} : { declared: declared() }) };
+  const declared = box("kind-form").hidden ? {} : { declared: kinds.written(known ? declaredKinds()[known] : undefined) };
+  return { cell: cell(), role: box("role").value.trim(), kind, driver, settings: driver ? settings() : {}, keys: keys(kind), ...declared };
 }
 
-function declared() {
-  const facts = Object.fromEntries(rows("facts").filter(({ fact }) => fact).map(({ fact, type }) => [fact, typed(type || "bool")]));
-  const verbs = Object.fromEntries(rows("verbs").filter(({ verb }) => verb).map(({ verb, ...rest }) => [verb, verbOf(rest)]));
-  return { facts, verbs };
+// Other keys of a kind that comes with Arboleda; what is empty is taken away.
+function keys(kind) {
+  if (!isShipped(kind)) return {};
+  const { x_m: x, y_m: y, yaw_deg: yaw, answers, ...others } = Object.fromEntries(SHIPPED[kind].map((key) => [key, box(key).value.trim()]));
+  const stands = x || y || yaw ? { origin_m: [Number(x), Number(y)], ...(Number(yaw) ? { yaw_deg: Number(yaw) } : {}) } : null;
+  return { ...others, ...(x === undefined ? {} : { [kind === "arm" ? "base" : "grid"]: stands }), ...(answers === undefined ? {} : { answers: answers ? kinds.list(answers) : null }) };
 }
 
-// "open, closed" is a list of words, anything else is a type.
-const typed = (text) => (text.includes(",") ? text.split(",").map((each) => plain(each.trim())) : text);
+const isNeeded = ({ id }) => ["make-role", "make-new_kind", "make-new_cell"].includes(id);
 
-function verbOf({ effect, takes_s, sets, needs, answers }) {
-  const value = { effect: effect || "switch" };
-  if (sets) value.sets = pairs(sets);
-  if (needs) value.needs = pairs(needs);
-  if (answers) value.answers = answers.split(",").map((each) => plain(each.trim()));
-  if (takes_s && value.effect !== "query" && Number.isFinite(Number(takes_s))) value.takes_s = Number(takes_s);
-  return value;
+// What is wrong with a field, said below it; an empty one is wrong only where it is needed now.
+function judge(input, needed = false) {
+  if (!input.matches("input, select") || input.dataset.setting) return "";
+  const text = input.value.trim();
+  const sentence = text || input.dataset.key ? (input.dataset.key ? kinds.objection(input) : (NAMES[input.id]?.(text) ?? "")) : needed ? words.make_bad_name : "";
+  const label = input.closest("label");
+  label.querySelector(".make-wrong")?.remove();
+  if (sentence) label.append(element("small", sentence, { class: "make-wrong", role: "alert" }));
+  input.setAttribute("aria-invalid", Boolean(sentence));
+  return sentence;
 }
 
-// "door: open, lit: true"
-const pairs = (text) => Object.fromEntries(text.split(",").map((each) => each.split(":").map((part) => part.trim())).map(([fact, value]) => [fact, plain(value ?? "true")]));
+const name = (text, isTaken) => (!kinds.NAME.test(text) ? words.make_bad_name : isTaken(text) ? fill(words.make_known, { name: text }) : "");
 
-const plain = (text) => (text === "true" ? true : text === "false" ? false : text !== "" && Number.isFinite(Number(text)) ? Number(text) : text);
+const NAMES = {
+  "make-role": (text) => name(text, (each) => !changing && cellsOf()[cell()]?.devices?.[each] !== undefined),
+  "make-new_kind": (text) => name(text, (each) => TAKEN.kind.includes(each) || each in declaredKinds()),
+  "make-new_cell": (text) => name(text, (each) => TAKEN.cell.includes(each) || each in cellsOf()),
+};

@@ -44,6 +44,7 @@ async function prove() {
   const chosen = box("prove_recipe").value;
   const recipes = chosen ? [chosen] : differing();
   isFollowed = true;
+  found = null;
   begun("prove");
   box("proof").replaceChildren();
   says(words.make_proving);
@@ -67,6 +68,17 @@ export async function recall() {
   if (["running", "done"].includes(run?.state)) await follow();
 }
 
+// What the last proof says of the draft as it is now; null where nothing was proved since it changed.
+export const verdict = () => (found && isRecent("prove") ? { text: verdictText(), isBroken: isBroken() } : null);
+
+const isBroken = () => found.breaches.length + found.unsound.length > 0;
+
+function verdictText() {
+  const { runs, breaches, unsound } = found;
+  const verdict = isBroken() ? words.make_broken : runs.done < runs.of ? words.make_sampled : words.make_held;
+  return fill(verdict, { done: runs.done, of: runs.of, breaches: breaches.length + unsound.length });
+}
+
 function how({ doing, done, total }) {
   const progress = box("progress");
   if (total) (progress.max = total), (progress.value = done ?? 0);
@@ -75,9 +87,8 @@ function how({ doing, done, total }) {
 }
 
 function drawn() {
-  const { runs, breaches, unsound, unnoticed, table } = found;
-  const verdict = breaches.length || unsound.length ? words.make_broken : runs.done < runs.of ? words.make_sampled : words.make_held;
-  says(fill(verdict, { done: runs.done, of: runs.of, breaches: breaches.length + unsound.length }));
+  const { breaches, unsound, unnoticed, table } = found;
+  says(verdictText());
   const link = element("a", words.make_whole_proof, { href: "/proof", target: "_blank", rel: "noopener", class: "act" });
   const parts = [
     ...section(words.make_nobody_notices, unnoticed.map(unnoticedRow)),

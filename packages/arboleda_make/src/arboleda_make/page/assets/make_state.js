@@ -12,6 +12,10 @@ export const isRecent = (what) => sessionStorage.getItem(RUN + what) !== null;
 export const begun = (what) => sessionStorage.setItem(RUN + what, "begun");
 const changed = () => ["try", "prove"].forEach((what) => sessionStorage.removeItem(RUN + what));
 
+const PANEL = "arboleda_make_panel"; // where this browser tab was last, also before it looked at a record
+export const remember = (panel) => sessionStorage.setItem(PANEL, panel);
+export const remembered = () => sessionStorage.getItem(PANEL);
+
 const listeners = [];
 const MOST_TRIES = 10;
 const RETRY_MS = 300; // while the server takes no more in this second
@@ -42,6 +46,7 @@ export const knownName = () => localStorage.getItem(NAME) ?? "";
 export const keepName = (name) => localStorage.setItem(NAME, name);
 export const name = () => box("name").value.trim() || words.make_somebody;
 export const isMine = () => draft.state?.editor != null && sessionStorage.getItem(MINE) === draft.state.editor.since;
+export const isReading = () => draft.state?.editor != null && !isMine();
 
 const FINDINGS = "/findings.json"; // says what was found in the language of the page
 const ENGLISH = "en"; // in which everything is found

@@ -7,6 +7,7 @@ import { words } from "../shell.js";
 const LOOK_MS = 400;
 const says = (sentence) => (box("try-state").textContent = sentence);
 let last = null; // what came of the last try
+let judged = null; // in words, and whether the draft is broken by it
 
 export function start() {
   document.getElementById("make").addEventListener("click", clicked);
@@ -45,10 +46,14 @@ export async function recall() {
   if (last) shown(last);
 }
 
+// What the last try says of the draft as it is now; null where nothing was tried since it changed.
+export const verdict = () => (isRecent("try") ? judged : null);
+
 // Play a story: a task with what befell it, from a proof.
 export const play = (wanted) => go({ task: wanted.task, answers: wanted.answers ?? {}, faults: (wanted.faults ?? []).map(bare) });
 
 async function go(wanted) {
+  judged = null;
   box("tried").hidden = true;
   says(words.make_trying), begun("try");
   if (!(await ask("/api/make/runs/try", wanted, says))) return false;
@@ -74,7 +79,9 @@ function shown({ task, outcome, why, faults, instants, possible }) {
   const how = [outcome.end, outcome.cause].filter(Boolean).join(": ");
   const untrue = outcome.untrue.length ? ` ${fill(words.make_unnoticed, { what: outcome.untrue.join("; ") })}` : "";
   const broken = outcome.broken ? ` ${outcome.broken[1]}` : "";
-  says(`${task}${befell ? ` + ${befell}` : ""}: ${how}${why ? ` (${why})` : ""}${untrue}${broken}`);
+  const text = `${task}${befell ? ` + ${befell}` : ""}: ${how}${why ? ` (${why})` : ""}${untrue}${broken}`;
+  says(text);
+  judged = { text, isBroken: Boolean(broken || untrue || (!befell && outcome.end !== "done")) };
   box("tried").hidden = false;
   box("fault-form").hidden = !possible.length;
   const chosen = box("fault").value;

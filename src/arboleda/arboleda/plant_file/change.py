@@ -1,0 +1,125 @@
+"""One difference between two sets of a plant's files: as data, and in words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from .document import Place, dotted
+from .yaml_flow import flow
+from .yaml_marks import clipped
+
+LONGEST = 120  # characters of a value
+CELLS, DEVICES, KINDS, TARGETS = "cells", "devices", "kinds", "targets"
+FACTS, VERBS = "facts", "verbs"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Missing:
+    """The value of a key that a file does not have, other than an empty value."""
+
+
+MISSING = Missing()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """One difference: in the plant file's value at `place`, in a tree of `file`, or in a whole file.
+
+    `before` and `after` are plain values, MISSING where there is none. For a tree or a whole file that is
+    there, they are None. `verbs` are those of a new device whose kind the plant file declares.
+    """
+
+    file: str
+    place: Place = ()
+    tree: str = ""
+    before: Any
+    after: Any
+    verbs: tuple[str, ...] = ()
+
+    @property
+    def words(self) -> str:
+        """The change as one line."""
+        return self._of_whole or f"{self._what}: {self._how}"
+
+    @property
+    def is_device(self) -> bool:
+        """True for a whole device of a cell."""
+        return len(self.place) == 4 and (self.place[0], self.place[2]) == (CELLS, DEVICES)
+
+    @property
+    def _of_whole(self) -> str:
+        """The line for a cell, a device or a kind that is new or gone; "" for another change."""
+        if self.after is MISSING:
+            return self._gone
+        return self._new(self.after) if self.before is MISSING and isinstance(self.after, dict) else ""
+
+    @property
+    def _gone(self) -> str:
+        if self.is_device:
+            _, cell, _, role = self.place
+            return f"device {role} of {cell} is gone"
+        section, *name = self.place or ("",)
+        if len(name) != 1 or section not in (CELLS, KINDS):
+            return ""
+        return f"cell {name[0]} is gone" if section == CELLS else f"kind {name[0]} is gone"
+
+    def _new(self, value: dict[Any, Any]) -> str:
+        if self.is_device:
+            return self._new_device(value)
+        section, *name = self.place or ("",)
+        if len(name) != 1 or section not in (CELLS, KINDS):
+            return ""
+        if section == CELLS:
+            devices = _names(value, DEVICES)
+            return f"new cell {name[0]} with {devices}" if devices else f"new cell {name[0]}"
+        facts, verbs = _names(value, FACTS), _names(value, VERBS)
+        return (
+            f"new kind {name[0]}: says {facts}; does {verbs}"
+            if facts
+            else f"new kind {name[0]}: does {verbs}"
+        )
+
+    def _new_device(self, device: dict[Any, Any]) -> str:
+        _, cell, _, role = self.place
+        kind = str(device.get("kind") or device.get("shared", "?"))
+        line = f"new device {role} of {cell}: {kind}"
+        if self.verbs:
+            line = f"new device {role} of {cell}: {kind} with {', '.join(self.verbs)}"
+        driver = device.get("driver")
+        name = next(iter(driver), "") if isinstance(driver, dict) else driver
+        return f"{line}, reached by {name}" if name else line
+
+    @property
+    def _what(self) -> str:
+        place = [*map(str, self.place)]
+        if not place:
+            return f"{self.file}, tree {self.tree}" if self.tree else self.file
+        if len(place) == 5 and (place[0], place[2]) == (CELLS, TARGETS):
+            return f"cell {place[1]}, target {place[3]} of {place[4]}"
+        if len(place) > 4 and (place[0], place[2]) == (CELLS, DEVICES):
+            return f"cell {place[1]}, {dotted(self.place[4:])} of {place[3]}"
+        if len(place) > 3 and place[0] == KINDS:
+            return f"kind {place[1]}, {dotted(self.place[3:])}"
+        return dotted(self.place)
+
+    @property
+    def _how(self) -> str:
+        if self.before is MISSING:
+            return "new" if self.after is None else f"new, {_short(self.after)}"
+        if self.after is MISSING:
+            return "gone" if self.before is None else f"gone, it was {_short(self.before)}"
+        if self.before is None and self.after is None:
+            return "changed"
+        return f"from {_short(self.before)} to {_short(self.after)}"
+
+
+def _names(value: dict[Any, Any], key: str) -> str:
+    """The names under a key; "" where there is none."""
+    names = value.get(key)
+    return ", ".join(map(str, names)) if isinstance(names, dict) else ""
+
+
+def _short(value: Any) -> str:
+    text = flow(value)
+    return text if len(text) <= LONGEST else f"{clipped(text)} ({len(text)} characters)"
