@@ -12,6 +12,7 @@ from arboleda.adapters.server_tls import ServerTls
 from arboleda.model.errors import ArboledaError, QueueFull, StartError
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.runtime.parts.local_plant import LocalPlant
+from arboleda.runtime.parts.web import WebPart
 from arboleda.runtime.web_options import WebOptions
 from arboleda.store.task_rows import TaskHistory
 from arboleda.web.access.names import names_for
@@ -127,3 +128,21 @@ def test_with_a_certificate_its_address_is_that_of_tls() -> None:
     names = names_for("0.0.0.0", None, scheme="https")
     assert names.knows_origin("https://10.0.0.7:8080", "10.0.0.7:8080")
     assert not names.knows_origin("http://10.0.0.7:8080", "10.0.0.7:8080")
+
+
+@pytest.mark.parametrize(
+    ("options", "page", "api"),
+    [
+        ({}, "http://127.0.0.1:0", "http://127.0.0.1:0"),
+        ({"host": "0.0.0.0"}, "http://10.0.0.5:0", "http://10.0.0.5:0"),
+        ({"public_url": "https://plant.lab"}, "https://plant.lab", "http://127.0.0.1:0"),
+    ],
+)
+def test_people_are_told_the_address_that_they_open(
+    options: dict, page: str, api: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("arboleda.web.access.names.interface_addresses", lambda: ["127.0.0.1", "10.0.0.5"])
+    side, web = LocalPlant(Plant(), NO_HISTORY), WebOptions(port=0, **options)
+    part = WebPart(side, "demo", tmp_path, lambda *_, **__: None, web, mount=lambda app: None)
+    assert part.notes[:2] == [f"Page: {page}", f"HTTP API: {api}/api/plant"]
+    assert part.address_of("sis_a", None) == f"{page}/?tab=cells&cell=sis_a"

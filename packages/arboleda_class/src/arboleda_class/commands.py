@@ -10,4 +10,9 @@ COMMANDS = {
         "Exercises with a judge: cells that are not right yet, to be put right.",
         section="Learn it",
     ),
+    "class": Command(
+        "arboleda_class.students.command",
+        "Write a plant for each student, with tokens, and say what each student opens.",
+        section="Learn it",
+    ),
 }

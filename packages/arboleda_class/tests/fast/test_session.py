@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import pytest
@@ -88,7 +89,7 @@ def test_another_act_in_the_past_forgets_what_came_after_it(model: Any) -> None:
     made.befall("reboot", board(model, "ra2"), 0.0)
     assert made.latest == 40
     made.advance(440)
-    assert made.frame()["clock"]["marks"] == [40]
+    assert made.frame()["clock"]["marks"] == [[40, "0:02 ra2: Reboot its board"]]
     assert state(made) == "idle"  # nothing has befallen the first cell
 
 
@@ -141,11 +142,11 @@ def test_what_somebody_has_to_do_at_a_machine_has_a_button(model: Any) -> None:
     made.advance(160)
     made.forget()
     face = made.frame()["face"]
-    first = face["rows/hands"][0]
-    assert face[f"row/hands/{first}"]["acts"][0]["of"] == first
+    first = face["rows/happened"][1]
+    assert face[f"row/happened/{first}"]["acts"][0]["of"] == first
     made.take("hand", first)
     made.advance(160)
-    assert first not in made.frame()["face"].get("rows/hands", [])
+    assert first not in made.frame()["face"].get("rows/happened", [])
 
 
 def test_steps_go_from_one_happening_to_the_next_and_back_again(model: Any) -> None:
@@ -202,3 +203,83 @@ def test_every_mishap_that_is_offered_can_begin_and_end(plant: str) -> None:
         made.befall(name, target, 1.0)
     made.advance(160)
     assert len(made.frame()["clock"]["marks"]) == len(offered)
+
+
+def told(made: Session) -> list[str]:
+    """The last mishap and what came of it, as the strip tells."""
+    made.forget()
+    return list(made.frame()["face"]["row/happened/last"]["texts"])
+
+
+def events(made: Session) -> list[str]:
+    """What the time line tells of faults, the newest first."""
+    made.forget()
+    rows = [row for key, row in made.frame()["face"].items() if key.startswith("row/events/")]
+    return [row["texts"][3] for row in rows if row["texts"][2].startswith("fault")]
+
+
+def test_a_mishap_that_has_nothing_to_do_says_why(model: Any) -> None:
+    made = session(model)
+    made.advance(16)
+    made.befall("lost_part", board(model, "ra1"), 0.0)
+    made.advance(4)
+    assert told(made) == ["0:01 ra1: Lose the part", "Nothing to lose now: it holds no part."]
+    assert events(made) == ["fault by hand: Lose the part"]
+
+
+def test_a_mishap_that_waits_says_for_what_and_then_that_it_is_over(model: Any) -> None:
+    made = session(model)
+    made.befall("no_part", board(model, "ra1"), 5.0)
+    made.advance(16)
+    assert told(made)[1] == "It waits until the effector grips."
+    made.advance(80)
+    assert told(made)[1] == "It is over. No task failed, and no cell is held."
+    begun = "fault by hand: No part there to take, for 5 s"
+    assert events(made) == ["fault by hand is over: No part there to take", begun]
+
+
+def test_a_mishap_with_an_effect_tells_it_with_what_is_advised(model: Any) -> None:
+    made = at_work(model)
+    made.befall("reboot", board(model, "ra1"), 0.0)
+    made.advance(MINUTE)
+    when, did = told(made)
+    assert when == "0:05 ra1: Reboot its board" and did.startswith("sis_a ")
+    made.forget()
+    face = made.frame()["face"]
+    advised = face["rows/happened"][1]
+    assert face[f"row/happened/{advised}"]["acts"] == face["row/ways.sis_a/0"]["acts"]
+
+
+def test_a_run_goes_on_in_another_language(model: Any) -> None:
+    made = at_work(model, seed=3, level="normal")
+    made.befall("reboot", board(model, "ra1"), 0.0)
+    made.advance(160)
+    made.take("stop", "sis_a")
+    made.advance(160)
+    made.go(300)
+    other = Session(model, {}, language="es", seed=3, level="normal")
+    other.go_on(json.loads(json.dumps(made.past)))
+    assert (other.digest, other.tick, other.latest) == (made.digest, 300, 400)
+    assert other.frame()["said"] == [] and told(other)[0] == "0:05 ra1: Reiniciar su placa"
+    for each in (made, other):
+        each.advance(100)
+    assert other.digest == made.digest
+
+
+@pytest.mark.parametrize(
+    ("begun", "said"),
+    [
+        ([("opened_effector", "loader")], "Nothing to open now: its effector is open."),
+        ([("opened_device", "mill")], "Nothing to take out now: it holds no part."),
+        ([("no_power", "loader"), ("reboot", "loader")], "Nothing to break now: its board has no power."),
+        ([("jam", "mill")], "It waits for the end of an order."),
+        ([("plant_crash", "plant")], "No task has failed, and no cell is held."),
+    ],
+)
+def test_each_mishap_says_why_nothing_or_what_it_waits_for(begun: list[tuple[str, str]], said: str) -> None:
+    made = session(plants.model("machine_tending"))
+    made.advance(16)
+    for name, target in begun:
+        made.befall(name, target, 60.0)
+    made.advance(16)
+    assert told(made)[1] == said

@@ -76,8 +76,12 @@ def test_buttons_of_the_page_reach_the_plant() -> None:
     assert ask(tab, "back")["frame"]["clock"]["tick"] == 0
     assert ask(tab, "look", on=True)["frame"]["twin"]
     assert ask(tab, "go", tick=0)["frame"]["clock"]["tick"] == 0
-    assert ask(tab, "befall", name="reboot", target="ra_1", seconds=1)["frame"]["clock"]["marks"] == [0]
-    assert ask(tab, "digest")["digest"]
+    assert ask(tab, "befall", name="reboot", target="ra_1", seconds=1)["frame"]["clock"]["marks"] == [
+        [0, "0:00 ra1: Reboot its board"]
+    ]
+    digest = ask(tab, "digest")["digest"]
+    other, answer = opened(past=ask(tab, "past")["past"])
+    assert answer["frame"]["clock"]["marks"] and ask(other, "digest")["digest"] == digest
 
 
 @pytest.mark.long

@@ -124,6 +124,25 @@ def test_a_person_gives_a_task_has_a_board_reboot_goes_back_stops_and_opens_anot
     assert "plant=agv" in page.url and "tab=links" in page.url
 
 
+def test_on_a_laptop_faults_take_one_row_and_another_language_tells_of_the_same_run(opened: Open) -> None:
+    page = opened("plant=machine_tending", viewport={"width": 1366, "height": 768})
+    before = page.evaluate("document.getElementById('play').offsetHeight")
+    page.click("#play-mishaps summary")
+    buttons = page.evaluate(
+        "[...document.querySelectorAll('[data-fault]:not([hidden])')].map(b => b.offsetTop)"
+    )
+    assert len(buttons) > 5 and len(set(buttons)) == 1
+    assert page.evaluate("document.getElementById('play').offsetHeight") < before + 60
+    page.click("[data-fault=lost_part]")
+    page.wait_for_selector("[data-rows=happened] :text('Nothing to lose now')")
+    assert page.get_attribute("#play-marks i", "title").endswith("loader: Lose the part")
+    show(page, "events")
+    page.wait_for_selector("[data-rows=events] :text('fault by hand')")
+    page.click("[data-language=es]")
+    page.wait_for_selector("html[lang=es] [data-rows=happened] :text('Ahora no hay nada que perder')")
+    assert "plant=machine_tending" in page.url and "tab=events" in page.url
+
+
 @pytest.mark.requires("axe_playwright_python")
 @pytest.mark.parametrize(("language", "screen"), sample(VIEWS[::-1], every=2))
 def test_axe_finds_nothing_and_nobody_scrolls_sideways(opened: Open, language: str, screen: str) -> None:
@@ -139,6 +158,6 @@ def test_axe_finds_nothing_and_nobody_scrolls_sideways(opened: Open, language: s
     page.select_option("#fault-seconds", "60")
     page.click("[data-fault=no_power]")
     page.evaluate("arboledaPlay.advance(160)")
-    page.wait_for_selector("[data-rows=hands] button")
+    page.wait_for_selector("[data-rows=happened] button")
     eyes.look("a board without power")
     assert not eyes.violations, "\n".join(eyes.violations)

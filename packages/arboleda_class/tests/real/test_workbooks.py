@@ -146,12 +146,16 @@ def test_a_program_is_changed_breaks_is_interrupted_survives_a_reload_and_is_res
 def test_an_exercise_is_judged_played_mended_and_handed_in_as_by_the_command(
     opened: Open, tmp_path: Path
 ) -> None:
-    page = opened("exercise=query_first")
+    page = opened("exercise=query_first", viewport={"width": 1366, "height": 768})
     plant(page)
+    assert page.evaluate("document.getElementById('book-editor').offsetHeight") > 400
     page.click("[data-does=hint]")
-    assert exercise("query_first").hints[0]["en"].split("`")[0].strip()[:20] in page.inner_text("#book-said")
     page.click("[data-does=judge]")
     said(page, "fails")
+    page.click("[data-does=hint]")
+    said(page, "fails")
+    assert exercise("query_first").hints[1]["en"].split("`")[0].strip()[:20] in page.inner_text("#book-hint")
+    assert page.evaluate("document.getElementById('book-results').offsetHeight") > 150
     page.click("[data-does=play]")
     frame = page.frame_locator("#book-frame")
     frame.locator("#play:not(:has(#play-mishaps)) #play-slider").wait_for()  # nothing can be begun in it
@@ -184,6 +188,19 @@ def test_an_exercise_is_judged_played_mended_and_handed_in_as_by_the_command(
     page.set_input_files("#book-load", str(handed))
     said(page, "built")
     page.wait_for_function("text => arboledaWork.text() === text", arg=right.files[name].decode())
+
+
+def test_another_language_of_a_workbook_tells_of_the_same_run(opened: Open) -> None:
+    page = opened("exercise=query_first")
+    frame = plant(page)
+    frame.locator("#play-mishaps summary").click()
+    frame.locator("[data-fault=reboot]").click()
+    frame.locator("#play-marks i").wait_for(state="attached")
+    page.click("#book-language")
+    page.wait_for_selector("html[lang=es]")
+    again = page.frame_locator("#book-frame")
+    again.locator("[data-rows=happened] :text('Reiniciar')").first.wait_for()
+    assert again.locator("#play-marks i").count() == 1
 
 
 def _members(content: bytes) -> dict[str, bytes]:

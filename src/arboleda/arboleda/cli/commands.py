@@ -30,6 +30,7 @@ LEFT_OUT = Phrase(
 )
 OF_PACKAGES = {  # extras of `arboleda`, by command
     "apply": MAKE,
+    "class": CLASS,
     "conformance": BOARDS,
     "exercise": CLASS,
     "fault": PROOFS,

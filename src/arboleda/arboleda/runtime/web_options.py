@@ -14,6 +14,7 @@ from arboleda.web.access.names import (
     LOCAL,
     is_loopback,
     listen_address,
+    other_address,
     url_host,
 )
 
@@ -56,12 +57,15 @@ class WebOptions:
         """The host part of a URL that reaches the server from this machine."""
         return url_host(self.address)
 
-    def origin(self, port: int, own_address: Callable[[], str]) -> str:
-        """The address for people and other hosts, if any reach it. A server that listens on every network has
-        no address of its own: then `own_address()` is that of this host, "" for none."""
+    def origin(self, port: int, own_address: Callable[[], str] = other_address) -> str:
+        """The address for people and other hosts, if any reach it."""
+        return self.public_url or self.direct(port, own_address)
+
+    def direct(self, port: int, own_address: Callable[[], str] = other_address) -> str:
+        """The same past a proxy. A server that listens on every network has no address of its own: then
+        `own_address()` is that of this host, "" for none."""
         own = own_address() if self.address in EVERY_NETWORK else ""
-        host = url_host(own) if own else self.near
-        return self.public_url or f"{self.scheme}://{host}:{port}"
+        return f"{self.scheme}://{url_host(own) if own else self.near}:{port}"
 
     def door_of(self, state: Path) -> Door:
         """The door that lets people in: with the tokens of that state directory, if everybody needs one."""

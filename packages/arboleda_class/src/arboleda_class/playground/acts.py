@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from arboleda.model.messages import Verb
 from arboleda.model.verbs import Arguments
@@ -48,3 +48,18 @@ class MishapBegun:
 
 
 Act: TypeAlias = TaskAsked | VerbAsked | HandLent | MishapBegun
+KINDS: dict[str, type[Act]] = {kind.__name__: kind for kind in (TaskAsked, VerbAsked, HandLent, MishapBegun)}
+
+
+def plain(act: Act) -> dict[str, Any]:
+    """An act as plain data."""
+    return {"kind": type(act).__name__, **vars(act)}
+
+
+def act_of(row: dict[str, Any]) -> Act:
+    """The act of such data, also of what JSON made of it."""
+    fields = {name: value for name, value in row.items() if name != "kind"}
+    if row["kind"] == VerbAsked.__name__:
+        arguments = tuple((name, value) for name, value in row["arguments"])
+        fields |= {"verb": Verb(row["verb"]), "arguments": arguments}
+    return KINDS[row["kind"]](**fields)

@@ -13,6 +13,7 @@ from arboleda.views import twin_view, view
 from arboleda_proofs.simulator.world import START_S
 
 from .acts import Act
+from .effects import Provoked
 from .run import LOOK_TICKS, TICK_S, Answer
 
 Row = dict[str, Any]
@@ -68,12 +69,17 @@ class FilmRun:
     def __init__(self, film: Film, layout: Row, *, began_unix_s: float) -> None:
         self.tick = 0
         self.answers: dict[str, Answer] = {}
+        self.provoked: list[Provoked] = []
         broker = {"address": "MQTT", "connected": True}
         self.links: Row = {"broker": broker, "ros": None, "refused": {}, "standbys": []}
         self.state = PageState(layout, [])
         self._film = film
         self._began_unix_s = began_unix_s
         self._look()
+
+    @property
+    def seconds(self) -> float:
+        return self.tick * TICK_S
 
     def outcome(self, number: int) -> Row | None:
         """No operator's act is followed."""

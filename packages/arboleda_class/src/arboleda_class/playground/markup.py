@@ -15,6 +15,8 @@ from arboleda.web.languages import texts
 from arboleda_proofs.page import fault_form
 from arboleda_proofs.simulator.mishaps import MISHAPS
 
+from . import strip
+
 PARTS: Parts = {
     "cells": trees.build,
     "twin": pane.build,
@@ -67,8 +69,9 @@ def _footer(wording: Words, own: PlayWords, plants: list[str], chosen: str, targ
         if targets:
             with tag("details", id="play-mishaps", classes="play-mishaps"):
                 tag("summary", wording("faults.title"))
-                fault_form.form(wording, _targets(own, targets))
-        rows("hands", [""], classes="play-hands")
+                with tag("div", classes="play-faults"):
+                    fault_form.form(wording, _targets(own, targets))
+        rows(strip.LIST, [""], classes="play-happened")
         _time(wording, own)
         if plants:
             _plants(own, plants, chosen)
@@ -88,16 +91,11 @@ def _targets(own: PlayWords, possible: Targets) -> list[fault_form.Target]:
     return [
         fault_form.Target(
             name=each["target"],
-            label=own_name(own, name),
+            label=strip.named(own, name),
             kinds={kind: MISHAPS[kind].sentence for kind in each["mishaps"]},
         )
         for name, each in possible.items()
     ]
-
-
-def own_name(own: PlayWords, target: str) -> str:
-    """A robot has its name; a process of the plant is said in words."""
-    return own(f"target_{target}") if target in ("plant", "bridge", "broker") else target
 
 
 def _time(wording: Words, own: PlayWords) -> None:

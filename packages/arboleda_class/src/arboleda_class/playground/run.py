@@ -9,14 +9,17 @@ from arboleda.dashboard.page_state import PageState
 from arboleda.model.advice import Hand
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, Verb
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import Sentence
 from arboleda.views import twin_view, view
 from arboleda.views.resting_cells import RestingCells
+from arboleda_proofs.running.fault_desk import BEGAN, INSTANT, OVER
 from arboleda_proofs.simulator import hands
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 from arboleda_proofs.simulator.mishaps import MISHAPS
 
 from .acts import Act, HandLent, MishapBegun, TaskAsked, VerbAsked
+from .effects import Provoked, effect
 
 TICK_S = 1 / 16  # exact in binary: a sum of ticks is the same however it was made
 LOOK_TICKS = 4  # between two looks of the screen's memory
@@ -35,6 +38,9 @@ class Run:
         self.answers: dict[str, Answer] = {}  # by the token of the request
         self.state = PageState(layout, [])
         self.snapshot: Row = {}  # the last snapshot that the screen's memory took in
+        self.provoked: list[Provoked] = []
+        self._faults: list[Row] = []  # what of these the time line tells
+        self._names = {robot.mqtt: robot.name for robot in model.robots.values()}
         self._watched = JudgedWorld(model, invariants=())
         self._climate = climate
         self._began_unix_s = began_unix_s
@@ -59,11 +65,16 @@ class Run:
         broker = {"address": "MQTT", "connected": self._watched.world.broker.is_up}
         return {"broker": broker, "ros": None, "refused": {}, "standbys": []}
 
+    @property
+    def seconds(self) -> float:
+        """The duration of the run so far, s."""
+        return self._watched.seconds
+
     def _snapshot(self) -> Row:
         plant = self._watched.world.plant
         if self._resting[1] is not plant:  # another start
             self._resting = RestingCells(), plant
-        return view.snapshot(plant, self._resting[0].part)
+        return view.snapshot(plant, self._resting[0].part) | {"faults": self._faults}
 
     def outcome(self, number: int) -> Row | None:
         """An operator's act by its number; None if the plant has forgotten it."""
@@ -107,12 +118,26 @@ class Run:
         )
 
     def _begin(self, act: MishapBegun) -> None:
-        for fault in MISHAPS[act.name].of(act.target, at=self._watched.seconds, seconds=act.seconds):
+        world, mishap, met = self._watched.world, MISHAPS[act.name], effect(self._watched.world, act)
+        name, seconds = self._names.get(act.target, act.target), act.seconds if mishap.lasts else 0.0
+        for fault in mishap.of(act.target, at=self.seconds, seconds=seconds):
             self._watched.begin(fault)
+        self.provoked.append(Provoked(act=act, name=name, effect=met, at_s=self.seconds, seconds=seconds))
+        if mishap.lasts:
+            self._note((name, BEGAN(what=mishap.sentence, seconds=seconds)))
+            world.at(world.now + seconds, self._note, (name, OVER(what=mishap.sentence)))
+        else:
+            self._note((name, INSTANT(what=mishap.sentence)))
+
+    def _note(self, fault: tuple[str, Sentence]) -> None:
+        """Have the time line tell of a fault: the name of its target, and the sentence."""
+        number, (name, sentence) = len(self._faults) + 1, fault
+        at = self._watched.world.now
+        self._faults.append({"number": number, "at": at, "robot": name, "sentence": sentence})
 
     def _look(self) -> None:
         self.snapshot = self._snapshot()
-        self.state.see(self.snapshot, self._began_unix_s + self._watched.seconds)
+        self.state.see(self.snapshot, self._began_unix_s + self.seconds)
 
     def _hear(self) -> None:
         moment = self._watched.world.moment

@@ -20,15 +20,16 @@ from arboleda.web.languages import texts
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.mishaps import MISHAPS
 
-from .acts import Act, HandLent, MishapBegun, TaskAsked, VerbAsked
+from .acts import Act, HandLent, MishapBegun, TaskAsked, VerbAsked, act_of, plain
 from .film import Film, FilmRun
 from .requests import Requests
 from .run import LOOK_TICKS, TICK_S, Run
+from .strip import HAND, Strip
 
 LONGEST_STEP_S = 60.0  # in which nothing happens
 VERBS = frozenset(verb.value for verb in Verb)
 HANDS = frozenset(hand.value for hand in Hand)
-SUBMIT, HAND = "submit", "hand"
+SUBMIT = "submit"
 Row = dict[str, Any]
 
 
@@ -57,6 +58,7 @@ class Session:
         self._model = model
         self._drawings = drawings
         self._words = words(language)
+        self._strip = Strip(self._words, model, began_unix_s=began_unix_s)
         self._climate = Climate.draw(model, seed, level)
         self._began_unix_s = began_unix_s
         self._acts: list[Act] = []
@@ -116,6 +118,16 @@ class Session:
         now = self._run.tick
         self.go(max((tick for tick in map(self._shown_at, self._happened()) if tick < now), default=0))
 
+    @property
+    def past(self) -> Row:
+        """All that the run is made of besides the seed, for `go_on`."""
+        return {"acts": [plain(each) for each in self._acts], "tick": self.tick, "latest": self.latest}
+
+    def go_on(self, past: Row) -> None:
+        """Go to where a run of this plant and seed was left."""
+        self._acts, self.latest = [act_of(each) for each in past["acts"]], past["latest"]
+        self.go(past["tick"])
+
     def take(self, act: str, of: str, more: object = None) -> None:
         """Take a request of the page, in the form of its buttons; anything else is ignored."""
         if self._refused():
@@ -152,10 +164,10 @@ class Session:
     def frame(self) -> Row:
         """Changes since the last frame: `face` and `twin` for the page's scripts, `said` as answers
         [sentence, good], and the `clock` {tick, latest, tick_s, ends (True where nothing
-        follows), marks (ticks of mishaps)}."""
+        follows), marks ([tick, name] of mishaps)}."""
         run = self._run
         face = run.state.face(self._words.language, run.links)
-        face |= self._hands(run.snapshot)
+        face |= self._strip.face(run, face)
         patch, self._shown = changed(self._shown, face), face
         return {
             "face": patch,
@@ -166,7 +178,11 @@ class Session:
                 "latest": self.latest,
                 "tick_s": TICK_S,
                 "ends": self._film is not None and run.tick == self.latest,
-                "marks": [act.tick for act in self._acts if isinstance(act, MishapBegun)],
+                "marks": [
+                    [each.tick, self._strip.name(each)]
+                    for each in self._acts
+                    if isinstance(each, MishapBegun)
+                ],
             },
         }
 
@@ -214,18 +230,3 @@ class Session:
         drawn = self._twin.frame(positions, positions["now"])
         patch, self._drawn = changed(self._drawn, drawn), drawn
         return patch
-
-    def _hands(self, snapshot: Row) -> Face:
-        """The list of what somebody has to do at a machine itself, each with a button that does it."""
-        found: dict[str, Row] = {}
-        for cell in snapshot["cells"]:
-            for advice in cell["advice"]:
-                if advice["hand"] and not advice["refusal"]:
-                    found.setdefault(f"{advice['do']} {advice['scope']}", advice)
-        rows = {f"row/hands/{of}": self._hand(of, advice) for of, advice in found.items()}
-        return {"rows/hands": [*found], **rows}
-
-    def _hand(self, of: str, advice: Row) -> Row:
-        label, why = self._words.say(advice["said"]), self._words.say(advice["why"])
-        act = {"act": HAND, "of": of, "label": label[:1].upper() + label[1:], "does": why}
-        return {"state": "hand", "texts": [why], "acts": [act]}

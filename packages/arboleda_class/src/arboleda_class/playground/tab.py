@@ -77,6 +77,8 @@ class Tab:
             began_unix_s=time.mktime(NOON),
             film=playable.film,
         )
+        if request.get("past"):
+            self._session.go_on(request["past"])
         targets = {} if playable.film else dict(mishaps.possible(playable.model))
         offered = [] if name in self._playables else list(plants.FILES)
         page = markup.html(self._session.layout, language, plants=offered, chosen=name, targets=targets)
@@ -115,6 +117,10 @@ class Tab:
 
     def task_face(self, request: Row) -> Row:
         return {"face": self._open.task_face(request["id"])}
+
+    def past(self, _: Row) -> Row:
+        """What the run is made of, for the `past` of another `open` of the same plant."""
+        return {"past": self._open.past}
 
     def digest(self, _: Row) -> Row:
         """The digest of the run so far."""
@@ -204,6 +210,7 @@ DOES: dict[str, Callable[[Tab, Row], Row]] = {
     "look": Tab.look,
     "scene": Tab.scene,
     "task_face": Tab.task_face,
+    "past": Tab.past,
     "digest": Tab.digest,
     "simulate": Tab.simulate,
     "build": Tab.build,

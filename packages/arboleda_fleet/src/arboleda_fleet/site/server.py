@@ -42,7 +42,7 @@ class SiteServer:
         if self._options.guarded:
             tokens.read(self._state)
         port = self._server.start()
-        lines = [f"Page: {self._options.scheme}://{self._options.near}:{port}"]
+        lines = [f"Page: {self._options.origin(port)}"]
         return [*lines, f"Tokens: {self._state / tokens.TOKENS}"] if self._options.guarded else lines
 
     def stop(self) -> None:

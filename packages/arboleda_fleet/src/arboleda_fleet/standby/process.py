@@ -84,7 +84,7 @@ def _wait(model: PlantModel, store: str, state: Path, options: Options, tell: Ca
         others.prepare()
         room.start(here.announce)
         try:
-            tell(f"Page of the standby: {room.url}")
+            tell(f"Page of the standby: {options.web.origin(room.port)}")
             own = partial(options.web.origin, room.port, lambda: others.own_address() or other_address())
             _until_free(others, model.name, own, _StandbyNotices(room, voice, tell))
             return room.port

@@ -73,12 +73,11 @@ class WebPart:
     @property
     def notes(self) -> list[str]:
         """The lines that a person should read about the server."""
-        address = self._here
-        notes = [f"HTTP API: {address}/api/plant"]
+        notes = [f"HTTP API: {self._options.direct(self._port)}/api/plant"]
         if self._options.port is None and self._port != DEFAULT_PORT:
             notes[0] += f" (port {DEFAULT_PORT} is taken)"
         if self._shows_page:
-            notes.insert(0, f"Page: {address}")
+            notes.insert(0, f"Page: {self._options.origin(self._port)}")
         if self._options.guarded:
             notes.append(f"Tokens: {self._state / tokens.TOKENS}; arboleda token shows them")
         if not is_loopback(self._options.host) and self._options.tls is None:
@@ -93,13 +92,7 @@ class WebPart:
         if not self._shows_page:
             return None
         place = {"tab": "cells", "cell": cell} if task is None else {"tab": "tasks", "task": task}
-        origin = self._options.public_url or self._here
-        return f"{origin}/?{urlencode(place)}"
-
-    @property
-    def _here(self) -> str:
-        """The server's origin, for this machine."""
-        return f"{self._options.scheme}://{self._options.near}:{self._port}"
+        return f"{self._options.origin(self._port)}/?{urlencode(place)}"
 
     def start(self) -> None:
         if self._options.guarded:

@@ -14,6 +14,7 @@ const asked = new URLSearchParams(location.search);
 const cookie = document.cookie.match(/arboleda_language=(\w+)/)?.[1];
 const languages = [asked.get("lang"), cookie, ...navigator.languages].filter(Boolean);
 const spoken = languages.map((each) => each.slice(0, 2)).find((each) => LOADING[each]) ?? "en";
+const RUN = "arboleda/run"; // of the browser's tab: what goes on in another language
 let live, shell, tree; // the page's modules, which want its words when they are loaded
 let clock = { tick: 0, latest: 0, tick_s: 1, marks: [] };
 let playing = false;
@@ -31,8 +32,9 @@ function loading(step) {
 }
 
 async function start() {
+  const left = leftOver();
   loading("python");
-  const opened = await ask("open", { plant: asked.get("plant"), languages, seed: Number(asked.get("seed")) || 0, level: asked.get("faults") ?? "none" });
+  const opened = await ask("open", { plant: asked.get("plant"), languages, seed: Number(asked.get("seed")) || 0, level: asked.get("faults") ?? "none", past: left?.past });
   if (opened.sentence) return (at("play-loading").textContent = opened.sentence);
   window.arboledaPage = opened.page;
   window.arboleda = { live: (_, patch) => live.apply(patch), answer: (...said) => shell.answer(...said) };
@@ -42,7 +44,34 @@ async function start() {
   show(opened.frame);
   at("connection").hidden = true;
   setInterval(pass, TURN_MS);
-  play(true);
+  play(left?.playing ?? true);
+}
+
+// The run that was left to be seen in another language, once.
+function leftOver() {
+  const left = JSON.parse(sessionStorage.getItem(RUN) ?? "null");
+  sessionStorage.removeItem(RUN);
+  return left?.of === whose() ? left : null;
+}
+
+// The plant of a workbook is that of the lesson or exercise whose page is around this one.
+function whose() {
+  return ["plant", "seed", "faults"].map((each) => asked.get(each)).join() + (asked.has("within") ? window.parent.location.search.replace(/&?lang=\w+/, "") : "");
+}
+
+async function leave() {
+  const { past } = await ask("past");
+  sessionStorage.setItem(RUN, JSON.stringify({ of: whose(), playing, past }));
+}
+
+// In another language the same plant goes on, at the same part of the page.
+async function speak(language) {
+  document.cookie = `arboleda_language=${language}; path=/; max-age=31536000; SameSite=Strict`;
+  await leave();
+  const now = new URLSearchParams(location.search);
+  for (const each of ["tab", "cell", "task"]) now.has(each) ? asked.set(each, now.get(each)) : asked.delete(each);
+  asked.set("lang", language);
+  location.assign(`${location.pathname}?${asked}`);
 }
 
 // The parts of a plant's page that the playground has, in the order in which the page itself begins them.
@@ -107,7 +136,8 @@ function show({ face, twin, said, clock: now }) {
   const slider = at("play-slider");
   slider.max = clock.latest;
   if (!dragged) slider.value = clock.tick;
-  slider.setAttribute("aria-valuetext", seconds(clock.tick));
+  const [, last] = clock.marks.findLast(([tick]) => tick <= clock.tick) ?? [];
+  slider.setAttribute("aria-valuetext", [seconds(clock.tick), last].filter(Boolean).join(", "));
   at("play-clock").textContent = seconds(clock.tick);
   marks();
 }
@@ -120,9 +150,11 @@ function seconds(ticks) {
 let marked = "";
 
 function marks() {
-  const shares = clock.marks.map((tick) => `${(100 * tick) / Math.max(1, clock.latest)}%`);
-  if (marked === (marked = shares.join())) return;
-  at("play-marks").replaceChildren(...shares.map((left) => Object.assign(document.createElement("i"), { style: `left: ${left}` })));
+  const shares = clock.marks.map(([tick, title]) => ({ tick, title, left: `${(100 * tick) / Math.max(1, clock.latest)}%` }));
+  if (marked === (marked = JSON.stringify(shares))) return;
+  at("play-marks").replaceChildren(
+    ...shares.map(({ tick, title, left }) => Object.assign(document.createElement("i"), { title, style: `left: ${left}`, onclick: () => go("go", { tick }) })),
+  );
 }
 
 let passed = performance.now();
@@ -160,6 +192,16 @@ const DOES = { begin: () => go("go", { tick: 0 }), back: () => go("back"), play:
 let dragged = false;
 
 function wire() {
+  document.addEventListener(
+    "click",
+    (event) => {
+      const { language } = event.target.closest("button")?.dataset ?? {};
+      if (!language) return;
+      event.stopPropagation(); // on a plant's page a language loads it again, and its run is elsewhere
+      speak(language);
+    },
+    true,
+  );
   document.addEventListener("click", ({ target }) => {
     const { play: does } = target.closest("button")?.dataset ?? {};
     if (does) DOES[does]();
@@ -176,5 +218,5 @@ function broken(error) {
   else at("play-loading").textContent = said;
 }
 
-// For tests: what is asked of the plant in this tab without a button.
-window.arboledaPlay = { ask, ready: () => playing, pause: () => play(false), advance: (ticks) => move("advance", { ticks }), clock: () => clock };
+// For a workbook, which may be read in another language; and for tests: what is asked of the plant without a button.
+window.arboledaPlay = { leave, ask, ready: () => playing, pause: () => play(false), advance: (ticks) => move("advance", { ticks }), clock: () => clock };

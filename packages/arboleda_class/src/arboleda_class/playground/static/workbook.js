@@ -39,7 +39,7 @@ function page() {
   if (!chosen) at("book-choice").selectedIndex = -1;
   at("book-choice").onchange = () => location.assign(`?${at("book-choice").value}&lang=${language}`);
   const other = Object.keys(words).find((each) => each !== language);
-  Object.assign(at("book-language"), { textContent: say("other_language"), lang: other, href: `?${kind}=${asked.get(kind) ?? ""}&lang=${other}` });
+  Object.assign(at("book-language"), { textContent: say("other_language"), lang: other, href: `?${kind}=${chosen?.name ?? asked.get(kind)}&lang=${other}`, onclick: speak });
   at("book-playground").href = `./index.html?lang=${language}`;
   document.addEventListener("click", ({ target }) => {
     const { does, show, file, line } = target.closest("button")?.dataset ?? {};
@@ -48,6 +48,15 @@ function page() {
     if (file) turn(file, Number(line)).then(() => Number(line) && edit.focus());
   });
   part("text");
+}
+
+// In another language the same run goes on, where the plant is that of what is written.
+async function speak(event) {
+  const { arboledaPlay } = at("book-frame").contentWindow;
+  if (!arboledaPlay || JSON.stringify(built) !== JSON.stringify(files)) return;
+  event.preventDefault();
+  await Promise.race([arboledaPlay.leave().catch(() => {}), new Promise((done) => setTimeout(done, SLOW_MS))]);
+  location.assign(event.target.href);
 }
 
 function part(name) {
@@ -215,7 +224,7 @@ const DOES = {
     hints = Math.min(hints + 1, book.hints.length);
     text.append(made("strong", `${say("hint")} ${hints}/${book.hints.length}`));
     text.insertAdjacentHTML("beforeend", book.hints[hints - 1][language]); // made with the site
-    at("book-said").replaceChildren(text);
+    at("book-hint").replaceChildren(text);
   },
   record: () => attempt(async () => (await ask("record", { exercise: book.name })).film && (frame("story"), part("plant"))),
   play: () => (frame("story"), part("plant")),
@@ -290,6 +299,7 @@ async function reset() {
 async function renewed() {
   keep.write();
   troubles = [];
+  at("book-hint").replaceChildren();
   edit.forget();
   await turn(shown);
   if (book.plant) await attempt(() => build(files));
