@@ -30,8 +30,9 @@ def build(layout: Layout, words: Words, put: Put = put_nothing) -> None:
 
 
 def _changes(layout: Layout, cell: str, words: Words) -> None:
-    with tag("div", classes="changes"):
-        tag("h2", words("cells.changes", cell=cell))
+    title = words("cells.changes", cell=cell)
+    with tag("div", classes="changes", role="group", tabindex="0", aria_label=title):
+        tag("h2", title)
         if layout.get("recorded"):
             there = {"tab": "cells", "cell": cell, "task": None, "at": "failure"}
             way(None, there, classes="to-record", data_live=f"{cell}.failure")  # empty where there is none
