@@ -14,6 +14,7 @@ import pytest
 
 from ..chromium import browsers
 from ..patience import PATIENCE_MS, PATIENCE_S
+from ..system.page import operate, show
 
 pytestmark = pytest.mark.requires("chromium", "playwright")
 
@@ -64,15 +65,14 @@ def test_an_address_without_a_page_and_another_method_are_one_sentence(hostile: 
 
 def test_nothing_that_anybody_wrote_is_rendered_as_html(tab: Any) -> None:
     for part in ("tasks", "links", "events", "cells"):
-        tab.click(f"[data-tab={part}]")
+        show(tab, part)
         tab.wait_for_selector(f"#part-{part}:has-text('<img src=x')")
     tab.click(".cell.chosen g.node.current")
     tab.wait_for_selector("#node:has-text('<img src=x')")
-    tab.click("[data-tab=panel]")
-    tab.click("[data-scope=sis_a]")
+    operate(tab, "sis_a")
     tab.click(".verb[data-verb=hold] button")
     tab.wait_for_selector("#answer:has-text('<img src=x')")
-    tab.click("[data-tab=tasks]")
+    show(tab, "tasks")
     tab.fill("#task-text", EVIL)
     tab.click("#task-send")
     tab.wait_for_selector("#answer:has-text('{{1+1}}')")

@@ -17,7 +17,7 @@ LOOK = r"""
 import asyncio, httpx, json, types
 from fastapi import FastAPI
 from arboleda.core.verbs.stops import ONLY_ABORTED
-from arboleda.dashboard import header
+from arboleda.dashboard import settings
 from arboleda.dashboard.shell import language_of
 from arboleda.dashboard.tags import markup
 from arboleda.dashboard.wording import words
@@ -51,7 +51,7 @@ print(json.dumps({
     "chosen": language_of(browser),
     "page": [words("fr")(key) for key in ("tab.cells", "verb.stop", "tasks.send")],
     "said": words("fr").say(ONLY_ABORTED(cell="a", state="idle")),
-    "header": markup(lambda: header.build({"plant": "shop"}, words("fr"), ["cells"], None)),
+    "settings": markup(lambda: settings.build(words("fr"), None)),
     "login": ask(nobody, "GET", "/login", **{"accept-language": "fr-CA"}).text,
     "waiting": waiting_page("shop", "waits", None),
     "report": page(report),
@@ -68,7 +68,7 @@ def test_page_login_waiting_room_and_report_speak_a_language_of_a_folder(tmp_pat
     assert seen["chosen"] == "fr"
     assert seen["page"] == ["Cellules", "Arrêt (logiciel)", "Send task"]  # the last has no French words
     assert seen["said"] == "a : idle, rien à acquitter"
-    assert 'data-language="fr"' in seen["header"] and "Français" in seen["header"]
+    assert 'data-language="fr"' in seen["settings"] and "Français" in seen["settings"]
     assert '<html lang="fr">' in seen["login"] and "Clé" in seen["login"] and "Log in" in seen["login"]
     assert '<p lang="fr">Ce processus attend.</p>' in seen["waiting"]
     assert '<span lang="fr">Aucune réponse.</span>' in seen["waiting"]

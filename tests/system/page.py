@@ -16,7 +16,8 @@ from arboleda.model.messages import ENDED, TaskState
 from ..patience import PATIENCE_S
 from .conftest import Process, paths
 
-PARTS = ("cells", "twin", "tasks", "panel", "make", "draw", "links", "events")
+PARTS = ("cells", "tasks", "make", "draw", "events", "links", "settings")
+PLACES = {"draw": "make", "teach": "make", "events": "log", "links": "log"}  # of parts that share one
 
 
 @contextmanager
@@ -39,7 +40,19 @@ def connected(page: Any) -> None:
 
 
 def show(page: Any, part: str) -> None:
-    page.click(f"[data-tab={part}]")
+    if part in PLACES:
+        page.click(f".tabs [data-tab={PLACES[part]}]")
+        page.click(f".within [data-tab={part}]")
+    else:
+        page.click(f".tabs [data-tab={part}]")
+
+
+def operate(page: Any, of: str = "") -> None:
+    """Open the menu of a cell, or of the whole plant."""
+    if of:
+        show(page, "cells")
+    page.click(f"[data-menu='{of}'][aria-expanded=false]")
+    page.wait_for_selector("#menu")
 
 
 def until(condition: Callable[[], bool]) -> None:

@@ -16,7 +16,7 @@ from ..chromium import leave
 from ..lengths import sample
 from ..patience import PATIENCE_MS
 from .conftest import SHIPPED
-from .page import PARTS, connected, ended, running, show
+from .page import PARTS, connected, ended, operate, running, show
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright", "axe_playwright_python")]
 
@@ -162,9 +162,11 @@ def test_axe_finds_nothing_on_a_plant_at_work(at_work: str, eye: Callable[[str],
     show(page, "cells")
     page.click("[data-choose=sis_b]")
     eyes.look("a cell that nobody gave a task")
-    show(page, "panel")
-    page.click("[data-scope=sis_a]")
-    eyes.look("the verbs of a cell")
+    operate(page)
+    eyes.look("the menu of the plant")
+    operate(page, "sis_a")
+    page.click("#faults summary")
+    eyes.look("the menu of a cell")
     page.click(".verb[data-verb=home] button")
     page.wait_for_selector("dialog button:focus")
     eyes.look("a question")
@@ -180,9 +182,8 @@ def test_axe_finds_nothing_on_a_plant_in_trouble(in_trouble: str, eye: Callable[
     for part in PARTS:
         show(page, part)
         eyes.look(part)
-    page.click("[data-tab=panel]")
-    page.click("[data-scope=left]")
-    eyes.look("the verbs of a cell")
+    operate(page, "left")
+    eyes.look("the menu of a cell")
     page.evaluate("window.socket.disconnect()")
     page.wait_for_selector(".silent #connection:not([hidden])")
     eyes.look("no news")

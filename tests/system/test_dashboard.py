@@ -16,7 +16,7 @@ from arboleda.store.sqlite import Store
 
 from ..patience import PATIENCE_MS
 from .conftest import SHIPPED
-from .page import PARTS, connected, ended, lead_out, running, show, until
+from .page import PARTS, connected, ended, lead_out, operate, running, show, until
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 
@@ -157,8 +157,7 @@ def get_ready(page: Any) -> None:
 
 def by_panel(page: Any) -> None:
     """Clear, reset and resume the whole plant."""
-    show(page, "panel")
-    page.click('[data-scope=""]')
+    operate(page)
     for verb, after in (("clear", "stopped"), ("reset", "paused"), ("resume", "idle")):
         page.click(f".verb[data-verb={verb}] button")
         wait_for_answer(page, "Done", "good")
@@ -243,10 +242,9 @@ def test_a_button_stays_while_its_row_changes_and_what_moves_a_robot_is_asked_on
     for _ in range(2):
         page.wait_for_function(f"before => {time} !== before", arg=page.evaluate(time))
     assert button.evaluate("button => document.activeElement === button")
-    show(page, "panel")
-    page.click("[data-scope=sis_b]")
+    operate(page, "sis_b")
     page.click(".verb[data-verb=hold] button")
-    show(page, "cells")
+    page.click("#menu-close")
     page.click('[data-rows="ways.sis_b"] [data-s=next] button[data-act=resume]')
     page.wait_for_selector("dialog[open]")
     assert "this sets ra2, rm_sis_b in motion" in page.inner_text("#question")
@@ -278,7 +276,7 @@ def test_what_is_wrong_is_said_as_text_and_what_cannot_be_sent_is_not_kept(open_
 def test_a_plant_whose_boards_never_come_is_not_called_silent_and_an_override_is_asked_twice(
     open_page: Open, silent: str
 ) -> None:
-    page = open_page("panel", at=silent, locale="en")
+    page = open_page("panel", at=silent, locale="en")  # an address of before, which opens the menu
     page.evaluate("""() => {
         const live = arboleda.live;
         window.empty = 0;
@@ -308,20 +306,19 @@ def test_language_part_and_cell_are_in_the_address_and_going_back_leads_through_
     page.fill("#task-text", "sis_a 0D 7")
     page.click("#task-send")
     wait_for_answer(page, "'0D' no es un camino de sis_a", "bad")
-    show(page, "panel")
-    page.wait_for_selector("[data-scope=sis_b][aria-pressed=true]")
+    show(page, "settings")
     page.click("[data-language=en]")
-    page.wait_for_selector("[aria-label='What to act on']")
+    page.wait_for_selector("#part-settings h2:text('This browser')")
     assert "cell=sis_b" in page.url and "lang=en" in page.url
     page.reload()
     connected(page)
     page.wait_for_selector("html[lang=en]")
     with page.context.expect_page() as opened:
-        page.click("[data-tab=links]", modifiers=["ControlOrMeta"])
+        page.click("[data-tab=log]", modifiers=["ControlOrMeta"])
     other = opened.value
     connected(other)
-    assert other.is_visible("#part-links") and "cell=sis_b" in other.url
-    assert page.is_visible("#part-panel")
+    assert other.is_visible("#part-events") and "cell=sis_b" in other.url
+    assert page.is_visible("#part-settings")
     other.close()
     assert "Paro (software)" in open_page(locale="es-MX").inner_text("#stop")
     page = open_page("cells&cell=%3Cimg src=x%3E")
@@ -331,11 +328,11 @@ def test_language_part_and_cell_are_in_the_address_and_going_back_leads_through_
     page.click("[data-choose=sis_c]")
     show(page, "tasks")
     page.wait_for_selector("#part-tasks:not([hidden])")
-    show(page, "panel")
-    page.click("[data-scope=sis_b]")
-    assert "tab=panel" in page.url and "cell=sis_b" in page.url
+    operate(page, "sis_b")
+    assert "tab=cells" in page.url and "cell=sis_b" in page.url
     page.go_back()
-    page.wait_for_selector("[data-robots=sis_c]:not([hidden])", state="attached")
+    page.wait_for_selector("#menu", state="hidden")
+    page.wait_for_selector(".cell.chosen[data-cell=sis_c]")
     page.go_back()
     assert page.is_visible("#part-tasks")
     page.go_back()
@@ -383,7 +380,7 @@ def test_a_link_to_a_task_shows_the_leaf_that_failed_and_an_idle_cell_offers_to_
 
 def test_the_systems_dark_is_followed_until_something_is_chosen_which_is_remembered(open_page: Open) -> None:
     background = "getComputedStyle(document.body).backgroundColor"
-    page = open_page(color_scheme="light")
+    page = open_page("settings", color_scheme="light")
     light = page.evaluate(background)
     assert open_page(color_scheme="dark").evaluate(background) != light
     while page.get_attribute("html", "data-look") != "dark":
@@ -465,7 +462,7 @@ def test_a_viewer_may_stop_and_nothing_else(open_page: Open, tmp_path: Path) -> 
         assert page.is_visible("[data-choose=sis_b]") and not page.is_visible(".to-teach")
         page.click("#stop")
         wait_for_stop(page, "stopped")
-        show(page, "panel")
+        operate(page)
         page.click(".verb[data-verb=clear] button")
         wait_for_answer(page, "You are logged in as a viewer", "bad")
         show(page, "tasks")
@@ -491,23 +488,23 @@ def by_held_key(page: Any) -> None:
 
 
 def test_stop_works_over_every_open_question(open_page: Open) -> None:
-    page = open_page("panel", **PHONE)
+    page = open_page(**PHONE)
     ways = ((by_touch, "sis_a", "release"), (by_keyboard, "sis_a", "home"), (by_held_key, "ra1", "home"))
     for press, scope, verb in ways:
-        page.click("[data-scope=sis_a]")
+        operate(page, "sis_a")
         page.click(f"[data-scope={scope}]")
         page.click(f".verb[data-verb={verb}] button")
         page.wait_for_selector("dialog button:focus")
         press(page)
         wait_for_stop(page, "stopped")
         assert page.locator("dialog").count() == 0, f"{verb} {scope} is still asked after {press.__name__}"
+        page.click("#menu-close")
         get_ready(page)
 
 
 def test_beside_a_question_only_the_stop_is_reached_and_escape_or_going_back_say_no(open_page: Open) -> None:
     page = open_page("tasks")
-    show(page, "panel")
-    page.click("[data-scope=sis_a]")
+    operate(page, "sis_a")
     page.click(".verb[data-verb=home] button")
     page.wait_for_selector("dialog button:focus")
     reached = set()
@@ -522,6 +519,6 @@ def test_beside_a_question_only_the_stop_is_reached_and_escape_or_going_back_say
     page.wait_for_selector("dialog button:focus")
     page.go_back()
     page.wait_for_selector("dialog", state="detached")
-    page.wait_for_selector("[data-scope=''][aria-pressed=true]")
+    page.wait_for_selector("#menu", state="hidden")
     show(page, "tasks")
     assert page.inner_text(".stop-state") == "Stops every robot of the plant"

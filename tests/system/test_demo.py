@@ -13,7 +13,7 @@ from arboleda.cli.client import PlantClient
 
 from ..chromium import browsers
 from .conftest import Process, paths
-from .page import running, until
+from .page import operate, running, until
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 
@@ -31,22 +31,26 @@ def ended(plant: PlantClient) -> int:
     return sum(task["state"] == "done" for task in plant.status()["tasks"])
 
 
-def test_a_first_visit_says_what_to_click_and_a_button_ends_the_demonstration(
+def test_a_first_visit_says_once_what_to_press_and_a_button_ends_the_demonstration(
     page: Any, tmp_path: Path
 ) -> None:
     plant = PlantClient(tmp_path)
-    assert len(page.locator("#demo-lines li").all_inner_texts()) == 3
-    page.click("#demo-seen")
-    page.reload()
-    page.wait_for_selector("#demo-end")
-    assert not page.is_visible("#demo-lines")
-    until(lambda: ended(plant) > 3)  # more than one each, and nobody has asked for any
-    page.click("#demo-end")
+    page.wait_for_selector("#demo")
+    assert len(page.locator("#demo li").all_inner_texts()) == 3
+    page.click("[data-choose=sis_b]")  # whoever is at work has read it
     page.wait_for_selector("#demo", state="hidden")
-    until(lambda: all(cell["task"] is None for cell in plant.status()["cells"]))
     page.reload()
     page.wait_for_selector("#connection", state="hidden")
     assert not page.is_visible("#demo")
+    until(lambda: ended(plant) > 3)  # more than one each, and nobody has asked for any
+    operate(page)
+    page.click("#demo-end")
+    page.wait_for_selector("#demo-on", state="hidden")
+    until(lambda: all(cell["task"] is None for cell in plant.status()["cells"]))
+    page.reload()
+    page.wait_for_selector("#connection", state="hidden")
+    operate(page)
+    assert not page.is_visible("#demo-on")
 
 
 def test_ctrl_c_leaves_every_robot_still(tmp_path: Path) -> None:

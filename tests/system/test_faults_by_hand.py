@@ -10,7 +10,7 @@ import httpx
 import pytest
 
 from ..patience import PATIENCE_MS, PATIENCE_S
-from .page import connected, running, show, until
+from .page import connected, operate, running, show, until
 
 pytestmark = pytest.mark.system
 
@@ -61,7 +61,9 @@ def test_a_fault_begins_shows_and_ends_by_command_and_in_the_drawer_of_the_page(
     page.set_default_timeout(PATIENCE_MS)
     page.goto(f"{address}/?lang=es")
     connected(page)
+    operate(page, "sis_a")
     page.click("#faults summary")
+    assert page.locator("#fault-target option:not([hidden])").all_text_contents() == ["ra1", "rm_sis_a"]
     page.select_option("#fault-target", "rm_sis_a")
     page.wait_for_selector("[data-fault=no_grip]", state="hidden")
     page.select_option("#fault-target", "ra1")

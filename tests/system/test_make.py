@@ -17,7 +17,7 @@ from ..chromium import leave
 from ..lengths import sample
 from ..patience import PATIENCE_MS, PATIENCE_S
 from ..ports import unused_port
-from .page import connected, running
+from .page import PLACES, connected, running
 from .test_accessible import Eye
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
@@ -116,7 +116,9 @@ class Person:
         )
 
     def part(self, name: str) -> None:
-        self.press(f"[data-tab={name}]")
+        if name in PLACES and not self.page.is_visible(f".within [data-tab={name}]"):
+            self.press(f".tabs [data-tab={PLACES[name]}]")
+        self.press(f"[data-tab={name}]:visible")
 
     def panel(self, name: str) -> None:
         self.press(f"[data-make-panel={name}]")
@@ -291,7 +293,7 @@ def test_the_second_person_sees_who_edits_and_takes_over_and_takes_an_offer_and_
     httpx.post(
         f"{address}/api/cells/cell/teach", json={"teacher": "Ana"}, timeout=PATIENCE_S
     ).raise_for_status()  # a restart waits for her
-    me.part("links")
+    me.part("settings")
     me.sees("#versions-restart button", "Restart once all cells rest")
     me.press("#versions-restart button")
     me.sees("#versions-restart", "The plant restarts once all its cells rest, as the page wants.")

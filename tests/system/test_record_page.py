@@ -168,7 +168,7 @@ def test_a_moment_is_reached_by_slider_keys_time_line_and_address(
     count = rows.count()
     moved(tab, lambda: tab.click("[data-rows=events] .row:nth-child(6) a"))
     tab.wait_for_function(f"document.querySelectorAll('[data-rows=events] .row').length < {count}")
-    show(tab, "twin")
+    show(tab, "cells")
     tab.wait_for_selector("#twin-robots [data-robot=ra1]")
     for value in (tab.get_attribute("#record-slider", "max"), "0"):  # at its end a robot stands on its way
         drawn = tab.evaluate("JSON.stringify(arboledaTwin.drawn())")
@@ -181,7 +181,7 @@ def test_a_moment_is_reached_by_slider_keys_time_line_and_address(
 def test_axe_finds_nothing_on_a_record(replay: str, eye: Callable[[str], Eye]) -> None:
     eyes = eye(f"{replay}&cell=sis_c")
     eyes.page.wait_for_selector(FAILED)
-    for part in ("cells", "twin", "tasks", "links", "events"):
+    for part in ("cells", "tasks", "links", "events"):
         show(eyes.page, part)
         eyes.look(part)
     show(eyes.page, "tasks")

@@ -78,7 +78,7 @@ def test_who_has_turned_it_on_hears_it_once_for_a_cell_that_needs_somebody_also_
     plant: tuple[str, PlantClient], visit: Callable[[str], Any]
 ) -> None:
     address, client = plant
-    page = visit(address)
+    page = visit(f"{address}/?tab=settings")
     well(page)
     button = page.get_by_role("button", name="Sound when a cell needs somebody")
     assert button.get_attribute("aria-pressed") == "false"
@@ -90,7 +90,7 @@ def test_who_has_turned_it_on_hears_it_once_for_a_cell_that_needs_somebody_also_
     page.close()
 
     page = visit(
-        address
+        f"{address}/?tab=settings"
     )  # nothing was touched here yet: the browser lets nothing sound, and the page says so
     well(page)
     page.wait_for_selector(".sound[data-sound=waits][aria-pressed=true]")

@@ -74,7 +74,7 @@ def test_a_person_gives_tasks_by_the_forms_of_their_recipes(browser: Any, tmp_pa
 
 def test_a_bench_of_declared_devices_is_worked_by_its_form(browser: Any, tmp_path: Path) -> None:
     with running(tmp_path, "--rate", "4", "--plant", str(BENCH)) as address, opened(browser, address) as page:
-        assert page.locator("[data-tab=twin]").count() == 0
+        assert page.locator("#twin").count() == 0
         page.click("#task-form [data-value=incubate]")
         page.click("[data-recipe=incubate] [data-set='40']")
         page.click("[data-recipe=incubate] [data-set='5']")

@@ -38,7 +38,7 @@ pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright",
 SOFTWARE = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 NO_WEBGL = ("--disable-gpu", "--disable-3d-apis")
 # Drawn in software, each point costs time, and no test looks at one.
-COARSE = {"viewport": {"width": 900, "height": 640}, "device_scale_factor": 0.25, "locale": "en"}
+COARSE = {"viewport": {"width": 1000, "height": 640}, "device_scale_factor": 0.25, "locale": "en"}
 ACCURACY = 1e-6  # m, and of unit vectors
 Pose = tuple[float, ...]
 Linked = dict[str, list[float]]  # link -> 16 numbers, row by row
@@ -150,7 +150,7 @@ def browsing(browser: Any) -> Iterator[Any]:
     troubles: list[str] = []
     with ExitStack() as opened:
 
-        def go(address: str, part: str = "twin", **more: Any) -> Any:
+        def go(address: str, part: str = "cells", **more: Any) -> Any:
             context = browser.new_context(**(COARSE | more))
             opened.callback(leave, context)
             context.add_init_script(FEW_FRAMES)
@@ -159,7 +159,7 @@ def browsing(browser: Any) -> Iterator[Any]:
             page.on("pageerror", lambda error: troubles.append(str(error)))
             page.goto(f"{address}/?tab={part}")
             page.wait_for_function("document.getElementById('connection')?.hidden")
-            if part == "twin":
+            if part == "cells":
                 page.wait_for_function(
                     "window.arboledaTwin.view() && Object.keys(arboledaTwin.drawn()).length"
                 )
@@ -251,7 +251,7 @@ def test_nothing_is_sent_to_who_looks_elsewhere_and_then_every_link_is_where_the
     submit(page, "sis_a 0A 1")
     wait_for(lambda: ended(page, 1))
     assert frames and not any("arboledaTwin.frame" in frame for frame in frames)
-    page.click("[data-tab=twin]")
+    page.click("[data-tab=cells]")
     wait_for(lambda: page.evaluate("1") and any("arboledaTwin.frame" in frame for frame in frames))
     page.wait_for_function("window.arboledaTwin.view() && Object.keys(arboledaTwin.drawn()).length")
     wait_for(lambda: all(heard.poses.values()))
@@ -361,15 +361,20 @@ def test_the_view_is_turned_with_keys_put_back_and_led_to_a_cell(plant: Plant, l
     page = look(plant.page, locale="es")
     page.wait_for_function("document.querySelector('#twin-robots').textContent.includes('ra1: medido')")
     label = "document.querySelector('.twin-labels span')?.style.transform"
-    before = page.wait_for_function(label).json_value()
+    near = page.wait_for_function(label).json_value()
+    assert page.inner_text("#twin-title") == "Gemelo de sis_a"
+    page.click("[data-twin=reset]")
+    page.wait_for_function(f"near => {label} !== near", arg=near)
+    assert page.inner_text("#twin-title") == "Gemelo de la planta"
+    before = page.evaluate(label)
     page.focus("#twin canvas")
     for key in ("ArrowLeft", "ArrowUp", "+"):
         page.keyboard.press(key)
     page.wait_for_function(f"before => {label} !== before", arg=before)
     page.click("[data-twin=reset]")
     page.wait_for_function(f"before => {label} === before", arg=before)
-    page.click("[data-twin-cell=sis_b]")
+    page.click("[data-choose=sis_b]")
     page.wait_for_function(f"before => {label} !== before", arg=before)
-    page.evaluate("document.querySelector('[data-twin-cell=sis_b]').dataset.twinCell = 'office'")
-    page.click("[data-twin-cell=office]")  # of which nothing is drawn: the whole plant is seen
+    assert page.inner_text("#twin-title") == "Gemelo de sis_b"
+    page.evaluate("arboledaTwin.visit('office')")  # of which nothing is drawn: the whole plant is seen
     page.wait_for_function(f"before => {label} === before", arg=before)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import partial
 
-from arboleda.dashboard import page
-from arboleda.dashboard.body import parts_of
+from arboleda.dashboard import trees
 from arboleda.dashboard.faces import Face
 from arboleda.dashboard.faces.links import says
-from arboleda.dashboard.page_part import put_nothing
 from arboleda.dashboard.page_state import PageState
+from arboleda.dashboard.tags import markup
 from arboleda.dashboard.wording import words
 from arboleda.model.messages import Event
 from arboleda.model.plant_model import PlantModel
@@ -129,9 +129,8 @@ def test_the_failed_step_of_a_recipe_of_ones_own_is_named() -> None:
 
 
 def test_there_is_no_twin_where_nothing_is_drawn() -> None:
-    parts = page.all_parts({}, put_nothing)
-    assert "twin" not in parts_of(parts, view.layout(model()))
-    assert list(parts_of(parts, view.layout(shipped()))) == list(parts)
+    drawn = [markup(partial(trees.build, view.layout(each), words("en"))) for each in (model(), shipped())]
+    assert ['id="twin"' in each for each in drawn] == [False, True]
 
 
 def test_the_time_line_tells_of_every_device() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -66,7 +67,13 @@ PAGE = PagePart(
 )
 """
 LAYOUT = view.layout(shipped())
-IN_ORDER = ["cells", "twin", "tasks", "panel", "teach", "make", "draw", "links", "events"]
+IN_ORDER = {
+    "cells": ["cells"],
+    "tasks": ["tasks"],
+    "make": ["make", "draw", "teach"],
+    "log": ["events", "links"],
+    "settings": ["settings"],
+}
 Install = Callable[..., None]
 Told = list[tuple[str, str]]
 
@@ -80,7 +87,7 @@ def put(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
 
 
 def html(parts: AddedParts, role: str | None = None, plant: Any = None) -> str:
-    return page.drawn(parts, plant or Plant(), LAYOUT, words("en"), role)[1]
+    return page.drawn(parts, plant or Plant(), LAYOUT, words("en"), role)
 
 
 class Plant:
@@ -103,9 +110,11 @@ def loaded(told: Told | None = None) -> AddedParts:
     return AddedParts(lambda package, error: told.append((package, str(error))))
 
 
-def test_the_parts_of_the_page_are_in_their_order() -> None:
-    parts, _ = page.drawn(loaded(), Plant(), LAYOUT, words("en"), None)  # type: ignore[arg-type]
-    assert list(parts) == IN_ORDER
+def test_the_page_has_five_places_with_their_parts() -> None:
+    tabs = re.findall(r'data-tab="(\w+)" data-parts="([\w ]+)"', html(loaded()).partition("<section")[0])
+    places = {tab: parts.split() for tab, parts in tabs[: len(IN_ORDER)]}
+    assert places == IN_ORDER
+    assert sorted(tab for tab, _ in tabs[len(IN_ORDER) :]) == ["draw", "events", "links", "make", "teach"]
 
 
 def test_a_viewer_sees_no_part_that_is_for_operators() -> None:
@@ -118,7 +127,7 @@ def test_what_a_package_adds_is_drawn_in_its_place(put: Install) -> None:
     told: Told = []
     shown = html(loaded(told))
     assert told == []
-    assert shown.index("part-zones") < shown.index("part-links")
+    assert shown.index("part-zones") < shown.index("part-events")
     assert f"<h2>Shelf of {LAYOUT['plant']}</h2>" in shown
     assert all(f'data-live="{cell["name"]}.ended"' in shown for cell in LAYOUT["cells"])
     assert "part-zones" not in html(loaded(), Role.VIEWER.value)

@@ -1,4 +1,4 @@
-"""The places of a cell on the page: how many parts each has, and what a person may say of it."""
+"""The places of a cell on the page: a dot for each, those of a rack in one row, and what a press says."""
 
 from __future__ import annotations
 
@@ -28,28 +28,33 @@ def test_a_cell_without_places_shows_none() -> None:
     assert shown() == {}
 
 
-@pytest.mark.parametrize(("parts", "acts"), [(0, ["load"]), (1, ["load", "unload"]), (2, ["unload"])])
-def test_a_person_may_say_what_can_be(parts: int, acts: list[str]) -> None:
-    found = shown(place("bin", parts, 2))
-    row = found["row/places.lab/bin"]
-    assert found["rows/places.lab"] == ["bin"]
-    assert row["texts"] == ["bin", f"{parts} of 2", ""]
-    assert [each["act"] for each in row["acts"]] == acts
-    assert all((each["of"], each["arguments"]) == ("lab", {"place": "bin"}) for each in row["acts"])
+@pytest.mark.parametrize(("parts", "act", "state"), [(0, "load", "free"), (1, "unload", "taken")])
+def test_a_press_says_that_the_parts_of_a_full_place_were_taken_out_and_put_into_an_empty_one(
+    parts: int, act: str, state: str
+) -> None:
+    row = shown(place("bin", parts, 2))["row/places.lab/bin"]
+    (dot,) = row["acts"]
+    assert row["texts"] == ["bin", ""]
+    assert (dot["act"], dot["of"], dot["arguments"]) == (act, "lab", {"place": "bin"})
+    assert (dot["label"], dot["state"], dot["refused"]) == (f"{parts}/2", state, False)
+    assert dot["name"].startswith(f"bin: {parts} of 2")
 
 
 def test_what_people_keep_so_is_not_for_them_to_say() -> None:
-    row = shown(place("rack", 1, by_people=True))["row/places.lab/rack"]
-    assert (row["texts"][2], row["acts"]) == ("people fill or empty it", [])
+    row = shown(place("tray", 1, by_people=True))["row/places.lab/tray"]
+    assert row["texts"][1] == "people fill or empty it" and row["acts"][0]["refused"]
 
 
-def test_of_a_rack_the_stations_with_a_part_are_shown() -> None:
-    found = shown(place("station_0", 0, station=0), place("station_1", 1, station=1))
-    assert found["rows/places.lab"] == ["station_1"]
-    assert [each["act"] for each in found["row/places.lab/station_1"]["acts"]] == ["unload"]
+def test_the_places_of_a_rack_are_one_row_of_dots_by_their_numbers() -> None:
+    found = shown(place("station_0", 0, station=0), place("nest", 0), place("station_1", 1, station=1))
+    assert found["rows/places.lab"] == ["station", "nest"]
+    dots = found["row/places.lab/station"]["acts"]
+    assert [(dot["label"], dot["act"]) for dot in dots] == [("0", "load"), ("1", "unload")]
+    assert found["row/places.lab/nest"]["acts"][0]["label"] == ""
 
 
 def test_the_device_of_a_place_is_named_in_each_language() -> None:
     inside = place("inside", 0, device="oven")
-    assert shown(inside)["row/places.lab/inside"]["texts"][2] == "in oven"
-    assert shown(inside, language="es")["row/places.lab/inside"]["texts"][1:] == ["0 de 1", "en oven"]
+    assert shown(inside)["row/places.lab/inside"]["texts"][1] == "in oven"
+    in_spanish = shown(inside, language="es")["row/places.lab/inside"]
+    assert in_spanish["texts"][1] == "en oven" and in_spanish["acts"][0]["name"].startswith("inside: 0 de 1")

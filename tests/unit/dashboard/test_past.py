@@ -128,7 +128,7 @@ def test_nothing_can_be_done_in_the_past_and_what_could_be_is_told(recorded: Rec
     past = recorded.past
     for moment in (past.began, past.last_failure() or 0, past.ended):
         rows = [row for key, row in past.face(moment, "en").items() if key.startswith("row/")]
-        assert rows and not any("acts" in row for row in rows)
+        assert rows and not any("act" in each for row in rows for each in row.get("acts", ()))
     ways = past.face(past.last_failure("sis_c") or 0, "en")
     told = [row["texts"][0] for key, row in ways.items() if key.startswith("row/ways.sis_c/")]
     assert told and all(told)

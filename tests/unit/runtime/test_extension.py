@@ -121,7 +121,7 @@ def test_its_card_is_on_the_page(app: App, language: str, said: str) -> None:
     plant: Any = app.offers.need(LocalPlant)
     layout, told = view.layout(shipped("sis_a")), list[Any]()
     parts = AddedParts(lambda *why: told.append(why))
-    assert 'data-live="sis_a.ended"' in page.drawn(parts, plant, layout, words(language), None)[1]
+    assert 'data-live="sis_a.ended"' in page.drawn(parts, plant, layout, words(language), None)
     snapshot = {"cells": [{"name": "sis_a", "teaching": None, "state": "idle", "not_ready": None}]}
     now: Any = SimpleNamespace(snapshot=snapshot, links=app.links(), words=words(language))
     assert parts.face(now)["text/sis_a.ended"] == [said, ""] and told == []

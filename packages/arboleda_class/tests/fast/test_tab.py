@@ -43,7 +43,7 @@ def test_every_language_has_all_words_and_every_plant_has_some() -> None:
 def test_every_plant_opens(plant: str) -> None:
     tab, answer = opened(plant=plant)
     assert answer["frame"]["face"]["rows/counts"]
-    assert ("part-twin" in answer["html"]) is bool(ask(tab, "scene")["scene"])
+    assert ('id="twin"' in answer["html"]) is bool(ask(tab, "scene")["scene"])
 
 
 def test_a_plant_that_is_not_there_is_refused_with_those_that_are() -> None:

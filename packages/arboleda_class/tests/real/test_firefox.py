@@ -58,7 +58,7 @@ def test_seeds_have_the_digests_of_here_and_a_person_gives_a_task_and_has_a_boar
     page.click("[data-fault=reboot]")
     page.evaluate("arboledaPlay.advance(160)")
     page.wait_for("document.querySelector('g.node.is-failure, g.node.is-halted')")
-    page.click("[data-tab=twin]")
+    page.click("[data-tab=cells]")
     page.wait_for("document.querySelector('#twin-robots li')?.textContent.startsWith('ra1')")
     page.view(*PHONE)
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")

@@ -108,7 +108,7 @@ def test_a_person_gives_a_task_has_a_board_reboot_goes_back_stops_and_opens_anot
     page.keyboard.press("End")
     page.wait_for_function("arboledaPlay.clock().tick === arboledaPlay.clock().latest")
     page.wait_for_selector("g.node.is-failure, g.node.is-halted")
-    show(page, "twin")
+    show(page, "cells")
     page.wait_for_function("Object.keys(window.arboledaTwin?.drawn() ?? {}).includes('robot/ra1')")
     assert page.inner_text("#twin-robots li:first-child").startswith("ra1")
     page.click("#stop")

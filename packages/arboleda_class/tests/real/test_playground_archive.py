@@ -58,7 +58,7 @@ def test_a_tab_runs_a_plant_and_the_program_of_a_lesson_and_judges_an_exercise(a
         {"do": "program", "typed": "", "language": "es", **program},
         {"do": "judge", "exercise": "retry", "files": exercise["files"], "language": "es"},
     )
-    assert "part-twin" in opened["html"]
+    assert 'id="twin"' in opened["html"]
     assert advanced["frame"]["clock"]["tick"] == 32
     assert befallen["frame"]["clock"]["marks"] == [32]
     assert "recorrer el camino: nodo" in printed["output"] and printed["problem"] is None

@@ -119,13 +119,13 @@ class Drawing:
     @property
     def parts(self) -> Parts:
         """The sections that are parts of their own, by their names."""
-        own = [each for each in self._sections if each[1].place in (Place.TAB, Place.PART)]
+        own = [each for each in self._sections if each[1].place is Place.TAB]
         return {each[1].name: partial(self._draw_part, *each) for each in own}
 
     @property
-    def without_tab(self) -> set[str]:
-        """The names of those to which no tab leads."""
-        return {section.name for _, section in self._sections if section.place is Place.PART}
+    def within(self) -> dict[str, str]:
+        """The places of those that share one with others, by their names."""
+        return {section.name: section.within for _, section in self._sections if section.within}
 
     def put(self, place: Place, cell: str = "") -> None:
         """Draw the sections of a place."""

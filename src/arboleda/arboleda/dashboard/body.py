@@ -1,16 +1,19 @@
-"""The body of every page as HTML: a header, its parts, and the box of details of a tree."""
+"""The body of every page as HTML: a header, the parts by their places, and the box of details of a tree."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from . import trees
 from .page_api import Layout
-from .tags import markup, tag
+from .tags import link, markup, tag, way
 from .wording import Words
 
 Parts = dict[str, Callable[[Layout, Words], None]]
+Places = dict[str, list[str]]  # the names of the parts that a tab of the header leads to, by that of the tab
+LOG = "log"
+WITHIN = {"events": LOG, "links": LOG}  # the places of parts that share one with others
 
 
 def body(
@@ -18,16 +21,21 @@ def body(
     wording: Words,
     parts: Parts,
     *,
-    header: Callable[[list[str]], None],
+    header: Callable[[Places], None],
     footer: Callable[[], None] = lambda: None,
+    within: Mapping[str, str] = WITHIN,
 ) -> str:
-    """The HTML of a page, the same for each browser; `header` is called with the names of the parts."""
-    shown = parts_of(parts, layout)
+    """The HTML of a page, the same for each browser; `header` is called with its places. `within` are the
+    places of parts that share one."""
+    places = places_of(parts, within)
 
     def build() -> None:
-        header(list(shown))
+        header(places)
         with tag("div", id="parts"):
-            for name, build_part in shown.items():
+            for place, names in places.items():
+                if len(names) > 1:
+                    _ways(layout, wording, place, names)
+            for name, build_part in parts.items():
                 label = wording.of("tab", name)
                 with tag("section", id=f"part-{name}", classes="part", data_part=name, aria_label=label):
                     build_part(layout, wording)
@@ -37,9 +45,28 @@ def body(
     return markup(build)
 
 
-def parts_of(parts: Parts, layout: Layout) -> Parts:
-    """The parts of the page that have something to show for this plant: no twin if no robot is drawn."""
-    return {name: build for name, build in parts.items() if name != "twin" or layout["places"]["robots"]}
+def places_of(parts: Parts, within: Mapping[str, str] = WITHIN) -> Places:
+    """The parts by the place where they stand; a place stands where its first part does."""
+    found: Places = {}
+    for name in parts:
+        found.setdefault(within.get(name, name), []).append(name)
+    return found
+
+
+def _ways(layout: Layout, wording: Words, place: str, names: list[str]) -> None:
+    """Draw the ways from part to part of a place; from the log one leads into the record, too."""
+    with tag(
+        "nav",
+        classes="within",
+        aria_label=wording.of("tab", place),
+        data_within=" ".join(names),
+        hidden="true",
+    ):
+        for name in names:
+            link(wording.of("tab", name), tab=name, classes="tab", data_tab=name, data_parts=name)
+        if place == LOG and layout.get("recorded"):
+            there = {"tab": "cells", "task": None, "at": "failure"}
+            way(wording("record.open"), there, classes="tab")
 
 
 def script_data(wording: Words) -> dict[str, Any]:

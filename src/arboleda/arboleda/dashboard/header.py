@@ -4,32 +4,33 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.web.languages import texts
-
+from . import menu, tools
+from .body import Places
 from .page_api import Layout
 from .tags import link, live, rows, tag, way
-from .wording import LANGUAGES, Words
+from .wording import Words
 
 OF_PLANT: dict[str, Any] = {"title": "", "leave": "record.leave", "back": {}}
 
 
-def build(layout: Layout, words: Words, parts: list[str], role: str | None) -> None:
-    """Draw the header; `role` is that of a person who logged in, None if nobody has to."""
+def build(layout: Layout, words: Words, places: Places) -> None:
+    """Draw the header, with what can be asked of the whole plant."""
     with tag("header", classes="top"):
         _stop(words, words("stop.button"), words("does.stop"))
         with tag("div", classes="brand"):
             tag("h1", layout["plant"])
             rows("counts", [""], classes="counts")
             live("p", "sum", classes="sum", role="status")
-        _tabs(words, parts)
-        _tools(words, role)
+        _tabs(words, places)
+        menu.opener(menu.PLANT, words("panel.plant"), words("panel.plant"))
+        rows("for_all", [""], classes="for-all")
         with tag("p", id="connection", role="status", data_lost=words("page.lost")):
             tag("span", words("page.connecting"), data_said="")
             tag("span", id="standbys")
         tag("div", id="answer", role="status", aria_live="polite")
 
 
-def of_record(layout: Layout, words: Words, parts: list[str], role: str | None, *, beside: bool) -> None:
+def of_record(layout: Layout, words: Words, places: Places, role: str | None, *, beside: bool) -> None:
     """Draw the header of a record, which has no stop; `beside` a running plant it links back to that. A
     record that is none of the plant's own says in `layout["titles"]` what it is, and where it leads back to.
     """
@@ -39,24 +40,24 @@ def of_record(layout: Layout, words: Words, parts: list[str], role: str | None, 
             tag("h1", words(titles["title"], plant=layout["plant"]) if titles["title"] else layout["plant"])
             rows("counts", [""], classes="counts")
             live("p", "sum", classes="sum")
-        _tabs(words, parts)
+        _tabs(words, places)
         if beside:
             to = {"at": None, "task": None, "record": None, **titles["back"]}
             way(words(titles["leave"]), to, classes="act record-leave")
-        _tools(words, role, sounds=False)
+        tools.build(words, role)
         tag("p", words("record.reading"), id="connection", role="status", data_lost=words("record.lost"))
         tag("div", id="answer", role="status", aria_live="polite")
 
 
-def of_site(words: Words, parts: list[str], role: str | None) -> None:
+def of_site(words: Words, places: Places, role: str | None) -> None:
     """Draw the header of the page on many plants."""
     with tag("header", classes="top"):
         _stop(words, words("site.stop_all"), words("site.stop_all_does"))
         with tag("div", classes="brand"):
             tag("h1", words("site.title"))
             live("p", "sum", classes="sum", role="status")
-        _tabs(words, parts)
-        _tools(words, role, sounds=False)
+        _tabs(words, places)
+        tools.build(words, role)
         tag("p", words("page.connecting"), id="connection", role="status", data_lost=words("site.lost"))
         tag("div", id="answer", role="status", aria_live="polite")
 
@@ -69,52 +70,8 @@ def _stop(words: Words, label: str, does: str) -> None:
         tag("p", words("stop.held_key"), classes="stop-key")
 
 
-def _tabs(words: Words, parts: list[str]) -> None:
+def _tabs(words: Words, places: Places) -> None:
     with tag("nav", classes="tabs", aria_label=words("page.parts")):
-        for name in parts:
-            link(words.of("tab", name), tab=name, classes="tab", data_tab=name)
-
-
-def _tools(words: Words, role: str | None, *, sounds: bool = True) -> None:
-    with tag("div", classes="tools"):
-        for language in LANGUAGES:
-            tag(
-                "button",
-                language.upper(),
-                type="button",
-                classes="tool",
-                lang=language,
-                title=texts(language, "page")["name"],
-                data_language=language,
-                aria_pressed="true" if language == words.language else "false",
-            )
-        tag(
-            "button",
-            type="button",
-            classes="tool look",
-            title=words("page.look"),
-            aria_label=words("page.look"),
-        )
-        if sounds:
-            _sound(words)
-        if role is not None:
-            with tag("form", action="/logout", method="post"):
-                tag(
-                    "button",
-                    words(f"role.{role}"),
-                    type="submit",
-                    classes="tool",
-                    title=words("page.log_out"),
-                )
-
-
-def _sound(words: Words) -> None:
-    tag(
-        "button",
-        "♪",
-        type="button",
-        classes="tool sound",
-        title=words("js.sound_off"),
-        aria_label=words("page.sound"),
-        aria_pressed="false",
-    )
+        for place, parts in places.items():
+            there = {"data_tab": place, "data_parts": " ".join(parts)}
+            link(words.of("tab", place), tab=parts[0], classes="tab", **there)

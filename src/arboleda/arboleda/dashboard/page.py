@@ -13,10 +13,10 @@ from fastapi.responses import JSONResponse
 
 from arboleda.store.task_rows import TaskQuery
 
-from . import header, links, missing_packages, panel, shell, tasks, timeline, trees
+from . import header, links, menu, settings, shell, tasks, timeline, trees
 from .added import AddedParts, LeaveOut, LeftOut
 from .asset_files import own
-from .body import Parts, body
+from .body import WITHIN, Parts, Places, body
 from .desk import Desk
 from .faces import history
 from .feed import Feed
@@ -29,11 +29,11 @@ from .past.other import LastOther
 from .past.stills import Stills
 from .shell import is_operator, language_of, role_shown
 from .toolkit import Client, app, ui
-from .twin import pane, window
+from .twin import window
 from .twin.show import Show
 from .wording import Words, words
 
-OWN = ("cells", "twin", "tasks", "panel", "links", "events")
+OWN = ("cells", "tasks", "events", "links", "settings")
 Asked = Annotated[str, Query(alias="words", max_length=100)]
 Most = Annotated[int, Query(ge=1, le=200)]
 
@@ -51,15 +51,15 @@ def mount(
     feed, show = Feed(plant, added.face, seen), Show(plant)
     stills, turns = Stills(), FrameQueue(BESIDE_S)
     others = {name: LastOther(partial(each.side, plant)) for name, each in added.records.items()}
-    shown: dict[tuple[object, ...], tuple[Layout, Parts, str]] = {}
+    shown: dict[tuple[object, ...], tuple[Layout, str]] = {}
 
-    def made(layout: Layout, language: str, role: str | None) -> tuple[Parts, str]:
-        """The parts and their HTML, made anew once a version has changed what the plant is, or a package was
+    def made(layout: Layout, language: str, role: str | None) -> str:
+        """The HTML of the parts, made anew once a version has changed what the plant is, or a package was
         left out."""
         of = (language, role, *added.packages)
         if of not in shown or shown[of][0] is not layout:
-            shown[of] = (layout, *drawn(added, plant, layout, words(language), role))
-        return shown[of][1:]
+            shown[of] = (layout, drawn(added, plant, layout, words(language), role))
+        return shown[of][1]
 
     def build(request: Request, client: Client) -> str:
         if past_page.is_of_record(request):
@@ -69,8 +69,8 @@ def mount(
         wording, layout = words(language_of(request)), plant.layout()
         window.open_window(client, show)
         open_page(client, Desk(client, plant, feed, wording, added.acts), feed)
-        parts, html = made(layout, wording.language, role_shown(request))
-        shell.fill(layout, wording, parts, script=own("page.js"), added=added.assets)
+        html = made(layout, wording.language, role_shown(request))
+        shell.fill(layout, wording, script=own("page.js"), added=added.assets)
         return html
 
     scenes = {
@@ -83,38 +83,37 @@ def mount(
     _keep_running(feed, show)
 
 
-def drawn(
-    added: AddedParts, plant: PageApi, layout: Layout, wording: Words, role: str | None
-) -> tuple[Parts, str]:
-    """The parts of the page for a role, and their HTML; without a package that breaks."""
+def drawn(added: AddedParts, plant: PageApi, layout: Layout, wording: Words, role: str | None) -> str:
+    """The HTML of the page for a role, without a package that breaks."""
     drawing = added.drawing(plant, layout, wording, role)
-    parts = all_parts(drawing.parts, drawing.put)
+    parts = all_parts(drawing.parts, role, drawing.put)
 
-    def top(names: list[str]) -> None:
-        header.build(layout, wording, [name for name in names if name not in drawing.without_tab], role)
+    def top(places: Places) -> None:
+        header.build(layout, wording, places)
         drawing.put(Place.TOP)
 
+    def foot() -> None:
+        menu.build(layout, wording, drawing.put)
+
     try:
-        return parts, body(layout, wording, parts, header=top)
+        return body(layout, wording, parts, header=top, footer=foot, within=WITHIN | drawing.within)
     except LeftOut:
         return drawn(added, plant, layout, wording, role)
 
 
-def all_parts(added: Parts, put: Put) -> Parts:
+def all_parts(added: Parts, role: str | None, put: Put) -> Parts:
     """The parts in their order; no package takes the place of one of the runner's."""
 
-    def last(layout: Layout, wording: Words) -> None:
-        links.build(layout, wording, put)
-        missing_packages.build(wording)
+    def last(_layout: Layout, wording: Words) -> None:
+        settings.build(wording, role, put)
 
     return {
         "cells": partial(trees.build, put=put),
-        "twin": partial(pane.build, put=put),
         "tasks": partial(tasks.build, put=put),
-        "panel": panel.build,
         **{name: build for name, build in added.items() if name not in OWN},
-        "links": last,
         "events": timeline.build,
+        "links": links.build,
+        "settings": last,
     }
 
 

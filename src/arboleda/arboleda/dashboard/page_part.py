@@ -27,14 +27,15 @@ GROUP = "arboleda.page"
 class Place(Enum):
     """Place of a section on the page."""
 
-    TAB = "a part of its own, to which a tab of the header leads"
-    PART = "a part of its own, to which links of other sections lead"
+    TAB = "a part of its own, to which a tab of the header leads, or one within the place of other parts"
     TOP = "below the header, whichever part is shown"
     CARD = "below the card of each cell"
     TREE = "among the tools of the tree of each cell"
     TASK = "in the page of one task"
     TASKS = "between the tasks of this start and those of all starts"
-    LINKS = "below the links"
+    CELL_MENU = "in the menu of each cell, below the verbs of operators"
+    PLANT_MENU = "in the menu of the whole plant, below those"
+    SETTINGS = "among the settings"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,12 +53,13 @@ class Section:
     """Section of the page. `build` draws it with `tags`, or nothing where this plant has no use for it.
 
     `name` is for parts of their own. The tab says `tab.<name>`, or the name where it has no words; the
-    element is `part-<name>`.
+    element is `part-<name>`. `within` is the name of another part, in whose place it stands.
     """
 
     place: Place
     build: Callable[[Spot], None]
     name: str = ""
+    within: str = ""
     for_operators: bool = False
 
 

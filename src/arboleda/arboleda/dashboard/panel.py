@@ -58,7 +58,6 @@ def build(layout: Layout, words: Words) -> None:
                     _verb(name, offer, words)
         tag("p", words("panel.not_safety"), classes="hint")
         _suggestions(layout)
-    zones(words, "acts")
 
 
 def zones(words: Words, *more: str) -> None:

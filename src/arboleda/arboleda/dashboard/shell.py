@@ -15,7 +15,7 @@ from arboleda.web.api import refuse
 from arboleda.web.languages import spoken
 
 from .asset_files import Assets, own, own_address, own_folder
-from .body import Parts, parts_of, script_data
+from .body import script_data
 from .page_api import Layout
 from .page_budget import PageBudget
 from .toolkit import HTML_ESCAPE_TABLE, Client, app, ui
@@ -83,10 +83,10 @@ def is_operator(request: Request) -> bool:
     return bool(request.scope["arboleda.role"] is Role.OPERATOR)
 
 
-def fill(layout: Layout, wording: Words, parts: Parts, *, script: str, added: Sequence[Assets] = ()) -> None:
+def fill(layout: Layout, wording: Words, *, script: str, added: Sequence[Assets] = ()) -> None:
     """Fill the page of one browser, but for the HTML of its parts; `script` is its entry's address."""
-    shown = parts_of(parts, layout)
-    ui.add_head_html(head(wording, script, *([own("twin.js")] if "twin" in shown else []), added=added))
+    drawn = [own("twin.js")] if layout["places"]["robots"] else []
+    ui.add_head_html(head(wording, script, *drawn, added=added))
     ui.html(PARTS_HERE, sanitize=False).classes("app")
 
 

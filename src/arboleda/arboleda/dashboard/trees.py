@@ -1,4 +1,4 @@
-"""The cells: a card for each, its tree beside it, and the last changes of its tree."""
+"""The cells: a card for each, and of the chosen one its tree, the last changes of that, and the twin."""
 
 from __future__ import annotations
 
@@ -6,51 +6,44 @@ from typing import Any
 
 from arboleda.views.view import devices_once
 
+from . import menu
 from .page_api import Layout
 from .page_part import Place, Put, put_nothing
 from .tags import link, live, rows, tag, way
+from .twin import pane
 from .wording import Words
 
-FEW, CROWD = 4, 6  # cells: so few have all their trees on a wall screen, a crowd has small cards
+CROWD = 6  # cells, of which each has a small card; of fewer all have their trees on a wall screen
 
 
 def build(layout: Layout, words: Words, put: Put = put_nothing) -> None:
     once = [*devices_once(layout["cells"])]
-    rows("for_all", [""], classes="for-all")
-    with tag("div", classes=f"cells {_size(len(layout['cells']))}"):
-        for cell in layout["cells"]:
-            with tag("article", classes="cell", data_cell=cell["name"]):
-                _card(cell, [device for of, device in once if of == cell["name"]], words)
-                put(Place.CARD, cell["name"])
-                tree_box(cell, words, put)
-                with tag("div", classes="changes"):
-                    tag("h2", words("cells.changes", cell=cell["name"]))
-                    if layout.get("recorded"):
-                        there = {"tab": "cells", "cell": cell["name"], "task": None, "at": "failure"}
-                        failure = f"{cell['name']}.failure"  # empty where none is in the record
-                        way(None, there, classes="to-record", data_live=failure)
-                    rows(f"changes.{cell['name']}", ["", "", ""], classes="small")
+    with tag("div", classes="desk"):
+        with tag("div", classes=f"cells {_size(len(layout['cells']))}"):
+            for cell in layout["cells"]:
+                with tag("article", classes="cell", data_cell=cell["name"]):
+                    _card(cell, [device for of, device in once if of == cell["name"]], words, put)
+                    tree_box(cell, words, put)
+                    _changes(layout, cell["name"], words)
+        if layout["places"]["robots"]:
+            pane.build(layout, words)
+
+
+def _changes(layout: Layout, cell: str, words: Words) -> None:
+    title = words("cells.changes", cell=cell)
+    with tag("div", classes="changes", role="group", tabindex="0", aria_label=title):
+        tag("h2", title)
+        if layout.get("recorded"):
+            there = {"tab": "cells", "cell": cell, "task": None, "at": "failure"}
+            way(None, there, classes="to-record", data_live=f"{cell}.failure")  # empty where there is none
+        rows(f"changes.{cell}", ["", "", ""], classes="small")
 
 
 def _size(cells: int) -> str:
-    if cells >= CROWD:
-        return "crowd"
-    return "few" if cells <= FEW else "many"
+    return "crowd" if cells >= CROWD else "few"
 
 
-def beside(layout: Layout, words: Words, put: Put = put_nothing) -> None:
-    """Draw the tree of the chosen cell beside another view of that cell."""
-    for cell in layout["cells"]:
-        name = cell["name"]
-        with tag("article", classes="box beside", data_cell=name):
-            with tag("div", classes="card-head"):
-                tag("h2", name)
-                live("span", f"{name}.state", classes="pill")
-            live("p", f"{name}.task", classes="task")
-            tree_box(cell, words, put)
-
-
-def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words) -> None:
+def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words, put: Put) -> None:
     """Draw the card of a cell; `devices` are those shown on it: a shared one is shown with its first cell."""
     cell = layout["name"]
     with tag(
@@ -75,11 +68,13 @@ def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words) -
             _question(device["name"])
     rows(f"ways.{cell}", ["", ""], classes="ways")
     if layout["places"] or layout["stations"]:
-        columns = [words(f"column.{each}") for each in ("place", "parts", "note", "acts")]
-        rows(f"places.{cell}", columns, classes="places")
+        rows(f"places.{cell}", ["", ""], classes="places")
     if any(device["position"] is None for device in devices):
         rows(f"devices.{cell}", ["", "", ""], classes="devices")
         answers_table(f"heard.{cell}", words)
+    with tag("div", classes="card-acts"):
+        menu.opener(cell, words("panel.title"), words("menu.open", cell=cell))
+        put(Place.CARD, cell)
 
 
 def _question(person: str) -> None:
@@ -101,6 +96,7 @@ def tree_box(layout: dict[str, Any], words: Words, put: Put) -> None:
     """Draw the box of a cell's tree; the offers of an idle cell stand above it."""
     cell = layout["name"]
     with tag("div", classes="tree-box"):
+        tag("h2", words("cells.tree", cell=cell))
         with tag("div", classes="tree-tools"):
             live("span", f"{cell}.feedback", classes="feedback")
             _offer(cell, classes="act offer")

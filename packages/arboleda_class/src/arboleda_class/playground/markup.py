@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from arboleda.dashboard import header, links, panel, tasks, timeline, trees
+from arboleda.dashboard import header, links, menu, settings, tasks, timeline, trees
 from arboleda.dashboard.body import Parts, body, script_data
 from arboleda.dashboard.page_api import Layout
 from arboleda.dashboard.tags import rows, tag
-from arboleda.dashboard.twin import pane
 from arboleda.dashboard.wording import Words, words
 from arboleda.web.languages import texts
 from arboleda_proofs.page import fault_form
@@ -19,11 +18,10 @@ from . import strip
 
 PARTS: Parts = {
     "cells": trees.build,
-    "twin": pane.build,
     "tasks": tasks.of_start,
-    "panel": panel.build,
-    "links": links.build,
     "events": timeline.of_record,
+    "links": links.build,
+    "settings": lambda _, words: settings.build(words, None),
 }
 SPEEDS = ("0.25", "1", "4", "16")
 TOOLS = {"begin": "«", "back": "‹", "play": "▶", "step": "›"}  # noqa: RUF001 - as signs on buttons
@@ -59,12 +57,15 @@ def html(layout: Layout, language: str, *, plants: list[str], chosen: str, targe
         layout,
         wording,
         PARTS,
-        header=lambda parts: header.build(layout, wording, parts, None),
-        footer=lambda: _footer(wording, own, plants, chosen, targets),
+        header=lambda places: header.build(layout, wording, places),
+        footer=lambda: _footer(layout, wording, own, plants, chosen, targets),
     )
 
 
-def _footer(wording: Words, own: PlayWords, plants: list[str], chosen: str, targets: Targets) -> None:
+def _footer(
+    layout: Layout, wording: Words, own: PlayWords, plants: list[str], chosen: str, targets: Targets
+) -> None:
+    menu.build(layout, wording)
     with tag("section", id="play", classes="play", aria_label=own("bar")):
         if targets:
             with tag("details", id="play-mishaps", classes="play-mishaps"):

@@ -48,8 +48,10 @@ def mount(server: FastAPI, site: SiteSide) -> None:
         client.on_connect(opened.set)
         client.on_delete(lambda: frames.remove(desk))
         role = role_shown(request)
-        shell.fill(NOTHING_DRAWN, wording, PARTS, script=ASSETS.of("site.js"), added=[ASSETS])
-        return body(NOTHING_DRAWN, wording, PARTS, header=lambda parts: header.of_site(wording, parts, role))
+        shell.fill(NOTHING_DRAWN, wording, script=ASSETS.of("site.js"), added=[ASSETS])
+        return body(
+            NOTHING_DRAWN, wording, PARTS, header=lambda places: header.of_site(wording, places, role)
+        )
 
     _serve(server, site)
     shell.serve(server, {"plant": words("en")("site.title")}, build, [ASSETS])

@@ -80,7 +80,7 @@ def _draft(words: Words) -> None:
         with tag("label", words("make.note")):
             tag("input", id="make-version-note", type="text", maxlength="200", autocomplete="off")
         with tag("div", classes="draw-acts"):
-            way(words("make.versions"), {"tab": "links"}, classes="act")
+            way(words("make.versions"), {"tab": "settings"}, classes="act")
 
 
 def _cells(words: Words) -> None:

@@ -41,11 +41,11 @@ def _tried() -> TriedPlants:
 PAGE = PagePart(
     assets=Assets(package=__package__, script="part.js", styles=("draw", "teach", "make")),
     sections=(
-        Section(place=Place.PART, name="teach", build=teach_panel.build, for_operators=True),
         Section(place=Place.TAB, name="make", build=make_panel.build, for_operators=True),
-        Section(place=Place.TAB, name="draw", build=tree_editor.build),
+        Section(place=Place.TAB, name="draw", within="make", build=tree_editor.build),
+        Section(place=Place.TAB, name="teach", within="make", build=teach_panel.build, for_operators=True),
         Section(place=Place.TREE, build=teach_panel.way_from_tree),
-        Section(place=Place.LINKS, build=versions.build),
+        Section(place=Place.SETTINGS, build=versions.build),
     ),
     face=teach_panel.face,
     serve=serve,

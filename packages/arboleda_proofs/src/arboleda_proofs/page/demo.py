@@ -1,31 +1,40 @@
-"""Welcome to the visitors of a demonstration: three lines, and the button that ends it."""
+"""Welcome to the visitors of a demonstration, which goes by itself, and the button that ends it."""
 
 from __future__ import annotations
 
 from arboleda.dashboard.faces import Face
 from arboleda.dashboard.faces.moment import Moment
 from arboleda.dashboard.page_part import Request, Spot
-from arboleda.dashboard.tags import live, tag
+from arboleda.dashboard.tags import tag
 from arboleda_proofs.running.demonstration_api import DemonstrationApi
 
 END = "end_demo"
 LINES = ("cells", "trouble", "more")
 
 
-def build(spot: Spot) -> None:
-    """Draw the welcome: its lines stay until they were read, the button until the demonstration ends."""
+def welcome(spot: Spot) -> None:
+    """Draw what a visitor reads once: three lines on what to press."""
     words = spot.words
     if spot.plant.ask(DemonstrationApi) is None:
         return
-    with tag("aside", id="demo", aria_label=words("demo.title")):
-        live("span", "demo", hidden="true")
-        tag("p", words("demo.title"), classes="demo-title")
-        with tag("ol", id="demo-lines", hidden="true"):
+    with tag("aside", id="demo", aria_label=words("demo.title"), hidden="true"):
+        close = words("demo.seen")
+        tag("button", "×", type="button", id="demo-seen", classes="tool", title=close, aria_label=close)  # noqa: RUF001
+        tag("p", words("demo.title"))
+        with tag("ol"):
             for line in LINES:
                 tag("li", words(f"demo.{line}"))
-        with tag("div", classes="demo-acts"):
-            tag("button", words("demo.seen"), type="button", id="demo-seen", classes="act", hidden="true")
-            does = words("demo.end_does")
+
+
+def end_of_it(spot: Spot) -> None:
+    """Draw the button that ends the demonstration, in the menu of the plant."""
+    words = spot.words
+    if spot.plant.ask(DemonstrationApi) is None:
+        return
+    with tag("div", id="demo-on", classes="box", hidden="true"):
+        tag("p", words("demo.title"))
+        does = words("demo.end_does")
+        with tag("div"):
             tag("button", words("demo.end"), type="button", id="demo-end", classes="act", title=does)
 
 

@@ -18,8 +18,10 @@ def face(moment: Moment) -> Face:
 PAGE = PagePart(
     assets=Assets(package=__package__, script="part.js", styles=("proofs",)),
     sections=(
-        Section(place=Place.TOP, build=demo.build),
-        Section(place=Place.TOP, build=fault_form.drawer, for_operators=True),
+        Section(place=Place.TOP, build=demo.welcome),
+        Section(place=Place.TOP, build=fault_form.going_on, for_operators=True),
+        Section(place=Place.CELL_MENU, build=fault_form.drawer, for_operators=True),
+        Section(place=Place.PLANT_MENU, build=demo.end_of_it),
         Section(place=Place.CARD, build=reports.way_from_cell),
         Section(place=Place.TASK, build=reports.way_from_task),
     ),

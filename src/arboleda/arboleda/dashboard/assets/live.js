@@ -119,16 +119,18 @@ function outside(text, href) {
   return Object.assign(document.createElement("a"), { href, textContent: text, target: "_blank", rel: "noopener noreferrer" });
 }
 
-function offerButton({ act, of, label, does, asks, by_hand: byHand, arguments: told, refused }) {
+function offerButton({ act, of, label, does, asks, by_hand: byHand, arguments: told, refused, state, name }) {
   const button = document.createElement("button");
   button.type = "button";
   button.className = "act";
   button.textContent = label;
   button.title = does;
-  Object.assign(button.dataset, { act, of });
+  if (act) Object.assign(button.dataset, { act, of });
   if (asks) button.dataset.asks = JSON.stringify(asks);
   if (byHand) button.dataset.byHand = "true";
   if (told) button.dataset.arguments = JSON.stringify(told);
+  if (state) button.dataset.s = state;
+  if (name) button.setAttribute("aria-label", name);
   button.disabled = refused === true;
   return button;
 }

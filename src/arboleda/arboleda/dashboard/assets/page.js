@@ -5,9 +5,9 @@ import * as form from "./form.js";
 import * as history from "./history.js";
 import * as frames from "./frames.js";
 import { onChange } from "./live.js";
+import * as menu from "./menu.js";
 import * as place from "./place.js";
 import * as question from "./question.js";
-import * as scope from "./scope.js";
 import * as shell from "./shell.js";
 import * as sound from "./sound.js";
 import * as task from "./task.js";
@@ -22,12 +22,12 @@ window.arboleda = {
 };
 
 function arrive(there) {
-  if (!shell.settled(there)) return;
+  if (!shell.settled(there)) return void (there.tab === "panel" && menu.open(place.here().cell ?? ""));
   const { tab, cell, task: named } = there;
   question.dismiss(); // it was asked elsewhere
   shell.showPart(tab);
   shell.showCell(cell);
-  scope.arrive(cell);
+  menu.arrive(there);
   form.offer(cell);
   task.show(named);
   if (tab === "tasks") history.show();
@@ -65,7 +65,7 @@ function begin() {
   task.start();
   history.start();
   tree.start();
-  scope.start();
+  menu.start();
   onChange(shell.alarm);
   sound.start();
   onChange(sound.hear);

@@ -2,7 +2,7 @@
 // the header's stop away from mouse, touch and keyboard, so the rest of the page is made inert here, and the stop is not.
 
 const words = window.arboledaPage.words;
-const setAside = () => document.querySelectorAll("#parts, #node, .top > :not(.stop, #connection, #answer)");
+const setAside = () => document.querySelectorAll("#parts, #node, #menu, .top > :not(.stop, #connection, #answer)");
 let dismissOpen = () => {};
 
 // Answer the open question with "no"; what it was about has changed, or somebody has walked away from it.

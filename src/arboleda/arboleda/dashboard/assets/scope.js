@@ -2,7 +2,6 @@
 
 import * as acts from "./acts.js";
 import { onChange, value } from "./live.js";
-import * as place from "./place.js";
 import { all } from "./shell.js";
 
 let scope = "";
@@ -13,14 +12,9 @@ export function start() {
   choose("");
 }
 
-// Somebody has come to another cell: what is chosen of that one stays.
-export function arrive(cell) {
-  if (cellOf(scope) !== (cell ?? "")) choose(cell ?? "");
-}
-
 const cellOf = (of) => all("[data-robots]").find((box) => box.dataset.robots === of || box.querySelector(`[data-scope="${CSS.escape(of)}"]`))?.dataset.robots ?? "";
 
-function choose(of) {
+export function choose(of) {
   const kinds = document.querySelector(`[data-scope="${CSS.escape(of)}"]`).dataset.kind.split(" ");
   scope = of;
   acts.setScope(of);
@@ -46,5 +40,5 @@ function suggest() {
 
 function clicked(event) {
   const of = event.target.closest("button")?.dataset.scope;
-  if (of !== undefined) choose(of), place.go({ cell: cellOf(of) || null });
+  if (of !== undefined) choose(of);
 }

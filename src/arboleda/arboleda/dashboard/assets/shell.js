@@ -7,6 +7,7 @@ import * as place from "./place.js";
 export const all = (selector) => [...document.querySelectorAll(selector)];
 export const words = window.arboledaPage.words;
 export const parts = () => all("[data-part]").map((part) => part.dataset.part);
+const MOVED = { twin: "cells", panel: "cells", log: "events" }; // addresses of before
 export const cells = () => all("[data-choose]").map((card) => card.dataset.choose);
 const filters = {};
 
@@ -35,6 +36,7 @@ export function answer(sentence, good, stays = false) {
 // Whether somebody is at a place that this page has, in its language; else they are led to the nearest one.
 export function settled({ tab, cell, task, lang }) {
   if (task && tab !== "tasks") return place.settle({ tab: "tasks" });
+  if (MOVED[tab]) return place.settle({ tab: MOVED[tab] });
   if (!parts().includes(tab)) return place.settle({ tab: parts()[0] });
   if (cell && !cells().includes(cell)) return answer(words.no_cell.replace("{cell}", cell), false), place.settle({ cell: null });
   if (lang !== window.arboledaPage.language) return place.settle({ lang: window.arboledaPage.language });
@@ -47,21 +49,23 @@ export function showPart(chosen) {
   if (part && part !== chosen && isOfPart) answer("", true);
   part = chosen;
   all("[data-part]").forEach((part) => (part.hidden = part.dataset.part !== chosen));
-  all("[data-tab]").forEach((tab) => (tab.dataset.tab === chosen ? tab.setAttribute("aria-current", "page") : tab.removeAttribute("aria-current")));
+  all("[data-parts]").forEach((tab) => (tab.dataset.parts.split(" ").includes(chosen) ? tab.setAttribute("aria-current", "page") : tab.removeAttribute("aria-current")));
+  all("[data-within]").forEach((ways) => (ways.hidden = !ways.dataset.within.split(" ").includes(chosen)));
 }
 
 // In a crowd a card is opened by who names it, so that all of them are seen at first.
 const inCrowd = () => document.querySelector(".cells.crowd") !== null;
 
-let first; // of the plant file: who names none sees the same one, whatever is in trouble meanwhile
+let there = null; // the cell that somebody named; else the top one is looked at
 
 export function showCell(named) {
-  first ??= cells()[0];
-  const chosen = named ?? first;
+  there = named;
+  const chosen = named ?? cells()[0];
   const pressed = inCrowd() ? named : chosen;
   all("article[data-cell]").forEach((cell) => cell.classList.toggle("chosen", cell.dataset.cell === chosen));
   all(".crowd > .cell").forEach((cell) => cell.classList.toggle("opened", cell.dataset.cell === named));
   all("[data-choose]").forEach((card) => card.setAttribute("aria-pressed", card.dataset.choose === pressed));
+  window.arboledaTwin?.visit(pressed ?? null);
 }
 
 // Trouble first; nothing moves under a pointer that is about to press something.
@@ -72,6 +76,7 @@ export function inOrder() {
   if (order.every((name, n) => box.children[n]?.dataset.cell === name)) return;
   const found = new Map([...box.children].map((cell) => [cell.dataset.cell, cell]));
   keepingFocus(() => box.append(...order.map((name) => found.get(name))));
+  if (!there) showCell(null);
 }
 
 const ICONS = { trouble: "tree_trouble", waits: "tree_waits" };
@@ -116,9 +121,9 @@ function nextLook() {
 function clicked(event) {
   const button = event.target.closest("button");
   if (!button) return;
-  const { choose, twinCell, filter, value: cell, language } = button.dataset;
+  const { choose, filter, value: cell, language } = button.dataset;
   const opened = choose && inCrowd() && button.getAttribute("aria-pressed") === "true";
-  if (choose ?? twinCell) place.go({ cell: opened ? null : (choose ?? twinCell) });
+  if (choose) place.go({ cell: opened ? null : choose });
   if (filter) filterBy(filter, cell);
   if (language) cookie("language", language), location.assign(place.address({ lang: language }));
   if (button.classList.contains("look")) nextLook();

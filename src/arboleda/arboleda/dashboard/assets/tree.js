@@ -5,6 +5,7 @@ import { onChange, split, value } from "./live.js";
 const SVG = "http://www.w3.org/2000/svg";
 const HEIGHT = 26;
 const MARGIN = 40; // px below a tree
+const LEAST = { wall: 0.5, screen: 0.7, page: 0.85, phone: 1 }; // size at which a tree is read
 const PLANS = ["wide", "columns", "narrow"];
 const SIGNS = {
   // status -> shape, 12 x 12 px around 0 0: it reads without its colour
@@ -51,10 +52,11 @@ function fit(one) {
   if (one.box.clientWidth === 0) return;
   const unit = parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
   const wall = matchMedia("(min-width: 1800px)").matches && one.box.closest(".cells.few");
+  const screen = getComputedStyle(one.box.parentElement).position === "absolute"; // the box is as high as the screen has room
   // A tree that begins low on the screen, or below it, gets half a screen: it has to be scrolled to anyway.
-  const high = Math.max(innerHeight / 2, innerHeight - top(one.box) - MARGIN);
+  const high = screen ? one.box.clientHeight : Math.max(innerHeight / 2, innerHeight - top(one.box) - MARGIN);
   const room = { w: one.box.clientWidth / unit, h: high / unit };
-  const [name, scale] = wall ? largest(one.tree, room) : readable(one.tree, room);
+  const [name, scale] = wall || screen ? largest(one.tree, room, wall ? LEAST.wall : LEAST.screen) : readable(one.tree, room);
   if (one.plan !== name) lay(one, name);
   one.svg.setAttribute("width", one.tree[name].w * scale * unit * one.zoom);
   one.svg.setAttribute("height", one.tree[name].h * scale * unit * one.zoom);
@@ -63,14 +65,14 @@ function fit(one) {
 const top = (box) => box.getBoundingClientRect().top + scrollY;
 
 // Which way it is drawn goes by the language that needs most room: it must not change with the language.
-function largest(tree, room) {
+function largest(tree, room, least) {
   const scale = (name, width) => Math.min(1.5, room.w / width, room.h / tree[name].h);
   const name = PLANS.reduce((best, one) => (scale(one, tree.need[one]) > scale(best, tree.need[best]) ? one : best));
-  return [name, Math.max(0.5, scale(name, tree[name].w))];
+  return [name, Math.max(least, scale(name, tree[name].w))];
 }
 
 function readable(tree, room) {
-  const least = matchMedia("(max-width: 760px)").matches ? 1 : 0.85;
+  const least = matchMedia("(max-width: 760px)").matches ? LEAST.phone : LEAST.page;
   const name = PLANS.find((name) => room.w / tree.need[name] >= least) ?? PLANS.at(-1);
   const high = Math.max(0.9, room.h / tree[name].h);
   return [name, Math.max(least, Math.min(1.3, room.w / tree[name].w, high))];

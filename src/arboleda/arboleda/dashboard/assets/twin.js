@@ -10,6 +10,7 @@ const ACK_EVERY = 5; // frames
 const ASK_AGAIN_MS = 2000;
 const words = () => window.arboledaPage.words;
 let box, note, plant, view;
+let near; // the cell that is looked at, null for the whole plant
 let wanted = false;
 let frames = 0;
 
@@ -27,6 +28,9 @@ window.arboledaTwin = {
   solid: (robot) => plant.robots.get(robot).real.root.visible && plant.robots.get(robot).painted === "solid",
   drawn: () => Object.fromEntries(plant?.drawn ?? []),
   view: () => view?.name,
+  visit(cell) {
+    if (view && cell !== near) visit(cell);
+  },
   // The plant from above in a box of another part of the page, with those of its targets as points that `of` is true of;
   // null where it has none.
   async points(box, { cell, of, ...choice }) {
@@ -76,7 +80,13 @@ async function make() {
   const [{ THREE, OrbitControls }, scene] = await Promise.all([import("nicegui-scene"), fetchScene()]);
   const made = new Plant(THREE, scene);
   show(made, solid(THREE, OrbitControls, made) ?? flat(THREE, made));
-  if (here().cell) view.visit(here().cell);
+  visit(document.querySelector("[data-choose][aria-pressed=true]")?.dataset.choose ?? null);
+}
+
+function visit(cell) {
+  near = cell;
+  view.visit(cell ?? undefined);
+  document.getElementById("twin-title").textContent = cell ? words().twin_of.replace("{cell}", cell) : words().twin_plant;
 }
 
 async function fetchScene() {
@@ -142,9 +152,10 @@ function paint() {
 }
 
 function clicked(event) {
-  const { twin, twinCell } = event.target.closest?.("[data-twin], [data-twin-cell]")?.dataset ?? {};
-  if (twin) view?.tool(twin);
-  if (twinCell) view?.visit(twinCell);
+  const tool = event.target.closest?.("[data-twin]")?.dataset.twin;
+  if (!tool || !view) return;
+  if (tool === "reset") visit(null);
+  else view.tool(tool);
 }
 
 function begin() {

@@ -32,6 +32,7 @@ export class SolidView {
     this.controls.addEventListener("change", () => this.show());
     this.resizing = new ResizeObserver(() => this.resize());
     this.resizing.observe(box);
+    this.resize(); // before a cell is visited, which is as near as it fits
   }
 
   lights([[x0, y0], [x1, y1, z1]]) {

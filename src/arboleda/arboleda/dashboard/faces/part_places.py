@@ -1,7 +1,8 @@
-"""Places of a cell: how many parts are at each, and what a person may say who put some there or took them."""
+"""Places of a cell as dots, those of a rack in one row: full or empty, and what a person may say of each."""
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from arboleda.model.messages import Verb
@@ -11,6 +12,7 @@ from . import Face
 from .moment import Moment
 
 Row = dict[str, Any]
+NUMBERED = re.compile(r"(.+?)_?([0-9]+)", re.ASCII)
 
 
 def face(moment: Moment) -> Face:
@@ -22,34 +24,38 @@ def face(moment: Moment) -> Face:
 
 
 def _of(words: Words, cell: Row) -> Face:
-    name = cell["name"]
-    shown = [place for place in cell["places"] if place["station"] is None or place["parts"]]
-    found: Face = {f"rows/places.{name}": [place["name"] for place in shown]}
-    for place in shown:
-        parts, holds = place["parts"], place["holds"]
-        acts = (
-            [] if place["by_people"] else [_says(words, name, place, verb) for verb in _useful(parts, holds)]
-        )
-        found[f"row/places.{name}/{place['name']}"] = {
-            "state": "taken" if parts else "free",
-            "texts": [place["name"], words("places.parts", parts=parts, holds=holds), _note(words, place)],
-            "acts": acts,
+    name, racks = cell["name"], dict[str, list[Row]]()
+    for place in cell["places"]:
+        racks.setdefault(_rack(place["name"])[0], []).append(place)
+    found: Face = {f"rows/places.{name}": list(racks)}
+    for rack, places in racks.items():
+        found[f"row/places.{name}/{rack}"] = {
+            "state": "",
+            "texts": [rack, " · ".join(dict.fromkeys(filter(None, (_note(words, each) for each in places))))],
+            "acts": [_dot(words, name, each) for each in places],
         }
     return found
 
 
-def _useful(parts: int, holds: int) -> list[Verb]:
-    """The acts of a person that are of use there."""
-    return [*([Verb.LOAD] if parts < holds else []), *([Verb.UNLOAD] if parts else [])]
+def _rack(place: str) -> tuple[str, str]:
+    """The rack of a place and its number there; the number of a place that stands alone is ""."""
+    numbered = NUMBERED.fullmatch(place)
+    return (place, "") if numbered is None else (numbered[1], numbered[2])
 
 
-def _says(words: Words, cell: str, place: Row, verb: Verb) -> Row:
+def _dot(words: Words, cell: str, place: Row) -> Row:
+    """The button of a place: a person says by it that the parts were taken out, or put in where none is."""
+    name, parts, holds = place["name"], place["parts"], place["holds"]
+    verb = Verb.UNLOAD if parts else Verb.LOAD
     return {
         "act": verb.value,
         "of": cell,
-        "label": words.of("verb", verb.value),
-        "does": words(f"places.{verb.value}", place=place["name"], holds=place["holds"]),
-        "arguments": {"place": place["name"]},
+        "label": f"{parts}/{holds}" if holds > 1 else _rack(name)[1],
+        "name": f"{name}: {words('places.parts', parts=parts, holds=holds)}. {words.of('verb', verb.value)}",
+        "does": words(f"places.{verb.value}", place=name, holds=holds),
+        "arguments": {"place": name},
+        "state": "taken" if parts else "free",
+        "refused": place["by_people"],
     }
 
 

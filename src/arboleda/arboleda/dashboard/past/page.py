@@ -10,7 +10,7 @@ from .. import header, links, shell, tasks, timeline, trees
 from ..asset_files import own
 from ..body import Parts, body
 from ..toolkit import Client, ui
-from ..twin import pane, window
+from ..twin import window
 from ..wording import words
 from . import bar
 from .frame_queue import FrameQueue
@@ -22,10 +22,9 @@ KEY, OF_TASK, START = "at", "task", "record"  # keys of the page's address
 EPOCH = re.compile(r"[0-9]{1,10}", re.ASCII)
 PARTS: Parts = {
     "cells": trees.build,
-    "twin": pane.build,
     "tasks": tasks.of_record,
-    "links": links.of_record,
     "events": timeline.of_record,
+    "links": links.of_record,
 }
 
 
@@ -69,12 +68,12 @@ def open_page(
     window.bring_three()
     client.on_connect(visitor.come)
     role = shell.role_shown(request)
-    shell.fill(layout, wording, PARTS, script=own("record.js"))
+    shell.fill(layout, wording, script=own("record.js"))
     return body(
         layout,
         wording,
         PARTS,
-        header=lambda parts: header.of_record(layout, wording, parts, role, beside=beside),
+        header=lambda places: header.of_record(layout, wording, places, role, beside=beside),
         footer=lambda: bar.build(layout, wording),
     )
 

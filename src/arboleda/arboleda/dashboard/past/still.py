@@ -22,10 +22,18 @@ def without_acts(face: Face) -> Face:
 def _without_acts(row: Row) -> Row:
     acts = row.get("acts", ())
     rest = {key: each for key, each in row.items() if key != "acts"}
+    dots = [_dot(act) for act in acts if "state" in act]
+    if dots:
+        return rest | {"acts": dots}
     labels = " / ".join(act["label"] for act in acts)
     if not labels or (row["texts"] and row["texts"][0]):
         return rest
     return rest | {"texts": [labels, *row["texts"][1:]]}
+
+
+def _dot(act: Row) -> Row:
+    """The dot of a place, which shows how that stood."""
+    return {key: act[key] for key in ("label", "name", "does", "state")} | {"refused": True}
 
 
 def of_record(then: Moment, moment: int) -> Face:

@@ -77,7 +77,7 @@ async function speak(language) {
 // The parts of a plant's page that the playground has, in the order in which the page itself begins them.
 async function page() {
   const module = (name) => import(`./assets/${name}.js`);
-  const [acts, faults, form, question, place, scope, sound, task] = await Promise.all(["acts", "proofs/faults", "form", "question", "place", "scope", "sound", "task"].map(module));
+  const [acts, faults, form, menu, question, place, sound, task] = await Promise.all(["acts", "proofs/faults", "form", "menu", "question", "place", "sound", "task"].map(module));
   [live, shell, tree] = await Promise.all(["live", "shell", "tree"].map(module));
   if (at("twin")) await module("twin");
   shell.start();
@@ -85,18 +85,18 @@ async function page() {
   form.start();
   task.start();
   tree.start();
-  scope.start();
+  menu.start();
   live.onChange(shell.alarm);
   sound.start();
   live.onChange(sound.hear);
   faults.start((name, target, seconds) => move("befall", { name, target, seconds }).then(moment));
   wire();
   place.start((there) => {
-    if (!shell.settled(there)) return;
+    if (!shell.settled(there)) return void (there.tab === "panel" && menu.open(place.here().cell ?? ""));
     question.dismiss(); // it was asked elsewhere
     shell.showPart(there.tab);
     shell.showCell(there.cell);
-    scope.arrive(there.cell);
+    menu.arrive(there);
     form.offer(there.cell);
     task.show(there.task);
     tree.close();

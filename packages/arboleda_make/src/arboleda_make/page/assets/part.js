@@ -15,5 +15,5 @@ export function arrive({ tab, cell }) {
   if (tab === "teach") teach.show(cell);
   else teach.leave();
   make.show(tab === "make");
-  if (tab === "links") versions.show();
+  if (tab === "settings") versions.show();
 }

@@ -6,7 +6,7 @@ const { language } = window.arboledaPage;
 const EVERY_MS = 10_000;
 
 const part = (id) => document.getElementById(id);
-const seen = () => !document.getElementById("part-links").hidden;
+const seen = () => !document.getElementById("part-settings").hidden;
 
 let opened = null; // the version of each cell when this page was opened
 

@@ -1,6 +1,7 @@
 // Faults by hand at virtual devices: which buttons are possible, and what they ask for.
 
 import * as acts from "../acts.js";
+import { onOpen } from "../menu.js";
 
 const at = (id) => document.getElementById(id);
 
@@ -12,6 +13,20 @@ export function start(begin = (kind, robot, seconds) => acts.send("fault", robot
     const kind = target.closest("button")?.dataset.fault;
     if (kind) begin(kind, at("fault-target").value, Number(at("fault-seconds").value));
   });
+  onOpen(ofCell);
+  offer();
+}
+
+// Whom something can befall in the cell whose menu was opened.
+function ofCell(cell) {
+  const drawer = at("faults");
+  if (!drawer) return; // they are for the whole plant here
+  const targets = [...at("fault-target").options];
+  for (const each of targets) each.hidden = each.disabled = !each.dataset.cells.split(" ").includes(cell);
+  const first = targets.find((each) => !each.hidden);
+  drawer.hidden = !first;
+  if (!first) return;
+  if (at("fault-target").selectedOptions[0]?.hidden ?? true) at("fault-target").value = first.value;
   offer();
 }
 
