@@ -16,7 +16,7 @@ from arboleda.model.verbs import Arguments
 from arboleda.views.verb_words import ABOUT
 
 OF_ONE_CELL = [Verb.CANCEL, Verb.RETRY, Verb.ABANDON, Verb.LOAD, Verb.TEACH, Verb.AUTOMATIC]
-NEED_A_SCOPE = [*OF_ONE_CELL, Verb.RELEASE, Verb.HOME, Verb.OVERRIDE, Verb.ANSWER]
+NEED_A_SCOPE = [*OF_ONE_CELL, Verb.RELEASE, Verb.HOME, Verb.DO, Verb.OVERRIDE, Verb.ANSWER]
 PLANT_WIDE = [verb for verb in Verb if verb not in NEED_A_SCOPE]
 
 
@@ -82,7 +82,7 @@ def test_what_acts_on_one_thing_does_not_guess_which(acts: Notes, verb: Verb) ->
     assert acts == []
 
 
-ASKS_MORE = (Verb.OVERRIDE, Verb.ANSWER, Verb.LOAD, Verb.TEACH)
+ASKS_MORE = (Verb.DO, Verb.OVERRIDE, Verb.ANSWER, Verb.LOAD, Verb.TEACH)
 
 
 @pytest.mark.parametrize("verb", [verb for verb in Verb if verb not in ASKS_MORE])

@@ -6,6 +6,7 @@ from typing import Any
 
 from arboleda.views.view import devices_once
 
+from . import ready
 from .page_api import Layout
 from .page_part import Place, Put, put_nothing
 from .tags import link, live, rows, tag, way
@@ -73,7 +74,7 @@ def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words) -
     for device in devices:
         if device["asked"]:
             _question(device["name"])
-    rows(f"ways.{cell}", ["", ""], classes="ways")
+    ready.build(cell, words)
     if layout["places"] or layout["stations"]:
         columns = [words(f"column.{each}") for each in ("place", "parts", "note", "acts")]
         rows(f"places.{cell}", columns, classes="places")

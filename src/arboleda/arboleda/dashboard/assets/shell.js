@@ -8,6 +8,9 @@ export const words = window.arboledaPage.words;
 export const parts = () => all("[data-part]").map((part) => part.dataset.part);
 export const cells = () => all("[data-choose]").map((card) => card.dataset.choose);
 const filters = {};
+const hearers = [];
+
+export const onAnswer = (listener) => hearers.push(listener);
 
 export function start() {
   document.documentElement.lang = window.arboledaPage.language;
@@ -23,6 +26,7 @@ export function answer(sentence, good) {
   const line = document.getElementById("answer");
   line.textContent = sentence;
   line.dataset.s = good === null ? "open" : good ? "good" : "bad";
+  for (const listener of hearers) listener(good);
   return false;
 }
 
