@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 from tests.following import works
-from tests.lengths import length
 from tests.readying import due, make_ready
 
 from arboleda.model.commands import Command, Query, Stop
@@ -16,10 +15,10 @@ from arboleda.model.plant_model import Link
 from arboleda.plant_file.loader import load
 from arboleda_proofs.testing import Rig
 
-from .test_examples import PLAIN, Case, Shop
+from .test_examples import OF_STORAGE, PLAIN, Case, Shop
 
 BOOTS_S = 5.0
-IN_SHORT = ("assembly", "machine_tending")
+STORED = Case(folder=OF_STORAGE, task="sis_a 0B 7")
 
 
 @dataclass(frozen=True)
@@ -85,7 +84,7 @@ def devices(case: Case) -> list[str | None]:
 
 @pytest.mark.long
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize("case", length([each for each in PLAIN if each.folder in IN_SHORT], PLAIN), ids=str)
+@pytest.mark.parametrize("case", [*PLAIN, STORED], ids=str)
 def test_a_stop_in_any_verb_and_a_reboot_are_led_out_of_by_buttons_alone(case: Case) -> None:
     found = [stuck(case, middle, device) for middle in Timed(case).middles() for device in devices(case)]
     assert [each for each in found if each] == []

@@ -73,6 +73,36 @@ def test_what_is_under_way_is_waited_for(rig: Rig) -> None:
     assert found is not None and (found.advice, str(found.why)) == (None, "home ra1")
 
 
+def test_after_a_fault_the_cell_recovers_and_its_queue_goes_on_behind_that(rig: Rig) -> None:
+    rig.submit(TASK)
+    rig.wait_for("sis_a", "move to pick-up")
+    rig.crash("ra_1")
+    rig.wait(10.0)
+    assert make_ready(rig) == ["home ra1", "retry sis_a", "resume sis_a"]
+    assert works(rig, "sis_a")
+
+
+def test_after_a_restart_the_task_goes_on_where_it_stood(rig: Rig) -> None:
+    task = rig.submit(TASK).task
+    rig.wait_for("sis_a", "move to station 7")
+    rig.crash()
+    rig.wait(5.0)
+    assert make_ready(rig) == ["resume sis_a"]
+    assert rig.wait(60.0, until=lambda: rig.outcomes()[task].state is TaskState.DONE)
+
+
+def test_no_cell_waits_for_the_task_of_another(rig: Rig) -> None:
+    rig.submit(TASK)
+    rig.wait_for("sis_a", "move to pick-up")
+    rig.crash("ra_1")
+    rig.wait(10.0)
+    for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):
+        rig.operate(verb, "sis_b")
+        rig.wait(2.0)
+    acts = make_ready(rig)
+    assert acts == ["home ra1", "retry sis_a", "resume sis_b", "resume sis_a"]
+
+
 def test_while_robots_come_to_rest_one_waits(rig: Rig) -> None:
     rig.submit(TASK)
     rig.wait(3.0)

@@ -8,7 +8,7 @@ from typing import Any
 
 from arboleda.model.advice import Hand
 from arboleda.model.cell_states import CellState
-from arboleda.model.messages import Outcome, TaskState, Verb
+from arboleda.model.messages import Outcome, Verb
 from arboleda.model.sentence import Sentence
 
 Row = dict[str, Any]
@@ -24,12 +24,14 @@ class Due:
     """What is due next on the way back to work.
 
     `advice`: the row of the verb to give, or of work that only a hand can do; None while the plant itself
-    gets on. `before`: rows of work of a hand that has to be done first. `why`: what it waits for.
+    gets on. `before`: rows of work of a hand that has to be done first. `why`: what it waits for, as the end
+    of work where the cell is `at_work`.
     """
 
     advice: Row | None = None
     before: tuple[Row, ...] = ()
     why: Sentence | str | None = None
+    at_work: bool = False
 
     @property
     def is_act(self) -> bool:
@@ -39,20 +41,21 @@ class Due:
     @property
     def turn(self) -> int:
         """Its place among what is due in several cells; work of a hand in one holds up no other."""
+        later = len(FIRST)
         if self.advice is None:
-            return len(FIRST) + 1
+            return later + (3 if self.at_work else 1)
         do = self.advice["do"]
-        if self.advice["hand"] or do in LAST:
-            return len(FIRST) + (3 if self.advice["hand"] else 2)
-        return FIRST.index(do) if do in FIRST else len(FIRST)
+        if self.advice["hand"]:
+            return later + 4
+        return FIRST.index(do) if do in FIRST else later + (2 if do in LAST else 0)
 
 
 def due_in_cell(snapshot: Row, cell: Row) -> Due | None:
     """What is due next in a cell; None where it works, can work, or is taught."""
-    if cell["teaching"] or (cell["state"] == CellState.EXECUTE and not _recovers(cell)):
+    if cell["teaching"]:
         return None
-    if cell["state"] == CellState.EXECUTE:
-        return Due(why=cell["step"])
+    if cell["state"] == CellState.EXECUTE:  # after a retry or a recovery its queue still waits for somebody
+        return Due(why=cell["step"], at_work=True) if cell["paused"] else None
     if (act := _under_way(snapshot, cell)) is not None:
         return Due(why=act["sentence"])
     if not cell["advice"] or cell["state"] == CellState.CLEARING:
@@ -94,11 +97,6 @@ def told(advice: Row) -> Row:
     cell, _, place = advice["scope"].partition(" ")
     verb = TOLD[Hand(advice["do"])]
     return {**advice, "do": verb.value, "hand": False, "scope": cell, "arguments": {"place": place}}
-
-
-def _recovers(cell: Row) -> bool:
-    """True for a cell that recovers, and does not go on by itself then."""
-    return bool(cell["paused"]) and (cell["task"] is None or cell["task"]["state"] != TaskState.RUNNING)
 
 
 def _under_way(snapshot: Row, cell: Row) -> Row | None:
