@@ -40,6 +40,7 @@ WORDS_THAT_CANNOT_BE = {
 VERBS_THAT_CANNOT_BE = {
     Verb.ANSWER: "these plants have nobody to be asked",
     Verb.LOAD: "the cells of these plants have no places",
+    Verb.DO: "no fault says it: people do it where it is advised",
 }
 FAULTS_THAT_CANNOT_BE = {
     **dict.fromkeys(OF_DEVICES, "these plants have no device of a declared kind"),

@@ -73,8 +73,9 @@ def lead_out(address: str) -> bool:
         troubled = [cell["advice"][0] for cell in cells if cell["advice"]]
         for advice in troubled:
             if not advice["hand"] and not advice["refusal"]:  # refused meanwhile: the next look says what now
-                where, by_hand = f"/api/cells/{advice['scope']}/{advice['do']}", advice["by_hand"]
-                plant.post(where, json={"by_hand": True} if by_hand else None)
+                where = f"/api/cells/{advice['scope']}/{advice['do']}"
+                told = advice["arguments"] | ({"by_hand": True} if advice["by_hand"] else {})
+                plant.post(where, json=told or None)
     return not troubled and all(cell["state"] in ("idle", "execute") for cell in cells)
 
 

@@ -131,7 +131,7 @@ def test_axe_finds_nothing_on_many_cells(crowd: str, eye: Callable[[str], Eye]) 
     eyes = eye(crowd)
     page = eyes.page
     page.wait_for_selector(".crowd > :first-child[data-cell=c7]", state="attached")
-    page.wait_for_selector(".for-all [data-act=clear]")
+    page.wait_for_selector(".for-all [data-act=ready]")
     eyes.look("many cells, trouble first")
     assert not page.is_visible("[data-cell=c7] .tree-box")
     page.click(".counts [data-s=aborted] a")

@@ -155,11 +155,19 @@ def get_ready(page: Any) -> None:
     wait_for_stop(page, "ready")
 
 
+def more(page: Any, cell: str, act: str) -> None:
+    """Press a single act of a cell's card, which is the next one."""
+    page.eval_on_selector_all("details.more", "all => all.forEach((each) => (each.open = true))")
+    page.click(f'[data-rows="ways.{cell}"] [data-s=next] button[data-act={act}]:enabled')
+
+
 def by_panel(page: Any) -> None:
     """Clear, reset and resume the whole plant."""
     operate(page)
     for verb, after in (("clear", "stopped"), ("reset", "paused"), ("resume", "idle")):
         page.click(f".verb[data-verb={verb}] button")
+        if verb == "resume":
+            page.click("dialog:has-text('Whole plant: robots may move') .primary")
         wait_for_answer(page, "Done", "good")
         page.wait_for_function(EVERY_CELL, arg=after)
     wait_for_stop(page, "ready")
@@ -222,10 +230,14 @@ def test_the_advice_on_the_card_leads_out_and_the_tab_shows_trouble(open_page: O
     wait_for_stop(page, "stopped")
     page.wait_for_function("document.title.startsWith('⚠ sis_a')")
     assert page.get_attribute("link[rel~=icon]", "href").endswith("/tree_trouble.svg")
-    for cell in ("sis_a", "sis_b", "sis_c"):
-        for act in ("clear", "reset", "resume"):
-            page.click(f'[data-rows="ways.{cell}"] [data-s=next] button[data-act={act}]:enabled')
-        page.wait_for_selector(f'[data-live="{cell}.state"][data-s=idle]')
+    for act in ("clear", "reset", "resume"):
+        more(page, "sis_a", act)
+    page.wait_for_selector('[data-live="sis_a.state"][data-s=idle]')
+    page.click('[data-rows="ready.sis_b"] button')
+    page.wait_for_selector('[data-live="sis_b.state"][data-s=idle]')
+    wait_for_answer(page, "sis_b: ready again.", "good")
+    page.click("[data-rows=for_all] button")
+    wait_for_answer(page, "Whole plant: ready again.", "good")
     page.wait_for_function("document.title === 'arboleda'")
     assert page.get_attribute("link[rel~=icon]", "href").endswith("/tree.svg")
 
@@ -245,7 +257,7 @@ def test_a_button_stays_while_its_row_changes_and_what_moves_a_robot_is_asked_on
     operate(page, "sis_b")
     page.click(".verb[data-verb=hold] button")
     page.click("#menu-close")
-    page.click('[data-rows="ways.sis_b"] [data-s=next] button[data-act=resume]')
+    page.click('[data-rows="ready.sis_b"] button')
     page.wait_for_selector("dialog[open]")
     assert "this sets ra2, rm_sis_b in motion" in page.inner_text("#question")
     page.click("dialog .primary")

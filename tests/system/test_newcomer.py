@@ -193,7 +193,7 @@ def send_a_task(me: Person, address: str) -> None:
     me.press(".to-teach:visible")
     me.press("#teach-end")
     me.part("cells")
-    me.press("button:text-is('Resume cell')")
+    me.press("button:text-is('Make ready again')")
     me.press(".offer:visible")
     me.page.wait_for_selector("[data-choice=recipe][data-value=to_tray]", timeout=PATIENCE_MS)
     me.press("[data-choice=recipe][data-value=to_tray]")

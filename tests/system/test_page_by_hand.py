@@ -38,6 +38,7 @@ def test_the_keyboard_stays_at_the_card_of_an_advice_that_was_pressed(
     address, client = plant
     page = opened(browser, address)
     client.operate(Verb.STOP, "sis_b")
+    page.eval_on_selector("article[data-cell=sis_b] details.more", "more => (more.open = true)")
     clear = "article[data-cell=sis_b] [data-act=clear]:enabled"
     page.focus(clear)
     page.keyboard.press("Enter")

@@ -18,7 +18,7 @@ from arboleda.views.verb_words import ABOUT
 
 OF_ONE_CELL = [Verb.CANCEL, Verb.RETRY, Verb.ABANDON, Verb.LOAD, Verb.TEACH]
 OPTIONS = [*BY_OPTION.values()]
-NEED_A_SCOPE = [*OF_ONE_CELL, Verb.RELEASE, Verb.HOME, Verb.OVERRIDE, Verb.ANSWER]
+NEED_A_SCOPE = [*OF_ONE_CELL, Verb.RELEASE, Verb.HOME, Verb.DO, Verb.OVERRIDE, Verb.ANSWER]
 PLANT_WIDE = [verb for verb in Verb if verb not in (*NEED_A_SCOPE, *OPTIONS)]
 
 
@@ -84,7 +84,7 @@ def test_what_acts_on_one_thing_does_not_guess_which(acts: Notes, verb: Verb) ->
     assert acts == []
 
 
-ASKS_MORE = (Verb.OVERRIDE, Verb.ANSWER, Verb.LOAD, Verb.TEACH, *OPTIONS)
+ASKS_MORE = (Verb.DO, Verb.OVERRIDE, Verb.ANSWER, Verb.LOAD, Verb.TEACH, *OPTIONS)
 
 
 @pytest.mark.parametrize("verb", [verb for verb in Verb if verb not in ASKS_MORE])

@@ -391,16 +391,72 @@ def test_cells_in_trouble_come_first_and_the_counts_lead_to_them(told: Callable[
     assert face["row/counts/idle"]["texts"] == ["idle: 2"]
 
 
-def test_what_leads_out_of_a_stop_is_offered_for_the_whole_plant(told: Callable[..., Any]) -> None:
+def ready(face: dict[str, Any], of: str = "") -> dict[str, Any]:
+    (row,) = face[f"rows/ready.{of}" if of else "rows/for_all"]
+    found: dict[str, Any] = face[f"row/ready.{of}/{row}" if of else f"row/for_all/{row}"]
+    return found
+
+
+def test_one_button_leads_out_of_a_stop_for_a_cell_and_for_the_whole_plant(told: Callable[..., Any]) -> None:
     rig = told()
-    assert rig.face()["rows/for_all"] == []
-    for verb, following in ((Verb.STOP, "clear"), (Verb.CLEAR, "reset"), (Verb.RESET, "resume")):
-        rig.operate(verb)
+    assert rig.face()["rows/for_all"] == rig.face()["rows/ready.sis_a"] == []
+    rig.operate(Verb.STOP)
+    rig.wait(1.0)
+    face = rig.face()
+    for of, row in (("", ready(face)), ("sis_a", ready(face, "sis_a"))):
+        (button,) = row["acts"]
+        assert (button["act"], button["of"], button["refused"]) == ("ready", of, False)
+        assert (row["due"]["act"], row["due"]["of"], row["due"]["asks"]) == ("clear", "sis_a", [])
+        assert row["texts"] == ["First: Clear sis_a. Moves nothing."]
+    assert ready(rig.face("es"), "sis_a")["acts"][0]["label"] == "Dejar lista de nuevo"
+    assert face["list/stops"] == [rig.plant.acts[-1].number]
+
+
+def test_before_robots_go_on_it_asks_which_will_move(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.operate(Verb.STOP, "sis_a")
+    rig.submit("sis_a 0B 7")
+    for verb in (Verb.CLEAR, Verb.RESET):
         rig.wait(1.0)
-        face = rig.face()
-        assert face["rows/for_all"] == [following]
-        (offer,) = face[f"row/for_all/{following}"]["acts"]
-        assert (offer["act"], offer["of"]) == (following, "")
+        rig.operate(verb, "sis_a")
+    rig.wait(1.0)
+    due = ready(rig.face(), "sis_a")["due"]
+    assert (due["act"], due["asks"]) == (
+        "resume",
+        ["Resume sis_a: this sets ra1, rm_sis_a in motion. Is everybody clear?"],
+    )
+
+
+def test_what_only_a_hand_can_do_disables_the_button_and_is_named(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.power_off("ra_1")
+    rig.wait(2.0)
+    row = ready(rig.face(), "sis_a")
+    assert (row["texts"], row["acts"][0]["refused"]) == (["By hand first: Bring ra1 back."], True)
+
+
+def test_the_whole_plant_says_of_the_cell_in_trouble_what_comes_first(told: Callable[..., Any]) -> None:
+    rig = told()
+    for cell in ("sis_a", "sis_b"):
+        rig.submit(f"{cell} 0B 7")
+        rig.wait_for(cell, "drive path 0B")
+    rig.submit("sis_c 0B 7")
+    rig.operate(Verb.HOLD, "sis_b")
+    assert rig.wait(10.0, until=lambda: rig.plant.cells["sis_b"].state.value == "held")
+    refused = json.loads(rig.face()["text/refused.plant"][0])
+    assert refused["reset"].startswith("sis_b is held")
+
+
+def test_whatever_may_start_robots_asks(told: Callable[..., Any]) -> None:
+    for language in ("en", "es"):
+        for verb in (each for each in Verb if each.row.moves and each is not Verb.DO):
+            assert words(language).asks(verb.value), verb
+    rig = told()
+    task = rig.submit("sis_a 0B 7").task
+    rig.wait_for("sis_a", "drive path 0B")
+    waits = rig.submit("sis_a 0B 3").task
+    cancel, drop = (rig.face()[f"row/tasks/{id}"]["acts"][0]["asks"] for id in (task, waits))
+    assert (len(cancel), drop) == (1, [])
 
 
 def test_below_the_stop_button_stands_no_list_of_a_hundred_robots() -> None:

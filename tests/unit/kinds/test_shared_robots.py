@@ -230,7 +230,7 @@ def test_the_advice_for_a_cell_without_zones_names_the_machine_of_the_other_one_
     here.wait(3.0)
     here.power_on("robot")
     here.wait(3.0)
-    ways = ["get right_lamp out of the way by its own controls", "home robot"]
+    ways = ["do right_lamp light true", "home robot"]
     assert advised(here, "left") == advised(here, "right") == ways
 
 

@@ -100,6 +100,7 @@ def test_an_idle_cell_that_cannot_work_is_told_with_what_leads_out() -> None:
             "hand": True,
             "scope": "ra1",
             "by_hand": False,
+            "arguments": {},
             "instead": False,
             "said": "bring ra1 back",
             "why": "ra1 is offline",

@@ -8,12 +8,16 @@ from dataclasses import replace
 from arboleda.dispatch.obstacles import MAY_LET_GO
 from arboleda.model.advice import Advice, Hand
 from arboleda.model.cell_states import CellState
+from arboleda.model.facts import Facts, Value, shown
 from arboleda.model.messages import OperatorRequest, Reason, Verb
+from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.verbs import WORK, Arguments
 from arboleda.trees import part_places
 
 from . import reasons
 from .cell import CellRun
+from .verbs.device_verbs import works
 
 WILL_BE_HOMED = Phrase("cell.will_be_homed", "{arm} will have been homed")
 IN_THE_WAY = Phrase("advice.in_the_way", "{device} does not say {facts}")
@@ -51,7 +55,7 @@ class Advisor:
     def _refused(self, advice: Advice) -> Sentence | None:
         if isinstance(advice.do, Hand):
             return None
-        return self._refusal(_request(advice.do, advice.scope, by_hand=advice.by_hand))
+        return self._refusal(_request(advice.do, advice.scope, advice.arguments, by_hand=advice.by_hand))
 
     def _idle(self, run: CellRun, visited: frozenset[str]) -> Iterator[Advice]:
         if run.context.commands.open():
@@ -197,10 +201,11 @@ class Advisor:
             if other.state is CellState.EXECUTE and holder in other.cell.shared:
                 continue  # nobody moves it while a task of another cell uses it
             locks = other.context.zones.interlocks
-            if (facts := locks.in_the_way(holder, its)) is not None:
+            stops = other is not run and other.state in STOPPING and other.cell.name not in visited
+            if not stops and (facts := locks.unreported(holder, its)) is not None:
                 if run.context.zones.awaited(holder, locks.led_into(holder, its)):
                     continue  # in that zone it would meet another robot
-                yield Advice(do=Hand.FREE, scope=holder, why=IN_THE_WAY(device=holder, facts=facts))
+                yield from _out_of_the_way(other, holder, facts)
                 continue
             why = HOLDS_ZONES(arm=holder, zones=tuple(its))
             if other is run and _can_leave(run, holder):
@@ -233,8 +238,8 @@ class Advisor:
             instead = False
 
 
-def _request(verb: Verb, scope: str, *, by_hand: bool = False) -> OperatorRequest:
-    return OperatorRequest(at=0.0, verb=verb, scope=scope, by_hand=by_hand)
+def _request(verb: Verb, scope: str, arguments: Arguments = (), *, by_hand: bool = False) -> OperatorRequest:
+    return OperatorRequest(at=0.0, verb=verb, scope=scope, by_hand=by_hand, arguments=arguments)
 
 
 def _letting_go(run: CellRun, robot: str) -> Iterator[Advice]:
@@ -276,6 +281,37 @@ def _is_cleared_by_homing(run: CellRun, robot: str) -> bool:
     """True where homing leads a robot out of its fault, and has not failed yet."""
     failed = (Verb.HOME, robot) in run.in_vain
     return not failed and run.context.robots.belief(robot).is_cleared_by_homing
+
+
+def _out_of_the_way(run: CellRun, device: str, wanted: Facts) -> Iterator[Advice]:
+    """Advice by which a device comes to report `wanted`, and so leaves a zone: its own verbs, else by hand.
+
+    A part that it grips is released.
+    """
+    why = IN_THE_WAY(device=device, facts=tuple(f"{name} {shown(value)}" for name, value in wanted))
+    robot, verbs = run.context.robots.belief(device).robot, []
+    for fact in wanted:
+        if fact == (robot.held_fact, False):
+            yield from _releasing(run, device, why)
+        elif (words := _words_for(run, robot, fact)) is not None:
+            verbs.append(words)
+        else:
+            yield Advice(do=Hand.FREE, scope=device, why=why)
+            return
+    for words in verbs:
+        yield Advice(do=Verb.DO, scope=device, arguments=((WORK.name, words),), why=why, moves=(device,))
+
+
+def _words_for(run: CellRun, robot: Robot, fact: tuple[str, Value]) -> str | None:
+    """The words of a verb that sets a fact; None where the device has none, or cannot do it as it stands."""
+    if run.state is CellState.EXECUTE or (Verb.DO, robot.name) in run.in_vain:
+        return None
+    for words, make in works(robot):
+        if fact in make(id="").sets:
+            failure = run.context.commands.objection(make)
+            if failure is None or failure.reason is not Reason.PRECONDITION:
+                return words
+    return None
 
 
 def _can_leave(run: CellRun, robot: str) -> bool:

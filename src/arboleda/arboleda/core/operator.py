@@ -21,6 +21,7 @@ from .intake import Intake
 from .verbs.answering import Answering
 from .verbs.cancelling import Cancelling
 from .verbs.cell_by_cell import CellByCell, Doing, Plan
+from .verbs.device_verbs import DeviceVerbs
 from .verbs.held_cells import (
     abandon,
     hold,
@@ -113,6 +114,7 @@ class Operator:
             Verb.ABANDON: CellByCell(doing, check=not_abandonable, do=abandon),
             Verb.RELEASE: Releasing(scopes, dispatcher, zones, doing, clock).plan,
             Verb.HOME: self.homing.plan,
+            Verb.DO: DeviceVerbs(scopes, dispatcher, doing).plan,
             Verb.OVERRIDE: Overriding(scopes, dispatcher, zones).plan,
             Verb.UNLOAD: counts.plan_unloading,
             Verb.LOAD: counts.plan_loading,

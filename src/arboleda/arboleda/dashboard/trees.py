@@ -7,6 +7,7 @@ from typing import Any
 from arboleda.views.view import devices_once
 
 from . import menu
+from . import ready
 from .page_api import Layout
 from .page_part import Place, Put, put_nothing
 from .tags import link, live, rows, tag, way
@@ -66,7 +67,7 @@ def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words, p
     for device in devices:
         if device["asked"]:
             _question(device["name"])
-    rows(f"ways.{cell}", ["", ""], classes="ways")
+    ready.build(cell, words)
     if layout["places"] or layout["stations"]:
         rows(f"places.{cell}", ["", ""], classes="places")
     if any(device["position"] is None for device in devices):

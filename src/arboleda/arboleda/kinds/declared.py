@@ -7,10 +7,11 @@ refuses to break. A kind that is written in Python may compute what a verb sets 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from functools import cached_property
+from functools import cached_property, partial
+from itertools import product
 from typing import ClassVar
 from unicodedata import normalize
 
@@ -131,6 +132,13 @@ class DeviceVerb:
             at_most_s=self.at_most_s / min(rate, 1.0),
             rate=self.rate * rate,
         )
+
+    @property
+    def samples(self) -> Iterator[Facts]:
+        """Values of its parameters, in each way that samples of these can be chosen."""
+        names = [name for name, _ in self.parameters]
+        for values in product(*(type.samples for _, type in self.parameters)):
+            yield tuple(zip(names, values, strict=True))
 
     @property
     def sets_facts(self) -> bool:
@@ -336,8 +344,14 @@ class Device(Robot):
         return tuple(self.kind.verbs)
 
     @cached_property
-    def query_names(self) -> tuple[str, ...]:
-        return tuple(verb.name for verb in self.kind.verbs.values() if verb.effect is Effect.QUERY)
+    def calls(self) -> Mapping[str, Callable[..., Command]]:
+        return {
+            " ".join((verb.name, *map(shown, dict(values).values()))): partial(
+                self.verb_command, verb.name, values
+            )
+            for verb in self.kind.verbs.values()
+            for values in verb.samples
+        }
 
     @cached_property
     def fact_names(self) -> tuple[str, ...]:

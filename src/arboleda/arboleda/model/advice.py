@@ -8,6 +8,7 @@ from enum import Enum
 
 from arboleda.model.messages import Verb
 from arboleda.model.sentence import NOTHING, Phrase, Sentence
+from arboleda.model.verbs import Arguments, as_text
 
 
 class Hand(str, Enum):
@@ -17,7 +18,7 @@ class Hand(str, Enum):
     REPAIR = "repair"  # a robot whose board reports a fault
     REFERENCE = "reference"  # a robot that only its own controls can home
     CHECK = "check"  # a zone, whether anybody is in it
-    FREE = "free"  # a device that is in the way of a zone
+    FREE = "free"  # a device that is in the way of a zone, and does not get out of it by a verb
     TAKE_OUT = (
         "take_out"  # the parts at a place; the scope is the cell and the place, as of the verb `unload`
     )
@@ -36,6 +37,7 @@ class Advice:
     scope: str
     why: Sentence
     by_hand: bool = False
+    arguments: Arguments = ()
     instead: bool = False
     moves: tuple[str, ...] = ()
     drops: tuple[str, ...] = ()
@@ -67,7 +69,7 @@ AND = Phrase("do.and", "{first} and {second}")
 
 def in_words(advice: Advice) -> Sentence:
     """The act, as a person types or says it."""
-    return _phrase(advice, DO, BY_HAND)(scope=advice.scope)
+    return _phrase(advice, DO, BY_HAND)(scope=_told(advice))
 
 
 def sentence(advices: Iterable[Advice]) -> Sentence:
@@ -75,9 +77,15 @@ def sentence(advices: Iterable[Advice]) -> Sentence:
     whole = NOTHING
     for each in advices:
         joined = OR if each.instead else THEN
-        asked = _phrase(each, ADVISE, ADVISE_BY_HAND)(scope=each.scope)
+        asked = _phrase(each, ADVISE, ADVISE_BY_HAND)(scope=_told(each))
         whole = joined(first=whole, second=asked) if whole else asked
     return whole
+
+
+def _told(advice: Advice) -> str:
+    """The scope, and behind it the arguments of a verb."""
+    scope = advice.scope
+    return as_text(advice.do, scope, advice.arguments) if isinstance(advice.do, Verb) else scope
 
 
 def _phrase(advice: Advice, acts: Mapping[Verb | Hand, Phrase], by_hand: Mapping[Verb, Phrase]) -> Phrase:

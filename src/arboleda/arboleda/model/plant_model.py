@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
@@ -151,9 +151,11 @@ class Robot:
         return ()
 
     @property
-    def query_names(self) -> tuple[str, ...]:
-        """Those of its verbs that ask it for an answer."""
-        return ()
+    def calls(self) -> Mapping[str, Callable[..., Command]]:
+        """Makers of its verbs' commands, called with `id=`, by words: a verb and a value for each parameter,
+        of a number its first value and its limits.
+        """
+        return {}
 
     @property
     def fact_names(self) -> tuple[str, ...]:

@@ -68,6 +68,7 @@ STATION = Argument(name="station", type=int)
 PLACE = Argument(name="place", type=str, pattern="[A-Za-z][A-Za-z0-9_]*")
 PARTS = Argument(name="parts", type=int)
 TEACHER = Argument(name="teacher", type=str, needed=True)
+WORK = Argument(name="work", type=str, needed=True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,6 +113,7 @@ class Verb(str, Enum):
     ABANDON = "abandon", VerbRow(scopes=_ONE_CELL, moves=True)
     RELEASE = "release", VerbRow(scopes=_DEVICES, devices=Devices.HOLDERS, by_hand=True, drops=True)
     HOME = "home", VerbRow(scopes=_DEVICES, devices=Devices.MOVERS, by_hand=True, moves=True)
+    DO = "do", VerbRow(scopes=(Scope.ROBOT,), arguments=(WORK,), moves=True)
     OVERRIDE = "override", VerbRow(scopes=(Scope.ZONE,))
     UNLOAD = "unload", VerbRow(scopes=_CELLS, arguments=(PLACE, STATION))
     LOAD = "load", VerbRow(scopes=_ONE_CELL, arguments=(replace(PLACE, needed=True), PARTS))

@@ -95,6 +95,10 @@ class CellZones:
         """Take every zone that a robot may get into, for a way from an unknown place; all must be free."""
         self._claim(robot, self._cell.workspaces[robot].zones)
 
+    def enter(self, command: Command) -> None:
+        """Have a machine hold the zones that a command may lead it into; all must be free."""
+        self._claim(command.robot, self.needs.of(command))
+
     def claim_free(self, robot: str) -> None:
         """Take the free zones of those that a robot may get into."""
         zones = self._cell.workspaces[robot].zones

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.model.facts import shown
+from arboleda.model.facts import Facts, shown
 from arboleda.model.messages import MotionState
 from arboleda.model.plant_model import Cell, Evidence
 
@@ -43,6 +43,11 @@ class Interlocks:
         return held - self.occupied_by(device) - frozenset(self.reserved.get(device, ()))
 
     def in_the_way(self, device: str, zones: Iterable[str]) -> tuple[str, ...] | None:
+        """The facts in words that `unreported` names."""
+        facts = self.unreported(device, zones)
+        return None if facts is None else tuple(f"{name} {shown(value)}" for name, value in facts)
+
+    def unreported(self, device: str, zones: Iterable[str]) -> Facts | None:
         """The facts that a device at rest does not report, so that it occupies one of the zones.
 
         None where it is not heard, works, or occupies none of them.
@@ -52,7 +57,7 @@ class Interlocks:
         if not belief.online or belief.moves or self._dispatcher.ledger.of_robot(device) or not wanted:
             return None
         unsaid = [
-            f"{name} {shown(value)}"
+            (name, value)
             for each in self._cell.interlocks_of(device)
             if each.zone in wanted
             for name, value in each.free_while

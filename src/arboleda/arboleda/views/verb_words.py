@@ -39,6 +39,7 @@ class VerbWords:
     by_hand: ByHand | None = None
 
 
+MAY_MOVE = ("{of}: robots may move. Is everybody clear?",)
 ABOUT: dict[Verb, VerbWords] = {
     Verb.STOP: VerbWords(
         label="Stop (software)",
@@ -76,6 +77,7 @@ ABOUT: dict[Verb, VerbWords] = {
     Verb.RESUME: VerbWords(
         label="Resume",
         page="Goes on with the step that was held, or lets a paused queue run. Robots may move.",
+        asks=MAY_MOVE,
         brief="Go on at the step that was held, or with a queue that pauses.",
         does="gives the interrupted step anew (a mobile drives the nodes that are left); without a "
         "task, lets a paused queue go on",
@@ -84,6 +86,7 @@ ABOUT: dict[Verb, VerbWords] = {
     Verb.CANCEL: VerbWords(
         label="Cancel task",
         page="Ends the task as cancelled. A running one is halted, its part is carried back.",
+        asks=MAY_MOVE,
         brief="End a task as cancelled, a running one once its robots have stopped.",
         does="a waiting task leaves the queue; a running one is halted, the cell recovers, and it is "
         "`cancelled` once the robot has said that it stopped",
@@ -92,6 +95,7 @@ ABOUT: dict[Verb, VerbWords] = {
     Verb.RETRY: VerbWords(
         label="Retry step",
         page="Does the failed step again with a new command. Robots move.",
+        asks=MAY_MOVE,
         brief="After a fault, do the failed step again with a new command.",
         does="after a fault, gives the step that failed anew, with a new command; where the recovery "
         "failed, recovers anew",
@@ -101,6 +105,7 @@ ABOUT: dict[Verb, VerbWords] = {
         label="Abandon task",
         page="Ends the task as failed and recovers, the part goes back and the arm home. Without a task it "
         "leaves all as it is.",
+        asks=MAY_MOVE,
         brief="After a fault, end the task as failed and recover: bring the part back, go home.",
         does="ends the task as failed and recovers: the part back to the pick-up, effector off, home; "
         "where the recovery failed, leaves everything as it is",
@@ -140,6 +145,16 @@ ABOUT: dict[Verb, VerbWords] = {
         "being homed, or another robot holds a zone that the arm may cross on its way. By hand it is "
         "refused where the robot reports itself whether it is homed (not with `assume_homed`), or says that "
         "it is not. Below `evidence: ids` a robot is homed by hand only",
+    ),
+    Verb.DO: VerbWords(
+        label="Do",
+        page="Has a device do one of its own verbs, as opening a door. It moves.",
+        arguments={"work": "One of its verbs, and a value for each of its parameters."},
+        brief="Have a device do one of its own verbs, e.g. `mill open`; it moves.",
+        does="has a device of a cell that rests do one of its own verbs, as the plant file declares it",
+        refused="while its cell works or is taught, the device takes no command, a need of the verb is not "
+        "met, or a robot is in the zone into which it leads. What asks something or holds a part is refused "
+        "always",
     ),
     Verb.OVERRIDE: VerbWords(
         label="Override",

@@ -299,6 +299,7 @@ def _advice(advice: Advice) -> dict[str, Any]:
         "hand": isinstance(advice.do, Hand),
         "scope": advice.scope,
         "by_hand": advice.by_hand,
+        "arguments": dict(advice.arguments),
         "instead": advice.instead,
         "said": in_words(advice),
         "why": advice.why,

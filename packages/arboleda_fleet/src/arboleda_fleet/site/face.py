@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from arboleda.dashboard.faces import Face
-from arboleda.dashboard.faces.whole_page import WELL, WORST
+from arboleda.dashboard.faces.order import WELL, WORST
 from arboleda.dashboard.wording import Words
 from arboleda.views.view import standing
 

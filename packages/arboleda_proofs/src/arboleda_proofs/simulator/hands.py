@@ -18,7 +18,7 @@ def do(world: World, advice: Advice) -> None:
     elif advice.by_hand:
         BY_HAND[advice.do](world.manual, advice.scope)
     else:
-        world.request_verb(advice.do, advice.scope)
+        world.request_verb(advice.do, advice.scope, arguments=advice.arguments)
 
 
 def _bring_back(world: World, robot: str) -> None:

@@ -31,6 +31,7 @@ class Advice:
     by_hand: Annotated[
         bool, "For `home`: the robot was put at its reference; for `release`: the part was taken out."
     ]
+    arguments: Annotated[Mapping[str, int | str], "What the verb is told beside its scope."]
     instead: Annotated[bool, "It begins another way out than those before it."]
     said: Annotated[str, "In words, as the command line takes a verb."]
     why: str

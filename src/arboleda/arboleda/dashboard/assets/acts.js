@@ -2,6 +2,7 @@
 
 import { value } from "./live.js";
 import * as question from "./question.js";
+import * as ready from "./ready.js";
 import { answer } from "./shell.js";
 
 const PATIENCE_MS = 3000;
@@ -18,6 +19,7 @@ export const connected = () => Boolean(window.socket?.connected && window.did_ha
 export function start(stops = stopOf) {
   stopOf = stops;
   question.start();
+  ready.start(send);
   document.getElementById("stop").addEventListener("click", () => stop(""));
   stopByHeldKey();
   document.addEventListener("click", (event) => {
@@ -48,7 +50,8 @@ async function press(button) {
   const { act, byHand, arguments: told } = button.dataset;
   const of = button.dataset.of === "$scope" ? scope : button.dataset.of;
   if (act === "stop") return stop(of);
-  for (const asked of JSON.parse(button.dataset.asks ?? "[]")) if (!(await question.confirmed(asked.replaceAll("{of}", of)))) return;
+  if (act === "ready") return ready.begin(of);
+  for (const asked of JSON.parse(button.dataset.asks ?? "[]")) if (!(await question.confirmed(asked.replaceAll("{of}", ready.named(of))))) return;
   send(act, of, told ? JSON.parse(told) : byHand === "true");
 }
 
@@ -63,6 +66,7 @@ export function send(act, of, more = false) {
 // Over HTTP, which no stuck socket holds up; through the socket as well where that has no answer at once.
 export async function stop(of) {
   const button = document.getElementById("stop");
+  ready.end();
   question.dismiss();
   button.dataset.s = "asked";
   answer(words.stopping, false, true);

@@ -10,6 +10,9 @@ export const parts = () => all("[data-part]").map((part) => part.dataset.part);
 const MOVED = { twin: "cells", panel: "cells", log: "events" }; // addresses of before
 export const cells = () => all("[data-choose]").map((card) => card.dataset.choose);
 const filters = {};
+const hearers = [];
+
+export const onAnswer = (listener) => hearers.push(listener);
 
 export function start() {
   busy.start();
@@ -30,6 +33,7 @@ export function answer(sentence, good, stays = false) {
   const line = document.getElementById("answer");
   line.textContent = sentence;
   line.dataset.s = good === null ? "open" : good ? "good" : "bad";
+  for (const listener of hearers) listener(good);
   return false;
 }
 

@@ -13,7 +13,7 @@ from arboleda.views.view import devices_once, standing
 from ..tree_drawing import drawing, label
 from ..tree_memory import FAILURE, HALTED, RUNNING, SUCCESS, EndedTree, TreeMemory, phases
 from ..wording import Words
-from . import Face, answers, links
+from . import Face, answers, links, ways
 from .moment import Moment, clock, seconds
 
 SHOWN_CHANGES = 12
@@ -52,7 +52,7 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
         f"text/{name}.cause": [_cause(words, cell, task, memory), "failed" if failed else ""],
         f"text/{name}.report": _report(words, cell, task),
         f"text/{name}.failure": [words("record.link") if name in moment.failed else "", ""],
-        **_ways(words, cell),
+        **ways.face(words, cell),
         f"text/{name}.task": _task_line(moment, cell, task),
         f"text/{name}.step": [words.say(cell["step"]) if cell["step"] else "", stands],
         f"text/{name}.feedback": [_feedback(words, cell, leaf), ""],
@@ -136,68 +136,6 @@ def failed_in(words: Words, task: Row, rows: list[Row]) -> str:
     step = next((row["name"] for row in rows if row["path"] == where), None)
     why = words.say(task["sentence"])
     return why if step is None else words("cells.failed_in", step=words.say(step), why=why)
-
-
-def _ways(words: Words, cell: Row) -> Face:
-    """The list of what leads the cell out of its trouble: a row for each advice, in the order to do it."""
-    name, found = cell["name"], {}
-    for number, advice in enumerate(cell["advice"]):
-        before = _before(cell["advice"], number)
-        found[f"row/ways.{name}/{number}"] = {
-            "state": "hand" if advice["hand"] else "next" if number == 0 else "later",
-            "texts": [_advice_text(words, advice) if advice["hand"] else "", _note(words, advice, before)],
-            "acts": [] if advice["hand"] else [_offer(words, advice)],
-        }
-    return {f"rows/ways.{name}": [str(number) for number in range(len(cell["advice"]))], **found}
-
-
-def _advice_text(words: Words, advice: Row) -> str:
-    if advice["by_hand"]:
-        return words(f"ways.{advice['do']}_by_hand", robot=advice["scope"])
-    text = words.say(advice["said"])
-    return text[:1].upper() + text[1:]
-
-
-def _before(ways: list[Row], number: int) -> list[Row]:
-    """The advice right before this one: a single one, or all of a group of alternatives."""
-    first = number - 1
-    while first > 0 and ways[first]["instead"]:
-        first -= 1
-    return ways[max(first, 0) : number]
-
-
-def _note(words: Words, advice: Row, before: list[Row]) -> str:
-    """The note on an advice: the advice to follow first, or the reason against it now, or else its effect."""
-    if advice["refusal"] and before and not advice["instead"]:
-        note = words("ways.after", first=words("ways.or").join(_advice_text(words, each) for each in before))
-    elif advice["refusal"]:
-        note = words("ways.not_yet", why=words.say(advice["refusal"]))
-    elif advice["drops"]:
-        note = words("ways.drops", robots=", ".join(advice["drops"]))
-    elif advice["moves"]:
-        note = words("ways.moves", robots=", ".join(advice["moves"]))
-    else:
-        note = words.say(advice["why"]) if advice["hand"] else words("ways.still")
-    return words("ways.instead", note=note) if advice["instead"] else note
-
-
-def _offer(words: Words, advice: Row) -> Row:
-    label, asks = _advice_text(words, advice), []
-    if advice["by_hand"]:
-        asks = words.asks(f"{advice['do']}_by_hand")
-    elif advice["drops"]:
-        asks = [words("ways.asks_drops", said=label, robots=", ".join(advice["drops"]))]
-    elif advice["moves"]:
-        asks = [words("ways.asks_moves", said=label, robots=", ".join(advice["moves"]))]
-    return {
-        "act": advice["do"],
-        "of": advice["scope"],
-        "label": label,
-        "does": words.say(advice["why"]),
-        "asks": asks,
-        "by_hand": advice["by_hand"],
-        "refused": bool(advice["refusal"]),
-    }
 
 
 def _task_line(moment: Moment, cell: Row, task: Row | None) -> list[str]:

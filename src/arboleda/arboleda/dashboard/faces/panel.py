@@ -12,6 +12,7 @@ from arboleda.views.view import standing
 from . import Face
 from .cells import trouble
 from .moment import Moment
+from .order import trouble_first
 
 Row = dict[str, Any]
 
@@ -23,27 +24,15 @@ def face(moment: Moment) -> Face:
         found[f"text/scope.{name}"] = moment.words.cell_pill(standing(cell))
         found[f"text/advice.{name}"] = [trouble(moment, cell), standing(cell)]
         found[f"text/suggested.{name}"] = [" ".join(suggested(cell)), ""]
-    cells = moment.snapshot["cells"]
+    cells = trouble_first(moment.snapshot)
     every = {verb for cell in cells for verb in suggested(cell) if verb in FOR_ALL}
     found["text/suggested.plant"] = [" ".join(sorted(every)), ""]
-    found.update(_for_all(moment, [verb for verb in FOR_ALL if verb in every]))
     for cell in cells:
         found[f"text/refused.{cell['name']}"] = [_refused(moment, cell["refused"], suggested(cell)), ""]
     for robot in moment.snapshot["robots"]:
         found[f"text/refused.{robot['name']}"] = [_refused(moment, robot["refused"]), ""]
     found["text/refused.plant"] = [_refused(moment, refused_everywhere(cells), every), ""]
     found.update(_zones(moment))
-    return found
-
-
-def _for_all(moment: Moment, verbs: list[str]) -> Face:
-    """The verbs that several cells want at once, offered beside the cards for the whole plant."""
-    words = moment.words
-    found: Face = {"rows/for_all": verbs}
-    for verb in verbs:
-        label = words("cells.for_all", verb=words.of("verb", verb))
-        offer = {"act": verb, "of": "", "label": label, "does": words.of("does", verb)}
-        found[f"row/for_all/{verb}"] = {"state": "next", "texts": [], "acts": [offer]}
     return found
 
 
@@ -61,7 +50,7 @@ def suggested(cell: Row) -> tuple[str, ...]:
 
 
 def refused_everywhere(cells: list[Row]) -> dict[str, str]:
-    """The verbs that every cell refuses and that the whole plant refuses therefore, each with its reason."""
+    """The verbs that every cell refuses, each with the reason of the first of these cells."""
     first = cells[0]["refused"] if cells else {}
     return {verb: why for verb, why in first.items() if all(verb in cell["refused"] for cell in cells)}
 

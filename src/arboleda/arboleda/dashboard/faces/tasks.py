@@ -65,9 +65,9 @@ def why(moment: Moment, task: Row) -> str:
 
 def _acts(words: Any, task: Row) -> list[Row]:
     if task["state"] in ORDER:
-        return [
-            {"act": "cancel", "of": task["id"], "label": words("tasks.cancel"), "does": words("does.cancel")}
-        ]
+        asks = words.asks("cancel") if task["state"] == "running" else []
+        offer = {"act": "cancel", "of": task["id"], "label": words("tasks.cancel")}
+        return [{**offer, "does": words("does.cancel"), "asks": asks}]
     if task["state"] in ("failed", "cancelled"):
         does = words("tasks.retry_does", text=task["text"])
         return [{"act": "submit", "of": task["text"], "label": words("tasks.retry"), "does": does}]

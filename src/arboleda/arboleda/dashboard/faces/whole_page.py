@@ -7,12 +7,14 @@ from typing import Any
 
 from arboleda.views.view import standing, waited_for
 
-from . import Face, cells, links, panel, part_places, questions, stop, tasks, timeline
+from . import Face, cells, links, panel, part_places, questions, ready, stop, tasks, timeline
 from .moment import Moment
+from .order import WELL, WORST, trouble_first
 
 PARTS = (
     stop.face,
     cells.face,
+    ready.face,
     part_places.face,
     questions.face,
     tasks.face,
@@ -20,27 +22,12 @@ PARTS = (
     links.face,
     timeline.face,
 )
-WORST = (
-    "aborted",
-    "aborting",
-    "clearing",
-    "stopped",
-    "resetting",
-    "held",
-    "holding",
-    "blocked",
-    "paused",
-    "manual",
-    "execute",
-    "idle",
-)
-WELL = ("execute", "idle", "manual")
 Row = dict[str, Any]
 
 
 def face(moment: Moment) -> Face:
     found: Face = {"text/sum": _sum(moment), "text/title": _title(moment), "text/needs": _needs(moment)}
-    found |= {"order/cells": _trouble_first(moment), **_counts(moment)}
+    found |= {"order/cells": [cell["name"] for cell in trouble_first(moment.snapshot)], **_counts(moment)}
     for part in PARTS:
         found.update(part(moment))
     return found
@@ -55,18 +42,6 @@ def _sum(moment: Moment) -> list[str]:
     waits = [_waits(moment, people)] if people else []
     slow = [moment.words("page.memory_slow")] if links.memory(moment)[0] else []
     return [" · ".join([*waits, *slow, *ending]), min(states, key=WORST.index, default="")]
-
-
-def _trouble_first(moment: Moment) -> list[str]:
-    """The cells in the order of the page: those that need somebody first, the worst at the top; the others as
-    in the plant file."""
-    waited = waited_for(moment.snapshot)
-
-    def rank(cell: Row) -> tuple[int, bool]:
-        stands = standing(cell)
-        return len(WORST) if stands in WELL else WORST.index(stands), cell["name"] not in waited
-
-    return [cell["name"] for cell in sorted(moment.snapshot["cells"], key=rank)]
 
 
 def _counts(moment: Moment) -> Face:

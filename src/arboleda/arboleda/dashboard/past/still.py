@@ -15,7 +15,7 @@ Row = dict[str, Any]
 def without_acts(face: Face) -> Face:
     """The same face without buttons; a button's label stands in its row if nothing else would."""
     found = {key: _without_acts(each) if key.startswith("row/") else each for key, each in face.items()}
-    none: Face = {"rows/for_all": []} if "rows/for_all" in found else {}
+    none: Face = {key: [] for key in found if key == "rows/for_all" or key.startswith("rows/ready.")}
     return found | none | {key: ["", ""] for key in found if key.endswith(".offer")}
 
 

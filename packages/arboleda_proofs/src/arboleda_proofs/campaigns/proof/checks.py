@@ -13,6 +13,7 @@ from itertools import islice
 from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Cell
+from arboleda_proofs.simulator.faults.targets import queries
 
 from .between_steps import gaps, other_facts
 from .changed_recipe import WITHIN_S, noticed_with, with_check
@@ -99,5 +100,5 @@ def _facts(case: Case, cell: Cell, expected: EndState) -> Iterator[tuple[str, st
 def _questions(cell: Cell) -> Iterator[str]:
     """The queries of the devices of a cell, then a question to each person."""
     for role, robot in cell.members:
-        yield from (f"{role}.{verb}()" for verb in robot.query_names)
+        yield from (f"{role}.{verb}()" for verb in queries(robot))
     yield from (f"{role}.ask(...)" for role, robot in cell.members if robot.is_person)

@@ -10,7 +10,7 @@ from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.model.task import Task
-from arboleda.model.verbs import PARTS, STATION, Devices, Scope
+from arboleda.model.verbs import PARTS, STATION, WORK, Devices, Scope
 
 from .. import hands
 from ..chance import Dice
@@ -27,8 +27,12 @@ OF_THE_CELL = {
     "an ended task": (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED),
 }
 SPARE = 50  # tasks beyond those that are remembered
-# nobody is asked here, and who teaches does more than to say so
-SAID = tuple(verb for verb in Verb if Scope.PERSON not in verb.row.scopes and not verb.row.mode)
+# nobody is asked here, who teaches does more than to say so, and `do` is said where it is advised
+SAID = tuple(
+    verb
+    for verb in Verb
+    if Scope.PERSON not in verb.row.scopes and not verb.row.mode and WORK not in verb.arguments
+)
 WEIGHTS = {Verb.STOP: 0.3, Verb.HOLD: 0.6, Verb.CANCEL: 0.8}
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import cast
 
+from arboleda.model.commands import Query
 from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.machine import MachineBody
@@ -34,8 +35,13 @@ def machines(model: PlantModel) -> tuple[str, ...]:
 
 def askable(model: PlantModel) -> tuple[str, ...]:
     """The boards of devices that can be queried."""
-    devices = (robot for robot in _reached(model) if robot.verb_names)
-    return tuple(robot.mqtt for robot in devices if robot.query_names)
+    return tuple(robot.mqtt for robot in _reached(model) if queries(robot))
+
+
+def queries(robot: Robot) -> tuple[str, ...]:
+    """The verbs by which a device can be queried."""
+    asking = (words for words, make in robot.calls.items() if isinstance(make(id=""), Query))
+    return tuple(dict.fromkeys(words.partition(" ")[0] for words in asking))
 
 
 def tellers(model: PlantModel) -> tuple[str, ...]:

@@ -183,7 +183,8 @@ def ways(advised: tuple[Advice, ...], row: Row) -> Iterator[str]:
     if len(advised) != len(row["advice"]):
         yield f"{row['name']} is shown with {len(row['advice'])} steps of advice, there are {len(advised)}"
     for way, shown in zip(advised, row["advice"], strict=False):
-        expected = {**vars(way), "do": way.do.value, "moves": [*way.moves], "drops": [*way.drops]}
+        plain = {"do": way.do.value, "arguments": dict(way.arguments)}
+        expected = {**vars(way), **plain, "moves": [*way.moves], "drops": [*way.drops]}
         if {key: shown[key] for key in expected} != expected:
             yield f"{row['name']} is shown with {shown}, it is {way}"
         if str(shown["said"]) not in whole:

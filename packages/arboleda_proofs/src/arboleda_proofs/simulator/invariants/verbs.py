@@ -46,6 +46,7 @@ CANNOT: dict[Verb, Can] = {
     Verb.CLEAR: lambda cell: cell.state not in (S.ABORTED, S.CLEARING),
     Verb.RELEASE: lambda cell: cell.state in (S.EXECUTE, S.HOLDING, S.ABORTING),
     Verb.HOME: lambda cell: cell.state not in (S.IDLE, S.HELD),
+    Verb.DO: lambda cell: cell.state not in (S.IDLE, S.HELD),
 }
 
 

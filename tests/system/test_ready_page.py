@@ -1,0 +1,57 @@
+"""*Make ready again*, in a real browser: it asks before robots move, and a stop ends it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from arboleda.cli.client import PlantClient
+from arboleda.model.messages import Verb
+
+from ..patience import PATIENCE_MS
+from .page import connected, running, until
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright"), pytest.mark.timeout(300)]
+
+SIZES = [{"width": 1366, "height": 768}, {"width": 390, "height": 844}]
+BUTTON = '[data-rows="ready.sis_a"] button'
+
+
+@pytest.fixture(scope="module")
+def plant(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, PlantClient]]:
+    state = tmp_path_factory.mktemp("ready")
+    with running(state) as address:
+        yield address, PlantClient(state)
+
+
+@pytest.mark.parametrize("size", SIZES, ids=lambda size: str(size["width"]))
+def test_two_presses_lead_from_a_stop_to_work_and_a_stop_ends_what_is_under_way(
+    browser: Any, plant: tuple[str, PlantClient], size: dict[str, int]
+) -> None:
+    address, client = plant
+    page = browser.new_context(viewport=size, locale="en").new_page()
+    page.set_default_timeout(PATIENCE_MS)
+    page.goto(address)
+    connected(page)
+    client.operate(Verb.STOP, "sis_a")
+    task = client.submit("sis_a 0B 7")["id"]
+    page.click(BUTTON)
+    page.wait_for_selector("dialog:has-text('sets ra1, rm_sis_a in motion')")
+    page.click("#stop")
+    page.wait_for_selector("#answer:has-text('The plant took the stop')")
+    page.wait_for_selector('[data-live="sis_a.state"][data-s=aborted]')
+    assert page.locator("dialog").count() == 0
+    page.click(BUTTON)
+    page.wait_for_selector("dialog:has-text('sets ra1, rm_sis_a in motion')")
+    client.operate(Verb.STOP, "sis_a")
+    page.wait_for_selector("#answer:has-text('A stop ended Make ready again')")
+    assert page.locator("dialog").count() == 0
+    page.click(BUTTON)
+    page.click("dialog .primary")
+    page.wait_for_selector("#answer:has-text('sis_a: ready again.')")
+    until(lambda: client.task(task)["state"] == "done")
+    assert client.operate(Verb.STOP, "sis_b")["outcome"] == "sent"
+    page.click('[data-rows="for_all"] button')
+    page.wait_for_selector("#answer:has-text('Whole plant: ready again.')")
