@@ -6,8 +6,7 @@ from typing import Any
 
 from arboleda.views.view import devices_once
 
-from . import menu
-from . import ready
+from . import menu, ready
 from .page_api import Layout
 from .page_part import Place, Put, put_nothing
 from .tags import link, live, rows, tag, way
