@@ -143,7 +143,7 @@ def test_its_command_asks_the_plant(
         "arboleda_ended.command.client", lambda *_: SimpleNamespace(get=lambda path: asked(app))
     )
     assert CliRunner().invoke(cli, ["ended"]).output == f"{said}\n"
-    assert brief in CliRunner().invoke(cli, ["--help"]).output
+    assert brief in CliRunner().invoke(cli, ["help", "history"]).output
 
 
 def test_where_its_part_breaks_the_plant_goes_on(app: App, monkeypatch: pytest.MonkeyPatch) -> None:

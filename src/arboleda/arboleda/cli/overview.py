@@ -129,13 +129,13 @@ class Overview(WholeSentences):
             formatter.write_text(line)
 
     def topics(self) -> Mapping[str, str]:
-        """The heading of each topic that has commands."""
-        sections = self.sections(None)
-        return {topic: title for topic, title in TOPICS.items() if title in sections}
+        """The heading of each topic that has commands; a heading of a package's own is its own topic."""
+        names = {title: topic for topic, title in TOPICS.items()}
+        return {names.get(title, title.lower()): title for title in self.sections(None)}
 
     def topic_help(self, ctx: Any, topic: str) -> str:
         """The commands of a topic, each with its sentence."""
-        formatter, title = ctx.make_formatter(), TOPICS[topic]
+        formatter, title = ctx.make_formatter(), self.topics()[topic]
         self.write_section(ctx, formatter, title, self.sections(ctx)[title])
         written: str = formatter.getvalue()
         return written.rstrip("\n")
