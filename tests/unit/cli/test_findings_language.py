@@ -51,6 +51,19 @@ def test_each_sentence_has_the_values_of_its_english() -> None:
             "vuelve a contar quién está en una zona",
         ),
         (
+            "a: pick-up is 46 mm beside a part on ma at node 7, where path 0B ends",
+            "a: la recogida está a 46 mm de una pieza sobre ma en el nodo 7, donde termina el camino 0B",
+        ),
+        (
+            "b: pick-up A is 41 mm above the top of a part on mb at node 7, where path 0B ends",
+            "b: la recogida A está 41 mm por encima de la parte superior de una pieza sobre mb en el nodo 7, "
+            "donde termina el camino 0B",
+        ),
+        (
+            "b: at station 0, the part in the tool is 160 mm below the floor",
+            "b: en estación 0, la pieza en la herramienta está 160 mm por debajo del suelo",
+        ),
+        (
             "in cell lab: home lies in zone centre",
             "en la celda lab: home está en la zona centre",
         ),

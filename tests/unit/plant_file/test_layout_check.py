@@ -76,7 +76,7 @@ WRONG = {  # text in the file, put in its place, what is said
     "below the floor": (
         "0, -132.69, 42.69",
         "-60, -90, 60",
-        "b: at station 0 the part in the tool is 160 mm below the floor",
+        "b: at station 0, the part in the tool is 160 mm below the floor",
     ),
     "bases": (
         "base: {origin_m: [0.75, -1.2], yaw_deg: 32.71}",

@@ -144,16 +144,16 @@ def _pickups(stand: Stand) -> Iterator[str]:
         pickup, (x, y, top) = pickups[path.code], stand.node(node)
         tool = kinematics.at(stand.tool(pickup))
         beside, over = math.dist(tool[:2], (x, y)), tool[2] - top
-        where = f"{cell.name}: {pickup.name} is"
         part = f"a part on {stand.mobile.name} at node {node}, where path {path.code} ends"
         away = math.dist((x, y), (stand.arm.base.x, stand.arm.base.y))
         if away > stand.reach_m + BESIDE_M:
             reach = f"{stand.arm.name} reaches {stand.reach_m:.2f} m"
             yield f"{cell.name}: node {node} is out of reach, {away:.2f} m away; {reach} (path {path.code})"
         elif beside > BESIDE_M:
-            yield f"{where} {_mm(beside)} beside {part}"
+            yield f"{cell.name}: {pickup.name} is {_mm(beside)} beside {part}"
         elif not -ROUNDING_M <= over <= ABOVE_M:
-            yield f"{where} {_mm(abs(over))} {'above' if over > 0 else 'below'} the top of {part}"
+            side = "above" if over > 0 else "below"
+            yield f"{cell.name}: {pickup.name} is {_mm(abs(over))} {side} the top of {part}"
 
 
 def _stations(stand: Stand) -> Iterator[str]:
@@ -177,7 +177,7 @@ def _below(stand: Stand) -> Iterator[str]:
         low = min(z for _, _, z in points)
         if low < -ROUNDING_M:
             what = "the tool" if low == points[0][2] else "the part in the tool"
-            yield f"{stand.cell.name}: at {pose.name} {what} is {_mm(-low)} below the floor"
+            yield f"{stand.cell.name}: at {pose.name}, {what} is {_mm(-low)} below the floor"
 
 
 def _crowded(stands: Sequence[Stand]) -> Iterator[str]:
