@@ -30,6 +30,7 @@ OF_BEFORE = {
     "links": ("links", "log"),
     "draw": ("draw", "make"),
 }
+OUT = "[data-cell=sis_c] :is([data-rows='ready.sis_c'], [data-rows='ways.sis_c']) button:enabled"
 IN_SIGHT = """selector => {
   const at = document.querySelector(selector);
   const { left, right, top, bottom } = at.getBoundingClientRect();
@@ -102,7 +103,7 @@ def test_on_a_phone_the_stop_and_the_cell_in_trouble_come_first(
     page = look(**PHONE)
     page.wait_for_selector("html[data-stands=trouble]")
     assert page.evaluate("document.querySelector('.cells').firstElementChild.dataset.cell") == "sis_c"
-    for name in ("#stop", "[data-choose=sis_c]", "[data-rows='ways.sis_c'] button:enabled"):
+    for name in ("#stop", "[data-choose=sis_c]", OUT):
         wait_for_sight(page, name)
 
 

@@ -6,6 +6,10 @@ const FROM = [0.3, -1, 0.62]; // where one looks from at first
 const ROOM = 0.9; // how much of the picture the plant may fill
 const TURN = Math.PI / 24;
 const NEARER = 0.85;
+const POLL_MS = 8;
+const SLOW_MS = 30; // for one picture: there is no graphics card
+const REST = 3; // times as long nothing is drawn then, so that buttons are answered
+const pause = (ms) => new Promise((go) => setTimeout(go, ms));
 
 export class SolidView {
   name = "solid";
@@ -116,11 +120,32 @@ export class SolidView {
 
   // Draws before the next picture of the screen, once however often it is asked.
   show() {
-    this.asked ??= requestAnimationFrame(() => {
-      this.asked = undefined;
-      this.renderer.render(this.scene, this.camera);
-      this.labels.draw(this.plant.labels(), this.camera, this.box);
-    });
+    this.stale = true;
+    this.asked ??= requestAnimationFrame(() => this.draw());
+  }
+
+  async draw() {
+    const began = performance.now();
+    this.stale = false;
+    this.renderer.render(this.scene, this.camera);
+    this.labels.draw(this.plant.labels(), this.camera, this.box);
+    await this.drawn();
+    const took = performance.now() - began;
+    if (took > SLOW_MS) await pause(REST * took);
+    if (this.asked === 0) return; // closed meanwhile
+    this.asked = undefined;
+    if (this.stale) this.show();
+  }
+
+  // Wait until the picture is there, which the processor draws where there is no graphics card.
+  async drawn() {
+    const gl = this.renderer.getContext();
+    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    if (!fence) return;
+    gl.flush();
+    do await pause(POLL_MS);
+    while (gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED);
+    gl.deleteSync(fence);
   }
 
   close() {
