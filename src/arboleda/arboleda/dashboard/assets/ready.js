@@ -24,13 +24,14 @@ export function begin(of) {
 
 // A stop, or a refusal: what was said of that stays.
 export function end() {
+  const asks = way?.asks;
   clearTimeout(way?.timer);
   way = null;
+  if (asks) question.dismiss();
 }
 
 function over(sentence, good) {
   end();
-  question.dismiss();
   answer(sentence, good);
 }
 
@@ -47,11 +48,11 @@ function goOn() {
   const next = due(way.of);
   const print = JSON.stringify(next);
   if (print === way.print) return;
-  Object.assign(way, { print, turn: way.turn + 1 });
-  question.dismiss(); // it was about what was due before
+  if (way.asks) question.dismiss(); // it was about what was due before
+  Object.assign(way, { print, turn: way.turn + 1, asks: false });
   if (!next) return over(words.ready_done.replace("{of}", named(way.of)), true);
   if (next.kind === "hand") return over(next.says, false);
-  const key = JSON.stringify([next.act, next.of]);
+  const key = JSON.stringify([next.act, next.of, next.by_hand, next.arguments]);
   if (next.kind === "wait" || way.sent.has(key)) return wait(next.says);
   act(next, key);
 }
@@ -66,8 +67,10 @@ async function act({ act, of, by_hand: byHand, arguments: told, asks, says }, ke
   const [mine, turn] = [way, way.turn];
   clearTimeout(way.timer);
   for (const asked of asks) {
+    way.asks = true;
     const yes = await question.confirmed(asked.replaceAll("{of}", named(of)));
     if (way !== mine || way.turn !== turn) return;
+    way.asks = false;
     if (!yes) return over(words.ready_ended, null);
   }
   way.sent.add(key);
