@@ -10,6 +10,7 @@ import httpx
 import pytest
 from packages.arboleda_drivers.tests.real.modbus.bench import ModbusWire
 
+from arboleda.cli.new import write
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.versions import Versions
 
@@ -372,6 +373,33 @@ def test_a_device_is_changed_and_taken_away_and_a_cell_made_and_the_form_says_wh
     made = httpx.get(f"{address}/api/draft", timeout=PATIENCE_S).json()["values"]
     assert list(made["cells"]) == ["cell"] and "kinds" not in made
     me.go()
+
+
+def test_the_devices_and_recipes_of_a_new_plant_go_for_others(browser: Any, tmp_path: Path) -> None:
+    plant = write(tmp_path / "lab")[0]
+    with running(tmp_path / "state", "--plant", str(plant), "--port", str(unused_port())) as address:
+        me = Person(browser, address, tab="draw", **LAPTOP)
+        me.sees("#draw-empty", "The draft has no tree yet")
+        me.part("make")
+        me.panel("cells")
+        me.page.wait_for_selector("#make-end option[value=press]", state="attached", timeout=LONG_MS)
+        assert me.page.locator("#make-end option").all_inner_texts() == [
+            "press"
+        ]  # people keep the others full
+        me.press("[data-remove-python='recipes.py']")
+        me.page.wait_for_selector("[data-remove-python]", state="detached")
+        me.press("[data-remove-device=press]")
+        me.page.wait_for_selector("[data-remove-device=press]", state="detached")
+        me.write("#make-recipe", "rest")
+        me.press("[data-make=empty]")
+        me.page.wait_for_selector("#draw-rows [data-path='0']", timeout=LONG_MS)
+        assert me.page.evaluate("document.querySelector('.draw-bar').offsetHeight") < 90  # one line
+        me.part("make")
+        me.panel("draft")
+        for line in ("device press of cell is gone", "kind press is gone", "rest.xml: new"):
+            me.sees("#make-changes", line)
+        me.sees("#make-problems", "Nothing to object to")
+        me.go()
 
 
 def test_what_a_try_found_broken_is_put_to_work_only_when_it_is_said_twice(

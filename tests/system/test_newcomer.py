@@ -148,7 +148,6 @@ def draw_a_recipe(me: Person) -> None:
 def try_it(me: Person) -> None:
     """It is simulated, and looked at in the twin; the way back leads to where it was tried."""
     me.press("#draw a.primary")
-    me.panel("try")
     me.page.wait_for_function(
         "document.getElementById('make-task').value.startsWith('cell to_tray')", timeout=LONG_MS
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import ExitStack
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 from arboleda.bt_xml import export
@@ -154,4 +154,6 @@ def _robots_at(cell: Cell, target: str) -> list[str]:
 def _written(recipe: Recipe) -> Row:
     if isinstance(recipe, TreeRecipe):
         return {"sort": "drawn", "file": recipe.file.rpartition("/")[2]}
-    return {"sort": "python" if isinstance(recipe, WrittenRecipe) else "shipped", "file": ""}
+    if isinstance(recipe, WrittenRecipe) and not recipe.is_shipped:
+        return {"sort": "python", "file": PurePath(recipe.function.__code__.co_filename).name}
+    return {"sort": "shipped", "file": ""}

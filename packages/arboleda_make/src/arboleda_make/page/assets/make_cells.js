@@ -105,7 +105,7 @@ function draw(cell, recipe) {
 
 function clicked({ target }) {
   const pressed = target.closest("button");
-  const { make: act, drawRecipe, outlineRecipe, copyRecipe, removeRecipe, removePlace, removeCell, removeDevice, newTarget, cell } = pressed?.dataset ?? {};
+  const { make: act, drawRecipe, outlineRecipe, copyRecipe, removeRecipe, removePlace, removeCell, removeDevice, removePython, newTarget, cell } = pressed?.dataset ?? {};
   ACTS[act]?.();
   if (drawRecipe) draw(cell, drawRecipe);
   if (outlineRecipe) outline(pressed, cell, outlineRecipe);
@@ -113,6 +113,7 @@ function clicked({ target }) {
   if (removeRecipe) step("remove_trees", { file: removeRecipe }).then(read);
   if (removePlace) step("remove", { place: JSON.parse(removePlace) }).then(read);
   if (removeDevice) step("../make/remove", { cell, role: removeDevice }).then(read);
+  if (removePython) unused(removePython);
   if (removeCell) step("../make/remove", { cell: removeCell }).then(read);
   if (newTarget) add(pressed, newTarget);
 }
@@ -157,10 +158,25 @@ function list(items) {
   return made;
 }
 
+// Where the plant file uses a file of recipes in Python; null where it does not.
+function usePlace(file) {
+  const uses = draft.state.values.uses ?? [];
+  const at = uses.findIndex((each) => `${each}`.split("/").pop() === file);
+  return at < 0 ? null : uses.length > 1 ? ["uses", at] : ["uses"];
+}
+
+// All recipes of the file go; the file itself stays in its folder.
+async function unused(file) {
+  if (!(await step("remove", { place: usePlace(file) }))) return;
+  say(fill(words.make_python_gone, { file }));
+  await read();
+}
+
 function recipeRow(cell, { name, about, sort, file }) {
   const made = element("li");
   made.append(element("strong", name), ` ${about} `, element("span", words[`make_sort_${sort}`], { class: "make-sort" }), " ");
   const acts = sort === "drawn" ? [[words.make_draw, { drawRecipe: name }], [words.make_remove, { removeRecipe: file }]] : [[words.make_show, { outlineRecipe: name }], [words.make_copy, { copyRecipe: name }]];
+  if (sort === "python" && usePlace(file)) acts.push([words.make_remove, { removePython: file }]);
   for (const [text, data] of acts) made.append(act(text, { cell, ...data }, name), " ");
   return made;
 }
