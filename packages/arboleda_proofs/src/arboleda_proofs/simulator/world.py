@@ -279,13 +279,25 @@ class World:
         for each in carried:
             self.broker.publish(each, sender)
 
-    def at(self, time: float, call: Callable[[Any], None], argument: Any = None) -> None:
-        """Have `call(argument)` made at `time`, or now where that has passed."""
-        heappush(self._agenda, (time, next(self._agenda_no), call, argument))
+    def at(
+        self, time: float, call: Callable[[Any], None], argument: Any = None, *, turn: int | None = None
+    ) -> None:
+        """Have `call(argument)` made at `time`, or now where that has passed.
+
+        Calls of one time are made in their turns, by default in the order in which they were asked for.
+        """
+        heappush(self._agenda, (time, self.turn() if turn is None else turn, call, argument))
+
+    def turn(self) -> int:
+        """The turn after all so far, which is nobody else's."""
+        return next(self._agenda_no)
 
     def advance(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
         """Let at most `seconds` pass; return True as soon as `until` comes true."""
-        end = self.awake_s + seconds
+        return self.advance_to(self.awake_s + seconds, until)
+
+    def advance_to(self, end: float, until: Callable[[], bool]) -> bool:
+        """Let time pass to `end` of `awake_s` at most; return True as soon as `until` comes true."""
         if self._has_work():
             self.settle()
         while not until():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -43,10 +44,6 @@ ENDS = {
 }
 
 
-class AllForked(BaseException):
-    """Raised where all that is to befall a task does so in forks of this process."""
-
-
 class Rejoined(Exception):
     """Raised where a run is again as the calm one: `run` is that."""
 
@@ -57,6 +54,7 @@ class Rejoined(Exception):
 
 class Stage:
     """Stage: a task in its plant; `play` has something begin at its time, and returns what came of it.
+    `go_to` comes close to such a time, from which forks of this process `play` on.
 
     `state` is what was so when the task was done, `stated` what its recipe says of that; `commands` are those
     that its cell has given by then. `new_questions` are those of the last step to persons.
@@ -90,6 +88,8 @@ class Stage:
         self.mended_at = 0.0  # when the fault was ended, s
         self.on_its_way: Callable[[], None] = lambda: None
         self.began, self._lost_from = False, 0.0
+        self._asked_at: float | None = None  # of the time awake
+        self._turn = 0  # of what is to begin
         self._task, self._request = scenario.task, REQUEST
         self._attendant: Attendant | None = None
         self._acts: int | None = None  # of the attendant, when the cell was ready first
@@ -119,11 +119,9 @@ class Stage:
         """Have something begin `at` s, and judge the run to its end; `lasts_s`: the task without that."""
         outcome, attended_at = Outcome(end=End.UNFINISHED, alone=False), 0.0
         try:
-            self.world.advance(ASKED_AT_S)
-            self.world.request_task(self._task, self._request)
-            self.world.settle()
-            self.world.at(self.watched.start + at, lambda _: self._begin(begin))
-            self._work(lasts_s + PATIENCE_S)
+            asked_at = self._ask()
+            self.world.at(self.watched.start + at, lambda _: self._begin(begin), turn=self._turn)
+            self._work(asked_at, lasts_s + PATIENCE_S)
             outcome, attended_at = self._outcome(expected, commands), self.watched.seconds
             self._attendant = Attendant(self.world, seed=0, round_s=STANDS_BY_S)
             self.watched.come_to_rest(self._stands_still)
@@ -144,6 +142,20 @@ class Stage:
             attended_at=attended_at or seconds,
             seconds=seconds,
         )
+
+    def go_to(self, at: float) -> None:
+        """Go on, with nothing that begins, up to the last step before `at` s."""
+        self._ask()
+        self.world.advance_to(math.inf, lambda: self.world.next_deadline >= self.watched.start + at)
+
+    def _ask(self) -> float:
+        """Have the task asked for once everybody is connected, if it was not yet; return when that was."""
+        if self._asked_at is None:
+            self.world.advance(ASKED_AT_S)
+            self.world.request_task(self._task, self._request)
+            self.world.settle()
+            self._asked_at, self._turn = self.world.awake_s, self.world.turn()
+        return self._asked_at
 
     def again(self, lasts_s: float) -> str:
         """Failure of the same task once more, after a calm run of `lasts_s`: empty where it is done."""
@@ -179,12 +191,12 @@ class Stage:
         self.began, self._lost_from = True, self.world.now + LOST_S
         begin()
 
-    def _work(self, at_most_s: float) -> None:
-        """Let the plant work until the task has ended or waits for a person, mend what is at fault then, and
-        give the cell time to get ready.
+    def _work(self, since: float, at_most_s: float) -> None:
+        """Let the plant work for so long, until the task has ended or waits for a person; then mend what is
+        at fault, and give the cell time to get ready.
         """
         for _ in range(TRIES):
-            self.world.advance(at_most_s, self._is_over)
+            self.world.advance_to(since + at_most_s, self._is_over)
             self.world.advance(MENDED_IN_S)
             self.mended_at = self.watched.seconds
             self.watched.end_faults()
@@ -192,6 +204,7 @@ class Stage:
             self.world.advance(GRACE_S, lambda: self._is_ready() or self._stands_still())
             if self.ended or self._is_stuck:
                 return
+            since = self.world.awake_s
 
     def _is_over(self) -> bool:
         lost = self.last_change is None and self.world.now >= self._lost_from
