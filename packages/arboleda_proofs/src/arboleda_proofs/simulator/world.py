@@ -85,7 +85,7 @@ class World:
         self._epochs = count(epoch)
         self._boot_ids = count(1)
         self._agenda: list[tuple[float, int, Callable[[Any], None], Any]] = []
-        self._agenda_no = count()
+        self.turns = count()  # of calls that are to come at one time
         self.skipped_s = 0.0  # of `now`, in which nobody did anything
         self.broker = Broker(self, self.at, self.moment.delivered, self.moment.outdated)
         self.to_bridge, self.to_plant = Hop(), Hop()  # the hop between plant and bridge
@@ -286,18 +286,13 @@ class World:
 
         Calls of one time are made in their turns, by default in the order in which they were asked for.
         """
-        heappush(self._agenda, (time, self.turn() if turn is None else turn, call, argument))
+        heappush(self._agenda, (time, next(self.turns) if turn is None else turn, call, argument))
 
-    def turn(self) -> int:
-        """The turn after all so far, which is nobody else's."""
-        return next(self._agenda_no)
-
-    def advance(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
-        """Let at most `seconds` pass; return True as soon as `until` comes true."""
-        return self.advance_to(self.awake_s + seconds, until)
-
-    def advance_to(self, end: float, until: Callable[[], bool]) -> bool:
-        """Let time pass to `end` of `awake_s` at most; return True as soon as `until` comes true."""
+    def advance(
+        self, seconds: float, until: Callable[[], bool] = lambda: False, *, since: float | None = None
+    ) -> bool:
+        """Let at most `seconds` pass, from now or `since` a time awake; return True once `until` is true."""
+        end = (self.awake_s if since is None else since) + seconds
         if self._has_work():
             self.settle()
         while not until():

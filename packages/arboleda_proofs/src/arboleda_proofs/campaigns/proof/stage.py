@@ -88,7 +88,7 @@ class Stage:
         self.mended_at = 0.0  # when the fault was ended, s
         self.on_its_way: Callable[[], None] = lambda: None
         self.began, self._lost_from = False, 0.0
-        self._asked_at: float | None = None  # of the time awake
+        self._asked_at = 0.0  # by the time awake; 0: not yet
         self._turn = 0  # of what is to begin
         self._task, self._request = scenario.task, REQUEST
         self._attendant: Attendant | None = None
@@ -119,9 +119,9 @@ class Stage:
         """Have something begin `at` s, and judge the run to its end; `lasts_s`: the task without that."""
         outcome, attended_at = Outcome(end=End.UNFINISHED, alone=False), 0.0
         try:
-            asked_at = self._ask()
+            self.go_to(at)
             self.world.at(self.watched.start + at, lambda _: self._begin(begin), turn=self._turn)
-            self._work(asked_at, lasts_s + PATIENCE_S)
+            self._work(lasts_s + PATIENCE_S)
             outcome, attended_at = self._outcome(expected, commands), self.watched.seconds
             self._attendant = Attendant(self.world, seed=0, round_s=STANDS_BY_S)
             self.watched.come_to_rest(self._stands_still)
@@ -131,9 +131,9 @@ class Stage:
             digest = _hashed(self.watched.trace.digest, rejoined.run.digest)
             return replace(rejoined.run, digest=digest, joined_at=self.watched.seconds)
         except BrokenInvariant as broken:
-            outcome = self._broken(outcome, broken)
+            outcome = _broken(outcome, broken)
         except Exception as error:  # noqa: BLE001 - that none escapes is one of the invariants
-            outcome = self._broken(outcome, BrokenInvariant(NO_EXCEPTION, f"{type(error).__name__}: {error}"))
+            outcome = _broken(outcome, BrokenInvariant(NO_EXCEPTION, f"{type(error).__name__}: {error}"))
         seconds = self.watched.seconds
         return Run(
             outcome=outcome,
@@ -144,18 +144,13 @@ class Stage:
         )
 
     def go_to(self, at: float) -> None:
-        """Go on, with nothing that begins, up to the last step before `at` s."""
-        self._ask()
-        self.world.advance_to(math.inf, lambda: self.world.next_deadline >= self.watched.start + at)
-
-    def _ask(self) -> float:
-        """Have the task asked for once everybody is connected, if it was not yet; return when that was."""
-        if self._asked_at is None:
+        """Have the task asked for once all are connected, and go on up to the last step before `at` s."""
+        if not self._asked_at:
             self.world.advance(ASKED_AT_S)
             self.world.request_task(self._task, self._request)
             self.world.settle()
-            self._asked_at, self._turn = self.world.awake_s, self.world.turn()
-        return self._asked_at
+            self._asked_at, self._turn = self.world.awake_s, next(self.world.turns)
+        self.world.advance(math.inf, lambda: self.world.next_deadline >= self.watched.start + at)
 
     def again(self, lasts_s: float) -> str:
         """Failure of the same task once more, after a calm run of `lasts_s`: empty where it is done."""
@@ -191,12 +186,13 @@ class Stage:
         self.began, self._lost_from = True, self.world.now + LOST_S
         begin()
 
-    def _work(self, since: float, at_most_s: float) -> None:
+    def _work(self, at_most_s: float) -> None:
         """Let the plant work for so long, until the task has ended or waits for a person; then mend what is
         at fault, and give the cell time to get ready.
         """
+        since = self._asked_at
         for _ in range(TRIES):
-            self.world.advance_to(since + at_most_s, self._is_over)
+            self.world.advance(at_most_s, self._is_over, since=since)
             self.world.advance(MENDED_IN_S)
             self.mended_at = self.watched.seconds
             self.watched.end_faults()
@@ -257,9 +253,6 @@ class Stage:
             return End.HELD, run.trouble.reason.value if run.trouble else run.state.value
         return (End.LOST if change is None and run.task is None else End.UNFINISHED), ""
 
-    def _broken(self, outcome: Outcome, broken: BrokenInvariant) -> Outcome:
-        return replace(outcome, broken=(broken.invariant, broken.sentence))
-
     def _look(self) -> None:
         self._count_ended()
         entries = self.world.plant.dispatcher.ledger.entries
@@ -316,6 +309,10 @@ class Stage:
             self.state = end_state(self.watched, self.cell)
             self.reported = facts_by_report(self.watched, self.cell)
             self.stated = stated(self.cell, order.recipe, order.values)
+
+
+def _broken(outcome: Outcome, broken: BrokenInvariant) -> Outcome:
+    return replace(outcome, broken=(broken.invariant, broken.sentence))
 
 
 def _hashed(*digests: str) -> str:
