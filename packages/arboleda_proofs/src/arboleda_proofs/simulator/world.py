@@ -85,7 +85,7 @@ class World:
         self._epochs = count(epoch)
         self._boot_ids = count(1)
         self._agenda: list[tuple[float, int, Callable[[Any], None], Any]] = []
-        self._agenda_no = count()
+        self.turns = count()  # of calls that are to come at one time
         self.skipped_s = 0.0  # of `now`, in which nobody did anything
         self.broker = Broker(self, self.at, self.moment.delivered, self.moment.outdated)
         self.to_bridge, self.to_plant = Hop(), Hop()  # the hop between plant and bridge
@@ -279,13 +279,20 @@ class World:
         for each in carried:
             self.broker.publish(each, sender)
 
-    def at(self, time: float, call: Callable[[Any], None], argument: Any = None) -> None:
-        """Have `call(argument)` made at `time`, or now where that has passed."""
-        heappush(self._agenda, (time, next(self._agenda_no), call, argument))
+    def at(
+        self, time: float, call: Callable[[Any], None], argument: Any = None, *, turn: int | None = None
+    ) -> None:
+        """Have `call(argument)` made at `time`, or now where that has passed.
 
-    def advance(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
-        """Let at most `seconds` pass; return True as soon as `until` comes true."""
-        end = self.awake_s + seconds
+        Calls of one time are made in their turns, by default in the order in which they were asked for.
+        """
+        heappush(self._agenda, (time, next(self.turns) if turn is None else turn, call, argument))
+
+    def advance(
+        self, seconds: float, until: Callable[[], bool] = lambda: False, *, since: float | None = None
+    ) -> bool:
+        """Let at most `seconds` pass, from now or `since` a time awake; return True once `until` is true."""
+        end = (self.awake_s if since is None else since) + seconds
         if self._has_work():
             self.settle()
         while not until():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Hashable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -22,6 +22,7 @@ from arboleda_proofs.campaigns.proof.proof import Proof
 from arboleda_proofs.campaigns.proof.representatives import FIRSTS, Representatives
 from arboleda_proofs.campaigns.proof.single_faults import single_faults
 from arboleda_proofs.simulator.faults import Fault
+from arboleda_proofs.simulator.faults.operators import NOWHERE
 
 from .lamp import GOOD, PRESS, Prove, calm_of, summary
 from .lamp import plant as plant
@@ -55,16 +56,21 @@ def at(tried: Representatives) -> list[str]:
     return [instants[number].name for (_, number), parts in tried.parts.items() if any(parts)]
 
 
+def faults_of(tried: Representatives) -> list[list[Fault]]:
+    """The faults that are tried, instant by instant."""
+    return [[each for part in parts for each in part] for parts in tried.parts.values()]
+
+
 def test_more_rounds_are_no_more_to_try(plant: Path) -> None:
     three, six = (representatives(plant, ROUNDS.replace("(3)", f"({each})"), "forgets") for each in (3, 6))
     assert [each.partition(" (")[0] for each in at(three)] == [each.partition(" (")[0] for each in at(six)]
     assert len(three.calm[0].instants) + 18 == len(six.calm[0].instants)
     assert at(three)[2:7] == [
         "just before press: doing press (2.200 s)",
-        "in the middle after press: doing press (3.200 s)",
-        "just before press: doing lift (4.200 s)",
-        "in the middle after press: doing lift (4.700 s)",
         "just before press: doing press (5.200 s)",
+        "in the middle after press: doing press (6.200 s)",
+        "just before press: doing lift (7.200 s)",
+        "in the middle after press: doing lift (7.700 s)",
     ]
 
 
@@ -74,6 +80,35 @@ def test_every_instant_is_tried_where_that_is_wanted_those_that_stand_for_others
     assert all(
         parts[:-1] == some.parts[place][:-1] for place, parts in every.parts.items() if place in some.parts
     )
+
+
+def test_a_verb_that_the_plant_refuses_is_tried_once(plant: Path) -> None:
+    verbs = ("operator_retry", "operator_hold")
+    tried = representatives(plant, ROUNDS, *verbs)
+    faults = Counter((each.kind, each.target) for some in faults_of(tried) for each in some)
+    assert faults["operator_retry", "bench"] == faults["operator_hold", NOWHERE] == 1
+    assert faults["operator_hold", "bench"] > 5
+
+
+def test_what_sticks_while_nothing_else_is_told_is_tried_once(plant: Path) -> None:
+    tried = representatives(plant, ROUNDS, "stuck_bit")
+    words = Counter((each.word, each.seconds) for some in faults_of(tried) for each in some)
+    assert words["arranque", 15.0] == words["arranque", 0.5] == 1 < words["hecho", 15.0]
+
+
+def test_of_words_that_are_alike_one_is_tried_at_an_instant_and_each_at_some(plant: Path) -> None:
+    tried = representatives(plant, ROUNDS, "garbled_telemetry")
+    faults = faults_of(tried)
+    assert all(len({each.word for each in some if each.seconds == 10.0}) <= 1 for some in faults)
+    assert len({each.word for some in faults for each in some}) > 2
+
+
+def test_a_death_behind_a_commit_is_one_before_the_next_one(plant: Path) -> None:
+    tried = representatives(plant, ROUNDS, "crash_in_step")
+    first = max(faults_of(tried), key=len)
+    deaths = {(each.amount, each.word) for each in first if each.seconds == 12.0}
+    assert len(deaths) > 2
+    assert len(deaths) == len({amount - (word == "before") for amount, word in deaths})
 
 
 def test_one_fault_of_each_kind_at_each_kind_of_step_comes_first(plant: Path) -> None:

@@ -47,7 +47,7 @@ LEFT_OUT: dict[type, frozenset[str]] = {
             "deceptions",
             "holds",
             "_agenda",  # said by `to_come`
-            "_agenda_no",  # the order of what is to come at one time, which that keeps
+            "turns",  # the order of what is to come at one time, which that keeps
         }
     ),
     Plant: frozenset({"revisions"}),  # numbers that say to a page that there is something new

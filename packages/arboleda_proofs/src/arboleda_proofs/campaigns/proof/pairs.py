@@ -10,7 +10,7 @@ from itertools import islice, product
 
 from arboleda_proofs.simulator.faults import KINDS, Fault
 
-from .forks import run_groups
+from .forks import Walk
 from .instants import Instant
 from .proof import Proof, Proved, proved_by
 from .proof_tally import Breaks, Case, shortest
@@ -87,7 +87,8 @@ class PairProof:
     def run(self, seed: int, *, tick: Tick | None = None) -> Proved:
         """Run all pairs of the portion of this number."""
         calm = self.proof.calm[self.row(seed)]
-        return proved_by(seed, run_groups(self.proof.model, calm, self.pairs(seed), tick or (lambda: None)))
+        runs = Walk(self.proof.model, calm).runs(self.pairs(seed), tick or (lambda: None))
+        return proved_by(seed, runs)
 
     @cached_property
     def _singles(self) -> list[list[tuple[Instant, Fault]]]:

@@ -14,7 +14,7 @@ from arboleda_proofs.simulator.faults import Fault
 
 from .calm import Calm
 from .course import Course, course_of
-from .forks import run_all
+from .forks import Walk
 from .instants import Instant
 from .outcome import Outcome, Run
 from .representatives import Representatives
@@ -22,7 +22,9 @@ from .scenario import Scenario
 
 T = TypeVar("T")
 Tick = Callable[[], None]
+FEW = 8  # portions of a rank in its first sweep
 MOST = 32  # faults of a portion
+RANKS = (0, 1, 1, 1, 2, 3)  # of the parts of an instant
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,15 +71,15 @@ class Proof:
 
     @cached_property
     def portions(self) -> list[Portion]:
-        """All portions: one fault of each kind at each step first, then one form of each in the work of the
-        device at work, then of its board, then on others, then all other forms; of each the beginnings of
-        steps first.
+        """All portions: one fault of each kind at each step first, then one form of each on each target, then
+        all other forms; of each the beginnings of steps first.
 
-        Portions of one rank are spread over all tasks and instants, so that a short budget meets each.
+        Portions of one rank come in sweeps over all tasks and instants, so that a short budget meets each. Of
+        a sweep each goes on from where the one before it was.
         """
-        ranks: dict[tuple[int, int], list[Portion]] = {}
-        for *rank, portion in self._ranked():
-            ranks.setdefault((rank[0], rank[1]), []).append(portion)
+        ranks: dict[tuple[int, bool], list[Portion]] = {}
+        for part, level, portion in self._ranked():
+            ranks.setdefault((RANKS[part], level > 0), []).append(portion)
         return [each for rank in sorted(ranks) for each in spread(ranks[rank])]
 
     def instant(self, portion: Portion) -> Instant:
@@ -178,17 +180,28 @@ class Proof:
     def run(self, seed: int, *, tick: Tick | None = None) -> Proved:
         """Run all faults of the portion of this number."""
         portion = self.portions[seed]
-        calm = self.calm[portion.scenario]
-        tick, course = tick or (lambda: None), self._course(portion.scenario)
-        runs = run_all(self.model, calm, self.faults(portion), tick, course=course)
-        return proved_by(seed, runs)
+        walk = self._walk(portion.scenario, self.instant(portion).at)
+        return proved_by(seed, walk.runs([(each,) for each in self.faults(portion)], tick or (lambda: None)))
+
+    def _walk(self, row: int, at: float) -> Walk:
+        """The walk along the calm run of this number that still comes to `at` s; there is one at a time."""
+        walk = self._walks.get(row)
+        if walk is None or not walk.reaches(at):
+            self._walks.clear()
+            walk = self._walks[row] = Walk(self.model, self.calm[row], self._course(row))
+        return walk
+
+    @cached_property
+    def _walks(self) -> dict[int, Walk]:
+        return {}
 
 
 def spread(items: Sequence[T]) -> list[T]:
-    """The items in an order in which the first few are far apart: first, middle, quarters, eighths."""
-    bits = max(len(items) - 1, 0).bit_length()
-    turns = (int(f"{turn:0{bits}b}"[::-1], 2) for turn in range(2**bits))
-    return [items[turn] for turn in turns if turn < len(items)]
+    """The items in sweeps, each in their order: a few that are far apart, some between them, all others."""
+    turns: dict[int, None] = {}
+    for few in (FEW, FEW**2, len(items)):
+        turns |= dict.fromkeys(range(0, len(items), -(-len(items) // max(few, 1)) or 1))
+    return [items[turn] for turn in turns]
 
 
 def proved_by(number: int, runs: Sequence[Run]) -> Proved:

@@ -1,7 +1,7 @@
 """Representatives: of all instants that are one for a fault, the instant at which it is tried.
 
-It is the first just before a step begins, else the first in the middle between two events, else the first
-just after one; in the order of the scenarios of the recipe, then of time.
+It is just before a step begins, else in the middle between two events, else just after one; in the first
+scenario of the recipe that has such an instant, and there the last one: the least is left to run behind it.
 """
 
 from __future__ import annotations
@@ -12,15 +12,17 @@ from functools import cached_property
 from itertools import product
 
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda_proofs.simulator.faults import Fault
+from arboleda_proofs.simulator.faults import COUNTED, KINDS, OF_QUEUES, STICKING, UNHEARD, Fault
 from arboleda_proofs.simulator.faults.operators import NOWHERE
+from arboleda_proofs.simulator.plant_process import Side
 
 from .calm import Calm
 from .instants import Instant
-from .sights import TASK
+from .sights import TASK, Refusals
 from .single_faults import possible_kinds, single_faults
 
 Place = tuple[int, int]  # numbers of a scenario and of an instant in it
+BEFORE, NOTHING = Side.BEFORE.value, "nothing"
 FIRSTS = 0  # the number of the part with one fault of each kind at each kind of step
 
 
@@ -72,11 +74,23 @@ class Representatives:
     def _in_turn(self) -> Iterator[Place]:
         """The instants in the order in which they represent; `every`: also those that others represent."""
         known = set[Hashable]()
-        for place in sorted(self._places, key=lambda each: (self._instant(each).level, each)):
-            robots = (None, TASK, *(robot.name for robot in self._cell(place).robots))
-            sights = tuple(self._sight(place, *each) for each in product(robots, self._spans))
-            if _is_new((self._step(place), self._instant(place).commits, sights), known) or self.every:
+        for place in sorted(self._places, key=self._turn):
+            if _is_new(self._all_met(place), known) or self.every:
                 yield place
+
+    def _turn(self, place: Place) -> tuple[int, int, int]:
+        """The turn of an instant among those of its class."""
+        row, number = place
+        return self._instant(place).level, row, -number
+
+    def _all_met(self, place: Place) -> Hashable:
+        """All that faults can meet at an instant."""
+        robots = (None, TASK, *(robot.name for robot in self._cell(place).robots))
+        sights = tuple(self._sight(place, *each) for each in product(robots, self._spans))
+        calm, spans = self.calm[place[0]], {each for kind in STICKING for each in KINDS[kind].seconds}
+        told = tuple(calm.sights.told_otherwise(self._instant(place), each) for each in sorted(spans))
+        refused = frozenset(self._refused(place).items())
+        return self._step(place), self._instant(place).commits, sights, told, refused
 
     @property
     def _places(self) -> Iterator[Place]:
@@ -105,11 +119,28 @@ class Representatives:
         return self._sights[key]
 
     def class_of(self, place: Place, fault: Fault) -> Hashable:
-        """The class of a fault at an instant; of each class one fault is tried, at one instant."""
+        """The class of a fault at an instant; of each class one fault is tried, at one instant, in one of the
+        words that are alike.
+        """
         scenario = self.calm[place[0]].scenario
-        sight = self._sight(place, self._targets.get(fault.target), fault.seconds)
-        form = fault.kind, fault.target, fault.word, fault.seconds, fault.amount
-        return scenario.cell, scenario.recipe, sight, form
+        return scenario.cell, scenario.recipe, self._meets(place, fault), _form(fault)
+
+    def _meets(self, place: Place, fault: Fault) -> Hashable:
+        """What a fault meets at an instant, or why it meets nothing."""
+        sights, instant = self.calm[place[0]].sights, self._instant(place)
+        robot = TASK if fault.kind in OF_QUEUES else self._targets.get(fault.target)
+        refused = self._refused(place).get((fault.kind, fault.target, fault.word))
+        if refused is not None:
+            return refused
+        field = fault.target, fault.word
+        if fault.kind in STICKING and not sights.tells_otherwise(field, instant, fault.seconds):
+            return NOTHING
+        if KINDS[fault.kind].alike(fault.word) == UNHEARD:
+            return sights.doing(instant, robot)
+        return self._sight(place, robot, fault.seconds)
+
+    def _refused(self, place: Place) -> Refusals:
+        return self.calm[place[0]].sights.refused(self._instant(place))
 
     def _step(self, place: Place) -> Hashable:
         calm = self.calm[place[0]]
@@ -125,6 +156,13 @@ class Representatives:
 
     def _cell(self, place: Place) -> Cell:
         return self.model.cell(self.calm[place[0]].scenario.cell)
+
+
+def _form(fault: Fault) -> Hashable:
+    """The form of a fault; a death behind a commit is one before the next one."""
+    if fault.kind in COUNTED:
+        return fault.kind, fault.target, fault.amount - (fault.word == BEFORE), fault.seconds
+    return fault.kind, fault.target, KINDS[fault.kind].alike(fault.word), fault.amount, fault.seconds
 
 
 def _is_new(key: Hashable, known: set[Hashable]) -> bool:

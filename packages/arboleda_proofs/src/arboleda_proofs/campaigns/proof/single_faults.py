@@ -30,9 +30,9 @@ def single_faults(
     for kind in kinds:
         for target in dict.fromkeys(kind.targets(model)):
             forms = [] if target in _elsewhere(model, cell) else _forms(kind, model, target, instant)
-            for index, form in enumerate(forms):
+            for index, form in enumerate(_from(number, forms)):
                 part = _part(kind.name) if target in at_work else OF_OTHERS
-                parts[part if index == number % len(forms) else OTHER_FORMS].append(form)
+                parts[OTHER_FORMS if index else part].append(form)
     return parts
 
 
@@ -49,10 +49,16 @@ def possible_kinds() -> list[Kind]:
 def _forms(kind: Kind, model: PlantModel, target: str, instant: Instant) -> list[Fault]:
     return [
         Fault(kind=kind.name, at=instant.at, seconds=seconds, target=target, amount=amount, word=word)
+        for word in dict.fromkeys(kind.words(model, target))
         for seconds in sorted(set(kind.seconds), reverse=True)
         for amount in _amounts(kind, instant)
-        for word in dict.fromkeys(kind.words(model, target))
     ]
+
+
+def _from(number: int, forms: list[Fault]) -> list[Fault]:
+    """The forms, beginning with the one of this number in turn."""
+    first = number % max(len(forms), 1)
+    return forms[first:] + forms[:first]
 
 
 def _amounts(kind: Kind, instant: Instant) -> list[float]:

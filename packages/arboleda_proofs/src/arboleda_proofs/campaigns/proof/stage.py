@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -43,10 +44,6 @@ ENDS = {
 }
 
 
-class AllForked(BaseException):
-    """Raised where all that is to befall a task does so in forks of this process."""
-
-
 class Rejoined(Exception):
     """Raised where a run is again as the calm one: `run` is that."""
 
@@ -57,6 +54,7 @@ class Rejoined(Exception):
 
 class Stage:
     """Stage: a task in its plant; `play` has something begin at its time, and returns what came of it.
+    `go_to` comes close to such a time, from which forks of this process `play` on.
 
     `state` is what was so when the task was done, `stated` what its recipe says of that; `commands` are those
     that its cell has given by then. `new_questions` are those of the last step to persons.
@@ -90,6 +88,8 @@ class Stage:
         self.mended_at = 0.0  # when the fault was ended, s
         self.on_its_way: Callable[[], None] = lambda: None
         self.began, self._lost_from = False, 0.0
+        self._asked_at = 0.0  # by the time awake; 0: not yet
+        self._turn = 0  # of what is to begin
         self._task, self._request = scenario.task, REQUEST
         self._attendant: Attendant | None = None
         self._acts: int | None = None  # of the attendant, when the cell was ready first
@@ -119,10 +119,8 @@ class Stage:
         """Have something begin `at` s, and judge the run to its end; `lasts_s`: the task without that."""
         outcome, attended_at = Outcome(end=End.UNFINISHED, alone=False), 0.0
         try:
-            self.world.advance(ASKED_AT_S)
-            self.world.request_task(self._task, self._request)
-            self.world.settle()
-            self.world.at(self.watched.start + at, lambda _: self._begin(begin))
+            self.go_to(at)
+            self.world.at(self.watched.start + at, lambda _: self._begin(begin), turn=self._turn)
             self._work(lasts_s + PATIENCE_S)
             outcome, attended_at = self._outcome(expected, commands), self.watched.seconds
             self._attendant = Attendant(self.world, seed=0, round_s=STANDS_BY_S)
@@ -133,9 +131,9 @@ class Stage:
             digest = _hashed(self.watched.trace.digest, rejoined.run.digest)
             return replace(rejoined.run, digest=digest, joined_at=self.watched.seconds)
         except BrokenInvariant as broken:
-            outcome = self._broken(outcome, broken)
+            outcome = _broken(outcome, broken)
         except Exception as error:  # noqa: BLE001 - that none escapes is one of the invariants
-            outcome = self._broken(outcome, BrokenInvariant(NO_EXCEPTION, f"{type(error).__name__}: {error}"))
+            outcome = _broken(outcome, BrokenInvariant(NO_EXCEPTION, f"{type(error).__name__}: {error}"))
         seconds = self.watched.seconds
         return Run(
             outcome=outcome,
@@ -144,6 +142,15 @@ class Stage:
             attended_at=attended_at or seconds,
             seconds=seconds,
         )
+
+    def go_to(self, at: float) -> None:
+        """Have the task asked for once all are connected, and go on up to the last step before `at` s."""
+        if not self._asked_at:
+            self.world.advance(ASKED_AT_S)
+            self.world.request_task(self._task, self._request)
+            self.world.settle()
+            self._asked_at, self._turn = self.world.awake_s, next(self.world.turns)
+        self.world.advance(math.inf, lambda: self.world.next_deadline >= self.watched.start + at)
 
     def again(self, lasts_s: float) -> str:
         """Failure of the same task once more, after a calm run of `lasts_s`: empty where it is done."""
@@ -180,11 +187,12 @@ class Stage:
         begin()
 
     def _work(self, at_most_s: float) -> None:
-        """Let the plant work until the task has ended or waits for a person, mend what is at fault then, and
-        give the cell time to get ready.
+        """Let the plant work for so long, until the task has ended or waits for a person; then mend what is
+        at fault, and give the cell time to get ready.
         """
+        since = self._asked_at
         for _ in range(TRIES):
-            self.world.advance(at_most_s, self._is_over)
+            self.world.advance(at_most_s, self._is_over, since=since)
             self.world.advance(MENDED_IN_S)
             self.mended_at = self.watched.seconds
             self.watched.end_faults()
@@ -192,6 +200,7 @@ class Stage:
             self.world.advance(GRACE_S, lambda: self._is_ready() or self._stands_still())
             if self.ended or self._is_stuck:
                 return
+            since = self.world.awake_s
 
     def _is_over(self) -> bool:
         lost = self.last_change is None and self.world.now >= self._lost_from
@@ -243,9 +252,6 @@ class Stage:
         if run.state in STUCK and (change is not None or run.task is not None):
             return End.HELD, run.trouble.reason.value if run.trouble else run.state.value
         return (End.LOST if change is None and run.task is None else End.UNFINISHED), ""
-
-    def _broken(self, outcome: Outcome, broken: BrokenInvariant) -> Outcome:
-        return replace(outcome, broken=(broken.invariant, broken.sentence))
 
     def _look(self) -> None:
         self._count_ended()
@@ -303,6 +309,10 @@ class Stage:
             self.state = end_state(self.watched, self.cell)
             self.reported = facts_by_report(self.watched, self.cell)
             self.stated = stated(self.cell, order.recipe, order.values)
+
+
+def _broken(outcome: Outcome, broken: BrokenInvariant) -> Outcome:
+    return replace(outcome, broken=(broken.invariant, broken.sentence))
 
 
 def _hashed(*digests: str) -> str:

@@ -17,7 +17,7 @@ from . import (
     teachers,
     telemetry,
 )
-from .kind import BoardKind, End, Fault, Kind
+from .kind import UNHEARD, BoardKind, End, Fault, Kind
 
 __all__ = [
     "COUNTED",
@@ -28,8 +28,11 @@ __all__ = [
     "OF_DEVICES",
     "OF_HOSTS",
     "OF_PLACES",
+    "OF_QUEUES",
     "OF_WORK",
     "ON_ONE_HOST",
+    "STICKING",
+    "UNHEARD",
     "BoardKind",
     "End",
     "Fault",
@@ -67,6 +70,12 @@ OF_PLACES = ("operator_load",)
 
 OF_CRASHES = ("plant_crash", *(kind.name for kind in crashes.KINDS))
 """The kinds in which the plant dies; they are drawn at a level of their own."""
+
+OF_QUEUES = (operators.double_submit.name, operators.bad_task.name)
+"""The kinds that meet the queue of a cell, and no device."""
+
+STICKING = (telemetry.stuck_bit.name, devices.stale_fact.name)
+"""The kinds in which a device goes on to tell the same, of what their word names."""
 
 COUNTED = crashes.COUNTED
 """Those of them that come at a commit or a message, by its number."""

@@ -8,7 +8,7 @@ from ..network import keeps_its_place
 from ..world import World
 from . import targets
 from .board_site import BoardSite
-from .kind import End, Fault, board_kind, kind, words
+from .kind import End, Fault, all_alike, board_kind, kind, words
 from .shared_effects import hold, stall, trouble
 
 TOO_LATE_S = 10.0
@@ -61,7 +61,7 @@ def _joints(model: PlantModel, target: str) -> tuple[str, ...]:
     return tuple(f"q{number + 1}" for number in range(len(robot.joints)))
 
 
-@board_kind(targets=targets.arms, words=_joints, amount=(-50.0, 50.0), weight=0.5)
+@board_kind(targets=targets.arms, words=_joints, amount=(-50.0, 50.0), weight=0.5, alike=all_alike)
 def lost_steps(world: BoardSite, fault: Fault) -> None:
     """An axis slips by `amount` motor steps and nobody notices; only homing finds it again."""
     steps = round(fault.amount) or 1

@@ -14,13 +14,13 @@ from ..world import World
 from . import targets
 from .board_site import BoardSite
 from .false_telemetry import Fields, deceive
-from .kind import End, Fault, board_kind, kind, words
+from .kind import End, Fault, all_alike, board_kind, kind, words
 from .shared_effects import hold
 
 FOR_EVER_S = 86_400.0
 
 
-@board_kind(targets=targets.machines, words=words("atasco", "sin_aire"), seconds=(1.0, 60.0))
+@board_kind(targets=targets.machines, words=words("atasco", "sin_aire"), seconds=(1.0, 60.0), alike=all_alike)
 def gives_up(world: BoardSite, fault: Fault) -> End:
     """A device ends every order that it has carried out as failed, with this word."""
     return _behave(world, fault, "fails", lambda goal: fault.word)

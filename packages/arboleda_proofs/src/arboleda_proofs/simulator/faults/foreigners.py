@@ -21,7 +21,7 @@ from arboleda.wire.transport import Delivery, Publication
 from ..chance import Dice
 from ..world import BRIDGE, World
 from . import targets
-from .kind import End, Fault, kind, words
+from .kind import UNHEARD, End, Fault, kind, unheard, words
 from .orchestrators import ORDERS
 from .shared_effects import hold
 
@@ -56,7 +56,7 @@ def _channels(model: PlantModel, target: str) -> tuple[str, ...]:
     return tuple(channel.value for channel in (*own, *held, *OF_ALL))
 
 
-@kind(targets=targets.boards, words=_channels)
+@kind(targets=targets.boards, words=_channels, alike=unheard)
 def foreign_garbage(world: World, fault: Fault) -> None:
     """A stranger publishes what makes no sense on a topic of a board."""
     payload = Dice(fault.seed, "garbage").pick(GARBAGE)
@@ -66,6 +66,7 @@ def foreign_garbage(world: World, fault: Fault) -> None:
 FOREIGN_TO_ARMS: dict[str, object] = {"nodo": 0}
 FOREIGN_TO_MOBILES: dict[str, object] = {"efector": 0, "pieza": 1, "q1_mov": 0.0}
 LATER_S = 0.02  # before the board speaks again
+AGAIN = "again"  # the last command, in the words of `foreign_old`
 NEWEST = 4_000_000_000  # a telemetry number above that of any board
 
 
@@ -74,7 +75,7 @@ def _foreign(model: PlantModel, target: str) -> tuple[str, ...]:
     return tuple(FOREIGN_TO_ARMS if has_joints else FOREIGN_TO_MOBILES)
 
 
-@kind(targets=targets.goers, words=_foreign, weight=0.5)
+@kind(targets=targets.goers, words=_foreign, weight=0.5, alike=unheard)
 def foreign_report(world: World, fault: Fault) -> None:
     """A stranger publishes telemetry in which a board says what its kind of robot cannot."""
     robot = targets.robot_of(world.model, fault.target)
@@ -85,7 +86,7 @@ def foreign_report(world: World, fault: Fault) -> None:
     world.publish(Publication(topic=topic(fault.target, Channel.TELEMETRY), payload=payload))
 
 
-@kind(targets=targets.boards, seconds=(0.5, 10.0), weight=0.7)
+@kind(targets=targets.boards, seconds=(0.5, 10.0), weight=0.7, alike=unheard)
 def foreign_repeat(world: World, fault: Fault) -> End:
     """The broker was told to keep what a board says, and says it to the bridge once more, as retained."""
     address = topic(fault.target, Channel.TELEMETRY)
@@ -105,7 +106,12 @@ def foreign_repeat(world: World, fault: Fault) -> End:
     return lambda: world.carriers.remove(carry)
 
 
-@kind(targets=targets.boards, words=words("no board", "no channel", "too long", "too deep"), weight=0.5)
+@kind(
+    targets=targets.boards,
+    words=words("no board", "no channel", "too long", "too deep"),
+    weight=0.5,
+    alike=unheard,
+)
 def foreign_stray(world: World, fault: Fault) -> None:
     """A stranger publishes on a topic that belongs to nobody, or far more than fits."""
     world.publish(STRAYS[fault.word](fault.target))
@@ -130,7 +136,7 @@ def _goals(model: PlantModel, target: str) -> tuple[str, ...]:
     return ("path", "home", "clear") if robot.floor_grid else ("order", "clear")
 
 
-@kind(targets=targets.boards, words=_goals, seconds=(1.0, 60.0), weight=0.7)
+@kind(targets=targets.boards, words=_goals, seconds=(1.0, 60.0), weight=0.7, alike=unheard)
 def foreign_retained(world: World, fault: Fault) -> End | None:
     """A stranger has the broker keep an old command for whoever subscribes, until somebody takes it away."""
     old = _old(world, fault)
@@ -140,10 +146,14 @@ def foreign_retained(world: World, fault: Fault) -> End | None:
     return hold(world, "retained", old.topic, lambda: world.broker.retained.pop(old.topic, None))
 
 
-@kind(targets=targets.boards, words=lambda model, target: ("again", *_goals(model, target)))
+@kind(
+    targets=targets.boards,
+    words=lambda model, target: (AGAIN, *_goals(model, target)),
+    alike=lambda word: word if word == AGAIN else UNHEARD,
+)
 def foreign_old(world: World, fault: Fault) -> None:
     """A stranger repeats the last command, or sends one of an older number, epoch or bridge."""
-    old = _again(world, fault) if fault.word == "again" else _old(world, fault)
+    old = _again(world, fault) if fault.word == AGAIN else _old(world, fault)
     if old is not None:
         world.publish(old)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import Sentence
 
 from ..chance import Dice
 from ..world import World
@@ -36,12 +37,18 @@ Begin = Callable[[World, Fault], End | None]
 BeginAtBoards = Callable[[BoardSite, Fault], End | None]
 Targets = Callable[[PlantModel], Sequence[str]]
 Words = Callable[[PlantModel, str], Sequence[str]]
+Refusal = Callable[[World, Fault], "Sentence | None"]
 Range = tuple[float, float]
 NONE: Range = (0.0, 0.0)
+UNHEARD = "unheard"
 
 
 def no_words(model: PlantModel, target: str) -> Sequence[str]:
     return ("",)
+
+
+def never_refused(world: World, fault: Fault) -> None:
+    return None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +58,8 @@ class Kind:
     `targets` gives the possible targets in a plant (none: it cannot happen there), `words` the forms it can
     take then; a word that stands there more often is drawn more often. `seconds` and `amount` are the ranges
     from which these are drawn; `weight` is how often the kind is drawn beside others, 0: never.
+    `alike` has one name for all words that the plant treats alike, `UNHEARD` for those that all who hear them
+    refuse. `refusal` is the reason why the plant would do nothing of the fault now, where it would not.
     """
 
     name: str
@@ -61,6 +70,8 @@ class Kind:
     seconds: Range = NONE
     amount: Range = NONE
     weight: float = 1.0
+    alike: Callable[[str], str] = str
+    refusal: Refusal = never_refused
 
     def draw(self, dice: Dice, model: PlantModel, target: str | None = None) -> Mapping[str, Any]:
         """The fields of one fault besides kind, at and seed; `target` is drawn too unless it is given."""
@@ -99,6 +110,7 @@ def kind(
     seconds: Range = NONE,
     amount: Range = NONE,
     weight: float = 1.0,
+    alike: Callable[[str], str] = str,
 ) -> Callable[[Begin], Kind]:
     """Make a function `(world, fault)` a kind of fault: its name, and its docstring as the sentence."""
 
@@ -112,6 +124,7 @@ def kind(
             seconds=seconds,
             amount=amount,
             weight=weight,
+            alike=alike,
         )
 
     return make
@@ -124,10 +137,11 @@ def board_kind(
     seconds: Range = NONE,
     amount: Range = NONE,
     weight: float = 1.0,
+    alike: Callable[[str], str] = str,
 ) -> Callable[[BeginAtBoards], BoardKind]:
     """Make a function `(boards, fault)` a kind of fault of boards, as `kind` does."""
 
-    general = kind(targets=targets, words=words, seconds=seconds, amount=amount, weight=weight)
+    general = kind(targets=targets, words=words, seconds=seconds, amount=amount, weight=weight, alike=alike)
 
     def make(begin: BeginAtBoards) -> BoardKind:
         fields = vars(general(begin)) | {"begin": begin}
@@ -139,6 +153,14 @@ def board_kind(
 def words(*allowed: str) -> Words:
     """The same words for every plant and target."""
     return lambda model, target: allowed
+
+
+def all_alike(word: str) -> str:
+    return ""
+
+
+def unheard(word: str) -> str:
+    return UNHEARD
 
 
 def _drawn(dice: Dice, span: Range) -> float:

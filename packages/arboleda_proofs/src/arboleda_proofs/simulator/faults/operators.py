@@ -6,18 +6,19 @@ from collections.abc import Callable
 
 from arboleda.engine import HISTORY
 from arboleda.model.facts import shown
-from arboleda.model.messages import TaskState, Verb
+from arboleda.model.messages import OperatorRequest, TaskState, Verb
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Recipe
+from arboleda.model.sentence import Sentence
 from arboleda.model.task import Task
-from arboleda.model.verbs import PARTS, STATION, WORK, Devices, Scope
+from arboleda.model.verbs import PARTS, STATION, WORK, Arguments, Devices, Scope
 
 from .. import hands
 from ..chance import Dice
 from ..people import ShortForms, any_text
 from ..world import World
 from . import targets
-from .kind import Fault, Kind, Words, kind, no_words, words
+from .kind import Fault, Kind, Words, all_alike, kind, no_words, words
 
 WHOLE_PLANT, NOWHERE = "", "nowhere"
 BY_HAND = "by hand"
@@ -72,17 +73,33 @@ def _places(model: PlantModel, target: str) -> tuple[str, ...]:
 
 def _operate(verb: Verb) -> Callable[[World, Fault], None]:
     def begin(world: World, fault: Fault) -> None:
-        scope = _task(world, fault) if fault.word in OF_THE_CELL else fault.target
         if fault.word == BY_HAND:
-            hands.BY_HAND[verb](world.manual, scope)
-        elif fault.word and fault.word not in OF_THE_CELL and not fault.word.isdigit():
-            world.request_verb(verb, scope, arguments=(("place", fault.word),))
-        elif STATION in verb.arguments and fault.word:
-            world.request_verb(verb, scope, arguments=(("station", int(fault.word)),))
+            hands.BY_HAND[verb](world.manual, fault.target)
         else:
-            world.request_verb(verb, scope)
+            world.tell(_request(world, verb, fault))
 
     return begin
+
+
+def _request(world: World, verb: Verb, fault: Fault) -> OperatorRequest:
+    scope = _task(world, fault) if fault.word in OF_THE_CELL else fault.target
+    return OperatorRequest(at=world.now, verb=verb, scope=scope, arguments=_arguments(verb, fault.word))
+
+
+def _arguments(verb: Verb, word: str) -> Arguments:
+    if not word or word in OF_THE_CELL:
+        return ()
+    if not word.isdigit():
+        return (("place", word),)
+    return (("station", int(word)),) if STATION in verb.arguments else ()
+
+
+def _refuse(verb: Verb) -> Callable[[World, Fault], Sentence | None]:
+    def refusal(world: World, fault: Fault) -> Sentence | None:
+        is_by_hand = fault.word == BY_HAND  # which is done before it is said
+        return None if is_by_hand else world.plant.refusal(_request(world, verb, fault))
+
+    return refusal
 
 
 def _task(world: World, fault: Fault) -> str:
@@ -121,6 +138,7 @@ def _verb(verb: Verb) -> Kind:
         targets=_targets(verb),
         words=_words(verb),
         weight=WEIGHTS.get(verb, 1.0),
+        refusal=_refuse(verb),
     )
 
 
@@ -210,7 +228,7 @@ def _bad_words(model: PlantModel, target: str) -> tuple[str, ...]:
     return tuple(BAD_TEXTS) if target in _short(model) else BAD_NUMBERS
 
 
-@kind(targets=_misread, words=_bad_words)
+@kind(targets=_misread, words=_bad_words, alike=all_alike)
 def bad_task(world: World, fault: Fault) -> None:
     """Somebody asks for a task in words that mean none, or with a number beyond its limits."""
     cell = world.model.cell(fault.target)

@@ -21,7 +21,7 @@ from arboleda.wire.strict import UINT32
 from ..chance import Dice
 from ..world import BRIDGE, World
 from . import targets
-from .kind import Fault, kind, words
+from .kind import UNHEARD, Fault, kind, unheard, words
 
 LATEST = 5  # how many epochs it may be behind
 OF_ALL = ("home", "home", "clear", "clear", "beat", "beat")
@@ -33,7 +33,12 @@ def _orders(model: PlantModel, target: str) -> tuple[str, ...]:
     return (*_own(model, target), *(word for word in OF_ALL if _knows(model, target, word)), *RARE)
 
 
-@kind(targets=targets.robots, words=_orders)
+def _any_order(word: str) -> str:
+    """One name for all orders but stops: the bridge passes none of them on."""
+    return word if word in RARE else UNHEARD
+
+
+@kind(targets=targets.robots, words=_orders, alike=_any_order)
 def second_orchestrator(world: World, fault: Fault) -> None:
     """An orchestrator that was superseded speaks to the bridge; only its stops count."""
     dice = Dice(fault.seed, "second")
@@ -51,7 +56,7 @@ def second_orchestrator(world: World, fault: Fault) -> None:
         world.broker.clients[BRIDGE].inbox.append(FromPlant(at=world.now, message=message))
 
 
-@kind(targets=targets.bridge, words=words("just too far", "the last number"), weight=0.5)
+@kind(targets=targets.bridge, words=words("just too far", "the last number"), weight=0.5, alike=unheard)
 def foreign_beat(world: World, fault: Fault) -> None:
     """A stranger beats as a plant that can only start in the far future; the bridge goes on with ours."""
     unix_s = world.plant.epoch
@@ -78,7 +83,7 @@ def _knows(model: PlantModel, target: str, word: str) -> bool:
     return word != "home" or model.robots[target].homes
 
 
-@kind(targets=targets.robots, words=_strange)
+@kind(targets=targets.robots, words=_strange, alike=_any_order)
 def foreign_command(world: World, fault: Fault) -> None:
     """A node of somebody else commands a robot on its plain topic; only its stops count."""
     # a bridge that hears no plant would obey the stranger as its only orchestrator

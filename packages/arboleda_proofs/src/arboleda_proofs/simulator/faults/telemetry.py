@@ -15,7 +15,7 @@ from ..chance import Dice
 from ..world import World
 from . import targets
 from .false_telemetry import Fields, alter, deceive, retold
-from .kind import End, Fault, kind, words
+from .kind import End, Fault, all_alike, kind, words
 
 ABOUT = {
     "nodo": ("node",),
@@ -45,7 +45,12 @@ def fields_of(model: PlantModel, target: str) -> tuple[str, ...]:
     return (*place, "estado", *NUMBERED, *homed, *(HELD if robot.joints and robot.has_effector else ()))
 
 
-@kind(targets=targets.boards, words=fields_of, seconds=(0.5, 15.0))
+def _any_joint(word: str) -> str:
+    """One name for all joints: the plant asks the same of each."""
+    return "q" if word[0] == "q" else word
+
+
+@kind(targets=targets.boards, words=fields_of, seconds=(0.5, 15.0), alike=_any_joint)
 def stuck_bit(world: World, fault: Fault) -> End:
     """A field of a board's telemetry keeps the value it has."""
     kept: Fields = {}
@@ -62,7 +67,13 @@ def _lies_of(model: PlantModel, target: str) -> tuple[str, ...]:
     return tuple(word for word in fields_of(model, target) if word[0] == "q" or word in LIES)
 
 
-@kind(targets=targets.boards, words=_lies_of, seconds=(0.3, 10.0), amount=(2.0, 40.0))
+@kind(
+    targets=targets.boards,
+    words=_lies_of,
+    seconds=(0.3, 10.0),
+    amount=(2.0, 40.0),
+    alike=_any_joint,
+)
 def lying_telemetry(world: World, fault: Fault) -> End:
     """A field of a board's telemetry is not true; `amount` is how many tolerances a joint is told off."""
     word = fault.word
@@ -81,6 +92,7 @@ def lying_telemetry(world: World, fault: Fault) -> End:
     words=words("half", "no number", "a truth value", "too long", "incomplete"),
     seconds=(0.2, 10.0),
     amount=(0.1, 1.0),
+    alike=all_alike,
 )
 def garbled_telemetry(world: World, fault: Fault) -> End:
     """A share of `amount` of a board's telemetry cannot be read."""
