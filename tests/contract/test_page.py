@@ -67,6 +67,7 @@ def test_nothing_that_anybody_wrote_is_rendered_as_html(tab: Any) -> None:
     for part in ("tasks", "links", "events", "cells"):
         show(tab, part)
         tab.wait_for_selector(f"#part-{part}:has-text('<img src=x')")
+    tab.click("[data-choose=sis_a]")
     tab.click(".cell.chosen g.node.current")
     tab.wait_for_selector("#node:has-text('<img src=x')")
     operate(tab, "sis_a")
