@@ -30,7 +30,7 @@ def test_what_changed_since_the_start_is_said_and_a_restart_at_rest_has_it(
     applied = arboleda("apply", "--plant", str(plant), "--yes")
     assert applied.wait() == 0, applied.output
     assert "compared with what the plant was started with" in applied.output
-    assert "kinds.mill.verbs.run.takes_s: from 20 to 25" in applied.output
+    assert "kind mill, run.takes_s: from 20 to 25" in applied.output
     assert "this needs a restart" in applied.output
     assert at_work(typed, plant) == ["  1  "]
     again = arboleda("apply", "--plant", str(plant), "--yes", "--restart")
