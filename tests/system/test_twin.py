@@ -357,6 +357,18 @@ def test_without_webgl_the_plant_is_drawn_from_above_by_outlines(
         assert max(deep) == pytest.approx(half), shape["kind"]
 
 
+def at_rest(page: Any, what: str) -> Any:
+    """The value of an expression that has been the same in 30 frames: the view is no longer on its way."""
+    page.evaluate("window.lastSeen = { value: null, frames: 0 }")
+    same = f"""() => {{
+        const value = {what}, frames = value === lastSeen.value ? lastSeen.frames + 1 : 0;
+        lastSeen = {{ value, frames }};
+        return frames >= 30;
+    }}"""
+    page.wait_for_function(same)
+    return page.evaluate(what)
+
+
 def test_the_view_is_turned_with_keys_put_back_and_led_to_a_cell(plant: Plant, look: Any) -> None:
     page = look(plant.page, locale="es")
     page.wait_for_function("document.querySelector('#twin-robots').textContent.includes('ra1: medido')")
@@ -366,7 +378,7 @@ def test_the_view_is_turned_with_keys_put_back_and_led_to_a_cell(plant: Plant, l
     page.click("[data-twin=reset]")
     page.wait_for_function(f"near => {label} !== near", arg=near)
     assert page.inner_text("#twin-title") == "Gemelo de la planta"
-    before = page.evaluate(label)
+    before = at_rest(page, label)
     page.focus("#twin canvas")
     for key in ("ArrowLeft", "ArrowUp", "+"):
         page.keyboard.press(key)
