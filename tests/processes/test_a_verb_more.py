@@ -58,7 +58,7 @@ print(json.dumps({
     "body": verb_arguments(b'{"times": 3}').of(verb),
     "schema": render(make_app(types.SimpleNamespace()).openapi()),
     "viewer": allowed(Role.VIEWER, "wipe"),
-    "commands": CliRunner().invoke(cli, ["--help"]).output,
+    "commands": CliRunner().invoke(cli, ["help", "operate"]).output,
     "help": CliRunner().invoke(cli, ["wipe", "--help"]).output,
     "offer": OFFERS["wipe"].scopes,
     "page": [[words(each)("verb.wipe"), words(each).asks("wipe")] for each in ("en", "es")],

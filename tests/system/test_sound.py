@@ -89,9 +89,8 @@ def test_who_has_turned_it_on_hears_it_once_for_a_cell_that_needs_somebody_also_
     page.wait_for_function("tones === 3 && loudest > 0.1")  # the sound that says that it is on
     page.close()
 
-    page = visit(
-        f"{address}/?tab=settings"
-    )  # nothing was touched here yet: the browser lets nothing sound, and the page says so
+    page = visit(f"{address}/?tab=settings")
+    # Nothing was touched here yet: the browser lets nothing sound, and the page says so.
     well(page)
     page.wait_for_selector(".sound[data-sound=waits][aria-pressed=true]")
     assert "once you have clicked" in page.get_attribute(".sound", "title")
@@ -101,9 +100,9 @@ def test_who_has_turned_it_on_hears_it_once_for_a_cell_that_needs_somebody_also_
     client.operate(Verb.STOP, "sis_a")
     in_trouble(page)
     page.wait_for_function("tones === 3 && loudest > 0.1")
-    page.wait_for_selector('[data-live="sis_a.state"][data-s=aborted]')
+    page.wait_for_selector('[data-live="sis_a.state"][data-s=aborted]', state="attached")
     client.operate(Verb.CLEAR, "sis_a")
-    page.wait_for_selector('[data-live="sis_a.state"][data-s=stopped]')
+    page.wait_for_selector('[data-live="sis_a.state"][data-s=stopped]', state="attached")
     assert page.evaluate("tones") == 3  # it is the same cell that needs somebody
     client.operate(Verb.STOP, "sis_b")
     page.wait_for_function("tones === 6")
