@@ -109,5 +109,5 @@ def test_who_has_turned_it_on_hears_it_once_for_a_cell_that_needs_somebody_also_
     page.click(".sound")
     page.wait_for_selector(".sound[data-sound=off][aria-pressed=false]")
     client.operate(Verb.STOP, "sis_c")
-    page.wait_for_selector('[data-live="sis_c.state"][data-s=aborted]')
+    page.wait_for_selector('[data-live="sis_c.state"][data-s=aborted]', state="attached")
     assert page.evaluate("tones") == 6
