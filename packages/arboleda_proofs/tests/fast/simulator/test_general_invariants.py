@@ -762,3 +762,14 @@ def test_every_invariant_of_devices_has_a_bug() -> None:
     }
     assert {each.name for each in (*DEVICES, *PLACES)} <= {name for name, _, _ in BITES} | elsewhere
     assert {name for name, _, _ in BITES} <= {each.name for each in INVARIANTS}
+
+
+def test_a_motion_on_an_operators_word_is_no_step_that_was_left() -> None:
+    watched = JudgedWorld(staffed())
+    watched.world.advance(1.0)
+    watched.world.request_verb(Verb.DO, "mill", arguments=(("work", "close"),))
+    told = watched.world.advance(
+        10.0, lambda: getattr(watched.world.obeyed.get("mill"), "verb", "") == "close"
+    )
+    assert told
+    watched.world.advance(10.0)

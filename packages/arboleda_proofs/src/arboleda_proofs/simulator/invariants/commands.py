@@ -32,6 +32,7 @@ STOPPED = frozenset({Obstacle.LATCHED, Obstacle.STOPPED})
 ANSWERS_ALL_THE_SAME = STOPPED | {Obstacle.FAULTED, Obstacle.UNHOMED}
 KNOWN_STILL = frozenset({Reason.STOPPED_SHORT, Reason.NOT_REACHED, Reason.STOPPED})
 GIVEN_UP = frozenset({State.CANCELLING, State.CANCELLED, State.FAILED})
+ON_AN_OPERATORS_WORD = "doing.own_verb"  # the key of what a command is for that no step has given
 
 
 def _reachable() -> dict[State | None, frozenset[State]]:
@@ -222,6 +223,8 @@ def _left(look: Look) -> Iterator[str]:
     record = look.record
     for sent in record.commands.open.values():
         if not sent.can_be_halted or sent.state is State.CANCELLING or isinstance(sent.command, Home):
+            continue
+        if sent.entry is not None and sent.entry.doing.key == ON_AN_OPERATORS_WORD:
             continue
         cell = record.cells[sent.entry.cell] if sent.entry else None
         teaching = None if cell is None else cell.run.manual.teaching
