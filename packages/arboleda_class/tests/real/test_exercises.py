@@ -35,7 +35,8 @@ def top_up(cell):
 def test_python_that_ends_the_judge_gets_no_verdict() -> None:
     work = Work(where=Path(), exercise="query_first", files={"recipes.py": FOREVER.encode()})
     verdict = judge_process.judged(work)
-    assert [each.says["en"] for each in verdict.findings] == ["The work can be judged"]
+    assert not verdict.passes
+    assert [each.says["en"] for each in verdict.findings] == ["The files are a plant"]  # its recipe is tried
 
 
 def check(*arguments: str, language: str = "") -> tuple[int, str]:

@@ -60,6 +60,6 @@ def test_a_tab_runs_a_plant_and_the_program_of_a_lesson_and_judges_an_exercise(a
     )
     assert 'id="twin"' in opened["html"]
     assert advanced["frame"]["clock"]["tick"] == 32
-    assert befallen["frame"]["clock"]["marks"] == [32]
+    assert befallen["frame"]["clock"]["marks"] == [[32, "0:02 ra1: Reboot its board"]]
     assert "recorrer el camino: nodo" in printed["output"] and printed["problem"] is None
     assert verdict["findings"] and verdict["film"]

@@ -13,7 +13,7 @@ from fastapi.responses import JSONResponse
 
 from arboleda.store.task_rows import TaskQuery
 
-from . import header, links, menu, settings, shell, tasks, timeline, trees
+from . import header, links, menu, missing_packages, settings, shell, tasks, timeline, trees
 from .added import AddedParts, LeaveOut, LeftOut
 from .asset_files import own
 from .body import WITHIN, Parts, Places, body
@@ -106,6 +106,7 @@ def all_parts(added: Parts, role: str | None, put: Put) -> Parts:
 
     def last(_layout: Layout, wording: Words) -> None:
         settings.build(wording, role, put)
+        missing_packages.build(wording)
 
     return {
         "cells": partial(trees.build, put=put),

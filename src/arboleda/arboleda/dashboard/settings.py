@@ -1,8 +1,8 @@
-"""The settings: what this browser remembers, what packages add, and which packages are missing."""
+"""The settings: what this browser remembers, and what packages add."""
 
 from __future__ import annotations
 
-from . import missing_packages, tools
+from . import tools
 from .page_part import Place, Put, put_nothing
 from .tags import tag
 from .wording import Words
@@ -26,4 +26,3 @@ def build(words: Words, role: str | None, put: Put = put_nothing) -> None:
                 tools.log_out(words, role)
                 tag("span", words("page.log_out"))
     put(Place.SETTINGS)
-    missing_packages.build(words)
