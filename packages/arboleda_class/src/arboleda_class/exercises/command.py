@@ -229,7 +229,8 @@ def _tell(work: Work, verdict: Verdict, language: str) -> None:
     if story:
         typer.echo("\n".join(in_story(each, partial(finding_in, language)) for each in story) + "\n")
     if (work.where / STORY).is_file() and not verdict.passes:
-        typer.echo(f"{invocation.command()} record replay {shlex.quote(str(work.where / STORY))} --page\n")
+        words = (invocation.command(), "record", "replay", shlex.quote(str(work.where / STORY)), "--page")
+        typer.echo(" ".join(words) + "\n")
     typer.echo(f"{work.exercise}: {say_in(language, PASSES() if verdict.passes else FAILS())}")
 
 
