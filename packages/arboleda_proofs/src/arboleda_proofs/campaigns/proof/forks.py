@@ -68,7 +68,7 @@ class Walk:
         try:
             self._stage.go_to(at)
         except BrokenInvariant as broken:
-            raise ArboledaError(f"the run without a fault ended before {at:g} s: {broken}") from broken
+            raise ArboledaError(f"the run without a fault ended before {at:g} s") from broken
         self._at, self._took_s = at, self._took_s + time.process_time() - began
 
     def _anew(self, groups: Sequence[Faults], tick: Tick) -> list[Run]:

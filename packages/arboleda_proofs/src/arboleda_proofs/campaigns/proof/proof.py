@@ -22,7 +22,6 @@ from .scenario import Scenario
 
 T = TypeVar("T")
 Tick = Callable[[], None]
-FEW = 8  # portions of a rank in its first sweep
 MOST = 32  # faults of a portion
 RANKS = (0, 1, 1, 1, 2, 3)  # of the parts of an instant
 
@@ -197,10 +196,10 @@ class Proof:
 
 
 def spread(items: Sequence[T]) -> list[T]:
-    """The items in sweeps, each in their order: a few that are far apart, some between them, all others."""
+    """The items in sweeps, each in their order, and each with those between the ones of the sweeps before."""
     turns: dict[int, None] = {}
-    for few in (FEW, FEW**2, len(items)):
-        turns |= dict.fromkeys(range(0, len(items), -(-len(items) // max(few, 1)) or 1))
+    for power in reversed(range(len(items).bit_length())):
+        turns |= dict.fromkeys(range(0, len(items), 2**power))
     return [items[turn] for turn in turns]
 
 
