@@ -1,4 +1,4 @@
-"""What leads a cell out of its trouble: one button for all of it, and the single acts behind "More"."""
+"""Way out of the trouble of a cell: one button for all of it, and the single acts behind "More"."""
 
 from __future__ import annotations
 

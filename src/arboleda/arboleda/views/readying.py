@@ -1,4 +1,4 @@
-"""What makes a cell, or the whole plant, ready again: the next act, from the rows of a snapshot alone."""
+"""Way back to work of a cell, or of the whole plant: the next act, from the rows of a snapshot alone."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LAST = (Verb.RESUME, Verb.RETRY, Verb.ABANDON)  # robots go to work once all are
 
 @dataclass(frozen=True, kw_only=True)
 class Due:
-    """What is due next on the way back to work.
+    """The next act on the way back to work.
 
     `advice`: the row of the verb to give, or of work that only a hand can do; None while the plant itself
     gets on. `before`: rows of work of a hand that has to be done first. `why`: what it waits for, as the end
@@ -51,7 +51,7 @@ class Due:
 
 
 def due_in_cell(snapshot: Row, cell: Row) -> Due | None:
-    """What is due next in a cell; None where it works, can work, or is taught."""
+    """The next act in a cell; None where it works, can work, or is taught."""
     if cell["teaching"]:
         return None
     if cell["state"] == CellState.EXECUTE:  # after a retry or a recovery its queue still waits for somebody
@@ -65,7 +65,7 @@ def due_in_cell(snapshot: Row, cell: Row) -> Due | None:
 
 
 def due_in_plant(snapshot: Row) -> Due | None:
-    """What is due next in any cell; `resume` for all cells at once where no other cell would take it."""
+    """The next act in any cell; `resume` for all cells at once where no other cell would take it."""
     dues = [due for cell in snapshot["cells"] if (due := due_in_cell(snapshot, cell)) is not None]
     first = min(dues, key=lambda due: due.turn, default=None)
     if first is None or first.advice is None or first.advice["do"] != Verb.RESUME:

@@ -27,7 +27,7 @@ WAITS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Effect:
-    """What a mishap met as it began: a word of the playground, "" where it acts at once. `nothing`: it had
+    """Effect of a mishap as it began: a word of the playground, "" where it acts at once. `nothing`: it had
     nothing to do, and never will."""
 
     word: str
@@ -46,7 +46,7 @@ class Provoked:
 
 
 def effect(world: World, act: MishapBegun) -> Effect:
-    """What a mishap meets that is about to begin."""
+    """The effect of a mishap that is about to begin."""
     if act.target not in world.boards:
         return Effect(word="")
     if not world.is_on(act.target):

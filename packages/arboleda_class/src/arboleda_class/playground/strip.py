@@ -49,7 +49,7 @@ class Strip:
         return f"{whole // 60}:{whole % 60:02} {whom}: {self._words.say(MISHAPS[act.name].sentence)}"
 
     def _did(self, provoked: Provoked, run: Run | FilmRun) -> str:
-        """What came of a mishap until now, or why nothing."""
+        """The result of a mishap until now, or the reason why it has none."""
         cells = {cell.name for cell in self._model.cells_of.get(provoked.name, self._model.cells)}
         since = self._began_unix_s + provoked.at_s
         events = [each for each in run.state.chronicle.events if each["at"] > since]

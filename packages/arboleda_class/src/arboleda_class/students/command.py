@@ -88,7 +88,7 @@ def write_class(
 
 
 def _problems(names: Sequence[str], folder: Path, port: int) -> Iterator[str]:
-    """What is wrong with the names and where they would be written; each in a sentence."""
+    """Mistakes in the names and in the places for their plants, each in a sentence."""
     for name, times in Counter(names).items():
         if not is_plant_name(name):
             yield say(BAD_NAME(name=quoted(name), rule=NAME_RULE()))

@@ -110,7 +110,7 @@ class MakeBench(MakeApi):
         return self.run("reach")
 
     def _adding(self, device: Mapping[str, Any]) -> Callable[[Any], Any]:
-        """What adds a device to the values of a plant file, with what was written for its driver."""
+        """The edit that adds a device, with the settings of its driver, to the values of a plant file."""
         driver: Any = None
         if device["driver"]:
             driver = self._workshop.driver(*self._desk.files, device["driver"], device["settings"])

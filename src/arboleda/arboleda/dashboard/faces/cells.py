@@ -13,7 +13,7 @@ from arboleda.views.view import devices_once, standing
 from ..tree_drawing import drawing, label
 from ..tree_memory import FAILURE, HALTED, RUNNING, SUCCESS, EndedTree, TreeMemory, phases
 from ..wording import Words
-from . import Face, answers, links, ways
+from . import Face, advice, answers, links
 from .moment import Moment, clock, seconds
 
 SHOWN_CHANGES = 12
@@ -52,7 +52,7 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
         f"text/{name}.cause": [_cause(words, cell, task, memory), "failed" if failed else ""],
         f"text/{name}.report": _report(words, cell, task),
         f"text/{name}.failure": [words("record.link") if name in moment.failed else "", ""],
-        **ways.face(words, cell),
+        **advice.face(words, cell),
         f"text/{name}.task": _task_line(moment, cell, task),
         f"text/{name}.step": [words.say(cell["step"]) if cell["step"] else "", stands],
         f"text/{name}.feedback": [_feedback(words, cell, leaf), ""],
@@ -239,7 +239,7 @@ def tree_face(
 
 
 def _about(words: Words, row: Row, inside: Sequence[Row]) -> str:
-    """What a node does, and the small steps that it shows."""
+    """The purpose of a node, and the small steps that it shows."""
     about = row["description"] or words.of("kind", row["kind"])
     steps = ", ".join(words.say(each["name"]) for each in inside)
     return f"{about} {words('node.inside', steps=steps)}".strip() if steps else about

@@ -7,7 +7,7 @@ from typing import Any
 from arboleda.model.messages import Verb
 from arboleda.views.readying import Due, due_in_cell, due_in_plant
 
-from . import Face, ways
+from . import Face, advice
 from .moment import Moment
 
 READY = "ready"
@@ -45,24 +45,24 @@ def _row(moment: Moment, name: str, of: str, due: Due | None) -> Face:
 
 
 def _says(moment: Moment, due: Due) -> str:
-    """What is due, in one line."""
+    """The act that is due, or the reason to wait, in one line."""
     words = moment.words
     if due.advice is None:
         return words("ready.waits", why=words.say(due.why)) if due.why else words("ready.waits_still")
-    said = ways.text(words, due.advice)
+    said = advice.text(words, due.advice)
     if due.advice["hand"]:
         return words("ready.by_hand", said=said)
-    return words("ready.next", said=said, note=ways.effect(words, due.advice))
+    return words("ready.next", said=said, note=advice.effect(words, due.advice))
 
 
 def _due(moment: Moment, kind: str, due: Due) -> Row:
-    """What the script does: `says` is for people; the others are as of an offer."""
+    """The act for the script: `says` is for people, the other keys are those of an offer."""
     told = {"kind": kind, "says": _says(moment, due)}
     if due.advice is None or due.advice["hand"]:
         return told
     words = moment.words
-    offer = ways.offer(words, due.advice)
-    before = [words("ready.done_by_hand", said=ways.text(words, each)) for each in due.before]
+    offer = advice.offer(words, due.advice)
+    before = [words("ready.done_by_hand", said=advice.text(words, each)) for each in due.before]
     return (
         told
         | {key: offer[key] for key in ("act", "of", "by_hand", "arguments") if key in offer}

@@ -126,7 +126,7 @@ class Representatives:
         return scenario.cell, scenario.recipe, self._meets(place, fault), _form(fault)
 
     def _meets(self, place: Place, fault: Fault) -> Hashable:
-        """What a fault meets at an instant, or why it meets nothing."""
+        """The sight of a fault at an instant, or the reason why it meets nothing."""
         sights, instant = self.calm[place[0]].sights, self._instant(place)
         robot = TASK if fault.kind in OF_QUEUES else self._targets.get(fault.target)
         refused = self._refused(place).get((fault.kind, fault.target, fault.word))

@@ -1,4 +1,4 @@
-"""What leads a cell out of its trouble: a row for each advice, with a button for each that is a verb."""
+"""Advice that leads a cell out of its trouble: a row for each, with a button where it is a verb."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def text(words: Words, advice: Row) -> str:
 
 
 def effect(words: Words, advice: Row) -> str:
-    """What falls or moves by an act."""
+    """The sentence on the parts that fall, or the robots that move, by an act."""
     if advice["drops"]:
         return words("ways.drops", robots=", ".join(advice["drops"]))
     if advice["moves"]:
