@@ -18,10 +18,13 @@ Started = Callable[..., "tuple[App | None, str]"]
 
 
 class Missing:
-    """The entry point of the ROS 2 link on a machine without ROS 2."""
+    """The entry point of the ROS 2 link on a machine without ROS 2, or with one that cannot be loaded."""
+
+    def __init__(self, error: ImportError) -> None:
+        self._error = error
 
     def load(self) -> Any:
-        raise ImportError("No module named 'rclpy'")
+        raise self._error
 
 
 @pytest.fixture
@@ -38,7 +41,9 @@ def started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.Capt
 
     monkeypatch.setattr(session, "Session", Unrun)
     monkeypatch.setattr(build, "PARTS", tuple(part for part in build.PARTS if part != "web"))
-    monkeypatch.setattr(session, "entry_points", lambda **_: [Missing()])
+    monkeypatch.setattr(
+        session, "entry_points", lambda **_: [Missing(ImportError("No module named 'rclpy'"))]
+    )
 
     def start(*words: str) -> tuple[App | None, str]:
         monkeypatch.setattr(sys, "argv", ["arboleda", *words, "--state", str(tmp_path / "state")])
@@ -57,6 +62,17 @@ def test_a_plant_runs_without_ros_where_it_is_missing_and_says_so(
     assert app and not said
     (note,) = (note for note in app.notes if "ROS 2" in note)
     assert note.startswith("Without ROS 2, over MQTT alone: ") and "No module named 'rclpy'" in note
+
+
+def test_who_has_no_ros_is_told_how_to_get_it_and_nothing_of_modules(
+    started: Started, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    missing = ModuleNotFoundError("No module named 'rclpy'", name="rclpy")
+    monkeypatch.setattr(session, "entry_points", lambda **_: [Missing(missing)])
+    app, _ = started("up")
+    assert app
+    (note,) = (note for note in app.notes if "ROS 2" in note)
+    assert "`make install ROS=1`" in note and "module" not in note
 
 
 def test_who_wants_no_ros_is_not_told_that_it_is_missing(started: Started) -> None:

@@ -29,8 +29,8 @@ from .screen import LONGEST, Screen, logged, parting, summary
 
 NO_ROS = Phrase(
     "cli.no_ros",
-    "ROS 2 for Python is not installed here; install it with `pip install 'arboleda[ros]'`, "
-    "or source a ROS 2 installation",
+    "ROS 2 for Python is not installed here; `make install ROS=1` in a clone of Arboleda installs it, "
+    "`pip install 'arboleda[ros]'` elsewhere; or source a ROS 2 installation",
 )
 ROS_BROKEN = Phrase("cli.ros_broken", "{no_ros} ({error})")
 STARTING = Phrase("cli.session.starting", "starting ...")
@@ -57,6 +57,8 @@ def ros_link(*, lan: bool) -> Any:
     try:
         connect = found.load()
     except ImportError as error:
+        if error.name == "rclpy":
+            raise RosMissing(NO_ROS()) from error
         raise RosMissing(ROS_BROKEN(no_ros=NO_ROS(), error=str(error))) from error
     return connect(lan=lan)
 

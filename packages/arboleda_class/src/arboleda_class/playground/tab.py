@@ -119,7 +119,7 @@ class Tab:
         return {"face": self._open.task_face(request["id"])}
 
     def past(self, _: Row) -> Row:
-        """The acts, the tick and the latest tick of the run, for the `past` of another `open` of the plant."""
+        """The acts and the ticks of the run, for the `past` of another `open` of the same plant."""
         return {"past": self._open.past}
 
     def digest(self, _: Row) -> Row:
