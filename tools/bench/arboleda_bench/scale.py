@@ -33,7 +33,7 @@ ONE_S, MANY_S, QUICK_S = 15.0, 8.0, 2.0  # one cell ends few moves in a second
 ROS_S = 6.0
 MEASURED = 100  # cells at which the reaction has an aim
 AIMS = {50: 2.0, 99: 10.0}  # by percentile, as ratio to one cell
-START_S = 5.0
+START_S = 6.0
 MB = 1e6
 
 

@@ -42,7 +42,7 @@ from .result import Aim, Figure, Result
 from .scene import Scene
 from .time_by_part import time_by_part
 
-AIM = Aim(least=0.3)
+AIM = Aim(least=0.25)
 SPINS = 5_000_000
 PLANTS = ("zones", "racks")
 Run = Callable[[Setting, int], tuple[int, float]]  # (setting, seed) -> (cycles, s of plant time)

@@ -29,7 +29,7 @@ SECONDS, QUICK_SECONDS = 20.0, 5.0
 BETWEEN_S = (0.02, 0.08)
 READY_S = 60.0
 MEMORY = Path("/dev/shm")
-MOST_MS = 100.0  # with few cells
+MOST_MS = 150.0  # with few cells
 UP = "from arboleda.cli.main import main; main()"
 
 
