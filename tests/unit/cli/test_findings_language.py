@@ -45,9 +45,19 @@ def test_each_sentence_has_the_values_of_its_english() -> None:
             "  empieza        justo antes de la petición (2.000 s)",
         ),
         (
-            "zones.nest.free_while: new, {oven: {door: open}}: who is in a zone is not counted anew "
+            "    26.358  ra1: Messages are lost (up, 0.13), for 2.706 s",
+            "    26.358  ra1: Se pierden mensajes (up, 0.13), durante 2.706 s",
+        ),
+        (
+            "0 of 2 seeds, 2 min, 16 cycles, 1/s, 65 faults",
+            "0 de 2 semillas, 2 min, 16 ciclos, 1/s, 65 fallos",
+        ),
+        ("uses: gone, tend.xml", "uses: quitado, tend.xml"),
+        ("cell lab, places: new, gate (supply)", "celda lab, places: nuevo, gate (supply)"),
+        (
+            "zone nest, free_while: new, oven (door open): who is in a zone is not counted anew "
             "while the plant runs",
-            "zones.nest.free_while: nuevo, {oven: {door: open}}: mientras la planta está en marcha no se "
+            "zona nest, free_while: nuevo, oven (door open): mientras la planta está en marcha no se "
             "vuelve a contar quién está en una zona",
         ),
         (

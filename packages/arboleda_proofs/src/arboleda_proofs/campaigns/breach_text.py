@@ -12,7 +12,7 @@ from arboleda_proofs.simulator.run import Result
 
 from .plants import Plant, notes
 from .setting import rules
-from .words import fault_words
+from .words import fault_said
 
 LINES = 40  # of the timeline
 LONG_NUMBER = re.compile(r"-?\d+\.\d{5,}(?:e-?\d+)?")
@@ -43,7 +43,7 @@ def faults(console: Console, result: Result, injected: int) -> None:
         f"  faults     {needed:,} of {counted(injected, 'fault')} {'is' if needed == 1 else 'are'} enough:",
     )
     for fault in result.faults:
-        _say(console, f"{fault.at:10.3f}  {fault_words(fault)}", "yellow")
+        _say(console, f"{fault.at:10.3f}  {fault_said(fault)}", "yellow")
 
 
 def plant(console: Console, needed: Plant) -> None:

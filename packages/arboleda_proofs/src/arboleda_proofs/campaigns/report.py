@@ -3,35 +3,52 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Sequence
 
 from rich.box import SIMPLE_HEAD
+from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from arboleda.model.counting import counted
+from arboleda_proofs.simulator.faults.titles import title
 from arboleda_proofs.simulator.findings import Finding
 
+from .screen import ends_of, say_of
 from .tally import Tally
 from .words import seeds, short
 
-ONE_COLUMN = 8  # kinds of faults; more are drawn in two
+Rows = Sequence[tuple[str, int]]
+
+WIDEST = 1000  # columns of characters
+ONE_COLUMN = 8  # kinds of faults; more are drawn in two, where there is room
 
 
-def tables(tally: Tally, end: Callable[[str], str]) -> Table:
-    """The tables of faults by kind and outcomes of tasks, side by side; `end` says an outcome."""
-    faults = sorted(tally.faults.items())
-    half = len(faults) if len(faults) <= ONE_COLUMN else (len(faults) + 1) // 2
+def tables(tally: Tally, console: Console) -> Table:
+    """The tables of faults by name and outcomes of tasks, side by side, in this console's language."""
+    say, end = say_of(console), ends_of(console)
+    faults = sorted((say(title(kind)), count) for kind, count in tally.faults.items())
     by_count = sorted(tally.outcomes.items(), key=lambda item: (-item[1], item[0]))
     outcomes = [(end(name), count) for name, count in by_count]
-    parts = [("fault", faults[:half]), ("fault", faults[half:]), ("task outcome", outcomes)]
-    drawn = [_counts(heading, counts) for heading, counts in parts if counts]
+    half = (len(faults) + 1) // 2
+    in_two = _beside(faults[:half], faults[half:], outcomes)
+    as_wide_as_it_is = console.options.update(max_width=WIDEST)
+    if (
+        len(faults) > ONE_COLUMN
+        and console.measure(in_two, options=as_wide_as_it_is).maximum <= console.width
+    ):
+        return in_two
+    return _beside(faults, [], outcomes)
+
+
+def _beside(first: Rows, second: Rows, outcomes: Rows) -> Table:
+    parts = (("fault", first), ("fault", second), ("task outcome", outcomes))
     beside = Table.grid(padding=(0, 2, 0, 0))
-    beside.add_row(*drawn)
+    beside.add_row(*(_counts(heading, counts) for heading, counts in parts if counts))
     return beside
 
 
-def _counts(heading: str, counts: Iterable[tuple[str, int]]) -> Table:
+def _counts(heading: str, counts: Rows) -> Table:
     drawn = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
     drawn.add_column(heading, no_wrap=True)
     drawn.add_column("count", justify="right", no_wrap=True)

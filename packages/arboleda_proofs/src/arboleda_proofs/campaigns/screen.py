@@ -8,6 +8,7 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any
 
 from rich.console import Console
+from rich.measure import Measurement
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Column, Table
 from rich.text import Text
@@ -40,6 +41,10 @@ class SpeakingConsole(Console):
 
     def print(self, *objects: Any, **how: Any) -> None:
         super().print(*map(self._spoken, objects), **how)
+
+    def measure(self, shown: Any, **how: Any) -> Measurement:
+        """The columns of characters that something takes as it is printed, in the language."""
+        return super().measure(self._spoken(shown), **how)
 
     def _spoken(self, shown: Any) -> Any:
         if isinstance(shown, Text) and not shown.spans:

@@ -15,7 +15,7 @@ from arboleda_proofs.simulator.run import Result
 from . import breach_text, report, summary
 from .campaign import Campaign, SoFar, Tick
 from .request import Request
-from .screen import FIRST_S, ends_of, progress
+from .screen import FIRST_S, progress
 from .search import ShrunkBreach, shrunk
 from .setting import rules
 from .tally import Tally
@@ -132,7 +132,7 @@ class SeedCampaign:
     def _report(self) -> None:
         tally = self._tally
         if tally.rows:
-            self._console.print(report.tables(tally, ends_of(self._console)))
+            self._console.print(report.tables(tally, self._console))
             self._say(f"{report.amount(tally)} {report.speed(tally, self._elapsed_s)}")
         for seed, result in sorted(tally.broken.items()):
             if self.shrunk is not None and self.shrunk.result.seed == seed:

@@ -23,13 +23,6 @@ def short(number: int) -> str:
     return str(number)
 
 
-def fault_words(fault: Fault) -> str:
-    """The fault with its target and its duration; without its time."""
-    much = f"{fault.amount:g}" if fault.amount else ""
-    lasting = f"for {fault.seconds:.3f} s" if fault.seconds else ""
-    return "  ".join(part for part in (fault.kind, fault.target, fault.word, much, lasting) if part)
-
-
 def fault_said(fault: Fault) -> str:
     """The fault by its name for people: whom it befalls, how, and for how long; without its time."""
     forms = (

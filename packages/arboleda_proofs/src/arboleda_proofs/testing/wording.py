@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from arboleda.model.counting import counted
 from arboleda.views import view
-from arboleda_proofs.campaigns.words import fault_words
+from arboleda_proofs.campaigns.words import fault_said
 from arboleda_proofs.simulator.invariants import Invariant
 from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda_proofs.simulator.run import Result
@@ -32,7 +32,7 @@ def seed(result: Result, seeds: Seeds, injected: int) -> str:
     again = f"sim.seeds(1, first={result.seed}, cycles={seeds.cycles}, faults={seeds.level!r})"
     few = len(result.faults)
     enough = [f"{few} of {counted(injected, 'fault')} {'is' if few == 1 else 'are'} enough:"] if few else []
-    listed = [f"{fault.at:10.3f}  {fault_words(fault)}" for fault in result.faults]
+    listed = [f"{fault.at:10.3f}  {fault_said(fault)}" for fault in result.faults]
     return "\n".join(
         [
             f"seed {result.seed}: {_broken(result.broken, result.seconds, seeds.invariants)}",

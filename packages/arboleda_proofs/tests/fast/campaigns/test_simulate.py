@@ -142,7 +142,7 @@ def test_a_breach_is_told_with_the_one_fault_it_takes(
         "must hold  Nothing reboots, ever.",
         "was seen   ra_1 rebooted",
         "1 of 7 faults is enough:",
-        "33.250  reboot  ra_1",
+        "33.250  ra_1: Reboot its board",
         f"arboleda simulate --seed 3 --cycles 1 --faults {faults} --plant {plant} --trace",
         f"arboleda simulate --seed 3 --faults {out} --plant {plant} --trace",
         "seed 4 breaks unbooted",
