@@ -29,7 +29,7 @@ def test_it_says_what_check_says_and_what_it_read() -> None:
     assert found.unstated == draft_check.check(FILES, plant).unstated != ()
     wrong = {**CONTENTS, "plant.yaml": CONTENTS["plant.yaml"].replace(b"model: scara", b"model: scora")}
     found = process.check(PlantFiles(plant="plant.yaml", contents=wrong), plant)
-    assert found.problems[0].startswith(f"{plant}:") and "scora" in found.problems[0]
+    assert found.problems[0].startswith("plant.yaml:") and "scora" in found.problems[0]
 
 
 @contextmanager

@@ -286,7 +286,7 @@ def test_the_second_person_sees_who_edits_and_takes_over_and_takes_an_offer_and_
     me.page.wait_for_selector("[aria-label='tray loader']", state="detached")
     me.panel("draft")
     me.press(OFFER)
-    me.sees("#make-changes", "cells.cell.places: new, {feed: {supply: true}}")
+    me.sees("#make-changes", "cell cell, places: new, feed (supply)")
     me.sees("#make-problems", "rest ends with a part that jaw still holds")
     assert "nothing is known" not in me.page.text_content("#make-offers")
     made = httpx.get(f"{address}/api/draft", timeout=PATIENCE_S).json()["values"]
@@ -320,7 +320,7 @@ def test_an_offer_that_is_pressed_just_as_the_draft_changes_counts(
     }
     httpx.post(f"{address}/api/draft/set", json=step, timeout=PATIENCE_S).raise_for_status()
     me.press(OFFER)
-    me.sees("#make-changes", "cells.cell.places: new, {feed: {supply: true}}")
+    me.sees("#make-changes", "cell cell, places: new, feed (supply)")
     me.sees("#make-changes", "target feed of loader: from")
     me.go()
 
@@ -342,7 +342,7 @@ def test_a_device_is_changed_and_taken_away_and_a_cell_made_and_the_form_says_wh
     me.press("[data-make=add_device]")
     me.sees("#make-note", "lamp is changed in the draft")
     me.panel("draft")
-    me.sees("#make-changes", "kind lamp, shine.with: new, {on: bool}")
+    me.sees("#make-changes", "kind lamp, shine.with: new, on bool")
     me.sees("#make-changes", "kind lamp, shine.sets.lit: from true to $on")
     me.panel("device")
     fact = "#make-facts .make-form >> nth=0 >> [data-key=type]"

@@ -9,6 +9,7 @@ import pytest
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import draft_check
 from arboleda.plant_file.changes import changes
+from arboleda.plant_file.draft_check import Shade
 from arboleda.plant_file.loader import load_with_files
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda_make.drafts.draft import MOST_BYTES, MOST_STEPS, Draft, draft_of
@@ -32,8 +33,8 @@ def words(draft: Draft) -> list[str]:
 def test_a_target_is_changed_with_its_line_alone_and_said_with_both_poses(empty: Draft) -> None:
     draft = empty.with_value(VISE, POSE)
     assert words(draft) == [
-        "cell cell, target vise of loader: from {deg: [-75.52, -60.58], mm: 80, approach_mm: 40}"
-        " to {deg: [-75.5, -60.58], mm: 80, approach_mm: 40}"
+        "cell cell, target vise of loader: from deg (-75.52, -60.58), mm 80, approach_mm 40"
+        " to deg (-75.5, -60.58), mm 80, approach_mm 40"
     ]
     rows = zip(
         *(each.contents["plant.yaml"].splitlines() for each in (empty.files, draft.files)), strict=True
@@ -44,8 +45,8 @@ def test_a_target_is_changed_with_its_line_alone_and_said_with_both_poses(empty:
 def test_a_target_is_new_and_another_gone(empty: Draft) -> None:
     draft = empty.with_value((*VISE[:3], "tray"), {"loader": {"deg": [1, 2]}}).without((*VISE[:3], "done"))
     assert words(draft) == [
-        "cell cell, target done of loader: gone, it was {deg: [-21.31, 107.91], mm: 80, approach_mm: 40}",
-        "cell cell, target tray of loader: new, {deg: [1, 2]}",
+        "cell cell, target done of loader: gone, it was deg (-21.31, 107.91), mm 80, approach_mm 40",
+        "cell cell, target tray of loader: new, deg (1, 2)",
     ]
 
 
@@ -65,7 +66,7 @@ def test_a_device_its_kind_and_a_cell_are_said_without_their_text(empty: Draft) 
     more = draft_of(draft.files).with_value(("kinds", "lamp", "verbs", "shine", "takes_s"), 2)
     assert words(more.with_value((*place, "evidence"), "state").without((*place, "driver"))) == [
         "kind lamp, shine.takes_s: new, 2",
-        "cell cell, driver of lamp: gone, it was {modbus: {}}",
+        "cell cell, driver of lamp: gone, it was modbus",
         "cell cell, evidence of lamp: new, state",
     ]
     gone = draft_of(draft.files).without(place).without(("kinds", "lamp"))
@@ -80,7 +81,21 @@ def test_a_device_its_kind_and_a_cell_are_said_without_their_text(empty: Draft) 
     [
         (b"a: 1\nb: {c: 2}\n", b"# why\na: 1\nb:\n  c: 2\n", []),
         (b"a: 1\n", b"a: 2\n", ["a: from 1 to 2"]),
-        (b"a: [1]\n", b"b: x y\n", ["a: gone, it was [1]", 'b: new, "x y"']),
+        (b"a: [1]\n", b"b: x y\n", ["a: gone, it was 1", "b: new, x y"]),
+        (b"a: [b, c]\n", b"a: [c]\n", ["a: gone, b"]),
+        (b"a: [b, c]\n", b"a: [c, d]\n", ["a: from b, c to c, d"]),
+        (b"a: [b, c]\n", b"a: [c, b]\n", ["a: from b, c to c, b"]),
+        (b"a: [b]\n", b"a: []\n", ["a: gone, b"]),
+        (
+            b"zones: {a: {}}",
+            b"zones: {a: {poses: [], b: {m: {d: o}}}}",
+            ["zone a, poses: new, nothing", "zone a, b: new, m (d o)"],
+        ),
+        (
+            b"cells: {a: {}}",
+            b"cells: {a: {places: {b: {supply: true, holds: 2}}}}",
+            ["cell a, places: new, b (supply, holds 2)"],
+        ),
         (b"a: 1\n", b"a: [\n", ["p.yaml: changed"]),
         (b"a: 1\n", b"a: " + b"x" * 500, ["a: from 1 to " + "x" * 37 + "... (500 characters)"]),
     ],
@@ -123,7 +138,7 @@ def test_undo_and_redo_lead_through_all_steps(empty: Draft) -> None:
 
 def test_a_step_after_an_undo_forgets_what_was_undone(empty: Draft) -> None:
     other = empty.with_value(VISE, POSE).undo().with_value(("timing", "dwell_s"), 1)
-    assert words(other) == ["timing: new, {dwell_s: 1}"]
+    assert words(other) == ["timing: new, dwell_s 1"]
     with pytest.raises(EditRefused, match="nothing to redo"):
         other.redo()
 
@@ -173,7 +188,7 @@ def test_python_that_is_used_stays_used(empty: Draft) -> None:
     text = empty.files.contents["plant.yaml"].replace(b"[tend.xml]", b"[recipes.py, tend.xml]")
     contents = {**empty.files.contents, "plant.yaml": text}
     draft = draft_of(PlantFiles(plant="plant.yaml", contents=contents)).with_value(("uses", 2), "more.xml")
-    assert words(draft) == ["uses: from [recipes.py, tend.xml] to [recipes.py, tend.xml, more.xml]"]
+    assert words(draft) == ["uses: new, more.xml"]
 
 
 def test_a_file_of_trees_is_not_too_large_and_a_gone_one_was_there(empty: Draft) -> None:
@@ -198,6 +213,15 @@ def test_what_check_refuses_is_named_by_the_real_file_with_its_line(empty: Draft
     line = 1 + [each.strip()[:4] for each in plant.read_bytes().decode().splitlines()].index("vise")
     assert found.plant is None
     assert found.problems[0].startswith(f"{plant}:{line}:") and "500" in found.problems[0]
+
+
+def test_what_check_refuses_can_be_named_as_the_draft_names_it(tmp_path: Path) -> None:
+    (tmp_path / "cells").mkdir()
+    plant = tmp_path / "cells/plant.yaml"
+    plant.write_text("cells: {a: {devices: {b: c}}}\n")
+    files = PlantFiles(plant="cells/plant.yaml", contents={"cells/plant.yaml": plant.read_bytes()})
+    (problem, *_) = draft_check.check(files, plant, Shade.shortened).problems
+    assert problem.startswith("cells/plant.yaml:1:")
 
 
 def test_a_mistake_in_a_tree_is_named_by_the_real_file(empty: Draft) -> None:

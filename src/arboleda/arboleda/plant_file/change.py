@@ -12,6 +12,8 @@ from .yaml_marks import clipped
 LONGEST = 120  # characters of a value
 CELLS, DEVICES, KINDS, TARGETS = "cells", "devices", "kinds", "targets"
 FACTS, VERBS = "facts", "verbs"
+OF_ONE = {CELLS: "cell", KINDS: "kind", "zones": "zone", "shared": "shared device"}
+NOTHING = "nothing"  # an empty value
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,11 +76,8 @@ class Change:
             devices = _names(value, DEVICES)
             return f"new cell {name[0]} with {devices}" if devices else f"new cell {name[0]}"
         facts, verbs = _names(value, FACTS), _names(value, VERBS)
-        return (
-            f"new kind {name[0]}: says {facts}; does {verbs}"
-            if facts
-            else f"new kind {name[0]}: does {verbs}"
-        )
+        says = "; ".join([*([f"says {facts}"] if facts else []), *([f"does {verbs}"] if verbs else [])])
+        return f"new kind {name[0]}: {says}" if says else f"new kind {name[0]}"
 
     def _new_device(self, device: dict[Any, Any]) -> str:
         _, cell, _, role = self.place
@@ -99,9 +98,11 @@ class Change:
             return f"cell {place[1]}, target {place[3]} of {place[4]}"
         if len(place) > 4 and (place[0], place[2]) == (CELLS, DEVICES):
             return f"cell {place[1]}, {dotted(self.place[4:])} of {place[3]}"
-        if len(place) > 3 and place[0] == KINDS:
-            return f"kind {place[1]}, {dotted(self.place[3:])}"
-        return dotted(self.place)
+        one = OF_ONE.get(place[0])
+        if one is None or len(place) < 2:
+            return dotted(self.place)
+        inside = self.place[3:] if one == OF_ONE[KINDS] and len(place) > 3 else self.place[2:]
+        return f"{one} {place[1]}, {dotted(inside)}" if inside else f"{one} {place[1]}"
 
     @property
     def _how(self) -> str:
@@ -111,7 +112,19 @@ class Change:
             return "gone" if self.before is None else f"gone, it was {_short(self.before)}"
         if self.before is None and self.after is None:
             return "changed"
+        more, less = _only_in(self.after, self.before), _only_in(self.before, self.after)
+        if more and not less:
+            return f"new, {_short(more)}"
+        if less and not more:
+            return f"gone, {_short(less)}"
         return f"from {_short(self.before)} to {_short(self.after)}"
+
+
+def _only_in(value: Any, other: Any) -> list[Any]:
+    """What a list has and another list has not; nothing where one of them is no list."""
+    if not isinstance(value, list) or not isinstance(other, list):
+        return []
+    return [each for each in value if each not in other]
 
 
 def _names(value: dict[Any, Any], key: str) -> str:
@@ -121,5 +134,25 @@ def _names(value: dict[Any, Any], key: str) -> str:
 
 
 def _short(value: Any) -> str:
-    text = flow(value)
+    text = _as_words(value)
     return text if len(text) <= LONGEST else f"{clipped(text)} ({len(text)} characters)"
+
+
+def _as_words(value: Any, *, inside: bool = False) -> str:
+    """A value without the signs of YAML: `deg (10, -5.5), mm 0`; `supply` for `supply: true`."""
+    if isinstance(value, dict):
+        words = [
+            f"{key}" if _says_no_more(each) else f"{key} {_as_words(each, inside=True)}"
+            for key, each in value.items()
+        ]
+    elif isinstance(value, list):
+        words = [_as_words(each, inside=True) for each in value]
+    else:
+        return value if isinstance(value, str) and value else flow(value)
+    text = ", ".join(words) or NOTHING
+    return f"({text})" if inside else text
+
+
+def _says_no_more(value: Any) -> bool:
+    """True for a value that adds nothing to its key."""
+    return value is True or value is None or value == {}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,17 +36,23 @@ class DraftCheck:
 class Shade:
     """A folder like that of a plant file, in which some files are others; `plant_file` is the file to read.
 
-    `named` has by each folder of the shade, which problems name, the real folder.
+    `named` has by each folder of the shade, which problems name, the real folder. `root` is the folder of the
+    shade from which the draft's paths count.
     """
 
     plant_file: Path
     named: Mapping[str, str]
+    root: Path
 
     def renamed(self, line: str) -> str:
         """The line with the paths of the real files."""
         for made, real in self.named.items():
             line = line.replace(f"{made}{os.sep}", "" if real == os.curdir else f"{real}{os.sep}")
         return line
+
+    def shortened(self, line: str) -> str:
+        """The line with paths as the draft has them: `plant.yaml:12:3`."""
+        return line.replace(f"{self.root}{os.sep}", "")
 
 
 @contextmanager
@@ -57,15 +63,16 @@ def shaded(files: PlantFiles, plant_file: Path) -> Iterator[Shade]:
         shadow = Path(made) / "plant"
         _shade(shadow, root.absolute(), files.contents)
         there = shadow / files.plant
-        yield Shade(
-            plant_file=there, named={str(there.parent): str(plant_file.parent), str(shadow): str(root)}
-        )
+        named = {str(there.parent): str(plant_file.parent), str(shadow): str(root)}
+        yield Shade(plant_file=there, named=named, root=shadow)
 
 
-def check(files: PlantFiles, plant_file: Path) -> DraftCheck:
+def check(
+    files: PlantFiles, plant_file: Path, named: Callable[[Shade, str], str] = Shade.renamed
+) -> DraftCheck:
     """The result of checking `files` as if they were in the folder of `plant_file`, beside its other files.
 
-    Problems name each file by the path that it would have. Nothing is written into that folder. Recipes in
+    Problems name each file by the path that it would have, or as `named` has it. Nothing is written into that folder. Recipes in
     Python run in a process of their own, as in `arboleda check`.
     """
     with shaded(files, plant_file) as shade:
@@ -73,12 +80,11 @@ def check(files: PlantFiles, plant_file: Path) -> DraftCheck:
             plant, read = loader.load_with_files(shade.plant_file)
             warnings, lacks = plant_check.warnings(plant), unstated(plant)
         except ConfigError as error:
-            return DraftCheck(problems=tuple(map(shade.renamed, error.problems)))
-        named = read if read.plant == files.plant else None  # absolute paths have other names here
+            return DraftCheck(problems=tuple(named(shade, each) for each in error.problems))
         return DraftCheck(
             plant=plant,
-            read=named,
-            warnings=tuple(map(shade.renamed, warnings)),
+            read=read if read.plant == files.plant else None,  # absolute paths have other names here
+            warnings=tuple(named(shade, each) for each in warnings),
             unstated=tuple(each for each in lacks if each.fits(files.contents[files.plant])),
         )
 

@@ -16,7 +16,7 @@ from arboleda.host.limits import give_way
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import draft_check
-from arboleda.plant_file.draft_check import DraftCheck
+from arboleda.plant_file.draft_check import DraftCheck, Shade
 from arboleda.plant_file.recipe_trial import PATH
 from arboleda.plant_file.unstated import Unstated
 
@@ -39,7 +39,7 @@ class CheckProcess:
         self._ended = False
 
     def check(self, files: PlantFiles, plant_file: Path) -> DraftCheck:
-        """The same as `draft_check.check`, without the plant. It waits; ArboledaError if no answer comes."""
+        """The same as `draft_check.check`, without the plant, and files named as in the draft. It waits; ArboledaError if no answer comes."""
         request = {"plant_file": str(plant_file), "plant": files.plant, "contents": texts(files.contents)}
         run = self._start()
         try:
@@ -81,7 +81,7 @@ def main() -> None:
     give_way(KINDNESS)
     request = json.load(sys.stdin)
     files = PlantFiles(plant=request["plant"], contents=from_texts(request["contents"]))
-    found = draft_check.check(files, Path(request["plant_file"]))
+    found = draft_check.check(files, Path(request["plant_file"]), Shade.shortened)
     read = None if found.read is None else texts(found.read.contents)
     lacks = [asdict(each) for each in found.unstated]
     answer = {"problems": found.problems, "warnings": found.warnings, "unstated": lacks, "read": read}

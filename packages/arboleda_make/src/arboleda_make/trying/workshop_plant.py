@@ -47,7 +47,7 @@ class WorkshopPlant:
             self._model, self._drivers = loader.load_with_drivers(shade.plant_file)
         except ConfigError as error:
             opened.close()
-            return tuple(map(shade.renamed, error.problems))
+            return tuple(map(shade.shortened, error.problems))
         self._open.close()
         self._open = opened
         return ()

@@ -35,7 +35,7 @@ class Errand:
         try:
             return loader.load_with_files(self.shade.plant_file)
         except ConfigError as error:
-            raise ArboledaError("\n".join(map(self.shade.renamed, error.problems))) from None
+            raise ArboledaError("\n".join(map(self.shade.shortened, error.problems))) from None
 
 
 def say(**what: Any) -> None:
