@@ -16,7 +16,9 @@ ROW = re.compile(r"\| ((?:`\w+`(?:, )?)+) \| ([^|]+) \| ", re.MULTILINE)
 FEW = 3  # kinds of a row whose names all stand there
 
 
-@pytest.mark.parametrize(("language", "page"), [("en", "test-your-plant.md"), ("es", "test-your-plant.es.md")])
+@pytest.mark.parametrize(
+    ("language", "page"), [("en", "test-your-plant.md"), ("es", "test-your-plant.es.md")]
+)
 def test_each_kind_of_fault_stands_beside_its_name(language: str, page: str) -> None:
     say = findings(language)
     listed = set()

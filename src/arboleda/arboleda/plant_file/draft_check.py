@@ -72,8 +72,8 @@ def check(
 ) -> DraftCheck:
     """The result of checking `files` as if they were in the folder of `plant_file`, beside its other files.
 
-    Problems name each file by the path that it would have, or as `named` has it. Nothing is written into that folder. Recipes in
-    Python run in a process of their own, as in `arboleda check`.
+    Problems name each file by the path that it would have, or as `named` has it. Nothing is written into that
+    folder. Recipes in Python run in a process of their own, as in `arboleda check`.
     """
     with shaded(files, plant_file) as shade:
         try:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from arboleda.dashboard.wording import REASONS
 from arboleda.web.languages import FIRST, contents
-from arboleda_proofs.campaigns.words import fault_words
+from arboleda_proofs.campaigns.words import fault_said
 from arboleda_proofs.simulator.faults import Fault
 
 LONG_S = 3600.0  # of a fault that outlasts every trial
@@ -82,7 +82,7 @@ def fault_is(fault: Fault) -> str:
         "refuses": f"{target} refuses its orders",
         "stale_fact": f"{target} goes on telling an old value",
     }
-    return sentences.get(fault.kind, " ".join(fault_words(fault).split()))
+    return sentences.get(fault.kind) or fault_said(fault)
 
 
 def befell(fault: Fault) -> str:

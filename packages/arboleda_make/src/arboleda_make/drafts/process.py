@@ -39,7 +39,9 @@ class CheckProcess:
         self._ended = False
 
     def check(self, files: PlantFiles, plant_file: Path) -> DraftCheck:
-        """The same as `draft_check.check`, without the plant, and files named as in the draft. It waits; ArboledaError if no answer comes."""
+        """The same as `draft_check.check`, without the plant, and files are named as in the draft. It waits;
+        ArboledaError if no answer comes.
+        """
         request = {"plant_file": str(plant_file), "plant": files.plant, "contents": texts(files.contents)}
         run = self._start()
         try:

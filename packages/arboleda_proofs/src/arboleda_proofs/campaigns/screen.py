@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any
 
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
 from rich.measure import Measurement
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Column, Table
@@ -42,9 +42,9 @@ class SpeakingConsole(Console):
     def print(self, *objects: Any, **how: Any) -> None:
         super().print(*map(self._spoken, objects), **how)
 
-    def measure(self, shown: Any, **how: Any) -> Measurement:
+    def measure(self, renderable: RenderableType, *, options: ConsoleOptions | None = None) -> Measurement:
         """The columns of characters that something takes as it is printed, in the language."""
-        return super().measure(self._spoken(shown), **how)
+        return super().measure(self._spoken(renderable), options=options)
 
     def _spoken(self, shown: Any) -> Any:
         if isinstance(shown, Text) and not shown.spans:
