@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import os
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,7 +14,7 @@ from arboleda.model.messages import TaskChanged, TaskState
 from arboleda_proofs.running import reports_part as reports
 from arboleda_proofs.running.reports_part import MOST_KEPT, MOST_WAITING, NoReport, ReportsPart
 
-from ..patience import PATIENCE_S
+from ..patience import until
 
 
 def ended(task: str, state: TaskState = TaskState.FAILED, request: str | None = None) -> TaskChanged:
@@ -24,13 +23,6 @@ def ended(task: str, state: TaskState = TaskState.FAILED, request: str | None = 
 
 def running(code: str) -> Callable[[str, Path, Path], list[str]]:
     return lambda task, state, target: [sys.executable, "-c", code, task, str(target)]
-
-
-def until(holds: Callable[[], bool]) -> None:
-    end = time.monotonic() + PATIENCE_S
-    while not holds():
-        assert time.monotonic() < end
-        time.sleep(0.01)
 
 
 NEVER_ENDS = "import os, signal, sys; print(os.getpid(), file=open(sys.argv[2], 'w', 1)); signal.pause()"

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ import httpx
 from arboleda.model.messages import ENDED, TaskState
 
 from ..patience import PATIENCE_S
+from ..patience import until as until
 from .conftest import Process, paths
 
 PARTS = ("cells", "tasks", "make", "draw", "events", "links", "settings")
@@ -53,14 +53,6 @@ def operate(page: Any, of: str = "") -> None:
         show(page, "cells")
     page.click(f"[data-menu='{of}'][aria-expanded=false]")
     page.wait_for_selector("#menu")
-
-
-def until(condition: Callable[[], bool]) -> None:
-    """Wait for what another process does."""
-    ends = time.monotonic() + PATIENCE_S
-    while not condition():
-        assert time.monotonic() < ends
-        time.sleep(0.1)
 
 
 def lead_out(address: str) -> bool:

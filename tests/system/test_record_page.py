@@ -154,7 +154,7 @@ def test_a_moment_is_reached_by_slider_keys_time_line_and_address(
     assert tab.text_content("article.cell.chosen .pill").startswith("idle")
     tab.select_option("#record-speed", "4")
     moved(tab, lambda: tab.click("#record-play"))
-    tab.wait_for_selector("g.node.current")
+    tab.wait_for_selector("g.node.current:visible")
     tab.click("#record-play")
     assert tab.text_content(AT) > first
     for event in WRONG_EVENTS:

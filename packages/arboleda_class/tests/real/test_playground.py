@@ -138,9 +138,10 @@ def test_on_a_laptop_faults_take_one_row_and_another_language_tells_of_the_same_
     assert page.get_attribute("#play-marks i", "title").endswith("loader: Lose the part")
     show(page, "events")
     page.wait_for_selector("[data-rows=events] :text('fault by hand')")
+    show(page, "settings")
     page.click("[data-language=es]")
     page.wait_for_selector("html[lang=es] [data-rows=happened] :text('Ahora no hay nada que perder')")
-    assert "plant=machine_tending" in page.url and "tab=events" in page.url
+    assert "plant=machine_tending" in page.url and "tab=settings" in page.url
 
 
 @pytest.mark.requires("axe_playwright_python")
