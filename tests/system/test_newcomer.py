@@ -22,7 +22,7 @@ pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")
 
 LAPTOP = {"viewport": {"width": 1280, "height": 800}, "locale": "en"}
 ARM, DOWN = "#teach-devices [aria-label='brazo {sign}']", "#teach-devices [aria-label='efector +']"
-MOST_PRESSES = 45
+MOST_PRESSES = 40
 LAMP = """
   lamp:
     facts: {lit: bool}
