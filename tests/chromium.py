@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
+
+from .patience import PATIENCE_MS
 
 # What each window makes beforehand though nobody sees it: the suggestions below its address bar, as pages of
 # their own, and a process for the page that may come next. Together they are more work than the page itself.
@@ -76,3 +78,21 @@ def leave(context: Any) -> None:
     """
     for page in context.pages:
         page.close()
+
+
+@contextmanager
+def people(browser: Any) -> Iterator[Callable[..., Any]]:
+    """`new(**context)`: an empty page of one more person; a script that fails fails the test."""
+    troubles: list[str] = []
+    with ExitStack() as opened:
+
+        def new(**context: Any) -> Any:
+            made = browser.new_context(**context)
+            opened.callback(leave, made)
+            page = made.new_page()
+            page.set_default_timeout(PATIENCE_MS)
+            page.on("pageerror", lambda error: troubles.append(f"{error} {error.stack}"))
+            return page
+
+        yield new
+    assert troubles == []

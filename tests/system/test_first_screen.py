@@ -10,8 +10,7 @@ import pytest
 from arboleda.cli.client import PlantClient
 from arboleda.model.messages import Verb
 
-from ..chromium import leave
-from ..patience import PATIENCE_MS
+from ..chromium import people
 from .page import connected, ended, lead_out, operate, running, until
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
@@ -56,22 +55,15 @@ def look(browser: Any, plant: tuple[str, PlantClient]) -> Iterator[Open]:
     """`look(**screen)`: the page as somebody sees it there; a script that fails fails the test."""
     address, _ = plant
     until(lambda: lead_out(address))
-    contexts: list[Any] = []
-    troubles: list[str] = []
+    with people(browser) as new:
 
-    def go(query: str = "", locale: str = "en", **screen: Any) -> Any:
-        contexts.append(browser.new_context(locale=locale, **screen))
-        page = contexts[-1].new_page()
-        page.set_default_timeout(PATIENCE_MS)
-        page.on("pageerror", lambda error: troubles.append(str(error)))
-        page.goto(f"{address}/{query}")
-        connected(page)
-        return page
+        def go(query: str = "", locale: str = "en", **screen: Any) -> Any:
+            page = new(locale=locale, **screen)
+            page.goto(f"{address}/{query}")
+            connected(page)
+            return page
 
-    yield go
-    for each in contexts:
-        leave(each)
-    assert troubles == []
+        yield go
 
 
 def wait_for_sight(page: Any, selector: str) -> None:

@@ -9,8 +9,7 @@ from typing import Any
 
 import pytest
 
-from ..chromium import leave
-from ..patience import PATIENCE_MS
+from ..chromium import people
 from .page import connected, running
 from .test_accessible import Eye
 
@@ -52,18 +51,12 @@ def asking(folder: Path) -> Iterator[str]:
 @pytest.fixture
 def page(browser: Any, tmp_path: Path) -> Iterator[Any]:
     """The cells on a phone, where ana is being asked; a script that fails fails the test."""
-    context = browser.new_context(viewport={"width": 360, "height": 740}, locale="en")
-    made = context.new_page()
-    troubles: list[str] = []
-    made.set_default_timeout(PATIENCE_MS)
-    made.on("pageerror", lambda error: troubles.append(str(error)))
-    with asking(tmp_path) as address:
+    with asking(tmp_path) as address, people(browser) as new:
+        made = new(viewport={"width": 360, "height": 740}, locale="en")
         made.goto(address)
         connected(made)
         made.wait_for_selector("[data-act=answer]")
         yield made
-        leave(context)
-    assert troubles == []
 
 
 def announced(page: Any) -> str:

@@ -18,8 +18,8 @@ from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import FOLDER, parts_in
 from arboleda.recorder.views import Views
 
-from ..chromium import leave
-from ..patience import PATIENCE_MS, PATIENCE_S
+from ..chromium import people
+from ..patience import PATIENCE_S
 from .conftest import Process, paths
 from .page import connected, running, show, until
 from .test_accessible import Eye, eye, views_from
@@ -84,14 +84,8 @@ def replay(plant: tuple[str, Path]) -> Iterator[str]:
 
 @pytest.fixture
 def tab(browser: Any) -> Iterator[Any]:
-    context = browser.new_context(locale="en")
-    page = context.new_page()
-    page.set_default_timeout(PATIENCE_MS)
-    broken: list[str] = []
-    page.on("pageerror", lambda error: broken.append(str(error)))
-    yield page
-    leave(context)
-    assert broken == []
+    with people(browser) as new:
+        yield new(locale="en")
 
 
 def look(tab: Any, address: str) -> None:

@@ -10,8 +10,7 @@ from typing import Any
 
 import pytest
 
-from ..chromium import leave
-from ..patience import PATIENCE_MS
+from ..chromium import people
 from .page import connected, running, show
 
 BENCH = Path(__file__).parents[2] / "examples" / "lab_bench" / "plant.yaml"
@@ -21,16 +20,11 @@ pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")
 @contextmanager
 def opened(browser: Any, address: str) -> Iterator[Any]:
     """The form of tasks; a script that fails fails the test."""
-    context = browser.new_context(viewport={"width": 360, "height": 740}, locale="es")
-    made = context.new_page()
-    troubles: list[str] = []
-    made.set_default_timeout(PATIENCE_MS)
-    made.on("pageerror", lambda error: troubles.append(str(error)))
-    made.goto(f"{address}/?tab=tasks")
-    connected(made)
-    yield made
-    leave(context)
-    assert troubles == []
+    with people(browser) as new:
+        page = new(viewport={"width": 360, "height": 740}, locale="es")
+        page.goto(f"{address}/?tab=tasks")
+        connected(page)
+        yield page
 
 
 def pressed(page: Any) -> list[str]:

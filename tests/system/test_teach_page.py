@@ -14,8 +14,8 @@ import yaml
 
 from arboleda.cli.new import write
 
-from ..chromium import leave
-from ..patience import PATIENCE_MS, PATIENCE_S
+from ..chromium import people
+from ..patience import PATIENCE_S
 from .page import connected, running, until
 from .test_accessible import Eye
 
@@ -48,23 +48,16 @@ def address(tmp_path_factory: pytest.TempPathFactory, folder: Path) -> Iterator[
 @pytest.fixture
 def screen(browser: Any, address: str) -> Iterator[Open]:
     """`screen()`: the page of another person; a script that fails fails the test."""
-    contexts: list[Any] = []
-    troubles: list[str] = []
+    with people(browser) as new:
 
-    def go(tab: str = "teach", language: str = "en") -> Any:
-        contexts.append(browser.new_context(**LAPTOP))
-        page = contexts[-1].new_page()
-        page.set_default_timeout(PATIENCE_MS)
-        page.on("pageerror", lambda error: troubles.append(str(error)))
-        page.goto(f"{address}/?tab={tab}&lang={language}")
-        connected(page)
-        return page
+        def go(tab: str = "teach", language: str = "en") -> Any:
+            page = new(**LAPTOP)
+            page.goto(f"{address}/?tab={tab}&lang={language}")
+            connected(page)
+            return page
 
-    yield go
-    for each in contexts:
-        leave(each)
+        yield go
     httpx.post(f"{address}/api/cells/cell/automatic", timeout=PATIENCE_S)
-    assert troubles == []
 
 
 def begin(page: Any, name: str = "Ana") -> None:

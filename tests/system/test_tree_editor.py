@@ -12,8 +12,8 @@ import pytest
 
 from arboleda_make.editing.tree_text import TreeText, walk
 
-from ..chromium import leave
-from ..patience import PATIENCE_MS, PATIENCE_S
+from ..chromium import people
+from ..patience import PATIENCE_S
 from .page import connected, running
 from .test_accessible import Eye
 
@@ -37,26 +37,19 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 @pytest.fixture
 def editor(browser: Any, address: str) -> Iterator[Open]:
     """`editor()`: the editor with the tree of the plant; a script that fails fails the test."""
-    contexts: list[Any] = []
-    troubles: list[str] = []
+    with people(browser) as new:
 
-    def go(**options: Any) -> Any:
-        since = forget_draft(address)
-        contexts.append(browser.new_context(**(options or LAPTOP)))
-        page = contexts[-1].new_page()
-        mine = {"arboleda_editor": EDITOR, "arboleda_mine": since}
-        page.add_init_script(f"Object.assign(sessionStorage, {json.dumps(mine)})")
-        page.set_default_timeout(PATIENCE_MS)
-        page.on("pageerror", lambda error: troubles.append(str(error)))
-        page.goto(f"{address}/?tab=draw")
-        connected(page)
-        page.wait_for_selector("#draw-rows [data-path='7.2']")
-        return page
+        def go(**options: Any) -> Any:
+            since = forget_draft(address)
+            page = new(**(options or LAPTOP))
+            mine = {"arboleda_editor": EDITOR, "arboleda_mine": since}
+            page.add_init_script(f"Object.assign(sessionStorage, {json.dumps(mine)})")
+            page.goto(f"{address}/?tab=draw")
+            connected(page)
+            page.wait_for_selector("#draw-rows [data-path='7.2']")
+            return page
 
-    yield go
-    for each in contexts:
-        leave(each)
-    assert troubles == []
+        yield go
 
 
 def forget_draft(address: str) -> str:
@@ -237,10 +230,8 @@ def test_by_touch_a_node_is_dragged_at_its_grip(editor: Open) -> None:
 
 
 def test_a_recipe_in_python_is_copied_as_a_tree_of_the_draft_and_opens(browser: Any, tmp_path: Path) -> None:
-    with running(tmp_path, "--plant", str(LAB_BENCH)) as address:
-        context = browser.new_context(**LAPTOP)
-        page = context.new_page()
-        page.set_default_timeout(PATIENCE_MS)
+    with running(tmp_path, "--plant", str(LAB_BENCH)) as address, people(browser) as new:
+        page = new(**LAPTOP)
         page.goto(f"{address}/?tab=draw")
         connected(page)
         page.click("#draw-python-box summary")
@@ -258,7 +249,6 @@ def test_a_recipe_in_python_is_copied_as_a_tree_of_the_draft_and_opens(browser: 
         page.click("[data-copy-recipe=incubate]")
         page.wait_for_selector(f"#part-draw {row('1.0.7')}")
         assert page.input_value("#draw-file") == "incubate_tree"
-        leave(context)
 
 
 @pytest.mark.requires("axe_playwright_python")

@@ -6,7 +6,7 @@ import math
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -26,8 +26,8 @@ from arboleda.wire.topics import Channel
 from arboleda.wire.values import Telemetry
 from arboleda_proofs.testing import shipped
 
-from ..chromium import FEW_FRAMES, browsers, leave
-from ..patience import PATIENCE_MS, PATIENCE_S
+from ..chromium import FEW_FRAMES, browsers, people
+from ..patience import PATIENCE_S
 from ..unit.description import drawn
 from ..unit.kinds.test_places import PLANT as PARTS_AT_PLACES
 from ..unit.kinds.test_places import written
@@ -147,16 +147,11 @@ def launched() -> Iterator[Callable[..., Any]]:
 @contextmanager
 def browsing(browser: Any) -> Iterator[Any]:
     """`open(address)`: a page of a person of its own; a script that fails fails the test."""
-    troubles: list[str] = []
-    with ExitStack() as opened:
+    with people(browser) as new:
 
         def go(address: str, part: str = "cells", **more: Any) -> Any:
-            context = browser.new_context(**(COARSE | more))
-            opened.callback(leave, context)
-            context.add_init_script(FEW_FRAMES)
-            page = context.new_page()
-            page.set_default_timeout(PATIENCE_MS)
-            page.on("pageerror", lambda error: troubles.append(str(error)))
+            page = new(**(COARSE | more))
+            page.context.add_init_script(FEW_FRAMES)
             page.goto(f"{address}/?tab={part}")
             page.wait_for_function("document.getElementById('connection')?.hidden")
             if part == "cells":
@@ -166,7 +161,6 @@ def browsing(browser: Any) -> Iterator[Any]:
             return page
 
         yield go
-    assert troubles == []
 
 
 @pytest.fixture(scope="module")

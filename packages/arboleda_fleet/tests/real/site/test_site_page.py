@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.chromium import leave
+from tests.chromium import people
 from tests.patience import PATIENCE_MS
 from tests.system.conftest import Process, paths
 from tests.system.page import connected, running, until
@@ -44,16 +44,11 @@ def site(state: Path) -> Iterator[str]:
 @pytest.fixture
 def page(browser: Any, site: str) -> Iterator[Any]:
     """A phone in Spanish; a script that fails fails the test."""
-    context = browser.new_context(viewport={"width": 360, "height": 740}, locale="es")
-    made = context.new_page()
-    troubles: list[str] = []
-    made.set_default_timeout(PATIENCE_MS)
-    made.on("pageerror", lambda error: troubles.append(str(error)))
-    made.goto(site)
-    connected(made)
-    yield made
-    leave(context)
-    assert troubles == []
+    with people(browser) as new:
+        made = new(viewport={"width": 360, "height": 740}, locale="es")
+        made.goto(site)
+        connected(made)
+        yield made
 
 
 def row(name: str, words: str) -> str:
