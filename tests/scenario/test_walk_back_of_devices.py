@@ -347,9 +347,9 @@ def led_out(rig: Rig) -> list[str]:
         ("loader", 4.5, ["home loader", "abandon tending"]),
         ("loader", 9.3, ["release jaw", "home loader", "abandon tending", "release mill"]),
         ("loader", 12.3, ["home loader", "abandon tending", "release mill"]),
-        ("loader", 14.1, ["free mill", "home loader", "abandon tending", "release mill"]),
+        ("loader", 14.1, ["do mill", "home loader", "abandon tending", "release mill"]),
         ("tender", 9.3, ["release jaw", "home loader", "home tender", "abandon tending", "release mill"]),
-        ("tender", 34.0, ["free mill", "home tender", "abandon tending", "release mill"]),
+        ("tender", 34.0, ["do mill", "home tender", "abandon tending", "release mill"]),
     ],
 )
 def test_an_arm_that_boots_before_its_cut_off_task_goes_on_is_led_out_by_advice(

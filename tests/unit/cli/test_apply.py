@@ -58,7 +58,7 @@ def test_what_changed_is_shown_before_anything_is_kept(plant: Path) -> None:
     run(plant, "apply", "--yes")
     change(plant, "takes_s: 20", "takes_s: 25")
     refused = run(plant, "apply", says="n\n")
-    assert refused.exit_code == 1 and "kinds.mill.verbs.run.takes_s: from 20 to 25" in refused.output
+    assert refused.exit_code == 1 and "kind mill, run.takes_s: from 20 to 25" in refused.output
     assert "takes_s" not in run(plant, "apply", "--list").output
     assert "version 2 is kept" in run(plant, "apply", says="y\n").output
     assert "from 20 to 25" in run(plant, "apply", "--list").output
