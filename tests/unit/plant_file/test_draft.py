@@ -85,6 +85,8 @@ def test_a_device_its_kind_and_a_cell_are_said_without_their_text(empty: Draft) 
         (b"a: [b, c]\n", b"a: [c]\n", ["a: gone, b"]),
         (b"a: [b, c]\n", b"a: [c, d]\n", ["a: from b, c to c, d"]),
         (b"a: [b, c]\n", b"a: [c, b]\n", ["a: from b, c to c, b"]),
+        (b"a: [b, c]\n", b"a: [c, b, d]\n", ["a: from b, c to c, b, d"]),
+        (b"a: [b, c]\n", b"a: [b, c, c, d]\n", ["a: from b, c to b, c, c, d"]),
         (b"a: [b]\n", b"a: []\n", ["a: gone, b"]),
         (
             b"zones: {a: {}}",

@@ -112,19 +112,20 @@ class Change:
             return "gone" if self.before is None else f"gone, it was {_short(self.before)}"
         if self.before is None and self.after is None:
             return "changed"
-        more, less = _only_in(self.after, self.before), _only_in(self.before, self.after)
-        if more and not less:
+        more, less = _added(self.before, self.after), _added(self.after, self.before)
+        if more:
             return f"new, {_short(more)}"
-        if less and not more:
+        if less:
             return f"gone, {_short(less)}"
         return f"from {_short(self.before)} to {_short(self.after)}"
 
 
-def _only_in(value: Any, other: Any) -> list[Any]:
-    """What a list has and another list has not; nothing where one of them is no list."""
-    if not isinstance(value, list) or not isinstance(other, list):
+def _added(value: Any, longer: Any) -> list[Any]:
+    """The entries that a longer list adds to a list whose entries and their order it keeps; else none."""
+    if not isinstance(value, list) or not isinstance(longer, list):
         return []
-    return [each for each in value if each not in other]
+    is_kept = [each for each in longer if each in value] == value
+    return [each for each in longer if each not in value] if is_kept else []
 
 
 def _names(value: dict[Any, Any], key: str) -> str:

@@ -17,11 +17,13 @@ import pytest
 from arboleda.cli.main import main
 from arboleda.model.plant_model import Evidence
 from arboleda.plant_file import loader
-from arboleda_proofs.campaigns import screen, setting
+from arboleda_proofs.campaigns import report, screen, setting
 from arboleda_proofs.campaigns.request import Request, shared
 from arboleda_proofs.campaigns.seed_campaign import SeedCampaign
+from arboleda_proofs.campaigns.tally import Tally
 from arboleda_proofs.simulator import judged
 from arboleda_proofs.simulator.faults import KINDS
+from arboleda_proofs.simulator.faults.titles import TITLES
 from arboleda_proofs.simulator.invariants import Invariant
 from arboleda_proofs.simulator.invariants.invariant import Look, Trigger, invariant
 from arboleda_proofs.testing.storage_layout import StorageLayout
@@ -432,3 +434,18 @@ def test_the_shared_plant_is_what_the_shipped_one_is_not() -> None:
     assert not all(cell.drive_to_start for cell in cells) and not all(arm.queue_triggers for arm in arms)
     assert Evidence.JOINTS in {robot.evidence for robot in plant.robots.values()}
     assert any(arm.piece_on_change for arm in arms) and any(arm.home_at_start for arm in arms)
+
+
+@pytest.mark.parametrize(("language", "width", "columns"), [("en", 140, 2), ("en", 80, 1), ("es", 80, 1)])
+def test_names_of_faults_are_whole_in_as_many_columns_as_there_is_room_for(
+    plant: Path, capsys: pytest.CaptureFixture[str], language: str, width: int, columns: int
+) -> None:
+    console = screen.console(language=language)
+    console.width = width
+    tally = Tally(setting=Request(plant=plant, seeds=1).setting)
+    tally.faults.update([*TITLES][:10])
+    tally.outcomes["done"] = 1
+    console.print(report.tables(tally, console))
+    said = capsys.readouterr().out
+    assert all(screen.say_of(console)(each) in said for each in [*TITLES.values()][:10])
+    assert said.count({"en": " fault ", "es": " fallo "}[language]) == columns
