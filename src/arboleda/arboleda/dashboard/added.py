@@ -12,6 +12,7 @@ from fastapi import FastAPI
 
 from arboleda.host.packages import package_of, registered
 from arboleda.web.access.auth import Role
+from arboleda.web.package_routes import guarded
 
 from .asset_files import Assets
 from .body import Parts
@@ -82,7 +83,9 @@ class AddedParts:
         for package, part in [*self._parts]:
             try:
                 if part.serve is not None:
-                    part.serve(server, plant)
+                    beside = FastAPI(openapi_url=None)
+                    part.serve(beside, plant)
+                    server.router.routes += guarded(beside.router.routes)
             except Exception as error:  # noqa: BLE001 - whatever a package does, the page is shown
                 self._leave_out(package, error)
 

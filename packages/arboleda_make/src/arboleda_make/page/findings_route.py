@@ -8,13 +8,14 @@ from fastapi.responses import JSONResponse
 
 from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.shell import language_of
-from arboleda.web.access.auth import require
+from arboleda.web.access.auth import Role
+from arboleda.web.access.needs import needs
 from arboleda.web.schema.bodies import FindingLines
 from arboleda.web.schema.queries import read_body
 from arboleda_make.trying.api import MakeApi
 
 PATH = "/findings.json"
-MAY = "reading what was found in a draft"
+OPERATORS = [needs(Role.OPERATOR, "reading what was found in a draft")]
 NO_DRAFT = "This plant has no draft."
 
 
@@ -22,7 +23,6 @@ def serve(server: FastAPI, plant: PageApi) -> None:
     """Add the route to the server of a plant."""
 
     async def findings(request: Request) -> JSONResponse:
-        require(request.scope["arboleda.role"], MAY)
         make = plant.ask(MakeApi)
         if make is None:
             raise HTTPException(404, NO_DRAFT)
@@ -31,4 +31,4 @@ def serve(server: FastAPI, plant: PageApi) -> None:
             {"lines": await run_in_threadpool(make.translate, language_of(request), asked.lines)}
         )
 
-    server.add_api_route(PATH, findings, methods=["POST"], include_in_schema=False)
+    server.add_api_route(PATH, findings, methods=["POST"], dependencies=OPERATORS, include_in_schema=False)

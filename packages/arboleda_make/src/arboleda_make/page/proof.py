@@ -8,11 +8,12 @@ from fastapi.responses import HTMLResponse, Response
 
 from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.sandbox import POLICY
-from arboleda.web.access.auth import require
+from arboleda.web.access.auth import Role
+from arboleda.web.access.needs import needs
 from arboleda_make.trying.api import MakeApi
 
 PATH = "/proof"
-MAY = "looking at what was proved of a draft"
+OPERATORS = [needs(Role.OPERATOR, "looking at what was proved of a draft")]
 NONE = "Nothing of the draft has been proved yet."
 
 
@@ -20,7 +21,6 @@ def serve(server: FastAPI, plant: PageApi) -> None:
     """Answer `/proof`."""
 
     async def proof(request: Request) -> Response:
-        require(request.scope["arboleda.role"], MAY)
         make = plant.ask(MakeApi)
         file = None if make is None else await run_in_threadpool(make.proof_page)
         if file is None:
@@ -28,4 +28,4 @@ def serve(server: FastAPI, plant: PageApi) -> None:
         content = await run_in_threadpool(file.read_text, "utf-8")
         return HTMLResponse(content, headers={"content-security-policy": POLICY})
 
-    server.add_api_route(PATH, proof, include_in_schema=False)
+    server.add_api_route(PATH, proof, dependencies=OPERATORS, include_in_schema=False)

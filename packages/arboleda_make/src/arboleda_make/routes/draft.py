@@ -13,7 +13,8 @@ from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
 from arboleda.client.answers.drafts import AppliedDraft, CheckedDraft, DraftState, KeptDraft, TreesText
-from arboleda.web.access.auth import require
+from arboleda.web.access.auth import Role
+from arboleda.web.access.needs import needs
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
@@ -80,7 +81,7 @@ Body = TypeVar("Body", bound=_Request)
 
 def routes(side: PlantApi) -> APIRouter:
     """Register the routes."""
-    api = APIRouter(prefix="/api/draft")
+    api = APIRouter(prefix="/api/draft", dependencies=[needs(Role.OPERATOR, MAY)])
     _look(api, side)
     _edit(api, side)
     _keep(api, side)
@@ -91,24 +92,24 @@ def _look(api: APIRouter, side: PlantApi) -> None:
     @api.get("", **answering(DraftState, REFUSED))
     async def draft(request: Request) -> JSONResponse:
         """The editor of the draft of the plant's files, and its changes."""
-        return await _answered(_draft(side, request).state)
+        return await _answered(_draft(side).state)
 
     @api.get("/trees", **answering(TreesText, REFUSED))
     async def trees(request: Request, file: Annotated[str, Query(max_length=200)]) -> JSONResponse:
         """A file of trees as the draft has it."""
-        draft = _draft(side, request)
+        draft = _draft(side)
         return await _answered(lambda: draft.trees(file))
 
     @api.post("/check", **answering(CheckedDraft, REFUSED))
     async def check(request: Request) -> JSONResponse:
         """The findings of `arboleda check` on the draft; from a process of its own, within seconds."""
-        return await _answered(_draft(side, request).check)
+        return await _answered(_draft(side).check)
 
 
 def _edit(api: APIRouter, side: PlantApi) -> None:
     def route(path: str, model: type[Body], about: str, act: Callable[[DraftApi, Body], State]) -> None:
         async def step(request: Request) -> JSONResponse:
-            draft = _draft(side, request)
+            draft = _draft(side)
             body = read_body(await request.body(), model)
             return await _answered(lambda: act(draft, body))
 
@@ -146,14 +147,14 @@ def _keep(api: APIRouter, side: PlantApi) -> None:
     @api.post("/keep", **answering(KeptDraft, REFUSED, described_body(Keeping)))
     async def keep(request: Request) -> JSONResponse:
         """Check the draft, write it into the plant's files and keep a version, which the next start takes."""
-        draft = _draft(side, request)
+        draft = _draft(side)
         body = read_body(await request.body(), Keeping)
         return await _answered(lambda: draft.keep(body.editor, body.note))
 
     @api.post("/apply", **answering(AppliedDraft, REFUSED, described_body(Keeping)))
     async def apply(request: Request) -> JSONResponse:
         """The same, and put the version to work: a cell takes it once its task has ended."""
-        draft = _draft(side, request)
+        draft = _draft(side)
         body = read_body(await request.body(), Keeping)
         return await _answered(lambda: draft.apply(body.editor, body.note))
 
@@ -162,9 +163,8 @@ async def _answered(act: Callable[[], State]) -> JSONResponse:
     return PlainJson(await run_in_threadpool(act))
 
 
-def _draft(side: PlantApi, request: Request) -> DraftApi:
-    """The plant's draft for an operator; Forbidden for others, 404 if it has none."""
-    require(request.scope["arboleda.role"], MAY)
+def _draft(side: PlantApi) -> DraftApi:
+    """The plant's draft; 404 if it has none."""
     draft = side.ask(DraftApi)
     if draft is None:
         raise HTTPException(404, SHIPPED)

@@ -20,7 +20,8 @@ from arboleda.client.answers.proposals import (
     WholeProposal,
 )
 from arboleda.client.answers.tasks import Task
-from arboleda.web.access.auth import GIVE, PROPOSE, require
+from arboleda.web.access.auth import Role
+from arboleda.web.access.needs import needs
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel
 from arboleda.web.schema.plain_json import PlainJson, explained
@@ -29,7 +30,9 @@ from arboleda_make.proposals.api import ProposalsApi
 
 from .draft import REFUSED, SHIPPED, Key
 
-DECIDE = "deciding on a proposal"
+PROPOSE = [needs(Role.ASSISTANT, "proposing")]
+GIVE = [needs(Role.ASSISTANT, "giving a task as an assistant")]
+DECIDE = [needs(Role.OPERATOR, "deciding on a proposal")]
 Hash = Annotated[str, Path(pattern="^[0-9a-f]{64}$")]
 Word = Annotated[str, Field(pattern="^[a-z][a-z0-9_]{0,39}$")]
 Person = Annotated[str, Field(min_length=1, max_length=60)]
@@ -88,7 +91,7 @@ class AssistantTask(BodyModel):
 
 def routes(side: PlantApi) -> APIRouter:
     """Register the routes."""
-    api = APIRouter(prefix="/api")
+    api = APIRouter(prefix="/api", dependencies=PROPOSE)
     _look(api, side)
     _propose(api, side)
     _decide(api, side)
@@ -99,69 +102,81 @@ def _look(api: APIRouter, side: PlantApi) -> None:
     @api.get("/proposals", **answering(list[ProposalRow], REFUSED))
     async def proposals(request: Request) -> JSONResponse:
         """The proposals of assistants, the last first."""
-        return PlainJson(await run_in_threadpool(_desk(side, request, PROPOSE).listed))
+        return PlainJson(await run_in_threadpool(_desk(side).listed))
 
     @api.get("/proposals/base", **answering(ProposalBase, REFUSED))
     async def base(request: Request) -> JSONResponse:
         """Targets, kinds of devices and trees at work, on which a proposal can build."""
-        return PlainJson(await run_in_threadpool(_desk(side, request, PROPOSE).base))
+        return PlainJson(await run_in_threadpool(_desk(side).base))
 
     @api.get("/proposals/{hash}", **answering(WholeProposal, REFUSED))
     async def proposal(request: Request, hash: Hash) -> JSONResponse:
         """One proposal: its trees, what was proved and simulated of it, and what was decided."""
-        return PlainJson(await run_in_threadpool(_desk(side, request, PROPOSE).shown, hash))
+        return PlainJson(await run_in_threadpool(_desk(side).shown, hash))
 
 
 def _propose(api: APIRouter, side: PlantApi) -> None:
     @api.post("/proposals", **answering(ProposalAnswer, REFUSED, described_body(NewProposal)))
     async def propose(request: Request) -> JSONResponse:
         """Check content and keep it for a person to decide on; nothing of it is at work by that."""
-        desk, wanted = _desk(side, request, PROPOSE), read_body(await request.body(), NewProposal)
+        desk, wanted = _desk(side), read_body(await request.body(), NewProposal)
         values = [(each.place, each.value) for each in wanted.values]
         return PlainJson(await run_in_threadpool(desk.propose, {**wanted.model_dump(), "values": values}))
 
     @api.post("/proposals/{hash}/prove", **answering(RunState, REFUSED, described_body(ProofRequest)))
     async def prove(request: Request, hash: Hash) -> JSONResponse:
         """Begin to try every single fault at every kind of moment of it, in a process beside the plant."""
-        desk, wanted = _desk(side, request, PROPOSE), read_body(await request.body(), ProofRequest)
+        desk, wanted = _desk(side), read_body(await request.body(), ProofRequest)
         return PlainJson(await run_in_threadpool(desk.prove, hash, wanted.recipes, wanted.budget_s))
 
     @api.post("/proposals/{hash}/simulate", **answering(RunState, REFUSED, described_body(SimulationRequest)))
     async def simulate(request: Request, hash: Hash) -> JSONResponse:
         """Begin to run it on virtual devices with faults, in a process beside the plant."""
-        desk, wanted = _desk(side, request, PROPOSE), read_body(await request.body(), SimulationRequest)
+        desk, wanted = _desk(side), read_body(await request.body(), SimulationRequest)
         return PlainJson(await run_in_threadpool(desk.simulate, hash, wanted.seeds, wanted.cycles))
 
     @api.post("/proposals/{hash}/withdraw", **answering(ProposalRow, REFUSED))
     async def withdraw(request: Request, hash: Hash) -> JSONResponse:
         """Take a proposal back that nobody has decided on."""
-        return PlainJson(await run_in_threadpool(_desk(side, request, PROPOSE).withdraw, hash))
+        return PlainJson(await run_in_threadpool(_desk(side).withdraw, hash))
 
-    @api.post("/assistants/tasks", status_code=202, **answering(Task, REFUSED, described_body(AssistantTask)))
+    @api.post(
+        "/assistants/tasks",
+        status_code=202,
+        dependencies=GIVE,
+        **answering(Task, REFUSED, described_body(AssistantTask)),
+    )
     async def give(request: Request) -> JSONResponse:
         """Queue a task of a recipe that is approved as it is at work, within the limits of the plant file."""
-        desk, wanted = _desk(side, request, GIVE), read_body(await request.body(), AssistantTask)
+        desk, wanted = _desk(side), read_body(await request.body(), AssistantTask)
         task = await run_in_threadpool(desk.submit, wanted.text, wanted.by)
         return PlainJson(explained(task), status_code=422 if task["state"] == "refused" else 202)
 
 
 def _decide(api: APIRouter, side: PlantApi) -> None:
-    @api.post("/proposals/{hash}/approve", **answering(DecidedProposal, REFUSED, described_body(Approval)))
+    @api.post(
+        "/proposals/{hash}/approve",
+        dependencies=DECIDE,
+        **answering(DecidedProposal, REFUSED, described_body(Approval)),
+    )
     async def approve(request: Request, hash: Hash) -> JSONResponse:
         """Approve the content with this hash, and put it to work: a cell takes it once its task has ended."""
-        desk, wanted = _desk(side, request, DECIDE), read_body(await request.body(), Approval)
+        desk, wanted = _desk(side), read_body(await request.body(), Approval)
         return PlainJson(await run_in_threadpool(desk.approve, hash, wanted.name))
 
-    @api.post("/proposals/{hash}/reject", **answering(ProposalRow, REFUSED, described_body(Rejection)))
+    @api.post(
+        "/proposals/{hash}/reject",
+        dependencies=DECIDE,
+        **answering(ProposalRow, REFUSED, described_body(Rejection)),
+    )
     async def reject(request: Request, hash: Hash) -> JSONResponse:
         """Reject a proposal, for a reason that its assistant reads."""
-        desk, wanted = _desk(side, request, DECIDE), read_body(await request.body(), Rejection)
+        desk, wanted = _desk(side), read_body(await request.body(), Rejection)
         return PlainJson(await run_in_threadpool(desk.reject, hash, wanted.name, wanted.reason))
 
 
-def _desk(side: PlantApi, request: Request, act: str) -> ProposalsApi:
-    """The plant's proposals for a role that may do `act`; Forbidden for others, 404 if it has none."""
-    require(request.scope["arboleda.role"], act)
+def _desk(side: PlantApi) -> ProposalsApi:
+    """The plant's proposals; 404 if it has none."""
     desk = side.ask(ProposalsApi)
     if desk is None:
         raise HTTPException(404, SHIPPED)

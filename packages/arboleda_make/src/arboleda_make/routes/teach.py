@@ -13,7 +13,8 @@ from pydantic import Field, model_validator
 from starlette.exceptions import HTTPException
 
 from arboleda.client.answers.plant import Teaching
-from arboleda.web.access.auth import require
+from arboleda.web.access.auth import Role
+from arboleda.web.access.needs import needs
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson, explained
@@ -109,25 +110,25 @@ Body = TypeVar("Body", bound=BodyModel)
 
 def routes(side: PlantApi) -> APIRouter:
     """Register the routes."""
-    api = APIRouter(prefix="/api/teach")
+    api = APIRouter(prefix="/api/teach", dependencies=[needs(Role.OPERATOR, MAY)])
 
     @api.get("/{cell}", **answering(TeachState, REFUSED))
     async def state(cell: str, request: Request) -> JSONResponse:
         """Teacher of a cell, the commands that its devices take, and its targets."""
-        desk = _desk(side, request)
+        desk = _desk(side)
         return await _answered(lambda: desk.state(cell))
 
     @api.post("/{cell}/jog", **answering(Pressed, REFUSED, described_body(ButtonState)))
     async def jog(cell: str, request: Request) -> JSONResponse:
         """Hold a button of a cell that is taught, or let go of it."""
-        desk = _desk(side, request)
+        desk = _desk(side)
         body = read_body(await request.body(), ButtonState)
         return await _answered(lambda: desk.press(cell, body.button()))
 
     @api.post("/{cell}/here", **answering(MadeTarget, REFUSED, described_body(NewTarget)))
     async def here(cell: str, request: Request) -> JSONResponse:
         """Make a target in the draft where a robot stands now, or move one there."""
-        desk = _desk(side, request)
+        desk = _desk(side)
         body = read_body(await request.body(), NewTarget)
         return await _answered(lambda: desk.here(cell, teach.Target(**body.model_dump())))
 
@@ -141,8 +142,7 @@ async def _answered(act: Callable[[], teach.State]) -> JSONResponse:
         return PlainJson(explained({"sentence": refused.sentence}), status_code=409)
 
 
-def _desk(side: PlantApi, request: Request) -> teach.TeachApi:
-    require(request.scope["arboleda.role"], MAY)
+def _desk(side: PlantApi) -> teach.TeachApi:
     desk = side.ask(teach.TeachApi)
     if desk is None:
         raise HTTPException(404, "This plant is not taught from here.")

@@ -9,7 +9,8 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 
 from arboleda.client.answers.trees import Drawn, Nodes, TreeCopy, TreeFile
-from arboleda.web.access.auth import DRAW, require
+from arboleda.web.access.auth import Role
+from arboleda.web.access.needs import needs
 from arboleda.web.languages import FIRST, spoken, texts
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import RequestModel, Sentence
@@ -27,6 +28,7 @@ from arboleda_make.editing import desk
 
 from .tree_answers import CopyForm, EditForm, TreeForm, operation_of
 
+ASSISTANTS = [needs(Role.ASSISTANT, "drawing a tree")]
 REFUSED: Answers = {
     403: {"model": Sentence, "description": "The role is not enough."},
     422: {"model": Sentence, "description": "The text cannot be read, or the operation cannot be done."},
@@ -57,27 +59,24 @@ def routes(side: PlantApi) -> APIRouter:
         words = texts(spoken([wanted.language]), "nodes")
         return PlainJson(await run_in_threadpool(desk.palette, side.model, wanted.cell, words))
 
-    @api.post("/check", **answering(Drawn, REFUSED, described_body(TreeForm)))
+    @api.post("/check", dependencies=ASSISTANTS, **answering(Drawn, REFUSED, described_body(TreeForm)))
     async def check(request: Request) -> JSONResponse:
         """A file as an editor shows it, with what `check` says of each node in a cell."""
-        require(request.scope["arboleda.role"], DRAW)
         form = read_body(await request.body(), TreeForm)
         async with turn:
             return PlainJson(await run_in_threadpool(desk.drawn, side.model, form.cell, form.text))
 
-    @api.post("/copy", **answering(TreeCopy, REFUSED, described_body(CopyForm)))
+    @api.post("/copy", dependencies=ASSISTANTS, **answering(TreeCopy, REFUSED, described_body(CopyForm)))
     async def copy(request: Request) -> JSONResponse:
         """A recipe in Python as a tree that does the same; refused where no tree in XML can say it."""
-        require(request.scope["arboleda.role"], DRAW)
         form = read_body(await request.body(), CopyForm)
         async with turn:
             text = await run_in_threadpool(desk.copied, side.model, form.cell, form.recipe, form.name)
             return PlainJson({"text": text})
 
-    @api.post("/edit", **answering(Drawn, REFUSED, described_body(EditForm)))
+    @api.post("/edit", dependencies=ASSISTANTS, **answering(Drawn, REFUSED, described_body(EditForm)))
     async def edit(request: Request) -> JSONResponse:
         """The same file after an operation, which leaves every other byte of it as it was."""
-        require(request.scope["arboleda.role"], DRAW)
         form = read_body(await request.body(), EditForm)
         operation = operation_of(form.operation)
         async with turn:

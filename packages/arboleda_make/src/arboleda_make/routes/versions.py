@@ -12,7 +12,8 @@ from starlette.exceptions import HTTPException
 
 from arboleda.client.answers.drafts import AppliedDraft
 from arboleda.client.answers.versions import VersionList
-from arboleda.web.access.auth import require
+from arboleda.web.access.auth import Role
+from arboleda.web.access.needs import needs
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel
 from arboleda.web.schema.plain_json import PlainJson
@@ -21,7 +22,7 @@ from arboleda_make.versions.api import VersionsApi
 
 from .draft import REFUSED, SHIPPED
 
-MAY = "putting a version to work"
+OPERATORS = [needs(Role.OPERATOR, "putting a version to work")]
 Number = Annotated[int, Path(ge=1, le=1_000_000)]
 
 
@@ -48,19 +49,23 @@ def routes(side: PlantApi) -> APIRouter:
         """The versions that were put to work, which one is, and what each cell works by."""
         return PlainJson(await run_in_threadpool(_versions(side).listed))
 
-    @api.post("/{number}/put", **answering(AppliedDraft, REFUSED, described_body(PutRequest)))
+    @api.post(
+        "/{number}/put",
+        dependencies=OPERATORS,
+        **answering(AppliedDraft, REFUSED, described_body(PutRequest)),
+    )
     async def put(request: Request, number: Number) -> JSONResponse:
         """Put a version to work, as when going back to it: a cell takes it once its task has ended."""
-        require(request.scope["arboleda.role"], MAY)
         desk, body = _versions(side), read_body(await request.body(), PutRequest)
         return PlainJson(await run_in_threadpool(lambda: desk.put(number, body.name)))
 
-    @api.post("/restart", **answering(VersionList, REFUSED, described_body(RestartWish)))
+    @api.post(
+        "/restart", dependencies=OPERATORS, **answering(VersionList, REFUSED, described_body(RestartWish))
+    )
     async def restart(request: Request) -> JSONResponse:
         """Restart the plant with its files as they are now, once all its cells rest; until then no further
         task begins.
         """
-        require(request.scope["arboleda.role"], MAY)
         desk, request_body = _versions(side), read_body(await request.body(), RestartWish)
         return PlainJson(
             await run_in_threadpool(lambda: desk.restart(request_body.name, wanted=request_body.wanted))

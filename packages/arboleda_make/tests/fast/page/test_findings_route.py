@@ -12,6 +12,7 @@ from tests.in_process import Caller, without_threads
 
 from arboleda.web.access.auth import Role
 from arboleda.web.api import answer_in_sentences
+from arboleda.web.package_routes import guarded
 from arboleda_make.page import findings_route
 
 FOUND = {"lines": ['the key "a" is missing', "cells.b: there is nothing to undo"]}
@@ -29,10 +30,11 @@ class Make:
 
 
 def page(role: Role, make: Make | None) -> Caller:
-    app = FastAPI()
+    app, beside = FastAPI(), FastAPI()
     answer_in_sentences(app)
     side: Any = SimpleNamespace(ask=lambda _kind: make)
-    findings_route.serve(app, side)
+    findings_route.serve(beside, side)
+    app.router.routes += guarded(beside.router.routes)
 
     async def as_role(scope: Scope, receive: Receive, send: Send) -> None:
         await app({**scope, "arboleda.role": role}, receive, send)

@@ -11,14 +11,15 @@ from fastapi.responses import JSONResponse
 from pydantic import Field
 
 from arboleda.client.answers.offers import FaultList, ProvokedFault
-from arboleda.web.access.auth import require
+from arboleda.web.access.auth import Role
+from arboleda.web.access.needs import needs
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, answering, described_body, read_body
 from arboleda_proofs.running.faults_api import FaultRefused, FaultsApi
 
-MAY = "provoking a fault"
+OPERATORS = [needs(Role.OPERATOR, "provoking a fault")]
 NOT_HERE = "This process has no devices, so no faults can be provoked at them."
 REFUSED: Answers = {
     403: {"model": Sentence, "description": "Only operators may."},
@@ -57,18 +58,18 @@ def routes(side: PlantApi) -> APIRouter:
             {"begun": [asdict(each) for each in begun], "offers": [asdict(each) for each in offers]}
         )
 
-    @api.post("", **answering(ProvokedFault, REFUSED, described_body(NewFault)))
+    @api.post("", dependencies=OPERATORS, **answering(ProvokedFault, REFUSED, described_body(NewFault)))
     async def provoke(request: Request) -> JSONResponse:
         """Have a fault of the simulator happen to a virtual device; it ends by itself, or by `end`."""
-        require(request.scope["arboleda.role"], MAY)
         desk, wanted = _faults(side), read_body(await request.body(), NewFault)
         begun = await run_in_threadpool(lambda: desk.begin(wanted.kind, wanted.robot, wanted.seconds))
         return PlainJson(asdict(begun))
 
-    @api.post("/end", **answering(list[ProvokedFault], REFUSED, described_body(EndOfFaults)))
+    @api.post(
+        "/end", dependencies=OPERATORS, **answering(list[ProvokedFault], REFUSED, described_body(EndOfFaults))
+    )
     async def end(request: Request) -> JSONResponse:
         """End faults before their time; the answer has those that went on."""
-        require(request.scope["arboleda.role"], MAY)
         desk, wanted = _faults(side), read_body(await request.body(), EndOfFaults)
         ended = await run_in_threadpool(lambda: desk.end(wanted.robot, wanted.number))
         return PlainJson([asdict(each) for each in ended])

@@ -21,8 +21,6 @@ SESSIONS = 256  # only holders of a token make one; the oldest makes room
 
 
 SUBMIT = "submit"
-PROPOSE, GIVE, DRAW = "proposing", "giving a task as an assistant", "drawing a tree"
-ASSISTANTS_MAY = {PROPOSE, GIVE, DRAW}
 EVERYBODY_MAY = {verb.value for verb in Verb if verb.row.role is Role.VIEWER}
 MAY = {
     None: "{act} needs the operator's token.",
@@ -37,10 +35,7 @@ class Forbidden(ArboledaError):
 
 
 def allowed(role: Role | None, act: str) -> bool:
-    """True if a role may do `act`, a verb's word or one of the acts above; everybody who is logged in may
-    stop."""
-    if role is Role.ASSISTANT and act in ASSISTANTS_MAY:
-        return True
+    """True if a role may do `act`, a verb's word or SUBMIT; everybody who is logged in may stop."""
     return role is Role.OPERATOR or (role is not None and act in EVERYBODY_MAY)
 
 

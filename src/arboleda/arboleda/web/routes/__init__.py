@@ -2,7 +2,7 @@
 
 The runner's own are in OWN. A package registers a function under the entry point group `arboleda.routes`,
 under its own name or as PACKAGE.WHAT where it has several; it makes an APIRouter of a `PlantApi`, which it
-asks for what the package's parts offer.
+asks for what the package's parts offer. `access.needs` has who may ask for its routes.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from fastapi import APIRouter
 
 from arboleda.host.packages import package_of, registered
 
+from ..package_routes import guarded
 from ..plant_api import PlantApi
 
 LOG = logging.getLogger(__name__)
@@ -43,7 +44,9 @@ def _packaged(side: PlantApi, leave_out: LeaveOut) -> Iterator[APIRouter]:
         except (Exception, SystemExit) as error:  # noqa: BLE001 - whatever a package does, the plant is served
             leave_out(package_of(point), error)
             continue
-        yield router
+        beside = APIRouter()
+        beside.routes += guarded(router.routes)
+        yield beside
 
 
 def _log(package: str, error: BaseException) -> None:

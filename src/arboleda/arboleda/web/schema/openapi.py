@@ -33,6 +33,7 @@ def described_later(made: Callable[[], dict[str, Any]]) -> dict[str, Any]:
 
 def described_route(route: BaseRoute) -> BaseRoute:
     """A route with its description, if that was to be made later; any other as it is."""
+    route = getattr(route, "behind", route)  # of a package
     made = (getattr(route, "openapi_extra", None) or {}).get(LATER)
     if made is None:
         return route

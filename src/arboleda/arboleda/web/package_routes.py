@@ -1,0 +1,62 @@
+"""Routes of packages: each is asked only by whom it needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from fastapi import routing
+from starlette.routing import BaseRoute, Match
+from starlette.types import Receive, Scope, Send
+
+from arboleda.model.outside import plain
+
+from .access.needs import OPERATORS, Need, declared
+from .request import READS
+
+NEED = "arboleda.need"  # in the scope of a request for a route of a package
+
+
+def leaves(routes: Sequence[BaseRoute]) -> tuple[Any, ...]:
+    """These routes, with those of included routers in place of their routers."""
+    contexts = getattr(routing, "iter_route_contexts", None)  # a FastAPI without it includes them as they are
+    return tuple(routes if contexts is None else contexts(routes))
+
+
+class PackageRoute(BaseRoute):
+    """Route of a package, or router that it has included, for those whose role is enough."""
+
+    def __init__(self, route: BaseRoute) -> None:
+        self.behind = route
+        self.methods = getattr(route, "methods", None)
+        self._leaves = leaves([route])
+
+    def matches(self, scope: Scope) -> tuple[Match, Scope]:
+        match, found = self.behind.matches(scope)
+        if match is not Match.FULL:
+            return match, found
+        return match, {**found, NEED: self._need(scope)}  # what is found changes the scope
+
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
+        need: Need | None = scope.pop(NEED, OPERATORS)
+        if need is not None:
+            need.check(scope["arboleda.role"], f"{_method(scope)} {plain(scope['path'], 80)}")
+        await self.behind.handle(scope, receive, send)
+
+    def _need(self, scope: Scope) -> Need | None:
+        """The need of this request; None where whoever is logged in may ask."""
+        asked = next((each for each in self._leaves if each.matches(scope)[0] is Match.FULL), None)
+        if asked is None:
+            return OPERATORS
+        found = declared(getattr(asked, "dependencies", ()))
+        return OPERATORS if found is None and _method(scope) not in READS else found
+
+
+def _method(scope: Scope) -> str:
+    """The method of a request; a websocket is no reading, as it may bring anything."""
+    return str(scope.get("method", "websocket"))
+
+
+def guarded(routes: Iterable[BaseRoute]) -> list[BaseRoute]:
+    """The routes of a package, each behind a look at who asks."""
+    return [PackageRoute(each) for each in routes]
