@@ -2,7 +2,7 @@
 sentence in the overview.
 
 A package adds its own: its entry point of the group `arboleda.commands` names a mapping from the name of each
-command to its `Command`.
+command to its `Command`. No package is loaded for a command of the runner: a stop waits for none.
 """
 
 from __future__ import annotations
@@ -158,11 +158,16 @@ class LoadedCommands(Mapping[str, Any]):
         return sum(1 for _ in self)
 
     def __contains__(self, name: object) -> bool:
-        return name in self._own or f"{self._before}{name}" in {*commands(), *OF_PACKAGES}
+        whole = f"{self._before}{name}"
+        return (
+            name in self._own or any(whole in those for those in (OURS, OF_PACKAGES)) or whole in commands()
+        )
 
 
 def _known(name: str) -> Command:
     """A command; PackageMissing if its package is not installed, KeyError if there is no such command."""
+    if name in OURS:
+        return OURS[name]
     if name not in commands() and name in OF_PACKAGES:
         raise PackageMissing(MISSING(what=name, package=OF_PACKAGES[name]))
     return commands()[name]

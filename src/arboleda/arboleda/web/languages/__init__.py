@@ -7,9 +7,10 @@ with a folder `languages`, in which each language has files of the same names.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from contextlib import suppress
 from functools import cache
 from importlib import resources
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import yaml
@@ -45,11 +46,13 @@ def contents(language: str, part: str) -> dict[str, Any]:
 
 
 def _folders() -> Iterator[Traversable]:
-    """The folders of languages: first this one, then those of other packages."""
+    """The folders of languages: first this one, then those of other packages, none of which is loaded."""
     yield resources.files(__package__)
     for each in registered(GROUP):
-        with suppress(ImportError):  # of a package that does not load nothing is said
-            yield resources.files(each.module) / "languages"
+        top, *below = each.module.split(".")
+        spec = find_spec(top)
+        for folder in (spec and spec.submodule_search_locations) or ():
+            yield Path(folder, *below, "languages")
 
 
 def _joined(ours: dict[str, Any], theirs: dict[str, Any]) -> dict[str, Any]:
