@@ -85,7 +85,7 @@ class AddedParts:
                 if part.serve is not None:
                     beside = FastAPI(openapi_url=None)
                     part.serve(beside, plant)
-                    server.router.routes += guarded(beside.router.routes)
+                    server.router.routes += guarded(beside.router.routes, package)
             except Exception as error:  # noqa: BLE001 - whatever a package does, the page is shown
                 self._leave_out(package, error)
 

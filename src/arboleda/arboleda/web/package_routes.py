@@ -1,4 +1,4 @@
-"""Routes of packages: each is asked only by whom it needs."""
+"""Routes of packages: each is asked only by whom it needs, and is made apart from those of others."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from .access.needs import OPERATORS, Need, declared
 from .request import READS
 
 NEED = "arboleda.need"  # in the scope of a request for a route of a package
+APART = "arboleda.apart"  # in the scope of each request: what runs an application in the loop of a package
 
 
 def leaves(routes: Sequence[BaseRoute]) -> tuple[Any, ...]:
@@ -26,8 +27,9 @@ def leaves(routes: Sequence[BaseRoute]) -> tuple[Any, ...]:
 class PackageRoute(BaseRoute):
     """Route of a package, or router that it has included, for those whose role is enough."""
 
-    def __init__(self, route: BaseRoute) -> None:
+    def __init__(self, route: BaseRoute, package: str) -> None:
         self.behind = route
+        self._package = package
         self.methods = getattr(route, "methods", None)
         self._leaves = leaves([route])
 
@@ -41,7 +43,11 @@ class PackageRoute(BaseRoute):
         need: Need | None = scope.pop(NEED, OPERATORS)
         if need is not None:
             need.check(scope["arboleda.role"], f"{_method(scope)} {plain(scope['path'], 80)}")
-        await self.behind.handle(scope, receive, send)
+        apart = scope.get(APART)
+        if apart is None:  # in a process without a server there is one loop
+            await self.behind.handle(scope, receive, send)
+        else:
+            await apart(self._package, self.behind.handle, scope, receive, send)
 
     def _need(self, scope: Scope) -> Need | None:
         """The need of this request; None where whoever is logged in may ask."""
@@ -57,6 +63,6 @@ def _method(scope: Scope) -> str:
     return str(scope.get("method", "websocket"))
 
 
-def guarded(routes: Iterable[BaseRoute]) -> list[BaseRoute]:
+def guarded(routes: Iterable[BaseRoute], package: str) -> list[BaseRoute]:
     """The routes of a package, each behind a look at who asks."""
-    return [PackageRoute(each) for each in routes]
+    return [PackageRoute(each, package) for each in routes]

@@ -1,4 +1,7 @@
-"""The second event loop of the HTTP server, in which all but stops is made, and which waits for stops."""
+"""The second event loop of the HTTP server, in which all but stops is made, and which waits for stops.
+
+Each package has a loop of its own for its routes, with threads of its own.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +17,7 @@ from typing import Any, TypeVar
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from .package_routes import APART
 from .request import RequestHead
 
 Result = TypeVar("Result")
@@ -81,14 +85,16 @@ class SecondLoop:
     """Runs `app` in a second event loop, which gives way to stops; those it runs in the loop of the server.
 
     A page or a snapshot of a large plant takes a tenth of a second. In the server's loop nothing is made that
-    takes so long: it takes in, checks who asks, stops, and passes bytes on. The end of the server waits
-    END_S at most for what runs in the second loop.
+    takes so long: it takes in, checks who asks, stops, and passes bytes on. A route of a package that sleeps
+    or hangs delays no route but those of its package. The end of the server waits END_S at most for what runs
+    in other loops.
     """
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
         self._stops = StopsUnderWay()
-        self._second = _SecondLoop(self._stops)
+        self._second = _LoopThread(self._stops, "http pages")
+        self._packages: dict[str, _LoopThread] = {}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "lifespan":
@@ -96,7 +102,7 @@ class SecondLoop:
         if RequestHead(scope).stops:
             with self._stops.one():
                 return await self._app(scope, receive, send)
-        return await self._run_there(scope, receive, send)
+        return await self._run_there({**scope, APART: self._run_apart}, receive, send)
 
     async def _live(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Run the second loop for as long as the application lives."""
@@ -117,32 +123,33 @@ class SecondLoop:
         end_request = asyncio.create_task(ending.wait())
         await asyncio.wait({life, end_request}, return_when=asyncio.FIRST_COMPLETED)
         await asyncio.wait({life}, timeout=END_S)
-        await self._second.end()
+        await asyncio.gather(*(each.end() for each in (self._second, *self._packages.values())))
         end_request.cancel()
         if life.done() and not life.cancelled():
             life.result()
         await send(OVER)
 
     async def _run_there(self, scope: Scope, receive: Receive, send: Send) -> None:
-        here = asyncio.get_running_loop()
+        await _run_in(self._second.loop, self._app, scope, receive, send)
 
-        async def receive_here() -> Message:
-            return await _in(here, receive)
+    async def _run_apart(
+        self, package: str, app: ASGIApp, scope: Scope, receive: Receive, send: Send
+    ) -> None:
+        """Run an application in the loop of a package; called in the second loop."""
+        if package not in self._packages:
+            self._packages[package] = _LoopThread(self._stops, f"routes of {package}")
+            self._packages[package].start()
+        await _run_in(self._packages[package].loop, app, scope, receive, send)
 
-        async def send_here(message: Message) -> None:
-            await _in(here, send, message)
 
-        await _in(self._second.loop, self._app, scope, receive_here, send_here)
-
-
-class _SecondLoop:
+class _LoopThread:
     """An event loop in a daemon thread, from `start` to `end`."""
 
-    def __init__(self, stops: StopsUnderWay) -> None:
+    def __init__(self, stops: StopsUnderWay, name: str) -> None:
         self._stops = stops
         self._running: Future[asyncio.AbstractEventLoop] = Future()
         self._over = asyncio.Event()
-        self._thread = threading.Thread(target=self._run, name="http pages", daemon=True)
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop:
@@ -157,7 +164,9 @@ class _SecondLoop:
         self.loop.call_soon_threadsafe(self._over.set)
         await asyncio.to_thread(self._thread.join, END_S)
         if self._thread.is_alive():
-            LOG.warning("what the web server made for its pages did not end within %g s; it is left", END_S)
+            LOG.warning(
+                "the web server leaves its %s, which did not end within %g s", self._thread.name, END_S
+            )
 
     def _run(self) -> None:
         loop = GivingWay(self._stops)
@@ -181,6 +190,21 @@ async def _cancelled(tasks: Collection[asyncio.Task[Any]]) -> None:
     for task in tasks:
         task.cancel()
     await asyncio.gather(*tasks, return_exceptions=True)
+
+
+async def _run_in(
+    loop: asyncio.AbstractEventLoop, app: ASGIApp, scope: Scope, receive: Receive, send: Send
+) -> None:
+    """Run an application in that loop; what it receives and sends goes through the present one."""
+    here = asyncio.get_running_loop()
+
+    async def receive_here() -> Message:
+        return await _in(here, receive)
+
+    async def send_here(message: Message) -> None:
+        await _in(here, send, message)
+
+    await _in(loop, app, scope, receive_here, send_here)
 
 
 async def _in(loop: asyncio.AbstractEventLoop, call: Call[Result], *args: Any) -> Result:

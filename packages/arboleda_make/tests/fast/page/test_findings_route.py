@@ -34,7 +34,7 @@ def page(role: Role, make: Make | None) -> Caller:
     answer_in_sentences(app)
     side: Any = SimpleNamespace(ask=lambda _kind: make)
     findings_route.serve(beside, side)
-    app.router.routes += guarded(beside.router.routes)
+    app.router.routes += guarded(beside.router.routes, "make")
 
     async def as_role(scope: Scope, receive: Receive, send: Send) -> None:
         await app({**scope, "arboleda.role": role}, receive, send)

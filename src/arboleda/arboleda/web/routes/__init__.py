@@ -45,7 +45,7 @@ def _packaged(side: PlantApi, leave_out: LeaveOut) -> Iterator[APIRouter]:
             leave_out(package_of(point), error)
             continue
         beside = APIRouter()
-        beside.routes += guarded(router.routes)
+        beside.routes += guarded(router.routes, package_of(point))
         yield beside
 
 
