@@ -129,7 +129,7 @@ def test_a_task_from_its_acceptance_to_its_end(places: Places) -> None:
 
 def test_times_of_cells(places: Places) -> None:
     def killed(memory: PlantMemory) -> None:
-        memory.times.began(10.0, 0.0)
+        memory.times.began(10.0)
         memory.tasks.keep(queued("a"), "storage", 12.0)
         memory.tasks.keep(ended("a", TaskState.RUNNING), "storage", 13.0)
         memory.tasks.keep(ended("a"), "storage", 19.0)
@@ -138,19 +138,24 @@ def test_times_of_cells(places: Places) -> None:
         memory.times.note_run(70.0)
 
     def goes_on(memory: PlantMemory) -> None:
-        memory.times.began(500.0, 0.0)
+        memory.times.began(500.0)
         memory.times.stands("sis_a", "held", 501.0)
         memory.times.stands("sis_a", None, 503.0)
         memory.times.note_run(560.0, ended=True)
 
-    places.hold_the_same(killed, goes_on, lambda memory: memory.times.began(600.0, 540.0))
+    def set_back(memory: PlantMemory) -> None:
+        memory.move_times(-40.0, 0.0, "1")
+        memory.tasks.keep(queued("b"), "storage", 565.0)
+        memory.tasks.forget(1.0)
+
+    places.hold_the_same(killed, goes_on, set_back, lambda memory: memory.times.began(600.0))
 
 
 def test_tasks_are_forgotten_from_the_oldest_on(places: Places) -> None:
     def many(memory: PlantMemory) -> None:
         for number in range(PRUNED + 5):
             memory.tasks.keep(queued(f"n{number}"), "storage", 1.0)
-            memory.tasks.keep(ended(f"n{number}"), "storage", 2.0 + number)
+            memory.tasks.keep(ended(f"n{number}"), "storage", 2.0, ran_s=2.0 + number)
         memory.tasks.keep(queued("open"), "storage", 1.0)
 
     places.hold_the_same(

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from arboleda.model.messages import (
     Check,
+    ClockSet,
     Course,
     Event,
     Fact,
@@ -129,6 +130,7 @@ STRATEGIES = {
     ),
     Undelivered: st.builds(Undelivered, at=NUMBERS, id=TEXTS, robot=TEXTS, sentence=SENTENCES),
     LateDeparture: st.builds(LateDeparture, at=NUMBERS, id=TEXTS, late_s=NUMBERS),
+    ClockSet: st.builds(ClockSet, at=NUMBERS, seconds=NUMBERS),
     FaultByHand: st.builds(FaultByHand, at=NUMBERS, robot=TEXTS, sentence=SENTENCES, is_over=st.booleans()),
     Interference: st.builds(Interference, at=NUMBERS, robot=TEXTS, sentence=SENTENCES),
     Shutdown: st.builds(Shutdown, at=NUMBERS, drops_waiting=st.booleans()),

@@ -17,7 +17,7 @@ from arboleda.core.plant import Plant
 from arboleda.model.recording import Limits
 from arboleda.recorder import files, reader, recorder, writing
 from arboleda.recorder.errors import NoRecord
-from arboleda.recorder.files import PartFile, parts_in, prune
+from arboleda.recorder.files import PartFile, part_path, parts_in, prune
 from arboleda.recorder.recorder import Recorder
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import Step
@@ -158,11 +158,21 @@ def test_what_was_written_survives_a_power_cut_once_a_second_has_passed(
 
 
 def test_old_files_go_whoever_made_them(tmp_path: Path) -> None:
-    for name in ("900-0001.mcap", "1000-0001.mcap", "notes.txt"):
-        (tmp_path / name).write_bytes(b"x" * 100)
-        os.utime(tmp_path / name, (500_000.0, 500_000.0 if name != "1000-0001.mcap" else 900_000.0))
-    prune(tmp_path, Limits(days=2.0), unix_s=900_000.0)
-    assert {path.name for path in tmp_path.iterdir()} == {"1000-0001.mcap", "notes.txt"}
+    for days, (epoch, number) in enumerate(((800, 1), (900, 1), (900, 2), (1000, 1))):
+        path = part_path(tmp_path, epoch, number)
+        PartFile(path, beginning_of(shipped()), number, 0, ran_s=days * 86_400.0).drop()
+        os.utime(path, (0.0, 0.0))  # by a clock that had forgotten the time
+    (tmp_path / "notes.txt").write_text("mine")
+    prune(tmp_path, Limits(days=2.0), ran_s=3.5 * 86_400.0)
+    left = {path.name for path in tmp_path.iterdir()}
+    assert left == {"900-0001.mcap", "900-0002.mcap", "1000-0001.mcap", "notes.txt"}
+
+
+def test_what_cannot_be_read_makes_no_file_old(tmp_path: Path) -> None:
+    for number in (1, 2):
+        part_path(tmp_path, 900, number).write_bytes(b"x" * 100)
+    prune(tmp_path, Limits(days=2.0), ran_s=1e9)
+    assert len(parts_in(tmp_path)) == 2
 
 
 def test_what_a_killed_process_left_is_read_up_to_its_last_chunk(

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from contextlib import nullcontext
 from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 
+from arboleda.adapters import clock
 from arboleda.adapters.broker_login import address
 from arboleda.core.plant import Plant
 from arboleda.dispatch.ledger import Entry
@@ -141,10 +143,91 @@ def test_a_plant_is_told_what_the_one_before_it_kept(plant, store):
 
 
 def test_an_operators_act_is_journalled_with_the_time_of_day(plant, store, monkeypatch):
-    monkeypatch.setattr(orchestrator.time, "time", lambda: 1_700_000_000.5)
+    monkeypatch.setattr(plant.calendar, "unix_s", lambda: 1_700_000_000.5)
     turn(plant, ACT)
     [entry] = store.acts.last()
     assert (entry.unix_s, entry.verb, entry.sentence) == (1_700_000_000.5, "stop", "everything stopped")
+
+
+class Clocks:
+    """A wall clock, and a steady one, which no setting of the other moves."""
+
+    def __init__(self, monkeypatch):
+        self.steady_s, self.ahead_s = 5000.0, 1_700_000_000.0
+        monkeypatch.setattr(clock, "seconds", lambda: self.steady_s)
+
+    def calendar(self):
+        return clock.Calendar(lambda: self.steady_s + self.ahead_s, lambda: self.steady_s)
+
+
+def do(plant, clocks, *tasks, takes_s=3.0):
+    for id in tasks:
+        told = replace(TASK, task=id)
+        turn(plant, told, replace(told, state=TaskState.RUNNING))
+        clocks.steady_s += takes_s
+        turn(plant, replace(told, state=TaskState.DONE))
+
+
+@pytest.fixture
+def clocks(monkeypatch):
+    monkeypatch.setattr(orchestrator, "Plant", Script)
+    return Clocks(monkeypatch)
+
+
+def start(store, clocks, crash=pytest.fail):
+    return Orchestrator(shipped("sis_a"), 7, crash, store, calendar=clocks.calendar())
+
+
+def ids(store):
+    return {row.id for row in store.tasks.select(TaskQuery(limit=None))}
+
+
+@pytest.mark.parametrize("days", [91, 100, 400, -400])
+def test_a_wall_clock_that_is_wrong_has_no_task_forgotten(store, clocks, days):
+    plant = start(store, clocks)
+    do(plant, clocks, *"abc")
+    clocks.ahead_s += days * 86_400.0
+    do(plant, clocks, *"de")
+    do(start(store, clocks), clocks, *"fg")  # one that knows no other time
+    clocks.ahead_s -= days * 86_400.0
+    do(start(store, clocks), clocks, "h")
+    assert ids(store) == {*"abcdefgh"}
+
+
+def test_tasks_are_forgotten_once_the_plant_has_run_for_so_long(store, clocks):
+    do(start(store, clocks), clocks, "a")
+    for task in "bc":
+        do(start(store, clocks), clocks, task, takes_s=50 * 86_400.0)
+    assert ids(store) == {"b", "c"}
+
+
+def test_a_task_takes_what_it_takes_while_the_clock_is_set(store, clocks):
+    plant = start(store, clocks)
+    heard = []
+    for id, by_s in zip("abcd", (86_400.0, -86_400.0, -86_400.0, 86_400.0), strict=True):
+        told = replace(TASK, task=id)
+        turn(plant, told, replace(told, state=TaskState.RUNNING))
+        clocks.steady_s += 1.0
+        clocks.ahead_s += by_s
+        turn(plant)
+        clocks.steady_s += 2.0
+        heard += turn(plant, replace(told, state=TaskState.DONE))
+    rows = store.tasks.select(TaskQuery())
+    assert [row.ended_s - row.started_s for row in rows] == [3.0] * 4
+    assert [row.started_s - 1_700_005_000.0 for row in rows] == [9.0, 6.0, 3.0, 0.0]
+    assert [event.seconds for event in heard] == [86_400.0, -86_400.0, -86_400.0, 86_400.0]
+
+
+def test_a_memory_that_cannot_follow_the_clock_ends_the_plant(store, clocks, crashes, monkeypatch):
+    plant = start(store, clocks, lambda _, error: crashes.append(error))
+
+    def fail(*_):
+        raise ArboledaError("The disk is full.")
+
+    monkeypatch.setattr(store, "move_times", fail)
+    clocks.ahead_s += 60.0
+    turn(plant)
+    assert [str(error) for error in crashes] == ["The disk is full."]
 
 
 TASK = TaskChanged(task="a", text="sis_a 0B 1", cell="sis_a", state=TaskState.QUEUED)
@@ -256,7 +339,7 @@ def shows(plant, monkeypatch):
     Making them takes no processor time here, so no slice of it comes later on a busy machine.
     """
     now, shown = [100.0], []
-    monkeypatch.setattr(orchestrator.time, "thread_time", lambda: 0.0)
+    monkeypatch.setattr(time, "thread_time", lambda: 0.0)
     monkeypatch.setattr(plant.loop, "_clock", lambda: now[0])
     monkeypatch.setattr(screens.view, "in_parts", at_once)
     monkeypatch.setattr(Script, "version", 1, raising=False)
@@ -355,7 +438,7 @@ def test_a_record_that_has_stopped_is_diagnosed(plant, store, shows):
 def test_snapshots_that_take_long_come_seldom_and_none_is_owed_in_the_end(plant, shows, monkeypatch):
     now, shown = shows
     spent = [0.0]
-    monkeypatch.setattr(orchestrator.time, "thread_time", lambda: spent[0])
+    monkeypatch.setattr(time, "thread_time", lambda: spent[0])
     plant.screens.watchers.append(lambda snapshot: spent.append(spent.pop() + 0.05))
     for version in range(1, 201):  # 2 s in which something changes all the time
         monkeypatch.setattr(Script, "version", version)
@@ -372,7 +455,7 @@ def test_snapshots_that_take_long_come_seldom_and_none_is_owed_in_the_end(plant,
 def slow_parts(plant, shows, monkeypatch):
     """As `shows`, but a snapshot has 10 parts of a slice each; `made` are the versions that its parts saw."""
     spent, made = [0.0], []
-    monkeypatch.setattr(orchestrator.time, "thread_time", lambda: spent[0])
+    monkeypatch.setattr(time, "thread_time", lambda: spent[0])
 
     def in_parts(plant, part_of):
         for _ in range(10):

@@ -166,23 +166,76 @@ def test_how_a_task_went_is_kept_with_its_end(site):
 
 def test_old_times_of_cells_are_forgotten_at_a_start(site):
     with site.memory() as store:
-        store.times.began(10.0, 0.0)
+        store.times.began(10.0)
         store.times.stands("sis_a", "held", 20.0)
         store.times.stands("sis_a", None, 30.0)
         store.times.note_run(70.0, ended=True)
-        store.times.began(500.0, 40.0)
+        store.tasks.keep(queued("a"), "storage", 40.0)
+        store.times.began(500.0)
         assert times(site) == ([(10.0, 70.0, 1), (500.0, 500.0, 0)], [])
-        store.times.began(600.0, 80.0)
-    assert times(site)[0] == [(500.0, 500.0, 0), (600.0, 600.0, 0)]
+        store.tasks.keep(ended("a"), "storage", 501.0, ran_s=1.0)
+        store.tasks.keep(queued("b"), "storage", 502.0)
+        store.times.note_run(560.0, ended=True)
+        store.tasks.forget(2.0)
+        store.times.began(600.0)
+    assert times(site)[0] == [(500.0, 560.0, 1), (600.0, 600.0, 0)]
+
+
+def test_of_a_plant_without_tasks_no_time_is_forgotten(site):
+    with site.memory() as store:
+        store.times.began(10.0)
+        store.times.began(1e10)
+    assert len(times(site)[0]) == 2
+
+
+def test_times_of_a_start_follow_its_clock_and_those_of_earlier_ones_stay(site):
+    with site.memory() as store:
+        tell_of_a_start(store, "a", 1000.0, ran_s=50.0)
+        tell_of_a_start(store, "b", 2000.0, ran_s=150.0)
+        store.tasks.keep(queued("open"), "storage", 2040.0)
+        store.times.stands("sis_b", "held", 2045.0)
+        for _ in range(2):  # a database may get it again
+            store.move_times(-500.0, 50.0, "1")
+        tasks = store.tasks.select(TaskQuery())
+    rows = {row.id: (row.accepted_s, row.started_s, row.ended_s) for row in tasks}
+    assert rows == {
+        "a": (1010.0, 1020.0, 1030.0),
+        "b": (1510.0, 1520.0, 1530.0),
+        "open": (1540.0, None, None),
+    }
+    runs, downs = times(site)
+    assert [run[:2] for run in runs] == [(1000.0, 1040.0), (1500.0, 1540.0)]
+    assert [down[2:] for down in downs] == [(1035.0, 1036.0), (1535.0, 1536.0), (1545.0, None)]
+
+
+def tell_of_a_start(memory, task, unix_s, *, ran_s):
+    """A start of the plant, in which a cell was held for a second and did a task."""
+    memory.times.began(unix_s)
+    memory.tasks.keep(queued(task), "storage", unix_s + 10.0)
+    memory.tasks.keep(ended(task, TaskState.RUNNING), "storage", unix_s + 20.0)
+    memory.tasks.keep(ended(task), "storage", unix_s + 30.0, ran_s=ran_s)
+    memory.times.stands("sis_a", "held", unix_s + 35.0)
+    memory.times.stands("sis_a", None, unix_s + 36.0)
+    memory.times.note_run(unix_s + 40.0)
+
+
+def test_what_a_clock_that_was_ahead_began_ends_no_earlier(site):
+    with site.memory() as store:
+        store.tasks.keep(queued("a"), "storage", 1000.0)
+        store.tasks.keep(ended("a", TaskState.RUNNING), "storage", 90_000.0)
+    with site.memory() as store:
+        store.tasks.keep(ended("a"), "storage", 1010.0)
+        (row,) = store.tasks.select(TaskQuery())
+    assert row.started_s == row.ended_s == 90_000.0
 
 
 def test_what_stood_when_the_plant_was_killed_stood_until_it_was_seen_last(site):
     with site.memory() as store:
-        store.times.began(10.0, 0.0)
+        store.times.began(10.0)
         store.times.stands("sis_a", "held", 20.0)
         store.times.stands("sis_b", "held", 75.0)
         store.times.note_run(70.0)
-        store.times.began(500.0, 0.0)
+        store.times.began(500.0)
         store.times.stands("sis_a", "held", 501.0)
         store.times.stands("sis_a", "aborted", 502.0)
         store.times.stands("sis_a", None, 503.0)
@@ -240,8 +293,9 @@ def test_tasks_are_found_by_what_is_asked_for(site, query, ids):
 def test_ended_tasks_are_forgotten_from_the_oldest_on_and_open_ones_never(store):
     for number in range(PRUNED + 5):
         store.tasks.keep(queued(f"n{number}"), "storage", 1.0)
-        store.tasks.keep(ended(f"n{number}"), "storage", 2.0 + number)
+        store.tasks.keep(ended(f"n{number}"), "storage", 9e9 - number, ran_s=2.0 + number)
     store.tasks.keep(queued("open"), "storage", 1.0)
+    assert store.tasks.ran_s() == PRUNED + 6.0
     store.tasks.forget(1000.0)
     assert [row.id for row in store.tasks.select(TaskQuery())] == [
         "open",
@@ -280,7 +334,7 @@ def test_a_text_may_have_any_character(store):
 
 def test_figures_are_made_of_what_was_kept(site):
     with site.memory() as store:
-        store.times.began(900.0, 0.0)
+        store.times.began(900.0)
         store.tasks.keep(queued("a"), "storage", 910.0)
         store.tasks.keep(ended("a", TaskState.RUNNING), "storage", 920.0)
         store.tasks.keep(ended("a"), "storage", 930.0)

@@ -428,6 +428,18 @@ def test_tasks_of_an_older_format_say_nothing_of_checks_and_new_ones_do(path):
         assert [row.unchecked for row in store.tasks.select(TaskQuery())] == ["grip release", None]
 
 
+def test_tasks_of_an_older_format_are_as_old_as_the_count_of_their_age(path):
+    with Store(path) as store:
+        for name in ("ended", "open"):
+            store.tasks.keep(queued(name), "storage", 5.0)
+        store.tasks.keep(ended("ended"), "storage", 6.0, ran_s=9_000.0)
+    of_before_checks(path).close()
+    with Store(path) as store:
+        assert store.tasks.ran_s() == 0.0
+        store.tasks.forget(0.5)
+        assert [row.id for row in store.tasks.select(TaskQuery())] == ["open"]
+
+
 def test_a_file_without_times_of_cells_gets_them(path):
     with Store(path) as store:
         store.tasks.keep(queued("a"), "storage", 5.0)
@@ -435,7 +447,7 @@ def test_a_file_without_times_of_cells_gets_them(path):
     db.execute("PRAGMA user_version = 6")
     db.close()
     with Store(path) as store:
-        store.times.began(10.0, 0.0)
+        store.times.began(10.0)
         store.times.stands("sis_a", "held", 11.0)
         assert [row.id for row in store.tasks.select(TaskQuery())] == ["a"]
     assert times(path) == ([(10.0, 10.0, 0)], [("sis_a", "held", 11.0, None)])
@@ -453,7 +465,10 @@ def of_before_courses(path):
 
 def of_before_checks(path):
     """The file as a format had it in which no task said what of it nobody confirmed."""
-    return without_column(sqlite3.connect(path), "unchecked", 10)
+    db = sqlite3.connect(path)
+    if db.execute("SELECT 1 FROM sqlite_master WHERE name = 'task'").fetchone():
+        db.execute("DROP INDEX task_ran")
+    return without_column(without_column(db, "ran_s", 11), "unchecked", 10)
 
 
 def without_column(db, column, version):
@@ -646,7 +661,7 @@ def written(tmp_path_factory):
         for number in range(50):
             store.tasks.keep(ended(f"t{number}"), "storage", number + 30.25)
         for number in range(20):
-            store.times.began(float(number), 0.0)
+            store.times.began(float(number))
             store.times.stands("sis_a", "held", number + 0.5)
     return path
 

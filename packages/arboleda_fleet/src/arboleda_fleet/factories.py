@@ -62,7 +62,7 @@ def cell_times(assembly: Assembly) -> Iterator[Part]:
     from .oee.cell_times import CellTimes
     from .oee.desk import OeeDesk
 
-    part = CellTimes(held.memory.times, assembly.model.history_days)
+    part = CellTimes(held.memory.times, plant.calendar.unix_s)
     plant.observers.append(part.stepped)
     assembly.offer(OeeApi, OeeDesk(held.history, [cell.name for cell in assembly.model.cells]))
     yield part

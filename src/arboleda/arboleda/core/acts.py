@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import reduce
 
 from arboleda.dispatch.ledger import Entry, State
-from arboleda.model.messages import FaultByHand, Outcome, Verb
+from arboleda.model.messages import Outcome, Verb
 from arboleda.model.sentence import BOTH, Phrase, Sentence
 from arboleda.model.verbs import Arguments
 
@@ -82,7 +82,10 @@ class Acts:
 
 @dataclass(frozen=True, kw_only=True)
 class NumberedFault:
-    """Fault of a virtual device that began or ended `at` s of the plant's clock; `number` grows with each."""
+    """Fault of a virtual device that began or ended `at` s of the plant's clock; `number` grows with each.
+
+    `robot` is "" where the clock of the plant's machine was set.
+    """
 
     number: int
     at: float
@@ -91,17 +94,16 @@ class NumberedFault:
 
 
 class ProvokedFaults:
-    """The last faults that people had virtual devices show, oldest first."""
+    """The last faults that people provoked, oldest first."""
 
     def __init__(self) -> None:
         self.last: deque[NumberedFault] = deque(maxlen=SHOWN)
         self._count = 0
 
-    def note(self, fault: FaultByHand) -> None:
+    def note(self, at: float, robot: str, sentence: Sentence) -> None:
         """Take in a fault."""
         self._count += 1
-        numbered = NumberedFault(number=self._count, at=fault.at, robot=fault.robot, sentence=fault.sentence)
-        self.last.append(numbered)
+        self.last.append(NumberedFault(number=self._count, at=at, robot=robot, sentence=sentence))
 
 
 def outcome_of(entries: Sequence[Entry]) -> tuple[Outcome, Sentence | None]:

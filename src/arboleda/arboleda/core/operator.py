@@ -52,6 +52,8 @@ NO_ARGUMENT = Phrase("refusal.no_argument", "{verb} takes no argument {argument}
 PUT_TO_WORK = Phrase("act.put_to_work", "version {number} was put to work by {by}: {changes}")
 RESTART_WANTED = Phrase("act.restart_wanted", "{by} has the plant restart once all its cells rest")
 RESTART_UNWANTED = Phrase("act.restart_unwanted", "{by} does not have the plant restart any more")
+CLOCK_AHEAD = Phrase("act.clock_ahead", "the clock of the plant's machine was set {seconds:.0f} s ahead")
+CLOCK_BACK = Phrase("act.clock_back", "the clock of the plant's machine was set back by {seconds:.0f} s")
 BY_HAND = {Verb.HOME: DECLARED_HOMED, Verb.RELEASE: DECLARED_EMPTY}
 """What is said of a verb where a person has done it by hand."""
 ACTS_TOLD = {
@@ -60,6 +62,8 @@ ACTS_TOLD = {
         PUT_TO_WORK,
         RESTART_WANTED,
         RESTART_UNWANTED,
+        CLOCK_AHEAD,
+        CLOCK_BACK,
         *DO.values(),
         *ENDED.values(),
         *BY_HAND.values(),

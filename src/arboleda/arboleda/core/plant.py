@@ -18,6 +18,7 @@ from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command
 from arboleda.model.messages import (
     Absence,
+    ClockSet,
     Event,
     Fact,
     Failure,
@@ -59,7 +60,7 @@ from .choosing import Prospect
 from .earlier_start import end_teaching, look_back, stop_of
 from .intake import Intake
 from .news import News
-from .operator import RESTART_UNWANTED, RESTART_WANTED, Operator
+from .operator import CLOCK_AHEAD, CLOCK_BACK, RESTART_UNWANTED, RESTART_WANTED, Operator
 from .people import People
 from .revisions import Revisions
 from .rounds import Rounds
@@ -142,6 +143,7 @@ class Plant:
             Undelivered: self._on_undelivered,
             Interference: self._on_interference,
             FaultByHand: self._on_fault_by_hand,
+            ClockSet: self._on_clock_set,
             Shutdown: self._on_shutdown,
             Revision: revisions.take,
             RestartRequest: self._on_restart_request,
@@ -356,10 +358,17 @@ class Plant:
 
     def _on_fault_by_hand(self, event: FaultByHand) -> None:
         self._news.changes += 1
-        self.provoked.note(event)
+        self.provoked.note(event.at, event.robot, event.sentence)
         cell = next((cell.name for cell in self.model.cells_of.get(event.robot, ())), None)
         entry = Journal(verb=None, scope=event.robot, cell=cell, sentence=event.sentence)
         self.dispatcher.outbox.append(entry)
+
+    def _on_clock_set(self, event: ClockSet) -> None:
+        self._news.changes += 1
+        did = CLOCK_AHEAD if event.seconds > 0 else CLOCK_BACK
+        sentence = did(seconds=abs(event.seconds))
+        self.provoked.note(event.at, "", sentence)
+        self.dispatcher.outbox.append(Journal(verb=None, scope="", cell=None, sentence=sentence))
 
     def _on_restart_request(self, event: RestartRequest) -> None:
         by = plain(event.by) or "-"

@@ -536,6 +536,14 @@ class FaultByHand:
     is_over: bool = False
 
 
+@dataclass(frozen=True, kw_only=True)
+class ClockSet:
+    """The wall clock of the plant's machine was set by so many `seconds`: for people who look back."""
+
+    at: float
+    seconds: float
+
+
 Event = (
     Jog
     | Report
@@ -548,4 +556,5 @@ Event = (
     | Revision
     | RestartRequest
     | FaultByHand
+    | ClockSet
 )

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
+from mcap.exceptions import McapError
+from mcap.records import Metadata
+from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
 
 from arboleda import __version__
@@ -21,6 +26,7 @@ from .preamble import FORMAT, Beginning
 FOLDER = "record"
 NAME = re.compile(r"([0-9]{1,10})-([0-9]{4,9})\.mcap")
 METADATA, BEGINNING, OF_PLANT = "arboleda", "beginning.json", "plant/"
+RAN = "ran_s"  # the time that the plant had run when the file began
 PROFILE = "ros2"
 # Without this, readers of bags expect QoS in words; we write the numbers, which all versions read.
 OF_BAG = ("rosbag2", {"serialized_metadata": ""})
@@ -72,9 +78,14 @@ def part_bytes(limits: Limits) -> int:
     return int(min(max(limits.megabytes * MEGABYTE / PARTS, least), most))
 
 
-def prune(folder: Path, limits: Limits, unix_s: float) -> None:
-    """Delete the oldest parts to make room for another one, and those that are too old."""
-    left = [part for part in parts_in(folder) if not _deleted_if_old(part, unix_s - limits.days * DAY_S)]
+def prune(folder: Path, limits: Limits, ran_s: float) -> None:
+    """Delete the oldest parts to make room for another one, and those that are too old.
+
+    The age of a part is the time that the plant has run since the next one began: a wall clock may be wrong.
+    """
+    left = parts_in(folder)
+    while len(left) > 1 and _began_ran_s(left[1]) < ran_s - limits.days * DAY_S:
+        left.pop(0).path.unlink(missing_ok=True)
     total = sum(part.bytes for part in left)
     for part in left:
         if total + part_bytes(limits) <= limits.megabytes * MEGABYTE:
@@ -83,24 +94,34 @@ def prune(folder: Path, limits: Limits, unix_s: float) -> None:
         part.path.unlink(missing_ok=True)
 
 
-def _deleted_if_old(part: Part, before_unix_s: float) -> bool:
-    with suppress(OSError):
-        if part.path.stat().st_mtime < before_unix_s:
-            part.path.unlink(missing_ok=True)
-            return True
-    return False
+def _began_ran_s(part: Part) -> float:
+    """The time that the plant had run when a part began; 0 of a version that did not say it.
+
+    A part that cannot be read counts as new.
+    """
+    with suppress(OSError, McapError, UnicodeDecodeError, ValueError), part.path.open("rb") as opened:
+        for record in islice(StreamReader(opened).records, 2):  # its header comes first
+            if isinstance(record, Metadata) and record.name == METADATA:
+                return float(record.metadata.get(RAN, 0.0))
+    return math.inf
 
 
 class PartFile:
     """File that is being written; its content survives a power cut after `flush`. Raises OSError."""
 
     def __init__(
-        self, path: Path, beginning: Beginning, number: int, unix_ns: int, channels: Iterable[Channel] = OURS
+        self,
+        path: Path,
+        beginning: Beginning,
+        number: int,
+        unix_ns: int,
+        channels: Iterable[Channel] = OURS,
+        ran_s: float = 0.0,
     ) -> None:
         self._file = os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "wb")
         self._writer = Writer(self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
         try:
-            write_beginning(self._writer, beginning, (number,), unix_ns)
+            write_beginning(self._writer, beginning, (number,), unix_ns, ran_s)
             self._channels = register(self._writer, channels)
             self._sync()
             sync_folder(path.parent)
@@ -140,7 +161,9 @@ class PartFile:
             self._file.close()
 
 
-def write_beginning(writer: Writer, beginning: Beginning, numbers: Iterable[int], unix_ns: int) -> None:
+def write_beginning(
+    writer: Writer, beginning: Beginning, numbers: Iterable[int], unix_ns: int, ran_s: float = 0.0
+) -> None:
     """Write the beginning of a file; `numbers` are those of the parts whose steps it has."""
     writer.start(profile=PROFILE, library=LIBRARY)
     metadata = {
@@ -149,6 +172,7 @@ def write_beginning(writer: Writer, beginning: Beginning, numbers: Iterable[int]
         "plant": beginning.plant,
         "epoch": str(beginning.epoch),
         "parts": " ".join(map(str, numbers)),
+        RAN: f"{ran_s:.0f}",
     }
     writer.add_metadata(METADATA, metadata)
     attach(writer, BEGINNING, "application/json", beginning.data(), unix_ns)

@@ -12,6 +12,7 @@ from typing import Any
 
 from arboleda.model.messages import (
     Check,
+    ClockSet,
     Course,
     Event,
     Fact,
@@ -59,6 +60,7 @@ EVENTS: dict[str, type[Any]] = {
         Undelivered,
         LateDeparture,
         FaultByHand,
+        ClockSet,
         Interference,
         Shutdown,
         RestartRequest,
@@ -312,6 +314,7 @@ READERS: dict[type, dict[str, Reader]] = {
     LateDeparture: {},
     Interference: {"sentence": sentence_from},
     FaultByHand: {"sentence": sentence_from},
+    ClockSet: {},
     Shutdown: {},
     Revision: {"version": _version},
     RestartRequest: {},

@@ -35,7 +35,7 @@ class Log(Protocol):
 class Writing:
     """Writer of a record: `open`, then `put` and `tend` repeatedly, then `close`; raises OSError.
 
-    Old files go as new ones come, within the `limits`.
+    Old files go as new ones come, within the `limits`; `ran_s` says how long the plant has run.
     """
 
     def __init__(
@@ -47,6 +47,7 @@ class Writing:
         *,
         view: ViewLog | None = None,
         unix_ns: Callable[[], int] = time.time_ns,
+        ran_s: Callable[[], float] = float,  # of a plant whose time nobody counts no file is old
         least_free: int = LEAST_FREE,
     ) -> None:
         self._view = view or ViewLog()
@@ -56,6 +57,7 @@ class Writing:
         self._beginning = beginning
         self._limits = limits
         self._unix_ns = unix_ns
+        self._ran_s = ran_s
         self._least_free = least_free
         self._part: PartFile | None = None
         self._number = self._digests = 0
@@ -66,10 +68,11 @@ class Writing:
         self._folder.mkdir(mode=0o700, exist_ok=True)
         self._refuse_full_disk()
         now = self._flushed_ns = self._unix_ns()
-        prune(self._folder, self._limits, now / 1e9)
+        ran_s = self._ran_s()
+        prune(self._folder, self._limits, ran_s)
         self._number += 1
         path = part_path(self._folder, self._beginning.epoch, self._number)
-        self._part = PartFile(path, self._beginning, self._number, now, self._channels)
+        self._part = PartFile(path, self._beginning, self._number, now, self._channels, ran_s)
         for log in self._logs:
             for message in filter(None, log.whole()):
                 self._part.put(*message)

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import json
+import logging
 from typing import Any
 
 from arboleda.engine import ACTS_TOLD
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import OWN, Sentence, from_data, retold
 from arboleda.store.act_table import ActTable, JournalEntry
+from arboleda.wire import epochs
 
 from .options import Options
 from .parts.memory_pace import MemoryPace
 from .state import StateDir, default_state
 from .stores import history_of, memory_of
+
+LOG = logging.getLogger(__name__)
 
 
 class Holdings:
@@ -39,7 +43,14 @@ class Holdings:
 
     def lead(self, now: int) -> int:
         """The number of this start, higher than that of any start before, on any host."""
-        return self.memory.lead.take(self.state.next_epoch(now))
+        number = self.memory.lead.take(self.state.next_epoch(now))
+        if epochs.objection(number, now) is not None:
+            LOG.warning(
+                "this start has number %d, far ahead of this machine's clock, as an earlier start had:"
+                " restart the boards that refuse its heartbeat",
+                number,
+            )
+        return number
 
     def close(self) -> None:
         """Give back everything that only one process may have; idempotent."""

@@ -64,16 +64,21 @@ def kept_tasks(store: PlantMemory, *, clock_s: float, unix_s: float) -> list[Kep
 
 
 def kept_task(row: TaskRow, *, clock_s: float, unix_s: float) -> KeptTask:
-    """A task as the plant takes it back, its times on the clock that says `clock_s` at `unix_s`."""
-    back_s = clock_s - unix_s
+    """A task as the plant takes it back, its times on the clock that says `clock_s` at `unix_s`.
+
+    None is later than that: the wall clock of an earlier start may have been ahead.
+    """
+    started_at, ended_at = (
+        None if at is None else clock_s + min(0.0, at - unix_s) for at in (row.started_s, row.ended_s)
+    )
     return KeptTask(
         id=row.id,
         text=row.text,
         cell=row.cell,
         state=TaskState(row.state),
         failure=failure_of(row),
-        started_at=None if row.started_s is None else row.started_s + back_s,
-        ended_at=None if row.ended_s is None else row.ended_s + back_s,
+        started_at=started_at,
+        ended_at=ended_at,
         attempts=row.attempts,
         answers=answers_of(row),
         recipe=row.recipe,

@@ -26,7 +26,6 @@ LOCK = "plant.lock"
 FACTS = "plant.json"
 EPOCH = "epoch"
 EPOCH_SAID, EPOCH_BYTES = re.compile(rb"[0-9]{1,10}\s*"), 64
-KNOWN_TIME_S = 1_577_836_800  # 2020: a clock that says less has forgotten the time
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 LOCK_TRIES, LOCK_PAUSE_S = 5, 0.05  # a `status` looks at the lock for a moment; that is no owner
 
@@ -116,11 +115,15 @@ class StateDir:
             raise
 
     def next_epoch(self, unix_s: int) -> int:
-        """A number for this start, higher than that of any start before, even if the clock was set back;
-        StartError if the last number is unknown, or no robot would take a higher one."""
+        """A number for this start, higher than that of any start before, whatever the clock said then;
+        StartError if the last number is unknown, or no robot would take a higher one.
+
+        By a clock that is far ahead of the last start it is the next number: boards refuse a leap.
+        """
         last = self._last_epoch()
-        epoch = max(unix_s, last + 1)
-        if epochs.objection(epoch, unix_s if unix_s >= KNOWN_TIME_S else None) is not None:
+        leaps = last > 0 and not epochs.can_follow(unix_s, last)
+        epoch = last + 1 if leaps or unix_s <= last else unix_s
+        if epochs.objection(epoch, None) is not None:
             raise StartError(
                 f"Robots would not obey this start: {self.path / EPOCH} says that the last one was number"
                 f" {last}, and this machine's clock says {unix_s}. Set the clock if it is wrong; if the file"

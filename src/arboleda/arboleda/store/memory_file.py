@@ -12,7 +12,7 @@ from arboleda.model.outside import plain, quoted
 
 from . import row_sums
 
-VERSION = 11
+VERSION = 12
 BUSY_S = 1.0  # a person may look into the file with another program; the plant's own lock keeps plants apart
 OWNER = ("plant", "name")  # the row of `fact` that says whose memory it is; no `Fact` has this name
 BOOT = ("host", "boot")  # the row that says on which boot of its host a start writes that has not ended yet

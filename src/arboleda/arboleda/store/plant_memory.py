@@ -15,6 +15,7 @@ from .rows import Statement, row_of_fact
 from .task_table import TaskTable
 from .time_table import TimeTable
 
+CLOCK = ("host", "clock")  # the row that names the setting of a clock after which times were last moved
 Memory = TypeVar("Memory", bound="PlantMemory")
 
 
@@ -87,6 +88,16 @@ class PlantMemory(ABC):
         """Commit what a start changes of what the one before has left, once it knows how that ended."""
         if facts:
             self.keep(*facts)
+
+    def move_times(self, by_s: float, since_ran_s: float, setting: str) -> None:
+        """Move the times of a start, which began when the plant had run so long: its wall clock was set.
+
+        `setting` names the occasion: a database may get a statement again whose answer was lost.
+        """
+        moves = (self.tasks.moved(by_s, since_ran_s), *self.times.moved(by_s))
+        once = " AND NOT EXISTS (SELECT 1 FROM fact WHERE fact = ? AND name = ? AND value = ?)"
+        rows = ((text + once, (*values, *CLOCK, setting)) for text, values in moves)
+        self.write(*rows, row_of_fact(CLOCK, setting), durable=False)
 
     def facts(self, fact: Fact) -> dict[str, str]:
         """The stored facts: value by name."""

@@ -57,6 +57,12 @@ ANSWERS = ("ALTER TABLE task ADD COLUMN answers TEXT",)
 CHOICE = ("ALTER TABLE task ADD COLUMN choice TEXT",)
 COURSE = ("ALTER TABLE task ADD COLUMN course TEXT",)
 UNCHECKED = ("ALTER TABLE task ADD COLUMN unchecked TEXT",)
+AGES = (
+    # how long the plant had run, over all of its starts, when a task ended
+    "ALTER TABLE task ADD COLUMN ran_s REAL",
+    "CREATE INDEX task_ran ON task (ran_s) WHERE ran_s IS NOT NULL",
+    "UPDATE task SET ran_s = 0 WHERE ended_s IS NOT NULL",
+)
 TIMES_OF_CELLS = (
     # from which second to which a cell did no work; `until_s` is null while it lasts
     "CREATE TABLE down (number INTEGER PRIMARY KEY, cell TEXT NOT NULL, state TEXT NOT NULL,"
@@ -78,6 +84,7 @@ SCHEMA = (
     *COURSE,
     *row_sums.COLUMNS,
     *UNCHECKED,
+    *AGES,
 )
 SINCE = {
     1: ("ALTER TABLE journal ADD COLUMN cell TEXT",),
@@ -90,6 +97,7 @@ SINCE = {
     8: COURSE,
     9: row_sums.COLUMNS,
     10: UNCHECKED,
+    11: AGES,
 }
 IN_MEMORY = Path(":memory:")
 FOLDED = 250  # commits after which the log is folded into the file: about 1,000 pages

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from .rows import Rows
+from collections.abc import Sequence
+
+from .rows import Rows, Statement
 
 
 class TimeTable:
@@ -11,13 +13,14 @@ class TimeTable:
     def __init__(self, rows: Rows) -> None:
         self._rows = rows
 
-    def began(self, unix_s: float, before_unix_s: float) -> None:
-        """Commit that the plant runs, and forget downtimes that ended long ago."""
+    def began(self, unix_s: float) -> None:
+        """Commit that the plant runs, and forget what was over before the oldest task that is kept."""
+        oldest = "(SELECT min(accepted_s) FROM task)"
         last = "SELECT seen_s FROM run WHERE number = (SELECT max(number) FROM run) AND seen_s > down.since_s"
         for statement in (
             (f"UPDATE down SET until_s = coalesce(({last}), since_s) WHERE until_s IS NULL", ()),
-            ("DELETE FROM down WHERE until_s < ?", (before_unix_s,)),
-            ("DELETE FROM run WHERE seen_s < ?", (before_unix_s,)),
+            (f"DELETE FROM down WHERE until_s < {oldest}", ()),
+            (f"DELETE FROM run WHERE seen_s < {oldest}", ()),
             ("INSERT INTO run (since_s, seen_s, ended) VALUES (?, ?, 0)", (unix_s, unix_s)),
         ):
             self._rows.write(statement, durable=False)
@@ -27,6 +30,16 @@ class TimeTable:
         last = "number = (SELECT max(number) FROM run)"
         update = f"UPDATE run SET seen_s = ?, ended = ? WHERE {last}"
         self._rows.write((update, (unix_s, int(ended))), durable=False)
+
+    def moved(self, by_s: float) -> Sequence[Statement]:
+        """The statements that move the times of this run, and of downtimes in it."""
+        run = "number = (SELECT max(number) FROM run)"
+        down = "UPDATE down SET since_s = since_s + ?, until_s = until_s + ?"
+        values = (by_s, by_s)
+        return (
+            (f"{down} WHERE since_s >= (SELECT since_s FROM run WHERE {run})", values),
+            (f"UPDATE run SET since_s = since_s + ?, seen_s = seen_s + ? WHERE {run}", values),
+        )
 
     def stands(self, cell: str, state: str | None, unix_s: float) -> None:
         """Commit that a cell does no work from now on, in this state; None: it works again."""

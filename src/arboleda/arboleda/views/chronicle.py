@@ -73,7 +73,7 @@ class Chronicle:
             if each["number"] > self._last_fault:
                 self._last_fault, robot = each["number"], each["robot"]
                 at = unix_s - (snapshot["at"] - each["at"])
-                self._add(at, cell_of.get(robot), "fault", robot, "provoked", each["sentence"])
+                self._add(at, cell_of.get(robot), "fault", robot or "plant", "provoked", each["sentence"])
 
     def _interference(self, snapshot: Row) -> Iterator[PlantNews]:
         cell_of = _cells(snapshot)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import time
 from collections.abc import Callable
 from functools import partial
 
@@ -14,7 +13,6 @@ from arboleda.oee.figures import SEEN_S
 from arboleda.store.time_table import TimeTable
 
 LOG = logging.getLogger(__name__)
-DAY_S = 86_400.0
 WORKS = frozenset({CellState.IDLE, CellState.EXECUTE})
 
 
@@ -25,9 +23,8 @@ class CellTimes:
     not end a plant.
     """
 
-    def __init__(self, times: TimeTable, history_days: float, clock: Callable[[], float] = time.time) -> None:
+    def __init__(self, times: TimeTable, clock: Callable[[], float]) -> None:
         self._times = times
-        self._history_days = history_days
         self._clock = clock
         self._version = -1
         self._noted_s = 0.0
@@ -37,7 +34,7 @@ class CellTimes:
     def start(self) -> None:
         self._noted_s = now_s = self._clock()
         self._keeps = True
-        self._kept(lambda times: times.began(now_s, now_s - self._history_days * DAY_S))
+        self._kept(lambda times: times.began(now_s))
 
     def stepped(self, plant: Plant) -> None:
         """Keep the cells that stand since this step, and now and then that the plant runs."""

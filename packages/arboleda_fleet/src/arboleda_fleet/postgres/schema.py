@@ -9,7 +9,7 @@ from arboleda.model.errors import StartError
 from .server import Impatient
 
 PREFIX, LONGEST = "plant_", 63  # PostgreSQL cuts longer names, so that two plants could become one
-VERSION = 6
+VERSION = 7
 NUMBER = "BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY"
 TABLES = (
     "CREATE TABLE fact (fact TEXT, name TEXT, value TEXT NOT NULL, PRIMARY KEY (fact, name))",
@@ -52,6 +52,12 @@ SINCE: dict[int, tuple[str, ...]] = {  # statements from each format to the next
     3: ("ALTER TABLE standby ADD COLUMN url TEXT NOT NULL DEFAULT ''",),  # the address of its page
     4: ("ALTER TABLE task ADD COLUMN course TEXT",),
     5: ("ALTER TABLE task ADD COLUMN unchecked TEXT",),
+    6: (
+        # how long the plant had run, over all of its starts, when a task ended
+        "ALTER TABLE task ADD COLUMN ran_s DOUBLE PRECISION",
+        "CREATE INDEX task_ran ON task (ran_s) WHERE ran_s IS NOT NULL",
+        "UPDATE task SET ran_s = 0 WHERE ended_s IS NOT NULL",
+    ),
 }
 SUPERSEDED = "AR001"
 

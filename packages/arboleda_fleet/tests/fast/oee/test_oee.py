@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from arboleda.adapters.clock import Calendar
 from arboleda.cli.main import cli
 from arboleda.model.cell_states import CellState
 from arboleda.model.errors import ArboledaError
@@ -40,7 +41,7 @@ def store(tmp_path: Path) -> Store:
 def rig(store: Store) -> Rig:
     """A plant at work whose every step is kept as the orchestrator keeps it."""
     rig = Rig(shipped("sis_a"), now=0.0)
-    times = CellTimes(store.times, 90.0, lambda: BEGAN + rig.now)
+    times = CellTimes(store.times, lambda: BEGAN + rig.now)
     times.start()
 
     def keep() -> None:
@@ -52,6 +53,35 @@ def rig(store: Store) -> Rig:
     rig.watchers.append(keep)
     rig.times = times  # type: ignore[attr-defined]
     return rig
+
+
+def test_a_clock_that_is_set_while_tasks_run_takes_none_from_the_figures(tmp_path: Path) -> None:
+    rig, clocks = Rig(shipped("sis_a"), now=0.0), {"ahead_s": BEGAN}
+    calendar = Calendar(lambda: rig.now + clocks["ahead_s"], lambda: rig.now)
+    with Store(tmp_path / STORE) as store:
+        times = CellTimes(store.times, calendar.unix_s)
+        times.start()
+
+        def keep() -> None:
+            for message in rig.moment.sent:
+                if isinstance(message, TaskChanged):
+                    store.tasks.keep(message, "storage", calendar.unix_s(), ran_s=rig.now)
+            times.stepped(rig.plant)
+            if by_s := calendar.look():
+                store.move_times(by_s, 0.0, repr(calendar.unix_s()))
+
+        rig.watchers.append(keep)
+        for task, ahead_s in zip("abcd", (86_400.0, 0.0, -86_400.0, 0.0), strict=True):
+            rig.submit(f"sis_a 0B 7 #{task}")
+            rig.wait(0.7)
+            clocks["ahead_s"] = BEGAN + ahead_s
+            assert rig.wait(600.0, lambda task=task: rig.outcomes()[task].state is TaskState.DONE)  # type: ignore[misc]
+            rig.wait(1.0)
+        found = of_cell(store, rig)
+        took = [row.ended_s - row.started_s for row in store.tasks.select(TaskQuery())]
+    assert found.done == found.timed == 4 and max(took) < 60.0
+    assert found.performance == pytest.approx(4 * min(took) / sum(took), rel=1e-6)
+    assert found.availability == pytest.approx(1.0)
 
 
 def of_cell(store: Store, rig: Rig) -> Oee:
@@ -117,7 +147,7 @@ def test_figures_that_cannot_be_kept_are_said_once_and_end_no_plant(
 ) -> None:
     rig = Rig(shipped("sis_a"))
     with Store(tmp_path / "full.sqlite") as store:
-        times = CellTimes(Full(store), 90.0, lambda: BEGAN + rig.now)
+        times = CellTimes(Full(store), lambda: BEGAN + rig.now)
         times.start()
         rig.watchers.append(lambda: times.stepped(rig.plant))
         rig.operate(Verb.STOP)

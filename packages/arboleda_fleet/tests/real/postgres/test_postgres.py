@@ -58,7 +58,7 @@ WRITES: dict[str, Callable[[PostgresMemory], object]] = {
     "a task": lambda memory: memory.tasks.keep(QUEUED, "storage", 2.0),
     "an attempt": lambda memory: memory.tasks.attempted("kept", 5),
     "old tasks forgotten": lambda memory: memory.tasks.forget(100.0),
-    "a start": lambda memory: memory.times.began(5.0, 4.0),
+    "a start": lambda memory: memory.times.began(5.0),
     "an end": lambda memory: memory.times.note_run(5.0, ended=True),
     "a cell that stands": lambda memory: memory.times.stands("sis_a", "held", 5.0),
     "a row of a package": lambda memory: PackageTable(memory, "acme").put({"a": "1"}),
@@ -78,7 +78,7 @@ def test_who_was_superseded_writes_nothing(postgres: Server, database: str, plan
         memory.tasks.keep(
             TaskChanged(task="kept", text="x", cell="x", state=TaskState.QUEUED), "storage", 1.0
         )
-        memory.times.began(1.0, 0.0)
+        memory.times.began(1.0)
         take_over(postgres, plant)
         before = everything()
         for what, write in WRITES.items():
@@ -226,7 +226,8 @@ def test_tables_of_an_older_arboleda_are_brought_up_with_what_they_have(
     with postgres.connection() as db:
         db.execute(f'SET search_path TO "plant_{plant}"')
         db.execute("ALTER TABLE leader DROP COLUMN url, DROP COLUMN wanted, DROP COLUMN going")
-        db.execute("ALTER TABLE task DROP COLUMN choice, DROP COLUMN course, DROP COLUMN unchecked")
+        later = ("choice", "course", "unchecked", "ran_s")
+        db.execute(f"ALTER TABLE task {', '.join(f'DROP COLUMN {each}' for each in later)}")
         db.execute("DROP TABLE standby")
         db.execute("UPDATE leader SET format = 1")
     history = PostgresHistory(database, plant)

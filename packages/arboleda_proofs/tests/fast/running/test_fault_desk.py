@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.model.messages import FaultByHand, Journal
+from arboleda.model.messages import ClockSet, FaultByHand, Journal
 from arboleda.sim.devices import Devices
 from arboleda.views.chronicle import Chronicle
 from arboleda.views.view import snapshot
@@ -155,3 +155,14 @@ def test_the_plant_keeps_it_in_its_journal_and_the_time_line_shows_it_once() -> 
     line.see(snapshot(rig.plant), 101.0)
     shown = [each for each in line.events if each["kind"] == "fault"]
     assert [(each["cell"], each["subject"], each["sentence"]) for each in shown] == [("sis_a", "ra1", what)]
+
+
+def test_that_the_clock_was_set_is_in_the_journal_and_on_the_time_line() -> None:
+    rig = Rig(shipped("sis_a"))
+    sent = rig.plant.step(rig.now, [ClockSet(at=rig.now, seconds=-3600.0)])
+    (entry,) = [each for each in sent if isinstance(each, Journal)]
+    assert str(entry.sentence) == "the clock of the plant's machine was set back by 3600 s"
+    line = Chronicle()
+    line.see(snapshot(rig.plant), 100.0)
+    (shown,) = [each for each in line.events if each["sentence"] == entry.sentence]
+    assert (shown["cell"], shown["subject"]) == (None, "plant")

@@ -127,7 +127,7 @@ def _record(assembly: Assembly, made: Orchestrator) -> None:
     view = ViewLog(assembly.holdings.past_acts, assembly.links)
     logs = [RosLog(assembly.model)]
     folder = assembly.holdings.state.path / FOLDER
-    recorder = Recorder(Writing(folder, beginning, wanted.limits, logs, view=view))
+    recorder = Recorder(Writing(folder, beginning, wanted.limits, logs, view=view, ran_s=made.keeping.ran_s))
     made.screens.recorder = recorder
     assembly.offer(RecordPart, recorder)
 

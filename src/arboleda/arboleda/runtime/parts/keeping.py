@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from arboleda.adapters import clock
 from arboleda.departures.leading import Standing, may_leave
 from arboleda.departures.leaving import ends_motion
 from arboleda.engine import Plant
@@ -34,13 +34,31 @@ class Keeping:
         store: PlantMemory | None,
         tell: Callable[[Any, Exception | None], None],
         crash: Crash,
+        calendar: clock.Calendar,
     ) -> None:
         self.store = store
+        self._calendar = calendar
+        self._ran_before_s = 0.0 if store is None else store.tasks.ran_s()
+        self._began_s = clock.seconds()
         self.failure: Exception | None = None
         self.durability = Durability(store, tell, self.fail)
         self._plant = plant
         self._crash = crash
         self._noted = False  # whether facts are written that are not committed
+
+    def follow_clock(self) -> float:
+        """The seconds by which the wall clock was set since the last look; the times of this start follow."""
+        by_s = self._calendar.look()
+        if by_s and self.store is not None and self.failure is None:
+            try:
+                self.store.move_times(by_s, self._ran_before_s, repr(self._calendar.unix_s()))
+            except ArboledaError as error:
+                self.fail(error)
+        return by_s
+
+    def ran_s(self) -> float:
+        """The time that the plant has run over all of its starts, s; never more than has passed."""
+        return self._ran_before_s + clock.seconds() - self._began_s
 
     @property
     def leads_for_certain(self) -> bool:
@@ -82,7 +100,7 @@ class Keeping:
         """Keep an operator's act, and how often it has had tasks begun."""
         if self.store is None or self.failure is not None:
             return
-        self.store.acts.keep(message, time.time())
+        self.store.acts.keep(message, self._calendar.unix_s())
         self._wrote(message)
         if message.verb is Verb.RETRY and message.outcome is None:
             for name in [message.cell] if message.cell else self._plant.cells:
@@ -114,11 +132,12 @@ class Keeping:
         """Keep a change of a task, which came by the way `asked_by`."""
         if self.store is None:
             return
-        known, unix_s = self._plant.intake.tasks.get(change.task), time.time()
+        known, unix_s = self._plant.intake.tasks.get(change.task), self._calendar.unix_s()
         recipe, answers = (known.order.recipe, known.answers) if known else ("", [])
-        self.store.tasks.keep(change, recipe, unix_s, asked_by, answers)
+        ran_s = self.ran_s()
+        self.store.tasks.keep(change, recipe, unix_s, asked_by, answers, ran_s)
         if change.state in ENDED:
-            self.store.tasks.forget(unix_s - self._plant.model.history_days * DAY_S)
+            self.store.tasks.forget(ran_s - self._plant.model.history_days * DAY_S)
         self._wrote(change)
 
     def _wrote(self, *changes: Remember | Journal | TaskChanged) -> None:

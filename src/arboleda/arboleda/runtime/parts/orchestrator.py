@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import threading
-import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
@@ -30,6 +29,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import (
     Absence,
     CellRevised,
+    ClockSet,
     Event,
     InternalError,
     Journal,
@@ -131,9 +131,11 @@ class Orchestrator:
         history: History | None = None,
         drops_waiting: bool = False,
         leave_out_raiser: Callable[[Exception], bool] = lambda _: False,
+        calendar: clock.Calendar | None = None,
     ) -> None:
+        self.calendar = calendar or clock.Calendar()
         now, memory = clock.seconds(), remembered(store) if store is not None else {}
-        kept = kept_tasks(store, clock_s=now, unix_s=time.time()) if store is not None else []
+        kept = kept_tasks(store, clock_s=now, unix_s=self.calendar.unix_s()) if store is not None else []
         if store is not None:
             memory = begun(store, memory, kept)
         self.plant = Plant(model, epoch=epoch, now=now, memory=memory, kept=kept)
@@ -148,7 +150,7 @@ class Orchestrator:
             on_step=self._stepped,
         )
         self.stops = Stops(model, epoch, self._send_beside)
-        self.keeping = Keeping(self.plant, store, self._tell, crash)
+        self.keeping = Keeping(self.plant, store, self._tell, crash, self.calendar)
         self.askers = Askers()
         gives_up = partial(listener_gives_up, leave_out_raiser)
         self.listeners: Listeners[TaskChanged] = Listeners(gives_up)
@@ -176,7 +178,7 @@ class Orchestrator:
         if self._history is None or id == request.text or id in self.plant.intake.tasks:
             return request
         found = self._history.select(TaskQuery(id=id, is_open=False, limit=1))
-        kept = [kept_task(row, clock_s=request.at, unix_s=time.time()) for row in found]
+        kept = [kept_task(row, clock_s=request.at, unix_s=self.calendar.unix_s()) for row in found]
         return replace(request, kept=next(iter(kept), None))
 
     def connect(self, port: PlantPort) -> None:
@@ -406,6 +408,8 @@ class Orchestrator:
         if events and any(isinstance(message, Command) for message in messages):
             # What is no news may have waited for the last event, which is why this step was made.
             self.reacted(clock.seconds() - max(event.at for event in events))
+        if by_s := self.keeping.follow_clock():
+            self.loop.post(ClockSet(at=clock.seconds(), seconds=by_s))
         self.keeping.durability.wake()
         if self.screens.recorder is not None:
             self.screens.recorder.stepped(self.plant, now, events, messages)
