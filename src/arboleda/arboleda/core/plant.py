@@ -12,6 +12,7 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.fact_memory import Memory
+from arboleda.dispatch.lateness import LATE_S
 from arboleda.dispatch.zones import Zones
 from arboleda.model.advice import Advice
 from arboleda.model.cell_states import CellState
@@ -170,6 +171,8 @@ class Plant:
         if self._steps and away_s > self.away_after_s:
             self._come_back(away_s)
             events = _requests_last(events, now)
+        if (pause_s := now - self._next_beat + HEARTBEAT_S) > LATE_S:
+            self.dispatcher.beat_pauses.note(now, pause_s)
         self.now, self._steps = now, True
         for event in events:
             # Deadlines expire between events, in the order of time. So a late step, with many events at

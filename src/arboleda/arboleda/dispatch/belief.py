@@ -13,6 +13,7 @@ from arboleda.model.messages import BUILT_IN, Failure, MotionState, Reason, Rece
 from arboleda.model.plant_model import Evidence, Link, Robot
 from arboleda.model.sentence import OWN, Phrase, Sentence
 
+from .lateness import LATE_S, Pauses
 from .stillness import Stillness
 
 RATE_S = 2.0  # the rate of reports is counted over at least this long
@@ -77,6 +78,7 @@ class Belief:
         tells = robot.goes or robot.fact_names
         self._comes_apart = bool(tells) and robot.evidence is Evidence.JOINTS  # its place and its state
         self.heard_at: float | None = None
+        self.pauses = Pauses()  # in which nothing was heard of it
         self.stale = False
         self.stale_at: float | None = None
         self.online = not self.supervised and not self.drawn
@@ -140,6 +142,8 @@ class Belief:
         self.reports += 1
         if report.number is not None:
             self.number = report.number
+        if self.heard_at is not None and report.at - self.heard_at > LATE_S:
+            self.pauses.note(report.at, report.at - self.heard_at)
         self.heard_at = report.at
         if self.supervised:
             self.stale_at = report.at + self.stale_after_s
@@ -199,6 +203,8 @@ class Belief:
         if stands and (self.state is MotionState.MOVING or (self.heard_at is not None and not self.online)):
             self.stillness.come_to_a_stop(report.at)
         if report.state is not MotionState.NO_LINK:
+            if self.heard_at is not None and report.at - self.heard_at > LATE_S:
+                self.pauses.note(report.at, report.at - self.heard_at)
             self.heard_at = report.at
             self.stale = False
             self.stale_at = report.at + self.stale_after_s if self.supervised else None

@@ -22,6 +22,7 @@ from .evidence import Before, CommandVerdict
 from .fact_memory import FactMemory, Memory
 from .interference import MOST, NEVER_GIVEN, Interferences
 from .latches import Latches
+from .lateness import Pauses, short_because
 from .ledger import Entry, Feed, Ledger, State
 from .obstacles import Barrier, Make, Obstacles, unbarred
 from .outlet import Outlet
@@ -59,6 +60,7 @@ class Dispatcher:
         for name, boot in memory.get(Fact.BOOT, {}).items():
             if name in self.beliefs and boot.isdigit():
                 self.beliefs[name].boot_id = int(boot)
+        self.beat_pauses = Pauses()  # in which the plant sent no heartbeat
         self.interference = Interferences()
         self.effectors = Effectors(model, memory, self.memory, self.ledger, self.interference)
         self.under_way, self.unnamed = UnderWay(model), UnnamedCommands(model)
@@ -253,6 +255,14 @@ class Dispatcher:
             self.outlet.count = number
         self.outlet.stop(report.robot, StopMode.HALT)
 
+    def _with_lateness(self, verdict: CommandVerdict, entry: Entry, belief: Belief) -> CommandVerdict:
+        """The verdict; of work that stopped short, and that nobody else cut short, it names what was late."""
+        failure = verdict.failure
+        if failure is None or failure.reason is not Reason.STOPPED_SHORT or entry.interference is not None:
+            return verdict
+        why = short_because(entry, self.beat_pauses, belief.pauses)
+        return replace(verdict, failure=replace(failure, sentence=why))
+
     def _prove(self, belief: Belief, report: Report, now: float, before: Before | None = None) -> None:
         """Book what a report proves; `before` is None for a report that repeats the last one."""
         name = report.robot
@@ -263,7 +273,7 @@ class Dispatcher:
                 entry.number = report.receipt[:2]
             verdict = evidence.judge(entry, before, belief, report)
             if verdict is not None:
-                self.booking.book(entry, verdict, now)
+                self.booking.book(entry, self._with_lateness(verdict, entry, belief), now)
         if self.unnamed.ids.get(name):
             self.unnamed.hear(report)
         if name in self.unfinished.by_device:

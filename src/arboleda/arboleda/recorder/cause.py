@@ -161,6 +161,7 @@ BY_KEY = {
     "command.fact_unsaid": "off_target",
     "command.fact_other": "off_target",
     "command.short_of_target": "short",
+    "command.short_because": "short",
     "command.board_fault": "alarm",
     "command.board_rebooted": "boot",
     "command.joints_jumped": "boot",
