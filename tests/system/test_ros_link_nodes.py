@@ -77,8 +77,12 @@ def test_every_node_ends_cleanly_when_it_is_told_to_the_dashboard_with_the_orche
         assert (name, node.returncode, "Traceback" in said) == (name, 0, False), said
 
 
-def test_a_bad_parameter_is_one_sentence(start: Start) -> None:
-    node = start("mqtt_bridge", "rate:=fast")
+@pytest.mark.parametrize(
+    ("parameter", "sentence"),
+    [("rate:=fast", "a number is needed"), ("use_sim_time:=true", "goes by the clock of its machine")],
+)
+def test_a_bad_parameter_is_one_sentence(start: Start, parameter: str, sentence: str) -> None:
+    node = start("mqtt_bridge", parameter)
     said, _ = node.communicate(timeout=PATIENCE_S)
     assert node.returncode == 1, said
-    assert "a number is needed" in said and "Traceback" not in said
+    assert sentence in said and "Traceback" not in said

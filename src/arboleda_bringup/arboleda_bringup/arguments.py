@@ -44,6 +44,7 @@ ARGUMENTS = (
         choices=SWITCH,
         description="the page, in the process of the orchestrator",
     ),
+    Argument(name="port", default="", description="port of the page; empty: 8080, or a free one"),
     Argument(name="rviz", default="true", choices=SWITCH, description="RViz2 with the shipped view"),
     Argument(
         name="describe",

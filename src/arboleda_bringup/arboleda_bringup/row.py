@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-Value = str | float | bool
+Value = str | float | int | bool
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -66,7 +66,9 @@ def _plant(choice: Choice, plant: PlantModel) -> list[Row]:
     if boards:
         rows.append(_part("mqtt_bridge", choice, broker=choice.broker_address, **shared))
     if choice.orchestrator:
-        rows.append(_part("orchestrator", choice, dashboard=choice.dashboard, **shared))
+        page: dict[str, Value] = {"dashboard": choice.dashboard, "dashboard_port": choice.port}
+        broker: dict[str, Value] = {"broker": choice.broker_address} if boards or choice.names_broker else {}
+        rows.append(_part("orchestrator", choice, **broker, **page, **shared))
     return rows
 
 

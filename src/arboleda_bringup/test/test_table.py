@@ -23,7 +23,9 @@ DEFAULTS = {argument.name: argument.default for argument in ARGUMENTS}
 COMMON = {"plant": "", "state_dir": "", "rate": 1.0}
 DEVICES = ("virtual_devices", {**COMMON, "broker": "embedded"})
 BRIDGE = ("mqtt_bridge", {**COMMON, "broker": "127.0.0.1:1883"})
-ORCHESTRATOR = ("orchestrator", {**COMMON, "dashboard": True})
+PAGE = {"dashboard": True, "dashboard_port": 0}
+ALONE = ("orchestrator", {**COMMON, **PAGE})  # its robots need no broker
+ORCHESTRATOR = ("orchestrator", {**COMMON, "broker": "127.0.0.1:1883", **PAGE})
 
 
 def rows(plant: PlantModel | None = None, /, **given: str) -> list[Row]:
@@ -40,14 +42,21 @@ def ours(table: list[Row]) -> list[tuple[str, dict[str, object]]]:
     [
         ({}, [DEVICES, BRIDGE, ORCHESTRATOR]),
         ({"orchestrator": "false"}, [DEVICES, BRIDGE]),
-        ({"dashboard": "false"}, [DEVICES, BRIDGE, ("orchestrator", {**COMMON, "dashboard": False})]),
+        (
+            {"dashboard": "false"},
+            [DEVICES, BRIDGE, ("orchestrator", {**ORCHESTRATOR[1], "dashboard": False})],
+        ),
         (
             {"sim": "false", "broker": "10.0.0.2:1884"},
-            [("mqtt_bridge", {**COMMON, "broker": "10.0.0.2:1884"}), ORCHESTRATOR],
+            [(name, {**more, "broker": "10.0.0.2:1884"}) for name, more in (BRIDGE, ORCHESTRATOR)],
         ),
         (
             {"broker": "10.0.0.2:1884", "orchestrator": "false"},
             [(name, {**COMMON, "broker": "10.0.0.2:1884"}) for name in ("virtual_devices", "mqtt_bridge")],
+        ),
+        (
+            {"port": "8090"},
+            [DEVICES, BRIDGE, ("orchestrator", {**ORCHESTRATOR[1], "dashboard_port": 8090})],
         ),
         (
             {"plant": "mine.yaml", "state_dir": "here", "rate": "10"},
@@ -57,7 +66,15 @@ def ours(table: list[Row]) -> list[tuple[str, dict[str, object]]]:
             ],
         ),
     ],
-    ids=["defaults", "no orchestrator", "no dashboard", "real boards", "bridge alone", "values passed on"],
+    ids=[
+        "defaults",
+        "no orchestrator",
+        "no dashboard",
+        "real boards",
+        "bridge alone",
+        "port of the page",
+        "values passed on",
+    ],
 )
 def test_the_plant_is_put_together_as_asked(
     given: dict[str, str], expected: list[tuple[str, dict[str, object]]]
@@ -120,14 +137,20 @@ def test_without_rviz_nobody_needs_what_it_draws_unless_asked() -> None:
 
 @pytest.mark.parametrize("link", [Link.ROS, Link.NONE])
 def test_robots_without_boards_need_no_broker_no_boards_and_no_bridge(link: Link) -> None:
-    assert ours(rows(shipped(link=link))) == [ORCHESTRATOR]
+    assert ours(rows(shipped(link=link))) == [ALONE]
+
+
+def test_a_broker_that_is_named_reaches_the_plant_without_boards_too() -> None:
+    ((_, known),) = ours(rows(shipped(link=Link.ROS), broker="10.0.0.2:1884"))
+    assert known["broker"] == "10.0.0.2:1884"
 
 
 def test_virtual_boards_play_what_drivers_reach_unless_boards_are_real() -> None:
     driven = shipped(link=Link.DRIVER)
     played = [(name, {**more, "virtual": True}) for name, more in (DEVICES, BRIDGE, ORCHESTRATOR)]
     assert ours(rows(driven)) == played
-    assert ours(rows(driven, sim="false", broker="10.0.0.2:1884")) == [ORCHESTRATOR]
+    real = ("orchestrator", {**ORCHESTRATOR[1], "broker": "10.0.0.2:1884"})
+    assert ours(rows(driven, sim="false", broker="10.0.0.2:1884")) == [real]
 
 
 @pytest.mark.parametrize(
@@ -135,6 +158,10 @@ def test_virtual_boards_play_what_drivers_reach_unless_boards_are_real() -> None
     [
         ({"sim": "false"}, "with sim:=false name the broker of the real ones: broker:=HOST:PORT"),
         ({"broker": "nowhere:x"}, "'nowhere:x' is not a broker address; write HOST:PORT"),
+        ({"port": "http"}, "'http' is not a port; allowed: 1 to 65535"),
+        ({"port": "65536"}, "'65536' is not a port; allowed: 1 to 65535"),
+        ({"port": "8090", "dashboard": "false"}, "port is for the page (dashboard:=true)"),
+        ({"port": "8090", "orchestrator": "false"}, "port is for the page (dashboard:=true)"),
         ({"rate": "fast"}, "'fast' is not a rate; allowed: 0.1 to 100"),
         ({"rate": "0"}, "0 is not a rate; allowed: 0.1 to 100"),
         ({"rate": "2", "sim": "false", "broker": "h:1"}, "rate is for virtual boards (sim:=true)"),

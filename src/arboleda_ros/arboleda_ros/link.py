@@ -23,6 +23,7 @@ from arboleda_ros.orchestrator import OrchestratorPort
 from arboleda_ros.port import Port
 from arboleda_ros.ros_log import QUIET, RosLog
 from arboleda_ros.standby import StandbyVoice
+from arboleda_ros.wall_time import keep_wall_time
 
 LOG = logging.getLogger("arboleda.ros")
 
@@ -69,7 +70,8 @@ class Link:
     def node(self, name: str) -> Node:
         """The node of that name, made at the first call; only before `start`."""
         if name not in self._nodes:
-            self._nodes[name] = Node(name, context=self._context)
+            self._nodes[name] = node = Node(name, context=self._context)
+            keep_wall_time(node)
             self.log.join(self._nodes[name])
         return self._nodes[name]
 

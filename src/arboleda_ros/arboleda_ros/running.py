@@ -35,7 +35,7 @@ from arboleda_ros.ros_log import RosLog
 
 LOG = logging.getLogger("arboleda.ros")
 STDERR = 2
-Value = str | float | bool
+Value = str | float | int | bool
 EMBEDDED = "embedded"
 
 _PARAMETERS: dict[str, tuple[Value, str]] = {
@@ -46,7 +46,8 @@ _PARAMETERS: dict[str, tuple[Value, str]] = {
     "state_dir": ("", "where the plant keeps its state; empty: $XDG_STATE_HOME/arboleda/<plant name>"),
 }
 _DASHBOARD: dict[str, tuple[Value, str]] = {
-    "dashboard": (False, "serve the page and the HTTP API on this machine: port 8080, or a free one"),
+    "dashboard": (False, "serve the page and the HTTP API on this machine"),
+    "dashboard_port": (0, "port where they listen; 0: 8080, or a free one where that is taken"),
     "dashboard_host": (LOCAL, "IP address where they listen; one that other hosts reach wants tokens"),
 }
 _STORE: dict[str, tuple[Value, str]] = {
@@ -54,7 +55,7 @@ _STORE: dict[str, tuple[Value, str]] = {
     "standby": (False, "wait until nobody leads this plant, and lead it then; needs a store"),
 }
 _PARTS = {"orchestrator": "orchestrator", "mqtt_bridge": "bridge", "virtual_devices": "devices"}
-_KINDS = {float: "a number", str: "a text", bool: "true or false"}
+_KINDS = {float: "a number", int: "a whole number", str: "a text", bool: "true or false"}
 
 
 def run(name: str) -> int:
@@ -137,7 +138,7 @@ def _app(link: Link, name: str) -> App:
         log_name="arboleda.log" if name == "orchestrator" else f"{name}.log",
         state_dir=Path(values["state_dir"]) if values["state_dir"] else None,
         store=values.get("store", ""),
-        web=WebOptions(host=values.get("dashboard_host", LOCAL)),
+        web=WebOptions(host=values.get("dashboard_host", LOCAL), port=values.get("dashboard_port") or None),
         recording=recording,
         plant_file=plant_file,
     )
