@@ -39,6 +39,7 @@ from arboleda.model.messages import (
     TaskChanged,
     TaskRequest,
     TaskState,
+    Uncontested,
     Verb,
 )
 from arboleda.model.plant_model import Evidence, Link, PlantModel
@@ -270,6 +271,20 @@ def test_nothing_of_a_stranger_who_publishes_what_a_robot_reports_is_believed(pa
     del plant.events[:told]  # what is told from now on
     assert "more than one node publishes on /ra1/status" in contest(pair)
     assert [each.done for each in reported(plant)] == [None] * len(reported(plant))
+
+
+def test_a_robot_that_says_nothing_counts_again_once_a_stranger_who_spoke_for_it_is_gone(links):
+    plant = Side(links(), "orchestrator", shipped("sis_a", link=Link.ROS, evidence=Evidence.STATE))
+    robot = Stranger(links(), "robot")
+    robot.offer(UInt8, "/rm_sis_a/motion_state")
+    stranger = Stranger(links())
+    stranger.say("/rm_sis_a/motion_state", UInt8(data=0))
+    eventually(lambda: any(isinstance(event, Interference) for event in plant.events))
+    assert not [event for event in plant.events if isinstance(event, Uncontested)]
+    stranger.node.destroy_node()
+    eventually(lambda: isinstance(plant.events[-1], Uncontested))
+    last = [event for event in plant.events if isinstance(event, Report)][-1]
+    assert last.state is MotionState.NO_LINK  # neither spoke since
 
 
 def test_a_bridge_that_was_started_again_is_believed_beside_the_end_of_the_last_one(pair, links):

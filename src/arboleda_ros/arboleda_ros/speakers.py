@@ -6,9 +6,10 @@ import logging
 from collections.abc import Callable
 from typing import Any
 
+from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-from arboleda.model.messages import Event, Interference, MotionState, Report
+from arboleda.model.messages import Event, Interference, MotionState, Report, Uncontested
 from arboleda.model.sentence import Sentence
 from arboleda.wire.speaker import Speaker
 from arboleda_ros import qos
@@ -21,7 +22,10 @@ _FRESH_S = 0.2  # within this time publishers are not looked up again for each m
 
 
 class Speakers:
-    """Publishers of one robot's topics. While nobody is believed, the robot counts as without link."""
+    """Publishers of one robot's topics. While nobody is believed, the robot counts as without link.
+
+    That ends without a message of the robot: one that is idle may have nothing to say.
+    """
 
     def __init__(
         self, node: Node, robot: str, clock: Callable[[], float], on_event: Callable[[Event], None]
@@ -34,6 +38,10 @@ class Speakers:
         self._matches: dict[str, Callable[[], Any]] = {}  # by topic
         self._looked: dict[str, float] = {}  # by topic, where several publish
         self._known: dict[str, Known] = {}  # by topic
+        self._is_doubted = False  # since the plant was told, until it is told that reports count again
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._timer = node.create_timer(_FRESH_S, self._follow, clock=steady)
+        self._timer.cancel()  # it runs while nobody is believed
 
     def guarded(self, topic: str, handle: Callable[[Any], None]) -> Callable[[Any], None]:
         """A handler that calls `handle` only for messages that count."""
@@ -44,6 +52,7 @@ class Speakers:
                 self._look_again(topic)
                 if not self._speaker.believed(self._clock()):
                     return
+            self._believe()
             handle(message)
 
         return believe
@@ -70,6 +79,20 @@ class Speakers:
         if event.total_count - came > stayed:
             self._tell(self._speaker.came_and_went(self._clock(), self._absolute(topic)))
 
+    def _follow(self) -> None:
+        """Look if nobody is contested any more, whether or not a message comes."""
+        for topic in tuple(self._looked):
+            self._look_again(topic)
+        if self._speaker.believed(self._clock()):
+            self._timer.cancel()
+            self._believe()
+
+    def _believe(self) -> None:
+        """Tell the plant once that what the robot reports counts again."""
+        if self._is_doubted:
+            self._is_doubted = False
+            self._on_event(Uncontested(at=self._clock(), robot=self._robot))
+
     def _look_again(self, topic: str) -> None:
         if self._clock() >= self._looked.get(topic, 0.0) + _FRESH_S:
             self._look(topic, self._known.get(topic, NOBODY)[1])
@@ -85,15 +108,21 @@ class Speakers:
         nodes = [None if name == UNNAMED else name for name in names]
         nodes += [None] * (matched - len(nodes))
         self._tell(self._speaker.publishers(now, self._absolute(topic), nodes))
+        self._keep_looking()
         return frozenset(tuple(info.endpoint_gid) for info in found)
 
     def _tell(self, sentence: Sentence | None) -> None:
         if sentence is None:
             return
-        now = self._clock()
+        now, self._is_doubted = self._clock(), True
+        self._keep_looking()
         LOG.warning("%s", sentence)
         self._on_event(Report(at=now, robot=self._robot, state=MotionState.NO_LINK, lost=sentence))
         self._on_event(Interference(at=now, robot=self._robot, sentence=sentence))
+
+    def _keep_looking(self) -> None:
+        if self._timer.is_canceled() and not self._speaker.believed(self._clock()):
+            self._timer.reset()
 
     def _absolute(self, topic: str) -> str:
         return self._node.resolve_topic_name(topic)

@@ -6,7 +6,15 @@ from typing import Any
 import pytest
 
 from arboleda.core.plant import Plant
-from arboleda.model.messages import MotionState, OperatorRequest, Report, TaskChanged, TaskRequest, Verb
+from arboleda.model.messages import (
+    MotionState,
+    OperatorRequest,
+    Report,
+    TaskChanged,
+    TaskRequest,
+    Uncontested,
+    Verb,
+)
 from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda_proofs.testing import shipped
 from arboleda_proofs.testing.storage_layout import StorageLayout
@@ -30,8 +38,8 @@ class Hand:
     def submit(self, text: str) -> list[Any]:
         return self._step([TaskRequest(at=self.now, text=text)])
 
-    def operate(self, verb: Verb, scope: str) -> list[Any]:
-        return self._step([OperatorRequest(at=self.now, verb=verb, scope=scope)])
+    def operate(self, verb: Verb, scope: str, *, by_hand: bool = False) -> list[Any]:
+        return self._step([OperatorRequest(at=self.now, verb=verb, scope=scope, by_hand=by_hand)])
 
     def tell(self, robot: str, after: float = 0.05, **said: Any) -> list[Any]:
         until = self.now + after
@@ -40,6 +48,10 @@ class Hand:
             self._step([])
         self.now = until
         return self._step([Report(at=self.now, robot=robot, **said)])
+
+    def uncontested(self, robot: str) -> list[Any]:
+        """One node is left that speaks for a robot."""
+        return self._step([Uncontested(at=self.now, robot=robot)])
 
     def wait(self, seconds: float) -> list[Any]:
         """Let time pass, deadline by deadline, with nobody saying anything."""

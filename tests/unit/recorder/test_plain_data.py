@@ -34,6 +34,7 @@ from arboleda.model.messages import (
     TaskAnswer,
     TaskRequest,
     TaskState,
+    Uncontested,
     Undelivered,
     Verb,
 )
@@ -132,6 +133,7 @@ STRATEGIES = {
     LateDeparture: st.builds(LateDeparture, at=NUMBERS, id=TEXTS, late_s=NUMBERS),
     ClockSet: st.builds(ClockSet, at=NUMBERS, seconds=NUMBERS),
     FaultByHand: st.builds(FaultByHand, at=NUMBERS, robot=TEXTS, sentence=SENTENCES, is_over=st.booleans()),
+    Uncontested: st.builds(Uncontested, at=NUMBERS, robot=TEXTS),
     Interference: st.builds(Interference, at=NUMBERS, robot=TEXTS, sentence=SENTENCES),
     Shutdown: st.builds(Shutdown, at=NUMBERS, drops_waiting=st.booleans()),
     Revision: st.builds(

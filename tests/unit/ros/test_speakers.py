@@ -2,14 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from arboleda.model.messages import Uncontested
+from arboleda.wire.speaker import HOLD_S
 from arboleda_ros import speakers
 
 TOPIC = "ra1/status"
+
+
+class Timer:
+    """A timer of rclpy that runs, or is cancelled."""
+
+    def __init__(self, period_s: float, call: Callable[[], None]) -> None:
+        self.period_s, self.call, self.runs = period_s, call, True
+
+    def cancel(self) -> None:
+        self.runs = False
+
+    def reset(self) -> None:
+        self.runs = True
+
+    def is_canceled(self) -> bool:
+        return not self.runs
 
 
 class Bench:
@@ -24,13 +43,32 @@ class Bench:
         self.unshown = 0
         self.events: list[Any] = []
         self.looks = 0
+        self.timer: Any = None
         node: Any = SimpleNamespace(
+            create_timer=self._timer,
             get_publishers_info_by_topic=self._publishers,
             resolve_topic_name=lambda topic: f"/{topic}",
         )
         self.speakers = speakers.Speakers(node, "ra1", lambda: self.now, self.events.append)
         self.hear = self.speakers.guarded(TOPIC, self.heard.append)
         self.speakers.watch(TOPIC, self._counts)
+
+    def wait(self, seconds: float) -> None:
+        """Let time pass with no message of anybody: only the timer calls, where it runs."""
+        until = self.now + seconds
+        while self.timer.runs and self.now + self.timer.period_s <= until:
+            self.now += self.timer.period_s
+            self.timer.call()
+        self.now = until
+
+    def leave(self, node: str) -> None:
+        """A publisher is gone, and the executor comes to that event."""
+        self.nodes.remove(node)
+        self.matched()
+
+    def _timer(self, period_s: float, call: Callable[[], None], clock: Any) -> Any:
+        self.timer = Timer(period_s, call)
+        return self.timer
 
     def matched(self) -> None:
         """The executor comes to the event that publishers came or went."""
@@ -109,3 +147,34 @@ def test_a_publisher_that_is_matched_before_the_graph_shows_it_is_not_believed(b
     bench.come("/other", shown=False)
     bench.hear("second")
     assert bench.heard == []
+
+
+def test_the_plant_is_told_that_reports_count_again_though_the_robot_says_nothing(bench: Bench) -> None:
+    bench.come("/other")
+    bench.matched()
+    bench.wait(5.0)
+    assert not [event for event in bench.events if isinstance(event, Uncontested)]
+    bench.leave("/other")
+    bench.wait(HOLD_S + bench.timer.period_s)
+    assert isinstance(bench.events[-1], Uncontested)
+    told = len(bench.events)
+    bench.wait(5.0)
+    bench.hear("later")
+    assert len(bench.events) == told
+    assert not bench.timer.runs
+
+
+def test_of_a_publisher_that_came_and_went_nothing_is_left_either(bench: Bench) -> None:
+    bench.ever += 1
+    bench.matched()
+    bench.wait(HOLD_S + bench.timer.period_s)
+    assert isinstance(bench.events[-1], Uncontested)
+
+
+def test_a_message_that_counts_again_comes_after_the_word_that_it_does(bench: Bench) -> None:
+    bench.come("/other")
+    bench.matched()
+    bench.leave("/other")
+    bench.now += HOLD_S
+    bench.hear("first")
+    assert isinstance(bench.events[-1], Uncontested) and bench.heard == ["first"]

@@ -41,6 +41,7 @@ from arboleda.model.messages import (
     TaskChanged,
     TaskRequest,
     TaskState,
+    Uncontested,
     Undelivered,
     outlives_power,
 )
@@ -143,6 +144,7 @@ class Plant:
             Jog: self._people.jog,
             Undelivered: self._on_undelivered,
             Interference: self._on_interference,
+            Uncontested: self._on_uncontested,
             FaultByHand: self._on_fault_by_hand,
             ClockSet: self._on_clock_set,
             Shutdown: self._on_shutdown,
@@ -358,6 +360,9 @@ class Plant:
     def _on_interference(self, event: Interference) -> None:
         if event.robot in self.dispatcher.beliefs:
             self.dispatcher.interfere(event.robot, event.sentence, event.at, obeyed=True)
+
+    def _on_uncontested(self, event: Uncontested) -> None:
+        self.dispatcher.believe_again(event.robot)
 
     def _on_fault_by_hand(self, event: FaultByHand) -> None:
         self._news.changes += 1

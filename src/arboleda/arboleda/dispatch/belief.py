@@ -107,6 +107,7 @@ class Belief:
         self.tokens: Tokens | None = None  # of the commands in `receipt`
         self.facts: dict[str, Value] = {}
         self.lost: Sentence | None = None  # why there is no link
+        self.said_before_loss: MotionState | None = None  # its state, as it was when its link was lost
         self.facts_no = 0  # the number of the last report that changed a fact
         self._last: Report | None = None  # the last report
 
@@ -160,6 +161,8 @@ class Belief:
         self._hear(report)
         if report.epoch is not None and report.epoch != self.epoch:
             self.barred = False  # a bridge that restarted has forgotten the stop
+        if report.state is MotionState.NO_LINK and self.state is not MotionState.NO_LINK:
+            self.said_before_loss = self.state
         for name, value in zip(MERGED, _merged(report), strict=True):
             if value is not None:
                 setattr(self, name, value)
@@ -193,6 +196,17 @@ class Belief:
         self.stale = True
         self.stale_at = None
         self.online = False
+
+    def find_again(self) -> MotionState | None:
+        """Take it for linked again although it says nothing; returns the state that it said before.
+
+        It may have come to a stop meanwhile. One that can fall silent has to be heard first.
+        """
+        before = self.said_before_loss
+        self.state = None if before is MotionState.MOVING else before
+        self._last = self.lost = None
+        self.online = self.online or not (self.supervised or self.drawn)
+        return before
 
     def _hear(self, report: Report) -> None:
         """Take over when and where it was heard; reports are numbered, as two may come at one time."""

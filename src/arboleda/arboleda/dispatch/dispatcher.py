@@ -224,6 +224,22 @@ class Dispatcher:
             self.ledger.version += 1
             self.ledger.changed |= self._cells_of[report.robot]
 
+    def believe_again(self, robot: str) -> None:
+        """Go by what a robot said before its reports did not count, as it may say nothing until it works.
+
+        One that moved then stands nobody knows where, if the plant does not see it.
+        """
+        belief = self.beliefs.get(robot)
+        if belief is None or belief.state is not MotionState.NO_LINK:
+            return
+        moved = belief.find_again() is MotionState.MOVING
+        if moved and belief.may_be_displaced and not belief.supervised:
+            self.whereabouts.displace(belief, displaced=True)
+        if belief.online and robot in self.latches.stopped:
+            self.outlet.stop(robot, StopMode.LATCH)
+        self.ledger.version += 1
+        self.wake([robot])
+
     def interfere(self, robot: str, sentence: Sentence, now: float, *, obeyed: bool) -> None:
         """Note that somebody else commanded a robot; a command that it obeyed may make open ones fail."""
         self.interference.note(robot, sentence, now, obeyed=obeyed)

@@ -447,6 +447,14 @@ class Interference:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Uncontested:
+    """What a robot reports counts again, after more than one node has published it."""
+
+    at: float
+    robot: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class Shutdown:
     """The plant is asked to end: it takes no new task, and halts what moves.
 
@@ -552,6 +560,7 @@ Event = (
     | Undelivered
     | LateDeparture
     | Interference
+    | Uncontested
     | Shutdown
     | Revision
     | RestartRequest

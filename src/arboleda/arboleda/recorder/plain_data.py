@@ -37,6 +37,7 @@ from arboleda.model.messages import (
     TaskRequest,
     TaskState,
     Tokens,
+    Uncontested,
     Undelivered,
     Verb,
 )
@@ -62,6 +63,7 @@ EVENTS: dict[str, type[Any]] = {
         FaultByHand,
         ClockSet,
         Interference,
+        Uncontested,
         Shutdown,
         RestartRequest,
         Revision,
@@ -313,6 +315,7 @@ READERS: dict[type, dict[str, Reader]] = {
     Undelivered: {"sentence": sentence_from},
     LateDeparture: {},
     Interference: {"sentence": sentence_from},
+    Uncontested: {},
     FaultByHand: {"sentence": sentence_from},
     ClockSet: {},
     Shutdown: {},
