@@ -279,6 +279,14 @@ class Plant:
             and not any(run.manual.teaching for run in self.cells.values())
         )
 
+    def at_work(self, holder: str) -> bool:
+        """True where the work of a robot, or a cell, comes to an end by itself."""
+        cell = self.cells.get(self.zones.holder(holder) or holder)  # of a shared robot the cell that holds it
+        if cell is not None:
+            return cell.state is CellState.EXECUTE
+        executes = any(run.state is CellState.EXECUTE for run in self._runs.get(holder, ()))
+        return executes or bool(self.dispatcher.ledger.of_robot(holder))
+
     def sleepers(self) -> list[str]:
         """Cells whose tree runs with nothing left to wake it; anything here is a defect."""
         awake = {entry.cell for entry in self.dispatcher.ledger.entries.values()}
@@ -294,17 +302,9 @@ class Plant:
         def ways_out(cell: str) -> Sequence[Advice]:
             return self._advisor.ways_out(cell)
 
-        context = Context(cell, self.dispatcher, self.zones, clock, self._at_work)
+        context = Context(cell, self.dispatcher, self.zones, clock, self.at_work)
         stop = stop_of(cell, self.model, self.dispatcher.latches)
         return CellRun(cell, context, self._tasks.tell, build, ways_out, stop)
-
-    def _at_work(self, holder: str) -> bool:
-        """True where the work of a robot, or a cell, comes to an end by itself."""
-        cell = self.cells.get(self.zones.holder(holder) or holder)  # of a shared robot the cell that holds it
-        if cell is not None:
-            return cell.state is CellState.EXECUTE
-        executes = any(run.state is CellState.EXECUTE for run in self._runs.get(holder, ()))
-        return executes or bool(self.dispatcher.ledger.of_robot(holder))
 
     def _use(self, model: PlantModel) -> None:
         self.model = self.dispatcher.model = model

@@ -872,6 +872,38 @@ def test_no_starvation__of_a_cell_whose_shared_arm_may_still_be_told_something(t
     assert [task.state for task in watch.record.tasks.open.values()] == [TaskState.QUEUED]
 
 
+MACHINE_RECIPES = """
+from arboleda.recipes import recipe, work
+
+@recipe("shut")
+def shut(cell):
+    gate = cell.device("gate")
+    return work(gate.shut(), cell.wait(20), gate.open())
+
+@recipe("tour")
+def tour(cell):
+    return work(cell.device("cart").visit("pickup"), cell.device("cart").home())
+"""
+MACHINE_IN_A_ZONE = """
+name: gates
+uses: [recipes.py]
+kinds:
+  gate:
+    facts: {is_open: bool}
+    verbs:
+      shut: {effect: process, sets: {is_open: false}, takes_s: 0.5}
+      open: {effect: process, sets: {is_open: true}, takes_s: 0.5}
+cells:
+  left: {devices: {gate: {kind: gate}}}
+  right:
+    devices: {cart: {kind: mobile, evidence: state, stop: none}}
+    targets: {home: {cart: {node: 6}}, pickup: {cart: {node: 4}}}
+    zone_wait_s: 3
+zones:
+  way: {moves: [[right home, right pickup]], free_while: {gate: {is_open: true}}}
+"""
+
+
 def test_zone_requests_end(monkeypatch, bites):
     watch = Watch(zoned())
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
@@ -902,6 +934,18 @@ def test_zone_requests_end__of_a_recovery_unless_who_has_the_zone_works():
     assert [user.cell for user in watch.record.waiting.users] == ["sis_a"]
     assert watch.world.plant.cells["sis_a"].run.recovering
     watch.wait(40)
+    assert watch.found == {} and watch.record.waiting.users == []
+
+
+def test_zone_requests_end__of_a_recovery_unless_a_machine_has_the_zone_and_its_cell_works(tmp_path):
+    (tmp_path / "recipes.py").write_text(MACHINE_RECIPES)
+    (tmp_path / "plant.yaml").write_text(MACHINE_IN_A_ZONE)
+    watch = Watch(load(tmp_path / "plant.yaml"))
+    watch.task("left shut", wait_s=2)
+    watch.task("right tour", wait_s=10)
+    assert watch.world.plant.zones.holder("way") == "gate"
+    assert watch.world.plant.cells["right"].run.recovering
+    watch.wait(30)
     assert watch.found == {} and watch.record.waiting.users == []
 
 

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping
 
 from arboleda.engine import Plant
 from arboleda.kinds.joints import MoveJoints
-from arboleda.model.cell_states import CellState
 
 from .cells import KnownCell
 from .commands import Commands, SentCommand
@@ -31,7 +30,7 @@ class Waiting:
             users = [user for cell in self._cells.values() for user in cell.zone_users.values()]
             self.users = [user for user in users if user.robot in robots]
         for user in self.users if seconds <= plant.away_after_s else ():
-            state, behind_work = self._cells[user.cell].state, self._is_behind_work(user, plant, commands)
+            state, behind_work = self._cells[user.cell].state, self._is_behind_work(user, plant)
             user.wait(seconds, state=state, behind_work=behind_work)
         self._look_at_recoveries(plant, commands.new)
 
@@ -48,19 +47,9 @@ class Waiting:
                     user.watch_recovery(moves[cell.name])
                 user.holds = user.robot in holders
 
-    def _is_behind_work(self, user: ZoneUser, plant: Plant, commands: Commands) -> bool:
-        """True if all that have, or get earlier, the zones that this robot wants were at work."""
-        zones, before, wanted = plant.zones, set(), dict(self._requests)[user.robot]
-        for arm, asked in self._requests:
-            if arm == user.robot:
-                break
-            if not wanted.isdisjoint(asked):
-                before.add(arm)
-        holders = zones.holders
-        before.update([holders[zone] for zone in wanted if zone in holders])
-        if before:
-            before.difference_update([sent.robot for sent in commands.open.values()])
-            for each in self._cells.values() if before else ():
-                if CellState.EXECUTE in (each.state, each.run.state):
-                    before.difference_update(each.cell.zone_users)
-        return not before and not any(map(zones.is_quarantined, wanted))
+    def _is_behind_work(self, user: ZoneUser, plant: Plant) -> bool:
+        """True if all that have, or get earlier, the zones that this robot wants are at work."""
+        zones, wanted = plant.zones, dict(self._requests)[user.robot]
+        holders = [zones.holders[zone] for zone in wanted if zone in zones.holders]
+        before = {*holders, *zones.queue.ahead_of(user.robot)}
+        return all(map(plant.at_work, before)) and not any(map(zones.is_quarantined, wanted))

@@ -40,7 +40,7 @@ class ZoneUser:
         """Count the time that it waits for zones; `seconds` passed since the step before, in which its cell
         was in this `state`.
 
-        For a recovery the time does not count while those before it are at work.
+        For a recovery the time does not count while those before it are at work, before this step or after.
         """
         tree, waiter = self.run.tree, self._waiter
         if waiter is None or not _runs(waiter, tree):
@@ -49,8 +49,9 @@ class ZoneUser:
         recovers = waiter is not None and waiter.recovers
         # what repeats a step has it ask anew, maybe in the step in which it gave up; a recovery waits on
         asked_at = waiter.began if waiter is not None and not recovers else None
-        self.behind_work = behind_work
-        if (waiter, asked_at) != (self._waiter, self._asked_at) or (recovers and behind_work):
+        was_behind, self.behind_work = self.behind_work, behind_work
+        waits_on = recovers and (behind_work or was_behind)
+        if waits_on or (waiter, asked_at) != (self._waiter, self._asked_at):
             self._waiter, self._asked_at, self.waited_s = waiter, asked_at, 0.0
         elif state not in PAUSED:
             self.waited_s += seconds
