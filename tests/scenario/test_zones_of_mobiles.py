@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from arboleda.core.plant import Plant
+from arboleda.model.messages import MotionState, OperatorRequest, Report, Verb
 from arboleda.plant_file.loader import load
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.run import Simulation
@@ -76,3 +78,30 @@ def test_its_zone_is_kept_while_its_last_node_may_be_from_before_its_stop(tmp_pa
     result = Simulation(load(tmp_path / "plant.yaml"), 28, explicit((stop,))).run(seconds=12.0)
     assert result.broken is None, str(result.broken)
     assert result.outcomes["stopped"] == 1
+
+
+UNSEEN = """
+name: unseen
+uses: [recipes.py]
+cells:
+  yard:
+    devices: {one: {kind: mobile, evidence: state}}
+    targets:
+      home: {one: {node: 6}}
+      gate: {one: {node: 3}}
+      far: {one: {node: 0}}
+zones:
+  gate: {poses: [yard gate]}
+"""
+
+
+def test_a_person_who_puts_it_home_gives_back_its_zone_though_nobody_sees_it(tmp_path: Path) -> None:
+    (tmp_path / "plant.yaml").write_text(UNSEEN, "utf-8")
+    (tmp_path / "recipes.py").write_text(THERE_AND_BACK, "utf-8")
+    plant = Plant(load(tmp_path / "plant.yaml"), epoch=7, now=0.0)
+    assert plant.zones.request("one", frozenset({"gate"}))
+    plant.step(0.1, [Report(at=0.1, robot="one", state=MotionState.STOPPED, epoch=1, plant=7)])
+    assert plant.zones.holder("gate") == "one"
+    by_hand = OperatorRequest(at=0.2, verb=Verb.HOME, scope="one", by_hand=True)
+    plant.step(0.2, [by_hand])
+    assert plant.zones.holder("gate") is None

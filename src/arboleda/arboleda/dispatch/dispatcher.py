@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
 
-from arboleda.model.commands import Command, Home, Motion, Query, StopMode, Switch
+from arboleda.model.commands import Command, Home, Motion, Position, Query, StopMode, Switch
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Failure, MotionState, Notice, Reason, Report
 from arboleda.model.plant_model import PlantModel
@@ -167,9 +167,12 @@ class Dispatcher:
         """Have a robot run its homing routine, on the word of its cell."""
         return self.send(partial(Home, robot=robot), cell, HOMING(), now)
 
-    def declare_homed(self, robot: str) -> None:
-        """Take a robot that cannot report it for put at its reference, on an operator's word."""
-        self.whereabouts.put_at_reference(robot)
+    def declare_homed(self, robot: str, home: Position | None = None) -> None:
+        """Take a robot that cannot report it for put at its reference, on an operator's word.
+
+        One without a reference is put at `home`.
+        """
+        self.whereabouts.put_at_reference(robot, home)
         self.wake([robot])
 
     def wake(self, holders: Iterable[str]) -> None:

@@ -55,14 +55,18 @@ class Whereabouts:
         belief.displaced = displaced
         self._memory.remember(Fact.DISPLACED, belief.robot.name, DISPLACED if displaced else None)
 
-    def put_at_reference(self, robot: str) -> None:
-        """Take a robot that cannot report it for put at its reference by a person."""
+    def put_at_reference(self, robot: str, home: Position | None = None) -> None:
+        """Take a robot that cannot report it for put at its reference by a person.
+
+        One without a reference is put at its `home`.
+        """
         belief = self._beliefs[robot]
         self.displace(belief, displaced=False)
         self.reached.pop(robot, None)
         stands = belief.state in (None, MotionState.STOPPED)
-        if belief.robot.reference is not None and not belief.supervised and stands:
-            self.reached[robot] = belief.robot.reference
+        place = home if belief.robot.reference is None else belief.robot.reference
+        if place is not None and not belief.supervised and stands:
+            self.reached[robot] = place
 
     def moves_again(self, robot: str) -> None:
         """Note that a robot without a position moves, or cannot: it has left where its last move ended."""

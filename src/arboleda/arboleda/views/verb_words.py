@@ -134,13 +134,14 @@ ABOUT: dict[Verb, VerbWords] = {
         asks=("{of} will move to find its reference. Is the way free?",),
         by_hand=ByHand(
             label="Homed by hand",
-            page="Moves nothing. You declare that the robot stands at its reference.",
-            asks="Does {of} stand at its reference? The plant will believe it.",
-            option="Move nothing: you declare that the robot stands at its reference.",
+            page="Moves nothing. You declare that the robot stands at its reference, a mobile robot at home.",
+            asks="Does {of} stand at its reference, a mobile robot at home? The plant will believe it.",
+            option="Move nothing: you declare that the robot stands at its reference, "
+            "a mobile robot at home.",
         ),
         brief="Run a robot's homing routine.",
         does="runs the homing routine, of a cell without what is only drawn or has no homing. `--by-hand`: "
-        "nothing moves, you declare that the robot stands at its reference",
+        "nothing moves, you declare that the robot stands at its reference, a mobile robot at its `home`",
         refused="while its cell works on a task, the robot is latched, in fault, offline, only drawn or "
         "being homed, or another robot holds a zone that the arm may cross on its way. By hand it is "
         "refused where the robot reports itself whether it is homed (not with `assume_homed`), or says that "

@@ -114,8 +114,10 @@ class Homing:
     def _home(self, robots: frozenset[str], *, by_hand: bool) -> None:
         for name in sorted(robots):
             if by_hand:
-                self._dispatcher.declare_homed(name)
-                _uproot(self._scopes.in_charge(name), name)
+                run = self._scopes.in_charge(name)
+                space = run.cell.workspaces.get(name)
+                self._dispatcher.declare_homed(name, space.home.q if space is not None else None)
+                _uproot(run, name)
             else:
                 self._doing.sent.append(self.home(name))
 
