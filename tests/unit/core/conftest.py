@@ -85,6 +85,6 @@ class Hand:
 
 
 @pytest.fixture
-def hand() -> Callable[[Evidence], Hand]:
-    """A hand-driven plant whose robots all prove what `evidence` says."""
-    return lambda evidence: Hand(shipped(evidence=evidence))
+def hand() -> Callable[..., Hand]:
+    """A hand-driven plant whose robots all prove what `evidence` says, and are as `given`."""
+    return lambda evidence, **given: Hand(shipped(evidence=evidence, **given))

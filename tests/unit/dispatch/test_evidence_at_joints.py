@@ -245,14 +245,11 @@ def test_a_halt_is_not_proven_by_nodes_that_may_be_from_before_the_robot_stopped
     assert belief.stillness.still_since(moment)
 
 
-@pytest.mark.parametrize(
-    ("online", "place", "is_astray"), [(False, HALFWAY, True), (False, GOAL, False), (True, HALFWAY, False)]
-)
+@pytest.mark.parametrize(("place", "is_astray"), [(HALFWAY, True), (GOAL, False)])
 def test_who_is_elsewhere_than_it_had_come_to_after_a_silence_has_strayed(
-    online: bool, place: tuple[float, ...], is_astray: bool
+    place: tuple[float, ...], is_astray: bool
 ) -> None:
     belief = Belief(StorageLayout(CELL).arm, 1.5, 1)
     report = Report(at=9.0, robot="ra1", q=place, state=STOPPED)
-    before = Before.of(belief)._replace(online=online)
     belief.merge(report)
-    assert strayed(before, belief, report, GOAL) is is_astray
+    assert strayed(belief, report, GOAL) is is_astray

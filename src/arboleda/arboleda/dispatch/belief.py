@@ -97,6 +97,8 @@ class Belief:
         self.piece_at = 0.0
         self.piece_since = 0.0
         self.displaced = False
+        self.is_unplaced = False  # its link was lost, and it has not told its place since
+        self.came_back_at_zero = False  # for this it counts as displaced
         self.barred = False
         self.homed: bool | None = None
         self.effector: bool | None = None
@@ -162,7 +164,7 @@ class Belief:
         if report.epoch is not None and report.epoch != self.epoch:
             self.barred = False  # a bridge that restarted has forgotten the stop
         if report.state is MotionState.NO_LINK and self.state is not MotionState.NO_LINK:
-            self.said_before_loss = self.state
+            self.said_before_loss, self.is_unplaced = self.state, True
         for name, value in zip(MERGED, _merged(report), strict=True):
             if value is not None:
                 setattr(self, name, value)
@@ -193,7 +195,7 @@ class Belief:
 
     def fall_silent(self) -> None:
         """Note that it has been silent for too long."""
-        self.stale = True
+        self.stale = self.is_unplaced = True
         self.stale_at = None
         self.online = False
 
@@ -278,7 +280,7 @@ class Belief:
         """The reason why it takes no command that a stop allows: not homed, where a stop hides that."""
         trouble = self.trouble
         if trouble is STOPPED:
-            trouble = UNHOMED if self.unhomed else None
+            trouble = _unhomed(self) if self.unhomed else None
         return None if trouble is None else trouble.failure(self.robot.name, was=was)
 
     def _unanswered(self) -> RobotTrouble:
@@ -325,7 +327,11 @@ class Belief:
             return FAULTY_BECAUSE._replace(more={"why": OWN(text=str(word))})
         if self.barred and trouble is None:
             return STOPPED
-        return UNHOMED if self.unhomed and (trouble is None or trouble is MOVING) else trouble
+        return _unhomed(self) if self.unhomed and (trouble is None or trouble is MOVING) else trouble
+
+
+def _unhomed(belief: Belief) -> RobotTrouble:
+    return BACK_AT_ZERO if belief.came_back_at_zero else UNHOMED
 
 
 class RobotTrouble(NamedTuple):
@@ -380,6 +386,19 @@ UNHOMED = RobotTrouble(
     Reason.NOT_HOMED,
     Phrase("robot.not_homed", "{robot} is not homed"),
     Phrase("robot.was_not_homed", "{robot} was not homed"),
+)
+BACK_AT_ZERO = RobotTrouble(
+    Reason.NOT_HOMED,
+    Phrase(
+        "robot.back_at_zero",
+        "{robot} came back at its reference after its link was lost, as a board does that has booted "
+        "elsewhere",
+    ),
+    Phrase(
+        "robot.was_back_at_zero",
+        "{robot} had come back at its reference after its link was lost, as a board does that has booted "
+        "elsewhere",
+    ),
 )
 MOVING = RobotTrouble(
     Reason.REJECTED,

@@ -135,7 +135,7 @@ class Booking:
         if isinstance(command, Switch) and command.grips is not None:
             self._effectors.set(command.robot, Grip.ON if command.grips else Grip.OFF)
         elif isinstance(command, Motion) and command.way:
-            self._whereabouts.reached[command.robot] = command.way[-1]
+            self._whereabouts.arrive(command.robot, command.way[-1])
         elif isinstance(command, Home):
             self._whereabouts.displace(belief, displaced=False)
 

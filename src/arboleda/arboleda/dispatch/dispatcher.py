@@ -127,7 +127,7 @@ class Dispatcher:
         if isinstance(command, Switch) and command.grips is not None:
             self.effectors.command(command)
         elif isinstance(command, Motion):
-            self.whereabouts.reached.pop(command.robot, None)
+            self.whereabouts.set_out(command.robot)
         self.outlet.leave(command, token)
         return entry
 
@@ -212,9 +212,9 @@ class Dispatcher:
             self.effectors.note_opening(belief, rebooted=belief.held_boot != held_since_boot)
         if not belief.supervised and report.state not in (None, MotionState.STOPPED):
             self.whereabouts.moves_again(report.robot)
-        goal = self.whereabouts.reached.get(report.robot)
-        astray = goal is not None and evidence.strayed(before, belief, report, goal)
-        if astray or (belief.may_be_displaced and evidence.displaced(before, belief, report)):
+        if belief.is_unplaced and belief.position_in(report) is not None:
+            self.whereabouts.hear_after_silence(before, belief, report)
+        if belief.may_be_displaced and evidence.displaced(before, belief, report):
             self.whereabouts.displace(belief, displaced=True)
         if belief.tells_boots_only and belief.boot_id is not None:
             self.memory.remember(Fact.BOOT, report.robot, str(belief.boot_id))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 from arboleda.model.commands import Command, Home, Motion, Position, Process, Query, Switch
@@ -220,12 +221,26 @@ def displaced(before: Before, belief: Belief, report: Report) -> bool:
     return jumped or rebooted(before, belief, report)
 
 
-def strayed(before: Before, belief: Belief, report: Report, goal: Position) -> bool:
+def strayed(belief: Belief, report: Report, goal: Position) -> bool:
     """True where a robot that had reached `goal` is elsewhere after a silence: it may have booted unseen."""
     robot, place = belief.robot, belief.position_in(report)
-    if before.online or place is None or robot.evidence is not Evidence.JOINTS or robot.reference is None:
+    if place is None or robot.evidence is not Evidence.JOINTS or robot.reference is None:
         return False
     return not robot.motion.stands_at(place, goal)
+
+
+def came_back_at_zero(before: Before, belief: Belief, report: Report, stood: Position | None) -> bool:
+    """True where a robot is at its reference after a silence, and did not surely stand there before.
+
+    A board that takes itself for homed counts from there after a boot, wherever its robot is then.
+    """
+    robot, place = belief.robot, belief.position_in(report)
+    if before.position is None or place is None or robot.reference is None:
+        return False
+    if robot.evidence is not Evidence.JOINTS or not robot.assume_homed:
+        return False
+    at_reference = partial(robot.motion.stands_at, robot.reference)
+    return at_reference(place) and (stood is None or not at_reference(stood))
 
 
 def rebooted(before: Before, belief: Belief, report: Report) -> bool:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from arboleda.model.commands import Command, Motion, Position
-from arboleda.model.messages import Fact, MotionState
+from arboleda.model.messages import Fact, MotionState, Report
 from arboleda.model.plant_model import Pose, Workspace
 
 from .belief import Belief
+from .evidence import Before, came_back_at_zero, strayed
 from .fact_memory import FactMemory, Memory
 from .ledger import Ledger
 from .underway import UnderWay
@@ -26,6 +27,7 @@ class Whereabouts:
         under_way: UnderWay,
     ) -> None:
         self.reached: dict[str, Position] = {}
+        self._set_out: set[str] = set()  # robots whose last motion is not done
         self._beliefs = beliefs
         self._memory = memory
         self._ledger = ledger
@@ -50,9 +52,30 @@ class Whereabouts:
             return None
         return next((pose for spot, pose in workspace.free_spots if robot.motion.stands_at(here, spot)), None)
 
+    def set_out(self, robot: str) -> None:
+        """Note that a robot was given a motion."""
+        self.reached.pop(robot, None)
+        self._set_out.add(robot)
+
+    def arrive(self, robot: str, place: Position) -> None:
+        """Note that the last motion of a robot is done."""
+        self.reached[robot] = place
+        self._set_out.discard(robot)
+
+    def hear_after_silence(self, before: Before, belief: Belief, report: Report) -> None:
+        """Displace a robot that may have booted unseen, by where it was before its silence and is now."""
+        belief.is_unplaced = False
+        goal = self.reached.get(report.robot)
+        if goal is not None and strayed(belief, report, goal):
+            self.displace(belief, displaced=True)
+        stood = before.position if goal is None else goal
+        if came_back_at_zero(before, belief, report, None if report.robot in self._set_out else stood):
+            self.displace(belief, displaced=True)
+            belief.came_back_at_zero = True
+
     def displace(self, belief: Belief, *, displaced: bool) -> None:
         """Remember that the position of a robot has lost its meaning, or has one again."""
-        belief.displaced = displaced
+        belief.displaced, belief.came_back_at_zero = displaced, False
         self._memory.remember(Fact.DISPLACED, belief.robot.name, DISPLACED if displaced else None)
 
     def put_at_reference(self, robot: str, home: Position | None = None) -> None:
@@ -63,6 +86,7 @@ class Whereabouts:
         belief = self._beliefs[robot]
         self.displace(belief, displaced=False)
         self.reached.pop(robot, None)
+        self._set_out.discard(robot)
         stands = belief.state in (None, MotionState.STOPPED)
         place = home if belief.robot.reference is None else belief.robot.reference
         if place is not None and not belief.supervised and stands:

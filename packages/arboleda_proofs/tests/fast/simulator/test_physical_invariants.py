@@ -11,7 +11,7 @@ import pytest
 from tests.cells import with_poses
 from tests.lengths import sample
 
-from arboleda.dispatch import evidence
+from arboleda.dispatch import evidence, whereabouts
 from arboleda.dispatch.evidence import CommandVerdict
 from arboleda.dispatch.ledger import Feed
 from arboleda.dispatch.whereabouts import Whereabouts
@@ -220,6 +220,18 @@ def moved_after_a_told_boot(patch: Patch) -> Watch:
     return watch
 
 
+def moved_after_a_boot_that_its_joints_show(patch: Patch) -> Watch:
+    patch.setattr(whereabouts, "came_back_at_zero", lambda before, belief, report, stood: False)
+    watch = Watch(shipped("sis_a", evidence=Evidence.JOINTS, assume_homed=True))
+    watch.task("sis_a palletizing", wait_s=3.0)
+    assert watch.body.moving
+    watch.world.power_off(ARM, will_after_s=60.0)
+    watch.wait(3.0)
+    watch.world.power_on(ARM)
+    watch.wait(10.0)
+    return watch
+
+
 def began_by_itself(patch: Patch) -> Watch:
     watch = Watch()
     watch.body.start(round(watch.world.now * 1e6), JointsGoal(q=(9.0, 9.0, 0.0), seq=None, epoch=None))
@@ -418,6 +430,7 @@ BREAKS: list[tuple[str, Callable[[Patch], Watch]]] = [
     ("a_wait_names_its_cause", told_once),
     ("no_unhomed_move", moved_unhomed),
     ("no_move_after_a_boot_that_was_told", moved_after_a_told_boot),
+    ("no_move_after_a_boot_that_was_told", moved_after_a_boot_that_its_joints_show),
     ("nothing_moves_unasked", began_by_itself),
     ("nothing_moves_unasked", switched_by_itself),
     ("nothing_moves_unasked", obeyed_a_stranger),
