@@ -223,6 +223,20 @@ def test_a_task_for_a_busy_cell_waits_and_delays_no_other(hand: Any) -> None:
     assert running == ["sis_a 0B 7", "sis_b 1C 3"]
 
 
+def test_who_waits_behind_a_step_that_is_retried_is_told_that_the_queue_is_paused(hand: Any) -> None:
+    plant, move = driven_to_the_arm(hand, Evidence.IDS)
+    plant.operate(Verb.HOLD, "sis_a")
+    plant.tell("ra1", state=MotionState.FAULT, q=SHORT, accepted=move.id)
+    plant.tell("ra1", state=STILL, q=SHORT, accepted=move.id, done=None)
+    plant.operate(Verb.RETRY, "sis_a")
+    cell = plant.plant.cells["sis_a"]
+    assert cell.state is CellState.EXECUTE and cell.queue.paused
+    plant.submit("sis_a 0A 1")
+    assert str(last_change(plant).sentence) == (
+        "sis_a is busy, and its queue is paused; once it is idle, resume sis_a starts it"
+    )
+
+
 def test_a_full_queue_refuses_with_its_limit(hand: Any) -> None:
     plant = hand(Evidence.IDS)
     limit = plant.plant.model.cell("sis_a").queue_limit

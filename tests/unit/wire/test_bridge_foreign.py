@@ -117,9 +117,9 @@ def test_the_plant_file_may_let_others_command(sent, reports) -> None:
 
 def test_what_is_let_and_cannot_be_done_is_no_command_that_was_obeyed(reports) -> None:
     bench = obeying()
-    out = others(bench, replace(MOVE, q=(9.0, 0.0, 0.0)))
+    out = others(bench, replace(MOVE, q=(900.0, 0.0, 0.0)))
     assert news(out) == [
-        "ra1: joint_goals_q of /teleop was refused (limite): number 1 is 9; allowed: -2.618 to 2.618 rad"
+        "ra1: joint_goals_q of /teleop was refused (limite): number 1 is 900; allowed: -2.618 to 2.618 rad"
     ]
     assert reports(out) == []
 

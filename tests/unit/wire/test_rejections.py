@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home
 from arboleda.wire.payloads import REFUSALS
@@ -24,3 +25,23 @@ def test_only_of_a_path_a_mobile_robot_says_that_it_leads_off_the_grid() -> None
     commands = (FollowPath(id="1-1", robot=robot.name, nodes=(0, 999)), Home(id="1-2", robot=robot.name))
     said = [str(refused(robot, each, "limite", "", by_board=False)) for each in commands]
     assert [f"0 to {robot.grid.size - 1}" in each for each in said] == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("q", "why"),
+    [
+        (
+            (45.0, 10.0, 0.0),
+            "number 1 is 45; allowed: -2.618 to 2.618 rad. Is it in degrees? In rad that is 0.7854",
+        ),
+        ((0.1, 0.1, 80.0), "number 3 is 80; allowed: 0 to 0.1 m. Is it in mm? In m that is 0.08"),
+        ((900.0, 0.0, 0.0), "number 1 is 900; allowed: -2.618 to 2.618 rad"),
+        ((0.0, 0.0, -80.0), "number 3 is -80; allowed: 0 to 0.1 m"),
+    ],
+)
+def test_of_a_goal_that_would_be_allowed_in_degrees_or_mm_it_is_asked_if_it_is_that(
+    q: tuple[float, ...], why: str
+) -> None:
+    robot = StorageLayout(shipped().cells[0]).arm
+    goal = MoveJoints(id="1-1", robot=robot.name, q=q)
+    assert str(refused(robot, goal, "limite", "", by_board=False).values["why"]) == why

@@ -14,6 +14,9 @@ RESTARTS = Phrase(
     "plant.restarts", "the plant restarts once all its cells rest; until then no other task begins"
 )
 BUSY = Phrase("cell.busy", "{cell} is busy")
+BUSY_PAUSED = Phrase(
+    "cell.busy_paused", "{cell} is busy, and its queue is paused; once it is idle, resume {cell} starts it"
+)
 STANDS = Phrase("cell.stands", "{cell} is {state}; {next}")
 STANDS_BECAUSE = Phrase("cell.stands_because", "{cell} is {state} ({why}); {next}")
 HELD = Phrase("cell.held", "{cell} is held ({why}); {next}")
@@ -42,7 +45,7 @@ def of_waiting(run: CellRun) -> Sentence | None:
     if run.closed:
         return ENDING()
     if run.state is CellState.EXECUTE:
-        return BUSY(cell=name)
+        return (BUSY_PAUSED if run.queue.paused else BUSY)(cell=name)
     if run.state is CellState.IDLE:
         return RESTARTS() if run.awaits_restart else run.not_ready
     if run.trouble is None or run.state is CellState.HELD:

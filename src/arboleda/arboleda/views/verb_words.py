@@ -94,11 +94,12 @@ ABOUT: dict[Verb, VerbWords] = {
     ),
     Verb.RETRY: VerbWords(
         label="Retry step",
-        page="Does the failed step again with a new command. Robots move.",
+        page="Does the failed step again with a new command. Robots move. Its queue stays paused until "
+        "resume.",
         asks=MAY_MOVE,
-        brief="After a fault, do the failed step again with a new command.",
+        brief="After a fault, do the failed step again; the queue stays paused until resume.",
         does="after a fault, gives the step that failed anew, with a new command; where the recovery "
-        "failed, recovers anew",
+        "failed, recovers anew; the queue stays paused until `resume`",
         refused="where nothing failed",
     ),
     Verb.ABANDON: VerbWords(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 from arboleda.kinds.arm import Arm, SetEffector
@@ -31,6 +32,12 @@ ON_THE_GRID = Phrase(
 ELSEWHERE = Phrase("why.elsewhere", "it stands at node {node}, where a path may begin at one of {expected}")
 NODES = Phrase("why.nodes", "its nodes are 0 to {last}")
 BEYOND = Phrase("why.beyond", "number {number} is {value:.4g}; allowed: {lower:.4g} to {upper:.4g} {unit}")
+DEGREES = Phrase("why.degrees", "degrees")
+OTHER_UNIT = Phrase(
+    "why.other_unit",
+    "number {number} is {value:.4g}; allowed: {lower:.4g} to {upper:.4g} {unit}. Is it in {other}? "
+    "In {unit} that is {meant:.4g}",
+)
 UNDONE = Phrase("why.undone", "it has not ended its last work, or is in fault")
 
 
@@ -151,9 +158,16 @@ def _beyond(robot: Jointed, command: MoveJoints) -> Sentence | None:
     """The first joint beyond its limits; None if there is none."""
     for number, (joint, value) in enumerate(zip(robot.joints, command.q, strict=True), start=1):
         if not joint.lower - FLOAT32_SLACK <= value <= joint.upper + FLOAT32_SLACK:
-            lower, upper = joint.lower, joint.upper
-            return BEYOND(number=number, value=value, lower=lower, upper=upper, unit=joint.unit)
+            return _out_of_limits(joint, number, value)
     return None
+
+
+def _out_of_limits(joint: Joint, number: int, value: float) -> Sentence:
+    """The sentence on a value beyond a joint's limits, which may be in degrees or mm by mistake."""
+    lower, upper, unit = joint.lower, joint.upper, joint.unit
+    other, meant = (DEGREES(), math.radians(value)) if unit == "rad" else ("mm", value / 1000)
+    said = partial(OTHER_UNIT, other=other, meant=meant) if lower <= meant <= upper else BEYOND
+    return said(number=number, value=value, lower=lower, upper=upper, unit=unit)
 
 
 def _why_of_joints(robot: Jointed, command: Command, word: str, by_board: bool) -> Sentence | None:

@@ -8,7 +8,7 @@ from arboleda.model.commands import Command
 from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import OWN, Phrase, Sentence
 
-from .forms import BEYOND, ELSEWHERE, NODES, ON_THE_GRID, UNDONE, form_of
+from .forms import BEYOND, DEGREES, ELSEWHERE, NODES, ON_THE_GRID, OTHER_UNIT, UNDONE, form_of
 from .hop import shown
 
 FOREIGN = "foreign"  # the word that refuses a command of another node
@@ -142,6 +142,8 @@ FOREIGN_PHRASES = {
             ON_THE_GRID,
             NODES,
             BEYOND,
+            DEGREES,
+            OTHER_UNIT,
             UNDONE,
             OWN,
         ),
