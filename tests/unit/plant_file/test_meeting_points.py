@@ -45,7 +45,8 @@ def warned(folder: Path, plant: str) -> list[str]:
 def test_two_arms_that_can_meet_are_told_with_their_targets(tmp_path: Path) -> None:
     (found,) = warned(tmp_path, PLANT)
     assert found == (
-        "bay: left and right can meet at middle and over (0 mm apart), which no zone has in common"
+        "bay: left and right can meet at middle and over (0 mm apart), which no zone has in common; "
+        'put them into one zone, zones: {NAME: {poses: ["bay middle", "bay over"]}}'
     )
 
 
@@ -53,21 +54,37 @@ def test_two_arms_that_can_meet_are_told_with_their_targets(tmp_path: Path) -> N
     "plant",
     [
         PLANT + ZONE,
-        PLANT.replace("[2.19888, 0.08893]", "[2.22, 0.08893]"),
-        PLANT.replace(", base: {origin_m: [2.19888, 0.08893], yaw_deg: 180}", ""),
+        PLANT.replace("[2.19888, 0.08893]", "[2.27, 0.08893]"),
+        PLANT.replace(", base: {origin_m: [2.19888, 0.08893], yaw_deg: 180}", "")
+        .replace(", base: {origin_m: [0, 0]}", "")
+        .replace(", grid: {origin_m: [1, 1]}", ""),
     ],
-    ids=["a zone has both", "far enough", "nobody says where one stands"],
+    ids=["a zone has both", "far enough", "nobody says where they stand"],
 )
 def test_nothing_is_told_where_they_cannot_or_nobody_knows(tmp_path: Path, plant: str) -> None:
     assert warned(tmp_path, plant) == []
 
 
-def test_two_arms_on_one_base_that_the_file_names_can_meet(tmp_path: Path) -> None:
-    plant = PLANT.replace("origin_m: [2.19888, 0.08893], yaw_deg: 180", "origin_m: [0, 0]")
-    assert warned(tmp_path, plant) == [
-        "bay: left and right can meet at home and home (0 mm apart), middle and over (0 mm apart), "
-        "which no zone has in common"
-    ]
+def test_two_arms_that_come_within_the_width_of_a_hand_are_told(tmp_path: Path) -> None:
+    (found,) = warned(tmp_path, PLANT.replace("[2.19888, 0.08893]", "[2.24888, 0.08893]"))
+    assert "middle and over (50 mm apart)" in found
+
+
+STANDS = {
+    "one point": ("[0, 0]", "left and right stand in each other, 0 mm apart; give each its own place"),
+    "50 mm": ("[0, 0.05]", "left and right stand in each other, 50 mm apart; give each its own place"),
+    "left out": (
+        "",
+        "left and right stand in each other, 0 mm apart; right has no base and is at the origin",
+    ),
+}
+
+
+@pytest.mark.parametrize(("origin", "said"), STANDS.values(), ids=STANDS)
+def test_two_arms_that_stand_in_each_other_are_told_once(tmp_path: Path, origin: str, said: str) -> None:
+    base = f", base: {{origin_m: {origin}}}" if origin else ""
+    plant = PLANT.replace(", base: {origin_m: [2.19888, 0.08893], yaw_deg: 180}", base)
+    assert warned(tmp_path, plant) == [f"bay: {said}; write base: {{origin_m: [x, y]}}"]
 
 
 def with_cart(folder: Path, zone: str) -> list[str]:
@@ -83,8 +100,10 @@ def test_an_arm_and_a_mobile_robot_of_one_cell_meet_on_purpose_where_no_zone_is(
 
 def test_a_mobile_robot_at_a_place_that_a_zone_guards_is_told(tmp_path: Path) -> None:
     assert with_cart(tmp_path, ZONE) == [
-        "bay: left and cart can meet at middle and gate (0 mm apart), which no zone has in common",
-        "bay: right and cart can meet at over and gate (0 mm apart), which no zone has in common",
+        "bay: left and cart can meet at middle and gate (0 mm apart), which no zone has in common; "
+        'put them into one zone, zones: {table: {poses: ["bay middle", "bay gate"]}}',
+        "bay: right and cart can meet at over and gate (0 mm apart), which no zone has in common; "
+        'put them into one zone, zones: {table: {poses: ["bay over", "bay gate"]}}',
     ]
 
 

@@ -7,10 +7,24 @@ from pathlib import Path
 import pytest
 
 from arboleda.plant_file import passed_over
+from arboleda.plant_file.loader import load
 
-from .test_advance_check_of_trees import CLOSE, HOME, NONE, OPEN, READ, put, row, take, written
+from .test_advance_check_of_trees import (
+    CLOSE,
+    HOME,
+    NONE,
+    OPEN,
+    READ,
+    TREE,
+    if_clear,
+    put,
+    row,
+    take,
+    written,
+)
 
 LENIENT = f"<ForceSuccess>{CLOSE}</ForceSuccess>"
+SAYS = '<reader_says lid="closed"/>'
 ONE = '<Parallel success_count="1">{}</Parallel>'
 
 
@@ -22,16 +36,92 @@ def warned(folder: Path, body: str, more: str = "") -> list[str]:
 def test_a_failure_that_a_force_success_passes_over_is_told_at_its_place(tmp_path: Path) -> None:
     assert warned(tmp_path, f"{OPEN}\n{LENIENT}") == [
         "3:1: lab: attempt has ForceSuccess pass over a failure of reader close, and is done all the same; "
-        "ask reader afterwards, or say in a Fallback what is done instead"
+        'write <reader_says lid="closed"/> afterwards, or say in a Fallback what is done instead'
     ]
+
+
+ANSWER = '<reader_read answer="{seen}"/>'
+SWITCH = '<Switch2 variable="{seen}" case_1="clear" case_2="unclear">{}</Switch2>'
+CLAMP = '<reader_clamp on="true"/>'
+FAILS = "<AlwaysFailure/>"
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        ANSWER + SWITCH.replace("{}", LENIENT + NONE + FAILS),
+        ANSWER + if_clear(LENIENT, FAILS),
+        f"<Fallback>{row(OPEN, LENIENT)}{FAILS}</Fallback>",
+        f"<Fallback>{row(LENIENT, FAILS)}{OPEN}</Fallback>",
+        f"<ForceSuccess>{row(LENIENT, FAILS)}</ForceSuccess>",
+        f"{row(LENIENT, FAILS)}".replace("Sequence", "Fallback"),
+        f"<Inverter>{row(LENIENT, FAILS)}</Inverter>",
+        ANSWER + SWITCH.replace("{}", LENIENT + SAYS + NONE),
+    ],
+    ids=[
+        "another case fails",
+        "the other branch fails",
+        "the alternative fails, and never begins",
+        "an alternative follows the failure",
+        "the failure is passed over as well",
+        "an alternative that never begins",
+        "the failure is turned round",
+        "another case asks",
+    ],
+)
+def test_what_stands_behind_and_does_not_follow_excuses_nothing(tmp_path: Path, body: str) -> None:
+    assert [each for each in warned(tmp_path, body) if "reader close" in each]
+
+
+@pytest.mark.parametrize("asks", ['<reader_says clamped="true"/>', '<reader_tells clamped="{held}"/>', CLAMP])
+def test_a_question_about_something_else_is_none_about_the_work(tmp_path: Path, asks: str) -> None:
+    (found,) = warned(tmp_path, LENIENT + asks)
+    assert "a failure of reader close" in found
+
+
+PUMP = """
+name: pump
+uses: [pour.xml]
+kinds:
+  pump:
+    facts: {ml: int, lid: [shut, open]}
+    verbs:
+      pour: {effect: process, takes_s: 1}
+      shut: {effect: motion, sets: {lid: shut}, takes_s: 1}
+      look: {effect: query, answers: [wet, dry]}
+cells:
+  a: {devices: {pump: {kind: pump}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("asks", "is_told"),
+    [
+        ('<pump_says lid="shut"/>', True),
+        ("<pump_shut/>", True),
+        ('<pump_says ml="5"/>', False),
+        ("<pump_look/>", False),
+    ],
+)
+def test_of_work_that_sets_no_fact_answers_may_tell_and_facts_that_no_verb_sets(
+    tmp_path: Path, asks: str, is_told: bool
+) -> None:
+    (tmp_path / "pour.xml").write_text(
+        TREE.format(body=f"<ForceSuccess><pump_pour/></ForceSuccess>{asks}", more="")
+    )
+    (tmp_path / "plant.yaml").write_text(PUMP)
+    assert bool(passed_over.warnings(load(tmp_path / "plant.yaml"))) is is_told
 
 
 @pytest.mark.parametrize(
     "body",
     [
         f"{LENIENT}{READ}",
-        f'{LENIENT}<reader_says lid="closed"/>',
+        LENIENT + SAYS,
         f'{LENIENT}<reader_tells lid="{{seen}}"/>',
+        LENIENT + put("drawer"),
+        f"<Fallback>{row(LENIENT, SAYS)}{NONE}</Fallback>",
+        f"<IfThenElse>{LENIENT}{row(READ)}{NONE}</IfThenElse>",
         f"<Fallback>{CLOSE}{NONE}</Fallback>",
         f"<ForceSuccess>{READ}</ForceSuccess>",
         f"<Fallback>{OPEN}<Sequence>{LENIENT}<AlwaysFailure/></Sequence></Fallback>",
@@ -42,6 +132,9 @@ def test_a_failure_that_a_force_success_passes_over_is_told_at_its_place(tmp_pat
         "asked",
         "checked",
         "told",
+        "a robot waits for it",
+        "asked, with an alternative",
+        "asked by the branch after a condition",
         "an answer to it",
         "no work",
         "fails after it",

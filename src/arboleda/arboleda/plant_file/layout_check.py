@@ -95,7 +95,7 @@ class Stand:
             mobile=mobile,
             body=taker,
             deck_m=deck(giver),
-            base=hull([(arm.base.x, arm.base.y)], _wide(_fixed(taker))),
+            base=hull([(arm.base.x, arm.base.y)], foot_m(taker)),
             grid=_grid(mobile, _wide(bodies.links(giver))),
         )
 
@@ -211,6 +211,11 @@ def _grid(mobile: Mobile, margin: float) -> Outline:
     corners = ((-1, -1), (1, -1), (1, 1), (-1, 1))
     ends = [((x > 0) * far_x + x * margin, (y > 0) * far_y + y * margin, 0.0) for x, y in corners]
     return [kinematics.at(frame, end)[:2] for end in ends]
+
+
+def foot_m(body: Body) -> float:
+    """The radius of an arm's foot: of all that no joint moves, in plan, m."""
+    return _wide(_fixed(body))
 
 
 def _fixed(body: Body) -> Iterator[Body]:

@@ -9,20 +9,17 @@ from functools import cached_property
 from py_trees.behaviour import Behaviour
 
 from arboleda.bt_xml.recipe import TreeRecipe
-from arboleda.bt_xml.running.controls import Parallel, TryCatch
-from arboleda.bt_xml.running.decorators import ALL_DONE, Loop, ResultDecorator
-from arboleda.bt_xml.running.device_steps import FactStep
-from arboleda.bt_xml.running.leaves import ConstantLeaf
-from arboleda.bt_xml.running.memory import Scope
+from arboleda.bt_xml.running.controls import Parallel
+from arboleda.bt_xml.running.decorators import ALL_DONE, ResultDecorator
 from arboleda.bt_xml.running.node import FAILURE, Node
-from arboleda.bt_xml.running.scripts import ScriptError
 from arboleda.engine import Act, Context, Plant
-from arboleda.model.commands import Command, Query, Switch, Work
+from arboleda.model.commands import Command, Switch, Work
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.recipes.handles import FactCheck, FactWait
 
+from .asking import facts_asked, facts_that_tell, question_about
 from .recipe_check import orders
 from .walkthrough import in_order
+from .what_follows import Course, needs_all
 
 MOST_NAMED = 3  # commands in one sentence
 
@@ -59,70 +56,40 @@ class _Tree:
     def nodes(self) -> list[Behaviour]:
         return list(in_order(self.tree))
 
+    def _after(self, node: Node) -> Course:
+        return Course.after(node, tree=self.tree)
+
     def sentences(self, cell: Cell, ends: set[str]) -> Iterator[tuple[Node, str]]:
         for node in self.nodes:
-            if (
-                isinstance(node, ResultDecorator)
-                and node.ends is ALL_DONE
-                and not self._leads_to_failure(node)
-            ):
-                yield from ((node, sentence) for sentence in self._forced(node))
-            elif isinstance(node, Parallel) and not _needs_all(node):
-                yield from ((node, sentence) for sentence in self._held_parts(node, cell, ends))
-
-    def _forced(self, node: ResultDecorator) -> Iterator[str]:
-        """The objection to a ForceSuccess below which work may fail that no later node asks about."""
-        asked = {device for later in self._later(node) for device in _asked(later)}
-        work = [
-            each for each in _commands(node) if isinstance(each, Work | Switch) and each.robot not in asked
-        ]
-        names = list(dict.fromkeys(f"{each.robot} {each.word}" for each in work))
-        if names:
-            shown = f"{', '.join(names[:MOST_NAMED])}{' ...' if len(names) > MOST_NAMED else ''}"
-            how = f"ask {work[0].robot} afterwards, or say in a Fallback what is done instead"
-            yield f"has ForceSuccess pass over a failure of {shown}, and is done all the same; {how}"
-
-    def _held_parts(self, node: Parallel, cell: Cell, ends: set[str]) -> Iterator[str]:
-        """The objections to a Parallel that may end while a hand holds a part that it never lets go."""
-        freed = {each.robot for later in self._later(node) for each in _grips(later, grips=False)}
-        for role, device in cell.members:
-            takes = any(each.robot == device.name for each in _grips(node, grips=True))
-            if takes and device.name not in freed and f"{role}.{device.held_fact}" not in ends:
-                many = f"Parallel end before all of its {len(node.children)} children are done"
-                how = "let all of them succeed, or let go of the part after it"
-                yield f"has {many}, and may be done with a part that {device.name} holds; {how}"
-
-    def _later(self, node: Behaviour) -> list[Behaviour]:
-        """The nodes that may begin after a node has ended: all later ones, and all in a loop around it."""
-        last = list(in_order(node))[-1]
-        later = self.nodes[self.nodes.index(last) + 1 :]
-        around = [each for each in _above(node) if isinstance(each, Loop)]
-        return [*later, *(each for loop in around for each in in_order(loop))]
-
-    def _leads_to_failure(self, node: Behaviour) -> bool:
-        """True where the task fails after the node: in a rescue, or before a node that always fails."""
-        for below, above in zip([node, *_above(node)], _above(node), strict=False):
-            if isinstance(above, TryCatch) and above.children[-1] is below:
-                return True
-            behind = above.children[above.children.index(below) + 1 :]
-            if any(isinstance(each, ConstantLeaf) and each.result is FAILURE for each in behind):
-                return True
-        return False
+            if isinstance(node, ResultDecorator) and node.ends is ALL_DONE:
+                yield from ((node, sentence) for sentence in _forced(node, self._after(node), cell))
+            elif isinstance(node, Parallel) and not needs_all(node):
+                yield from ((node, sentence) for sentence in _held_parts(node, self._after(node), cell, ends))
 
 
-def _above(node: Behaviour) -> list[Behaviour]:
-    parents: list[Behaviour] = []
-    while node.parent is not None:
-        node = node.parent
-        parents.append(node)
-    return parents
+def _forced(node: ResultDecorator, course: Course, cell: Cell) -> Iterator[str]:
+    """The objection to a ForceSuccess below which work may fail that no later node asks about."""
+    work = [each for each in _commands(node) if isinstance(each, Work | Switch)]
+    if course.result is FAILURE or not work:
+        return
+    asked = {fact for later in course.later for fact in facts_asked(later, cell)}
+    work = [each for each in work if asked.isdisjoint(facts_that_tell(each, cell))]
+    names = list(dict.fromkeys(f"{each.robot} {each.word}" for each in work))
+    if names:
+        shown = f"{', '.join(names[:MOST_NAMED])}{' ...' if len(names) > MOST_NAMED else ''}"
+        how = f"{question_about(work[0], cell)} afterwards, or say in a Fallback what is done instead"
+        yield f"has ForceSuccess pass over a failure of {shown}, and is done all the same; {how}"
 
 
-def _needs_all(node: Parallel) -> bool:
-    try:
-        return node.needs_all(Scope())
-    except ScriptError:  # by a variable
-        return True
+def _held_parts(node: Parallel, course: Course, cell: Cell, ends: set[str]) -> Iterator[str]:
+    """The objections to a Parallel that may end while a hand holds a part that it never lets go."""
+    freed = {each.robot for later in course.later for each in _grips(later, grips=False)}
+    for role, device in cell.members if course.result is not FAILURE else ():
+        takes = any(each.robot == device.name for each in _grips(node, grips=True))
+        if takes and device.name not in freed and f"{role}.{device.held_fact}" not in ends:
+            many = f"Parallel end before all of its {len(node.children)} children are done"
+            how = "let all of them succeed, or let go of the part after it"
+            yield f"has {many}, and may be done with a part that {device.name} holds; {how}"
 
 
 def _commands(node: Behaviour) -> list[Command]:
@@ -133,13 +100,3 @@ def _grips(node: Behaviour, *, grips: bool) -> Sequence[Switch]:
     """The commands below a node that take hold of a part, or let go of it."""
     commands = _commands(node) if isinstance(node, Act) or node.children else []
     return [each for each in commands if isinstance(each, Switch) and each.grips is grips]
-
-
-def _asked(node: Behaviour) -> Iterator[str]:
-    """The devices whose facts or answers a node asks for."""
-    if isinstance(node, FactCheck | FactWait):
-        yield node.device
-    elif isinstance(node, FactStep):
-        yield from (device for device, _ in node.facts.values())
-    elif isinstance(node, Act) and isinstance(command := node.make(id=""), Query):
-        yield command.robot
