@@ -81,7 +81,7 @@ class CellCheck:
                 for what, value in wanted[0].items()
                 if all(value == each.get(what) for each in wanted)
             }
-            sure = ", ".join(certain_ends(self.cell, same, ends)) or "nothing that is certain"
+            sure = ", ".join(certain_ends(self.cell, same, ends) if ends else ()) or "nothing that is certain"
             yield f"{self.cell.name}: {recipe.name} ends with {sure}"
 
     def _followed(self, tree: Behaviour) -> tuple[Walkthrough, tuple[Scene, ...]]:

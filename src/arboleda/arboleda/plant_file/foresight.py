@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 from arboleda.model.commands import Command, Motion, Switch
 from arboleda.model.facts import Value, shown
-from arboleda.model.plant_model import Cell, Interlock, Place, Pose, Workspace
+from arboleda.model.plant_model import Cell, Interlock, Place, Pose, Robot, Workspace
 
 from .declared_kinds import verbs_of
 
-HELD, TAKEN, AT, OVER = "=held", "=taken", "=at", "=over"
+HELD, TAKEN, AT, OVER, HAD = "=held", "=taken", "=at", "=over", "=had"
 CHANGE, LEAST, MOST = "=change", "=least", "=most"
 """Keys beside facts. A hand holds a part (HELD), which it took at a target (TAKEN). A robot is at a target
-(AT), or over it (OVER). Since the task began, the number of parts at a place has changed by CHANGE, and never
-by less than LEAST or by more than MOST."""
+(AT), or over it (OVER). The task has taken a shared device (HAD). Since the task began, the number of parts
+at a place has changed by CHANGE, and never by less than LEAST or by more than MOST."""
 OF_PLACES = (CHANGE, LEAST, MOST)
 SceneKey = tuple[str, str]
 
@@ -105,6 +105,15 @@ class Foresight:
         if isinstance(command, Switch) and command.grips is not None:
             return self._taken(command, self._handled(command, scene))
         return scene
+
+    def still_holding(self, devices: Collection[str], scene: Scene) -> list[str]:
+        """An objection to each of these shared devices that holds a part when it is given back."""
+        named = (each for each in self.cell.robots if each.name in devices)
+        return [
+            f"gives {each.name} back with a part in it, and fails there; let go of it before{_as_by(each)}"
+            for each in named
+            if scene.get(each.name, HELD) is True
+        ]
 
     def _taken(self, command: Switch, scene: Scene) -> Scene:
         """The scene with HELD and TAKEN of a hand after it gripped or let go."""
@@ -260,6 +269,16 @@ class Foresight:
             at = scene.get(space.robot.name, AT)
             if at is not None:
                 yield space.robot.name, space.targets[str(at)]
+
+
+def _as_by(device: Robot) -> str:
+    """The verb with which a device lets go of a part, with its values, as words behind an advice."""
+    verb = next((each for each in verbs_of(device).values() if each.lets_go()), None)
+    if verb is None:
+        return ""
+    values = [f"{name}={shown(value)}" for name, value in verb.letting_go().items()]
+    command = " ".join([device.name, verb.name, *values])
+    return f", as by {command}"
 
 
 def _guarding_facts(lock: Interlock, scene: Scene) -> Iterator[tuple[str, str]]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from arboleda.model.facts import Value, shown
 from arboleda.model.plant_model import Cell
 
-from .foresight import CHANGE, HELD, LEAST, MOST, OVER, Scene
+from .foresight import CHANGE, HAD, HELD, LEAST, MOST, OVER, Scene, SceneKey
 
 
 def of_ends(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> Iterator[str]:
@@ -22,17 +22,18 @@ def of_ends(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> I
 def certain_ends(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> Iterator[str]:
     """The facts that all paths end with: those that the recipe states, then those that its steps leave.
 
-    The facts of a device that cells share are those when the task gives the device back.
+    The facts of a device that cells share are those when the task gives the device back; a task that never
+    takes the device leaves it as other cells do.
     """
     sure = dict(frozenset.intersection(*(end.mark for end in ends))) if ends else {}
     for what, value in wanted.items():
         role, dot, _ = what.partition(".")
         named = cell.roles[role].name if dot else ""
-        yield f"{what} {shown(value)}{_when(cell, named)} (it says so)"
+        yield f"{what} {shown(value)}{_when(cell, named, sure)} (it says so)"
     for role, device in cell.members:
         for fact in device.fact_names:
             if (device.name, fact) in sure and f"{role}.{fact}" not in wanted:
-                yield f"{role}.{fact} {shown(sure[device.name, fact])}{_when(cell, device.name)}"
+                yield f"{role}.{fact} {shown(sure[device.name, fact])}{_when(cell, device.name, sure)}"
     for place in cell.places:
         change = int(sure.get((place.target, CHANGE)) or 0)
         if change and place.target not in wanted:
@@ -42,9 +43,12 @@ def certain_ends(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene])
             yield f"{space.robot.name} at {target}"
 
 
-def _when(cell: Cell, device: str) -> str:
+def _when(cell: Cell, device: str, sure: Mapping[SceneKey, Value]) -> str:
     """Words for the moment at which a fact counts: another cell may use a shared device before the end."""
-    return f" when {device} is given back" if device in cell.shared else ""
+    if device not in cell.shared:
+        return ""
+    given_back = f" when {device} is given back"
+    return given_back if (device, HAD) in sure else f"{given_back}, by a task that takes it"
 
 
 def _parts(change: int) -> str:

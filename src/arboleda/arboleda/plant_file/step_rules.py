@@ -12,14 +12,25 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import ParallelPolicy
 from py_trees.decorators import Decorator
 
-from arboleda.engine import HOME_AGAIN, Act, Approach, Leaf, Require, Unless, title_of
+from arboleda.engine import (
+    HOME_AGAIN,
+    Act,
+    Approach,
+    Await,
+    Leaf,
+    Require,
+    TakeDevices,
+    Unless,
+    steps,
+    title_of,
+)
 from arboleda.model.facts import Value
 from arboleda.recipes.authoring import FAIL, IS, NO_OTHER
 from arboleda.recipes.decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
 from arboleda.recipes.handles import FactCheck, FactWait
 from arboleda.recipes.place_questions import PlaceQuestion
 
-from .foresight import AT, OVER, Scene, SceneKey, common
+from .foresight import AT, HAD, OVER, Scene, SceneKey, common
 from .parallel_scenes import Branches
 from .walkthrough import MOST_ROUNDS, Outcome, Rule, Walkthrough, answer_key, few
 
@@ -55,6 +66,18 @@ def _unless(walk: Walkthrough, node: Unless, scenes: Sequence[Scene]) -> Outcome
         return Outcome(done=tuple(scenes))
     walk.doubts += 1
     return Outcome(done=tuple(scenes), failed=tuple(scenes))
+
+
+def _await(walk: Walkthrough, node: Await, scenes: Sequence[Scene]) -> Outcome:
+    title = title_of(node)
+    if title.key != steps.LEAVE_DEVICES.key:
+        return _leaf(walk, node, scenes)
+    return walk.given_back(dict(title.values)["devices"], scenes)
+
+
+def _take_devices(walk: Walkthrough, node: TakeDevices, scenes: Sequence[Scene]) -> Outcome:
+    taken = {(name, HAD): True for name in node.devices}
+    return Outcome(done=tuple(scene.put(taken) for scene in scenes), failed=tuple(scenes))
 
 
 def _fact_check(walk: Walkthrough, node: FactCheck, scenes: Sequence[Scene]) -> Outcome:
@@ -221,6 +244,8 @@ RULES: Mapping[type, Rule] = {
     Leaf: _leaf,
     Act: _act,
     Approach: _approach,
+    Await: _await,
+    TakeDevices: _take_devices,
     Require: _require,
     Unless: _unless,
     FactCheck: _fact_check,

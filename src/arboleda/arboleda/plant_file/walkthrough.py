@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -100,6 +100,15 @@ class Walkthrough:
         for scene in scenes:
             for sentence in self.foresight.objections(command, scene):
                 self.findings[self.place, sentence] = None
+
+    def given_back(self, devices: Collection[str], scenes: Sequence[Scene]) -> Outcome:
+        """The outcome of giving back shared devices, which fails where one of them holds a part."""
+        empty = []
+        for scene in scenes:
+            held = self.foresight.still_holding(devices, scene)
+            self.findings |= {(self.place, sentence): None for sentence in held}
+            empty += [] if held else [scene]
+        return Outcome(done=tuple(empty), failed=tuple(scenes))
 
     def blurred(self, node: Behaviour, scenes: Iterable[Scene]) -> tuple[Scene, ...]:
         """The scenes without all values that a part of a tree may change."""

@@ -198,6 +198,10 @@ def ajar(cell):
 @recipe("rest", ends_with={"gate.at": "shut"})
 def rest(cell):
     return cell.wait(3.0)
+
+@recipe("air")
+def air(cell):
+    return cell.device("gate").open()
 """
 
 
@@ -229,6 +233,15 @@ def test_a_task_that_gives_a_shared_device_back_otherwise_than_it_says_is_found(
         world.request_task(between)
     with pytest.raises(BrokenInvariant, match=r"t-1000-1 is called done, and gate\.at is open"):
         world.advance(6.0)
+
+
+def test_a_task_that_never_takes_a_shared_device_leaves_it_as_other_cells_do(tmp_path: Path) -> None:
+    world = gates(tmp_path).world
+    for task in ("right air", "left rest"):
+        world.request_task(task)
+        world.advance(4.0)
+    ended = [task.state.value for task in world.plant.intake.tasks.values()]
+    assert ended == ["done", "done"] and world.boards["gate"].body.facts["at"] == "open"
 
 
 WITH_A_LAMP = """

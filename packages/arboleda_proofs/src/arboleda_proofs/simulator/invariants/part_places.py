@@ -131,7 +131,7 @@ def _wanted(look: Look, cell: Cell, task: str) -> dict[str, Value]:
 
 def _found(look: Look, cell: Cell, what: str, began: float) -> Value | None:
     """The true value of a fact, as `reader.lid`, or the true number of parts at a place, as the task left it;
-    None where only another cell had to do with it.
+    None of a shared device that the task never had.
     """
     role, dot, fact = what.partition(".")
     if not dot:

@@ -40,15 +40,12 @@ class SharedDevicesTruth:
 
     def as_left_by(self, cell: Cell, device: str, *, since: float) -> Mapping[str, Value]:
         """The facts of a device as a cell's task that began at `since`, in s, left it; none where that task
-        did not have it, and another cell did.
+        did not have it: a cell leaves a device that it never takes as other cells do.
         """
-        own, holder = self._given_back.get((device, cell.name)), self._holders.get(device)
-        if holder == cell.name:
+        own = self._given_back.get((device, cell.name))
+        if self._holders.get(device) == cell.name:
             return self._facts_of(device)
-        if own is not None and own.at >= since:
-            return own.facts
-        had = [each.at >= since for (name, _), each in self._given_back.items() if name == device]
-        return {} if holder is not None or any(had) else self._facts_of(device)
+        return own.facts if own is not None and own.at >= since else {}
 
     def _facts_of(self, device: str) -> dict[str, Value]:
         return dict(self._robots[device].body.true_facts)
