@@ -17,12 +17,12 @@ def with_common_places(
         others = [cell for cell in by_name.values() if not set(cell.shared).isdisjoint(by_name[name].shared)]
         for other in others:
             for target, number in numbers.items():
-                for same in _same(by_name[name], target, other):
+                for same in same_places(by_name[name], target, other):
                     everywhere.setdefault(other.name, {}).setdefault(same, number)
     return everywhere
 
 
-def _same(cell: Cell, target: str, other: Cell) -> list[str]:
+def same_places(cell: Cell, target: str, other: Cell) -> list[str]:
     """The places of another cell that are the same as a place of this cell."""
     if cell.name == other.name:
         return []

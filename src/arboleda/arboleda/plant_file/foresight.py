@@ -106,15 +106,6 @@ class Foresight:
             return self._taken(command, self._handled(command, scene))
         return scene
 
-    def still_holding(self, devices: Collection[str], scene: Scene) -> list[str]:
-        """An objection to each of these shared devices that holds a part when it is given back."""
-        named = (each for each in self.cell.robots if each.name in devices)
-        return [
-            f"gives {each.name} back with a part in it, and fails there; let go of it before{_as_by(each)}"
-            for each in named
-            if scene.get(each.name, HELD) is True
-        ]
-
     def _taken(self, command: Switch, scene: Scene) -> Scene:
         """The scene with HELD and TAKEN of a hand after it gripped or let go."""
         was, here = scene.get(command.robot, HELD), self._here(command.robot, scene)
@@ -269,6 +260,16 @@ class Foresight:
             at = scene.get(space.robot.name, AT)
             if at is not None:
                 yield space.robot.name, space.targets[str(at)]
+
+
+def still_holding(cell: Cell, devices: Collection[str], scene: Scene) -> list[str]:
+    """An objection to each of these shared devices that holds a part when it is given back."""
+    named = (each for each in cell.robots if each.name in devices)
+    return [
+        f"gives {each.name} back with a part in it, and fails there; let go of it before{_as_by(each)}"
+        for each in named
+        if scene.get(each.name, HELD) is True
+    ]
 
 
 def _as_by(device: Robot) -> str:

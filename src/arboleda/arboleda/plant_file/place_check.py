@@ -9,11 +9,13 @@ from itertools import combinations
 from arboleda.geometry import bodies, kinematics
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Effect
+from arboleda.model.common_places import same_places
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import Cell, Place, PlantModel, Pose, Robot
 
 from .declared_kinds import verbs_of
 from .urdf import drawn_arm, robot_urdf
+from .yaml_flow import flow
 
 APART_M = 0.030  # so far apart two tools may be at one place; a part is hardly smaller
 
@@ -22,6 +24,7 @@ def warnings(plant: PlantModel) -> tuple[str, ...]:
     """A sentence for each unguarded place, each device without a place, and each place that is two."""
     placed = frozenset(place.device for cell in plant.cells for place in cell.places)
     unsaid = [each for cell in plant.cells for each in (*_unguarded(cell), *_without_place(cell, placed))]
+    unsaid += _said_differently(plant)
     try:
         return (*unsaid, *(each for cell in plant.cells for each in _split(plant, cell)))
     except ArboledaError:  # `meeting_points` names the reason
@@ -70,6 +73,47 @@ def _without_place(cell: Cell, placed: frozenset[str | None]) -> Iterator[str]:
             what = f"works on a part ({works[0]})" if works else f"takes hold of a part ({holds[0]})"
             how = f"places: {{TARGET: {{of: {role}}}}}" + ("" if works else ", or tool_of")
             yield f"{cell.name}: {device.name} {what}, and no place is of it; say where: {how}"
+
+
+def _said_differently(plant: PlantModel) -> Iterator[str]:
+    """The places of several cells, at which their shared robot stands alike, that cannot be as all say."""
+    for group in _common(plant):
+        if _contradict([place for _, place in group]):
+            words = dict[str, list[str]]()
+            for cell, place in group:
+                words.setdefault(_words(place), []).append(cell.name)
+            said = ", ".join(f"{text} ({', '.join(cells)})" for text, cells in words.items())
+            cells = ", ".join(cell.name for cell, _ in group)
+            target = group[0][1].target
+            yield f"{cells}: {target} is one place of these cells, and is {said}; write the same in each"
+
+
+def _common(plant: PlantModel) -> list[list[tuple[Cell, Place]]]:
+    """The places of all cells; those that are one place are together."""
+    groups: list[list[tuple[Cell, Place]]] = []
+    for cell in plant.cells:
+        for place in cell.places:
+            for group in groups:
+                first, its = group[0]
+                if place.target in same_places(first, its.target, cell):
+                    group.append((cell, place))
+                    break
+            else:
+                groups.append([(cell, place)])
+    return groups
+
+
+def _contradict(places: Sequence[Place]) -> bool:
+    """True where places that are one have different room or devices, or are filled and emptied by people."""
+    devices = {place.device for place in places if place.device is not None}
+    people = {"supply" for each in places if each.supply} | {"output" for each in places if each.output}
+    return len({place.holds for place in places}) > 1 or len(devices) > 1 or len(people) > 1
+
+
+def _words(place: Place) -> str:
+    """What a plant file says of a place."""
+    given = {"holds": place.holds, "of": place.device, "supply": place.supply, "output": place.output}
+    return flow({key: value for key, value in given.items() if value})
 
 
 def _split(plant: PlantModel, cell: Cell) -> Iterator[str]:

@@ -14,7 +14,7 @@ from arboleda.engine import Act
 from arboleda.model.by_class import nearest
 from arboleda.recipes.place_questions import PlaceQuestion
 
-from .foresight import Foresight, Scene, SceneKey, common
+from .foresight import Foresight, Scene, SceneKey, common, still_holding
 from .scene_variables import key_of
 
 MOST_SCENES = 256  # that are followed at once
@@ -105,7 +105,7 @@ class Walkthrough:
         """The outcome of giving back shared devices, which fails where one of them holds a part."""
         empty = []
         for scene in scenes:
-            held = self.foresight.still_holding(devices, scene)
+            held = still_holding(self.foresight.cell, devices, scene)
             self.findings |= {(self.place, sentence): None for sentence in held}
             empty += [] if held else [scene]
         return Outcome(done=tuple(empty), failed=tuple(scenes))
