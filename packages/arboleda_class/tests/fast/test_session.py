@@ -238,6 +238,20 @@ def test_a_mishap_that_waits_says_for_what_and_then_that_it_is_over(model: Any) 
     assert events(made) == ["fault by hand is over: No part there to take", begun]
 
 
+def test_a_cell_whose_step_has_failed_is_said_to_recover_until_its_task_fails(model: Any) -> None:
+    made = session(model)
+    made.take("submit", TASK)
+    made.befall("no_part", board(model, "ra1"), 60.0)
+    said = []
+    for _ in range(30):
+        made.advance(16)
+        said.append(told(made)[1])
+    waits, recovers, failed = dict.fromkeys(said)
+    assert waits == "It waits until the effector grips."
+    assert recovers == "sis_a is recovering: a step of its task has failed."
+    assert failed.endswith("no piece at pick-up A")
+
+
 def test_a_mishap_with_an_effect_tells_it_with_what_is_advised(model: Any) -> None:
     made = at_work(model)
     made.befall("reboot", board(model, "ra1"), 0.0)

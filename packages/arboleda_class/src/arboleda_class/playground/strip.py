@@ -7,8 +7,10 @@ from typing import Any
 
 from arboleda.dashboard.faces import Face
 from arboleda.dashboard.wording import Words
+from arboleda.engine import RECOVERY
 from arboleda.model.plant_model import PlantModel
 from arboleda.views.chronicle import is_failure
+from arboleda.views.tree_view import RUNS
 from arboleda.web.languages import texts
 from arboleda_proofs.simulator.mishaps import MISHAPS
 
@@ -58,12 +60,20 @@ class Strip:
                 return self._words.say(event["sentence"])
         if provoked.effect.nothing:
             return self._own(provoked.effect.word)
+        for cell in run.snapshot["cells"]:
+            if cell["name"] in cells and _recovers(cell):
+                return self._own("recovering").format(cell=cell["name"])
         for event in events:
             if event["subject"] == provoked.name and event["what"] == "offline":
                 return self._words("events.robot", subject=provoked.name, what=self._words("links.offline"))
         if provoked.seconds and run.seconds >= provoked.at_s + provoked.seconds:
             return self._own("mishap_over")
         return self._own(provoked.effect.word or "nothing_yet")
+
+
+def _recovers(cell: Row) -> bool:
+    """True while the work of a task has failed and its recovery runs: the task fails once that is over."""
+    return any(node["phase"] == RECOVERY and node["status"] == RUNS for node in cell["tree"])
 
 
 def named(own: Say, target: str) -> str:
