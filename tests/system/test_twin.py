@@ -263,6 +263,33 @@ def test_nothing_is_sent_to_who_looks_elsewhere_and_then_every_link_is_where_the
         was_seen(place, heard.poses[name], [robots[name] for robots in seen])
 
 
+UNTOLD = """
+let twin;
+Object.defineProperty(window, "arboledaTwin", {
+  get: () => twin,
+  set: (made) => {
+    const { frame } = (twin = made);
+    twin.frame = (...told) => window.letIn && frame(...told);
+  },
+});
+"""
+
+
+def test_before_the_first_picture_the_twin_says_that_it_is_drawn_and_nothing_of_any_robot(
+    plant: Plant, launched: Callable[..., Any]
+) -> None:
+    with people(launched(*SOFTWARE)) as new:
+        page = new(**COARSE)
+        page.context.add_init_script(FEW_FRAMES + UNTOLD)
+        page.goto(f"{plant.page}/?tab=cells")
+        page.wait_for_function("window.arboledaTwin?.view() === 'solid'")
+        assert page.inner_text("#twin-note") == "Drawing the plant ..."
+        assert page.locator(".twin-labels span:visible").count() == 0
+        page.evaluate("window.letIn = true")
+        page.wait_for_selector("#twin-note", state="hidden")
+        page.wait_for_selector(".twin-labels span:text-is('ra1')")
+
+
 def middle_of_part(tool: Sequence[float]) -> tuple[float, ...]:
     """Where the middle of a part is that this frame of a tool takes."""
     return tuple(tool[4 * row + 3] + tool[4 * row + 2] * PART_HEIGHT_M / 2 for row in range(3))

@@ -18,8 +18,9 @@ window.arboledaTwin = {
   frame(number, patch) {
     if (!plant) return;
     plant.apply(patch);
+    listRobots(patch); // the list takes of the room of the drawing
+    view.resize?.();
     view.show();
-    listRobots(patch);
     if (frames++ % ACK_EVERY === 0) tell("drawn", number);
   },
   // What is drawn solid, for whoever wants to compare it: robot -> link -> 16 numbers, row by row; and the middles of parts.
@@ -113,7 +114,7 @@ function flat(THREE, made) {
 function show(made, how) {
   view?.close();
   [plant, view] = [made, how];
-  if (how.name === "solid") note.hidden = true;
+  how.seen?.then(() => (note.hidden = true));
   paint();
 }
 

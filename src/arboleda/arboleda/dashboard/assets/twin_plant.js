@@ -148,8 +148,8 @@ export class Plant {
   }
 
   robotLabel(name, robot) {
-    const told = this.drawn.get(`robot/${name}`) ?? { kind: "unknown" };
-    const text = told.kind === "measured" ? name : `${name} · ${this.wordOf(told)}`;
+    const told = this.drawn.get(`robot/${name}`) ?? { kind: "untold" };
+    const text = ["measured", "untold"].includes(told.kind) ? name : `${name} · ${this.wordOf(told)}`;
     return { text, state: told.kind, above: robot.told.kind === "mobile", at: robot.labelAt() };
   }
 

@@ -29,6 +29,8 @@ export class SolidView {
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.02, 200);
     this.camera.up.set(0, 0, 1);
     this.labels = new Labels(box);
+    this.labels.layer.hidden = true; // there is nothing yet that a name could stand beside
+    this.seen = new Promise((first) => (this.first = first));
     this.reachable();
     box.prepend(this.canvas);
     this.controls = new OrbitControls(this.camera, this.canvas);
@@ -74,14 +76,16 @@ export class SolidView {
     this.show();
   }
 
+  // A canvas of another size is empty until it is drawn, which may be a while where pictures are slow: so it is drawn at once.
   resize() {
     const { clientWidth, clientHeight } = this.box;
-    if (!clientWidth || !clientHeight) return;
+    if (!clientWidth || !clientHeight || (clientWidth === this.width && clientHeight === this.height)) return;
+    [this.width, this.height] = [clientWidth, clientHeight];
     this.renderer.setSize(clientWidth, clientHeight);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
     if (!this.looked) this.whole(FROM);
-    this.show();
+    if (this.plant.drawn.size) this.render();
   }
 
   // Has the whole plant, or one cell, seen from one side, as near as it fits.
@@ -118,21 +122,29 @@ export class SolidView {
     this.show();
   }
 
-  // Draws before the next picture of the screen, once however often it is asked.
+  // Draws before the next picture of the screen, once however often it is asked; nothing before the first frame has come.
   show() {
+    if (this.plant.drawn.size === 0) return;
     this.stale = true;
     this.asked ??= requestAnimationFrame(() => this.draw());
+  }
+
+  render() {
+    this.renderer.render(this.scene, this.camera);
+    this.labels.draw(this.plant.labels(), this.camera, this.box);
   }
 
   async draw() {
     const began = performance.now();
     this.stale = false;
-    this.renderer.render(this.scene, this.camera);
-    this.labels.draw(this.plant.labels(), this.camera, this.box);
+    this.render();
     await this.drawn();
+    if (this.asked === 0) return; // closed meanwhile
+    this.labels.layer.hidden = false;
+    this.first();
     const took = performance.now() - began;
     if (took > SLOW_MS) await pause(REST * took);
-    if (this.asked === 0) return; // closed meanwhile
+    if (this.asked === 0) return;
     this.asked = undefined;
     if (this.stale) this.show();
   }
