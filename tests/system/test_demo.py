@@ -36,7 +36,9 @@ def test_a_first_visit_says_once_what_to_press_and_a_button_ends_the_demonstrati
 ) -> None:
     plant = PlantClient(tmp_path)
     page.wait_for_selector("#demo")
-    assert len(page.locator("#demo li").all_inner_texts()) == 3
+    lines = page.locator("#demo li").all_inner_texts()
+    assert len(lines) == 3
+    assert all(f"“{button}”" in lines[1] for button in ("Make ready again", "Operate", "Provoke a fault"))
     page.click("[data-choose=sis_b]")  # whoever is at work has read it
     page.wait_for_selector("#demo", state="hidden")
     page.reload()

@@ -1,21 +1,26 @@
-"""What a stranger sees first: on a laptop all of a plant on one screen, on a phone the stop and trouble."""
+"""The first screen: from a laptop up all of a plant is on it, on a phone the stop and the trouble."""
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 from arboleda.cli.client import PlantClient
 from arboleda.model.messages import Verb
 
 from ..chromium import people
-from .page import connected, ended, lead_out, operate, running, until
+from .conftest import SHIPPED
+from .page import connected, ended, lead_out, operate, running, show, until
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 
 LAPTOP = {"viewport": {"width": 1366, "height": 768}}
+SCREENS = ((1280, 800), (1366, 768), (1920, 1080), (2560, 1440))
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
 CELLS = ("sis_a", "sis_b", "sis_c")
 TASKS = {"sis_a 0B 7": "one", "sis_b 1C 3": "two", "sis_c 2A 5": "three"}
@@ -36,6 +41,16 @@ IN_SIGHT = """selector => {
   const seen = document.elementFromPoint((left + right) / 2, (top + bottom) / 2);
   const within = left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight;
   return bottom > top && within && at.contains(seen);
+}"""
+OVERFLOWING = """() => {
+  const inside = (each) => {
+    const text = document.createRange();
+    text.selectNodeContents(each);
+    const [letters, circle] = [text.getBoundingClientRect(), each.getBoundingClientRect()];
+    return letters.width < circle.width && letters.top >= circle.top && letters.bottom <= circle.bottom;
+  };
+  const circles = [...document.querySelectorAll(".place, .places .act")];
+  return circles.filter((each) => each.checkVisibility() && !inside(each)).map((each) => each.textContent);
 }"""
 Open = Callable[..., Any]
 
@@ -72,8 +87,9 @@ def wait_for_sight(page: Any, selector: str) -> None:
     page.wait_for_function(IN_SIGHT, arg=selector)
 
 
-def test_on_a_laptop_cells_twin_and_tree_are_on_one_screen(look: Open) -> None:
-    page = look(**LAPTOP)
+@pytest.mark.parametrize(("width", "height"), SCREENS)
+def test_from_a_laptop_up_cells_twin_and_tree_are_on_one_screen(look: Open, width: int, height: int) -> None:
+    page = look(viewport={"width": width, "height": height})
     for cell in CELLS:
         wait_for_sight(page, f"[data-choose={cell}]")
         wait_for_sight(page, f"[data-menu={cell}]")
@@ -88,6 +104,34 @@ def test_on_a_laptop_cells_twin_and_tree_are_on_one_screen(look: Open) -> None:
     assert page.evaluate("document.documentElement.scrollHeight <= innerHeight")
 
 
+def of_eight_cells(folder: Path) -> Path:
+    """The shipped plant, its cells again and again, beside each other."""
+    plant = yaml.safe_load(SHIPPED.read_text())
+    shipped, plant["cells"] = [*plant["cells"].values()], {}
+    for number in range(8):
+        cell = copy.deepcopy(shipped[number % 3])
+        cell["arm"] |= {"name": f"arm_{number}", "mqtt": f"arm_{number}", "twin": f"t{number}"}
+        cell["mobile"]["name"] = f"mobile_{number}"
+        for place in (cell["arm"]["base"], cell["mobile"]["grid"]):
+            place["origin_m"][0] += 4 * (number // 3)
+        plant["cells"][f"cell_{number}"] = cell
+    file = folder / "plant.yaml"
+    file.write_text(yaml.safe_dump(plant))
+    return file
+
+
+def test_of_a_crowd_of_cells_the_twin_is_on_the_first_screen_too(browser: Any, tmp_path: Path) -> None:
+    plant = of_eight_cells(tmp_path)
+    with running(tmp_path / "state", "--plant", str(plant)) as address, people(browser) as new:
+        for width, height in SCREENS:
+            page = new(locale="en", viewport={"width": width, "height": height})
+            page.goto(address)
+            connected(page)
+            for name in ("#twin", *(f"[data-choose=cell_{number}]" for number in range(8))):
+                wait_for_sight(page, name)
+            page.close()
+
+
 def test_on_a_phone_the_stop_and_the_cell_in_trouble_come_first(
     look: Open, plant: tuple[str, PlantClient]
 ) -> None:
@@ -97,6 +141,31 @@ def test_on_a_phone_the_stop_and_the_cell_in_trouble_come_first(
     assert page.evaluate("document.querySelector('.cells').firstElementChild.dataset.cell") == "sis_c"
     for name in ("#stop", "[data-choose=sis_c]", OUT):
         wait_for_sight(page, name)
+
+
+def test_on_a_phone_a_place_opens_at_its_top_and_the_stop_alone_stays_when_it_is_scrolled(look: Open) -> None:
+    page = look(**PHONE)
+    for part in ("tasks", "cells"):
+        show(page, part)
+        assert page.evaluate("scrollY") == 0
+        page.evaluate("scrollTo(0, 400)")
+        page.wait_for_function("document.querySelector('.top').getBoundingClientRect().bottom <= 120")
+        wait_for_sight(page, "#stop")
+
+
+def test_on_a_phone_letters_are_in_their_circles_and_a_task_is_sent_once_all_is_chosen(look: Open) -> None:
+    page = look("?tab=tasks&cell=sis_a", **PHONE)
+    page.wait_for_selector("[data-maps=sis_a] .place")
+    assert page.evaluate(OVERFLOWING) == []
+    page.click("[data-maps=sis_a] [data-path='0B']")
+    assert page.is_disabled("#task-send")
+    assert page.inner_text("#task-missing") == "Still to choose: Station of the rack."
+    page.click("[data-maps=sis_a] [data-station='7']")
+    assert page.is_enabled("#task-send") and not page.is_visible("#task-missing")
+    page.fill("#task-text", "")
+    assert page.is_disabled("#task-send")
+    page.fill("#task-text", "whatever")
+    assert page.is_enabled("#task-send")
 
 
 def test_a_dot_is_pressed_for_a_part_that_was_taken_out(look: Open) -> None:

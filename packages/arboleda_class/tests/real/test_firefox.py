@@ -48,7 +48,14 @@ def test_seeds_have_the_digests_of_here_and_a_person_gives_a_task_and_has_a_boar
     page.wait_for("window.arboledaPlay?.ready()")
     page.evaluate("arboledaPlay.pause()")
     page.click("[data-tab=tasks]")
-    page.evaluate("() => { document.getElementById('task-text').value = 'sis_a 0A 8'; }", None)
+    page.evaluate(
+        """() => {
+            const text = document.getElementById('task-text');
+            text.value = 'sis_a 0A 8';
+            text.dispatchEvent(new Event('input', { bubbles: true }));
+        }""",
+        None,
+    )
     page.click("#task-send")
     page.wait_for("document.querySelector('#answer[data-s=good]')")
     page.evaluate("arboledaPlay.advance(80)")

@@ -216,4 +216,5 @@ def _text(example: str, words: Words) -> None:
         act_button(
             words("tasks.send"), "submit", "", words("tasks.send_does"), classes="primary", id="task-send"
         )
+    tag("p", id="task-missing", classes="hint", role="status")
     tag("p", words("tasks.send_does"), classes="hint")

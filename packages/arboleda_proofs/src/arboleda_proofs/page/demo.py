@@ -17,13 +17,15 @@ def welcome(spot: Spot) -> None:
     words = spot.words
     if spot.plant.ask(DemonstrationApi) is None:
         return
+    labels = {"ready": "ready.cell", "operate": "panel.title", "fault": "faults.title"}
+    buttons = {name: words(key) for name, key in labels.items()}
     with tag("aside", id="demo", aria_label=words("demo.title"), hidden="true"):
         close = words("demo.seen")
         tag("button", "×", type="button", id="demo-seen", classes="tool", title=close, aria_label=close)  # noqa: RUF001
         tag("p", words("demo.title"))
         with tag("ol"):
             for line in LINES:
-                tag("li", words(f"demo.{line}"))
+                tag("li", words(f"demo.{line}", **buttons))
 
 
 def end_of_it(spot: Spot) -> None:

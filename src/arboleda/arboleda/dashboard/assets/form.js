@@ -18,14 +18,21 @@ export function start() {
   form().addEventListener("input", filled);
   form().addEventListener("submit", submitted);
   document.getElementById("task-send").addEventListener("click", submitted);
+  begin();
+}
+
+function begin() {
   show();
+  if (missing().length) (text().value = ""), ready();
+  else write();
 }
 
 // Begin with this cell, unless somebody is writing a task already.
 export function offer(cell) {
-  if (!cell || text().value) return;
+  const isBegun = text().value && (text().value !== written() || Object.values(chosen.values).some(Boolean));
+  if (!cell || cell === chosen.cell || isBegun) return;
   choose("cell", cell);
-  show();
+  begin();
 }
 
 function clicked({ target }) {
@@ -43,7 +50,7 @@ function clicked({ target }) {
 
 function filled({ target }) {
   const name = target.dataset.setFrom;
-  if (!name) return;
+  if (!name) return ready();
   chosen.values[name] = target.value.trim() || undefined;
   write();
 }
@@ -116,16 +123,32 @@ function press(button, on) {
   button.setAttribute("aria-pressed", on);
 }
 
+const parameters = () => JSON.parse(fields()?.dataset.parameters ?? "[]");
+const missing = () => parameters().filter((name) => chosen.values[name] === undefined);
+
 // The words of the task in their order; those that are still missing are left out.
+function written() {
+  const values = parameters().map((name) => chosen.values[name]);
+  return [...JSON.parse(fields()?.dataset.head ?? "[]"), ...values].filter((word) => word !== undefined).join(" ");
+}
+
 function write() {
-  const { head, parameters } = fields()?.dataset ?? { head: "[]", parameters: "[]" };
-  const values = JSON.parse(parameters).map((name) => chosen.values[name]);
-  text().value = [...JSON.parse(head), ...values].filter((word) => word !== undefined).join(" ");
+  text().value = written();
+  ready();
+}
+
+// A task can be sent that somebody has typed, or of which all is chosen; else a line says what is not.
+function ready() {
+  const task = text().value.trim();
+  const left = task && task !== written() ? [] : missing();
+  const labels = left.map((name) => all(`[data-parameter="${CSS.escape(name)}"] > :is(legend, span)`, fields())[0].textContent);
+  document.getElementById("task-send").disabled = !task || left.length > 0;
+  document.getElementById("task-missing").textContent = labels.length ? words.still_to_choose.replace("{what}", labels.join(", ")) : "";
 }
 
 function submitted(event) {
   event.preventDefault();
   event.stopPropagation();
-  const task = text().value.trim();
-  return task ? send("submit", task) : answer(words.empty_task, false);
+  if (document.getElementById("task-send").disabled) return answer(words.empty_task, false);
+  return send("submit", text().value.trim());
 }

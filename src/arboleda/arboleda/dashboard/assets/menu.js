@@ -14,8 +14,6 @@ export const onOpen = (listener) => listeners.push(listener);
 export function start() {
   scope.start();
   document.addEventListener("click", clicked);
-  const top = document.querySelector(".top");
-  new ResizeObserver(() => box().style.setProperty("--top", `${top.offsetHeight}px`)).observe(top); // which it may not go below
   document.addEventListener("keydown", pressed, true); // before an open question goes, which is closed alone
 }
 

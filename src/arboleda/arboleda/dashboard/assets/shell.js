@@ -18,10 +18,18 @@ export function start() {
   busy.start();
   document.documentElement.lang = window.arboledaPage.language;
   look(lookNow());
+  new ResizeObserver(measure).observe(document.querySelector(".top"));
   setRowFilter((list, row) => !filters[list] || row?.cell === filters[list]);
   document.addEventListener("click", clicked);
   onChange(inOrder);
   document.querySelector(".cells")?.addEventListener("pointerleave", inOrder);
+}
+
+// How high the header is, which nothing else may cover, and what of it is above the stop, which a phone scrolls away.
+function measure([{ target: top }]) {
+  const { style } = document.documentElement;
+  style.setProperty("--top", `${top.offsetHeight}px`);
+  style.setProperty("--above-stop", `${top.querySelector(".stop")?.offsetTop ?? 0}px`);
 }
 
 let isOfPart = false; // whether the answer goes away when its part of the page is left
@@ -50,11 +58,13 @@ export function settled({ tab, cell, task, lang }) {
 let part = null;
 
 export function showPart(chosen) {
-  if (part && part !== chosen && isOfPart) answer("", true);
+  const leaves = part !== null && part !== chosen;
+  if (leaves && isOfPart) answer("", true);
   part = chosen;
   all("[data-part]").forEach((part) => (part.hidden = part.dataset.part !== chosen));
   all("[data-parts]").forEach((tab) => (tab.dataset.parts.split(" ").includes(chosen) ? tab.setAttribute("aria-current", "page") : tab.removeAttribute("aria-current")));
   all("[data-within]").forEach((ways) => (ways.hidden = !ways.dataset.within.split(" ").includes(chosen)));
+  if (leaves) scrollTo(0, 0);
 }
 
 // In a crowd a card is opened by who names it, so that all of them are seen at first.

@@ -5,7 +5,7 @@ import { onChange, split, value } from "./live.js";
 const SVG = "http://www.w3.org/2000/svg";
 const HEIGHT = 26;
 const MARGIN = 40; // px below a tree
-const LEAST = { wall: 0.5, screen: 0.7, page: 0.85, phone: 1 }; // size at which a tree is read
+const LEAST = { screen: 0.7, page: 0.85, phone: 1 }; // size at which a tree is read
 const PLANS = ["wide", "columns", "narrow"];
 const SIGNS = {
   // status -> shape, 12 x 12 px around 0 0: it reads without its colour
@@ -51,12 +51,11 @@ function fit(one) {
   if (one.tree.nodes.length === 0) return one.box.replaceChildren();
   if (one.box.clientWidth === 0) return;
   const unit = parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
-  const wall = matchMedia("(min-width: 1800px)").matches && one.box.closest(".cells.few");
   const screen = getComputedStyle(one.box.parentElement).position === "absolute"; // the box is as high as the screen has room
   // A tree that begins low on the screen, or below it, gets half a screen: it has to be scrolled to anyway.
   const high = screen ? one.box.clientHeight : Math.max(innerHeight / 2, innerHeight - top(one.box) - MARGIN);
   const room = { w: one.box.clientWidth / unit, h: high / unit };
-  const [name, scale] = wall || screen ? largest(one.tree, room, wall ? LEAST.wall : LEAST.screen) : readable(one.tree, room);
+  const [name, scale] = screen ? largest(one.tree, room, LEAST.screen) : readable(one.tree, room);
   if (one.plan !== name) lay(one, name);
   one.svg.setAttribute("width", one.tree[name].w * scale * unit * one.zoom);
   one.svg.setAttribute("height", one.tree[name].h * scale * unit * one.zoom);
