@@ -23,6 +23,29 @@ sys.argv = ["arboleda", *sys.argv[1:]]
 from arboleda.cli.entry import main
 main()
 """
+AT_FIRST = """
+import os, sys
+
+class First:
+    def __init__(self, real):
+        self.real = real
+
+    def __getattr__(self, name):
+        return getattr(self.real, name)
+
+    def write(self, text):
+        if not text:  # its kind is tried
+            return self.real.write(text)
+        self.real.write(" ".join([text.strip(), *sys.modules]))
+        self.real.flush()
+        os._exit(0)
+
+sys.stdout = First(sys.stdout)
+sys.argv = ["arboleda", *sys.argv[1:]]
+from arboleda.cli.entry import main
+main()
+"""
+SLOW = {"arboleda.engine", "arboleda.plant_file.loader", "arboleda.runtime.build", "fastapi", "paho.mqtt"}
 OF_THE_PAGE = {
     "nicegui",
     "engineio",
@@ -68,3 +91,12 @@ def test_what_it_does_not_use_is_not_loaded(loaded: set[str], unused: set[str]) 
 
 def test_it_is_not_loaded_from_more_modules_than_it_was(loaded: set[str]) -> None:
     assert len(loaded) <= MOST
+
+
+def test_the_first_line_comes_before_what_is_slow_to_load() -> None:
+    command = [sys.executable, "-c", AT_FIRST, "up", "--demo"]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    line, _, modules = said.partition(" ... ")
+    assert line == "Loading the plant"
+    assert "arboleda.cli.up" in modules.split()
+    assert SLOW.isdisjoint(modules.split())

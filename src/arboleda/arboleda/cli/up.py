@@ -18,8 +18,6 @@ from arboleda.model.errors import ConfigError, StartError, TextError
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.model.recording import Recording
 from arboleda.model.sentence import Phrase
-from arboleda.plant_file import loader, user_file
-from arboleda.plant_file.versions import Versions
 from arboleda.runtime import invocation
 from arboleda.runtime.alarm_options import alarm_options
 from arboleda.runtime.demo_options import DemoOptions
@@ -59,6 +57,7 @@ if TYPE_CHECKING:
     from arboleda.adapters.server_tls import ServerTls
     from arboleda.runtime.build import Options
 
+LOADING = Phrase("cli.up.loading", "Loading the plant ...")
 IS_HELD = Phrase("cli.run.beside", "{held} To have it do this, type:")
 ANOTHER_PLANT = Phrase(
     "cli.run.another",
@@ -127,6 +126,8 @@ def up(
         tasks = []  # they were given at the first start
     elif once and (demo or standby or not tasks):
         raise typer.BadParameter(say(ONCE()))
+    if not once:
+        typer.echo(say(LOADING()))  # before anything that is slow to load
     with working():
         model, recording = _model(plant, tasks)
     if once:
@@ -157,6 +158,10 @@ def up(
 
 def _model(plant: Path | None, tasks: list[str]) -> tuple[PlantModel, Recording | None]:
     """The plant and the limits of its record, with every task text checked before anything starts."""
+    with loading():
+        from arboleda.plant_file import loader
+        from arboleda.plant_file.versions import Versions
+
     if plant is not None:
         Versions(plant).go_on()
     model, recording = loader.load_recorded(plant)
@@ -241,6 +246,7 @@ def _options(
     recording: Recording | None,
 ) -> Options:
     with loading():
+        from arboleda.plant_file import user_file
         from arboleda.runtime.build import Options  # slow to load, and only needed to run a plant
 
     if broker and host:
@@ -307,6 +313,7 @@ def _run(
     )
     parts, console = set(PARTS) - left_out, Console(highlight=False)
     if standby:
+        from arboleda.plant_file import loader
         from arboleda.runtime.standing_by import take_over
 
         def again() -> tuple[PlantModel, Recording | None]:
