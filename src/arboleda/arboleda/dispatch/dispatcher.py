@@ -188,7 +188,7 @@ class Dispatcher:
         belief = self.beliefs.get(report.robot)
         if belief is None or belief.drawn:
             return
-        was_sure = belief.stillness.is_sure
+        was_sure, was_moving = belief.stillness.is_sure, belief.state is MotionState.MOVING
         if belief.hear_again(report):
             if (
                 belief.stillness.is_sure and not was_sure
@@ -221,8 +221,10 @@ class Dispatcher:
         self._prove(belief, report, now, before)
         if latched and (new_link or (belief.online and not was_online)):  # its board may have lost the stop
             self.outlet.stop(report.robot, StopMode.LATCH)
-        if belief.stillness.is_sure and not was_sure:
-            self.wake([report.robot])
+        came = was_moving or belief.position != before.position
+        stands_there = came and belief.state is not MotionState.MOVING
+        if belief.stillness.is_sure and (stands_there or not was_sure):
+            self.wake([report.robot])  # a step may wait to see it there, whoever has moved it
         if _facts_shown(belief) != facts:
             self.ledger.version += 1
             self.ledger.changed |= self._cells_of[report.robot]
