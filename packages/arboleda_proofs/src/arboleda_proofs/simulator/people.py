@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from itertools import count
@@ -261,8 +261,9 @@ def _word_or_first(body: MachineBody, word: Value, goal: OrderGoal) -> Value:
 class Attendant:
     """Attendant: comes by every few seconds and does the first thing that is advised, cell by cell.
 
-    It neither brings back what is lost nor repairs what is broken: that ends with its fault. `acts` counts
-    what it has done; between two rounds there are `round_s`.
+    It neither brings back what is lost nor repairs what is broken: that ends with its fault. What several
+    cells advise in one round, as to clear a device that they share, it does once. `acts` counts what it has
+    done; between two rounds there are `round_s`.
     """
 
     def __init__(self, world: World, seed: int, *, round_s: tuple[float, float] = ROUND_S) -> None:
@@ -279,8 +280,9 @@ class Attendant:
 
     def _round(self, _: None) -> None:
         self._answer()
+        done: set[Hashable] = set()
         for cell in self._world.plant.cells:
-            self._see_to(self._world.plant.advice(cell))
+            self._see_to(self._world.plant.advice(cell), done)
         self._next_round()
 
     def _answer(self) -> None:
@@ -292,14 +294,17 @@ class Attendant:
                 answer = self._dice.pick(entry.command.answers)
                 self._world.request_verb(Verb.ANSWER, name, arguments=(("answer", answer),))
 
-    def _see_to(self, ways: tuple[Advice, ...]) -> None:
-        """Follow the first advice; after a look into a zone, or work at a reference, also the next, as the
-        plant cannot know that this was done.
+    def _see_to(self, ways: tuple[Advice, ...], done: set[Hashable]) -> None:
+        """Follow the first advice, if it is not `done` in this round; after a look into a zone, or work at a
+        reference, also the next, as the plant cannot know that this was done.
         """
         for advice in ways:
             if advice.refusal is not None or advice.do in BY_THEMSELVES:
                 return
-            do(self._world, advice)
-            self.acts += 1
+            act = advice.do, advice.scope, advice.arguments, advice.by_hand
+            if act not in done:
+                do(self._world, advice)
+                done.add(act)
+                self.acts += 1
             if advice.do not in (Hand.CHECK, Hand.REFERENCE):
                 return

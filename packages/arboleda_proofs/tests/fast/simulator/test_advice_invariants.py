@@ -10,7 +10,12 @@ from arboleda.core import advisor
 from arboleda.core.operator import Operator
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import OperatorRequest, Verb
-from arboleda_proofs.simulator.invariants.advice import ADVICE, ENOUGH, no_advice_where_all_is_well
+from arboleda_proofs.simulator.invariants.advice import (
+    ADVICE,
+    ENOUGH,
+    advice_leads_out,
+    no_advice_where_all_is_well,
+)
 from arboleda_proofs.simulator.invariants.invariant import Judges, Look
 from arboleda_proofs.simulator.people import Attendant
 from arboleda_proofs.simulator.record import Record
@@ -90,6 +95,14 @@ def test_advice_that_leads_nowhere_is_found(watch: Watch) -> None:
     assert watch.found == set()
     watch.act(Verb.STOP)
     assert watch.found == {"advice_leads_out"}
+
+
+def test_the_same_act_on_another_device_counts_once(watch: Watch) -> None:
+    acts = ["clear a", "reset a", "retry a", "release left", "release right", "abandon a", "home left"]
+    watch.look.record.acts.of["sis_a"] = acts
+    assert not [*advice_leads_out.rule(watch.look)]
+    watch.look.record.acts.of["sis_a"] = [*acts, "release left"]
+    assert [*advice_leads_out.rule(watch.look)]
 
 
 def test_a_cell_that_works_in_between_begins_anew(watch: Watch) -> None:

@@ -12,6 +12,7 @@ from arboleda.wire.payloads import EffectorGoal
 
 from ..truth.arm import ArmTruth
 from ..truth.grips import Effector, Switching
+from ..truth.robot import RobotTruth
 from .invariant import Look, Trigger, invariant
 
 
@@ -84,20 +85,31 @@ def _is_unchecked(look: Look, task: str, effector: Effector, began: float) -> bo
 @invariant(Trigger.DONE_TASKS)
 def unchecked_is_as_said(look: Look) -> Iterator[str]:
     """A done task says that its grip is unchecked where no piece sensor speaks, and its release where the
-    board says nothing of its effector, or has booted; where all is said, only of a grip that its recipe, or
-    the plant file, leaves unchecked.
+    board says nothing of its effector, or has booted, as that of any other holder of its cell may have; where
+    all is said, only of a grip that its recipe, or the plant file, leaves unchecked.
     """
     for cell, task, began in look.truth.done_tasks:
         arms = [each.arm for each in look.truth.grips.of(cell, began) if each.let_go is not None]
         if not arms:
             continue
         silent = any(arm.robot.evidence is not Evidence.IDS for arm in arms)
-        booted = any(arm.booted_us / 1e6 >= began for arm in arms)
+        may_miss = any(_may_miss_a_release(each, began) for each in _holders(look, cell))
         unchecked = look.truth.unchecked[task]
         if (Check.GRIP in unchecked) not in _may_be_unchecked(look, cell, task, silent=silent):
             yield f"{task} is done, and its grip is {_checked(Check.GRIP, unchecked)}"
-        if (Check.RELEASE in unchecked) is not silent and not booted:
+        if (Check.RELEASE in unchecked) is not silent and not may_miss:
             yield f"{task} is done, and its release is {_checked(Check.RELEASE, unchecked)}"
+
+
+def _holders(look: Look, cell: str) -> Iterator[RobotTruth]:
+    found = (look.truth.robot(name) for name in look.world.model.cell(cell).holders)
+    return (each for each in found if each is not None)
+
+
+def _may_miss_a_release(holder: RobotTruth, began: float) -> bool:
+    """True for what has booted since then, and for a device that is no arm and names no command."""
+    is_silent = holder.robot.evidence is not Evidence.IDS and not isinstance(holder, ArmTruth)
+    return is_silent or holder.booted_us / 1e6 >= began
 
 
 def _may_be_unchecked(look: Look, cell: str, task: str, *, silent: bool) -> tuple[bool, ...]:

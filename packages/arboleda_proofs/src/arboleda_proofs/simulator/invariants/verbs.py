@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from arboleda.engine import OPEN, State
+from arboleda.engine.inspection import RELEASING
 from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command, Home, Stop, StopMode, Switch
 from arboleda.model.common_places import with_common_places
@@ -268,8 +269,7 @@ def _released(look: Look, request: OperatorRequest) -> Iterator[str]:
     if request.by_hand:
         yield from _emptied(look, request)
         return
-    switches = (each for each in look.moment.sent if isinstance(each, Switch))
-    sent = [each for each in switches if each.grips is False]
+    sent = [each.command for each in look.record.commands.new if _is_release(each)]
     if not sent:
         yield "no effector was opened"
     yield from _outside(look, request, sent)
@@ -360,7 +360,13 @@ def _is_of(sent: SentCommand, verb: Verb) -> bool:
         return False
     if verb is Verb.HOME:
         return isinstance(sent.command, Home)
-    return isinstance(sent.command, Switch) and sent.command.grips is False
+    return _is_release(sent)
+
+
+def _is_release(sent: SentCommand) -> bool:
+    """True for a command to let go on an operator's word; a task may give one by itself in the same step."""
+    lets_go = isinstance(sent.command, Switch) and sent.command.grips is False
+    return lets_go and (sent.entry is None or sent.entry.doing.key == RELEASING.key)
 
 
 VERBS = (verbs_are_refused_rightly, verbs_do_what_they_say, acts_end_as_told)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from arboleda.engine import Entry
 from arboleda.engine.inspection import EMPTY, trouble_in
 from arboleda.model import text
-from arboleda.model.commands import Position
+from arboleda.model.commands import Command, Position, Switch
 from arboleda.model.common_places import with_common_places
 from arboleda.model.grips import Grip
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskState, Verb
@@ -29,12 +31,13 @@ class CellPlaces:
     `at_begin` and `at_end` have those when its last task that is done began and ended; what another cell
     meanwhile did with a hand that both share counts as if it was before. `as_left` has those of the places at
     which that task put or took a part last, and of those where no other cell did; of a rack only what that
-    task put there. `is_doubtful` once nobody could know them any more, `end_is_doubtful` where that was so
-    when that task ended: a device has lied or lost its power, its effector was stuck and nobody reports that,
-    somebody took a hand's part, a hand took one at a station where none was known, or closed where its robot
-    stood at no target, or a place and another target are one to its robot. The next task begins with what is
-    in the books then, unless a hand still holds something. `late_hands` were in the middle of a grip, on an
-    earlier command, as that task began.
+    task put there. What people meanwhile brought or took out does not count there. `is_doubtful` once nobody
+    could know them any more, `end_is_doubtful` where that was so when that task ended: a device has lied or
+    lost its power, its effector was stuck and nobody reports that, somebody took a hand's part, a hand took
+    one at a station where none was known, closed where its robot stood at no target, closed or opened after
+    its robot had set out for elsewhere, or a place and another target are one to its robot. The next task
+    begins with what is in the books then, unless a hand still holds something. `late_hands` were in the
+    middle of a grip, on an earlier command, as that task began.
     """
 
     def __init__(self, cell: Cell, robots: Mapping[str, Any]) -> None:
@@ -44,6 +47,7 @@ class CellPlaces:
         self._left: dict[str, int] = {}  # by this task, since it began
         self._put: set[str] = set()  # the stations at which it has put a part, over all starts
         self._moved_by_others: set[str] = set()
+        self._brought: Counter[str] = Counter()  # by people since it began, less what they took out
         self._began_with = dict(self.parts)
         self.late_hands: frozenset[str] = frozenset()
         self._began_in_grip: frozenset[str] = frozenset()
@@ -75,26 +79,37 @@ class CellPlaces:
             place = self._places[target]
             self.parts[target] = place.holds if place.supply else 0
         self._began_with = dict(self.parts)
-        self._left, self._moved_by_others = {}, set()
+        self._left, self._moved_by_others, self._brought = {}, set(), Counter()
 
     def end(self) -> None:
         """The task is done."""
         self.at_begin, self.at_end = self._began_with, dict(self.parts)
         unseen = self._moved_by_others - self._left.keys()
-        left = self.parts | self._left | {each: int(each in self._put) for each in self._rack}
+        left = self._without_people | self._left | {each: int(each in self._put) for each in self._rack}
         self.as_left = {each: n for each, n in left.items() if each not in unseen}
         self.end_is_doubtful, self.late_hands = self.is_doubtful, self._began_in_grip
 
-    def follow(self, hand: RobotTruth, carrier: RobotTruth | None, *, is_of_others: bool) -> str | None:
-        """Take in what a hand did in this step, also for another cell; the sentence about what cannot be."""
+    @property
+    def _without_people(self) -> dict[str, int]:
+        return {target: parts - self._brought[target] for target, parts in self.parts.items()}
+
+    def follow(
+        self, hand: RobotTruth, carrier: RobotTruth | None, *, is_of_others: bool, is_late: bool
+    ) -> str | None:
+        """Take in what a hand did in this step, also for another cell; the sentence about what cannot be.
+
+        `is_late`: its carrier has set out for elsewhere since it was told to. It may have the part that it
+        was to take, or none, and nobody can see whether it let go before its carrier left.
+        """
         name = hand.robot.name
         before, now = self._held[name], _holds(hand)
         self._held[name] = now
         if now == before:
             return None
         found = [] if carrier is None else self._found(self._hands[name], carrier)
-        if now and not is_of_others and carrier is not None and self._is_on_its_way(name, carrier):
-            self.is_doubtful = True  # it closes late, and may have the part that it was to take, or none
+        closes_late = now and carrier is not None and self._is_on_its_way(name, carrier)
+        if is_late or (closes_late and not is_of_others):
+            self.is_doubtful |= bool(found) or not is_of_others
             return None
         sentence = self._too_early(name, carrier) if now and carrier is not None else None
         if len(found) != 1:
@@ -109,7 +124,7 @@ class CellPlaces:
         if is_of_others:
             self._moved_by_others.add(place.target)
         else:
-            self._left[place.target] = self.parts[place.target]
+            self._left[place.target] = self._without_people[place.target]
         return sentence
 
     def _move(self, place: Place, name: str, moved: int, *, is_of_others: bool) -> str | None:
@@ -165,9 +180,10 @@ class CellPlaces:
         A task that is at work meanwhile has not done that, and began with so many more or less.
         """
         for target, now in parts.items():
-            self._began_with[target] += now - self.parts[target]
+            brought = now - self.parts[target]
+            self._began_with[target] += brought
+            self._brought[target] += brought
             self.parts[target] = now
-            self._left.pop(target, None)
 
     def capacity(self, target: str) -> int:
         """The most parts that a place can have."""
@@ -243,6 +259,8 @@ class PlacesTruth:
         self._released = released
         self._before: dict[str, Grip] = {}  # by the books, before this step
         self._grips: dict[str, Grip] = {}
+        self._told_at: dict[tuple[str, bool], float] = {}  # when a hand was told to close, or to open
+        self._set_out_at: dict[str, float] = {}  # when a robot was set in motion last
         self._seen: tuple[object, int] | None = None  # whose books, and which version of them
         self._cells_of: dict[str, list[CellPlaces]] = {}
         self._brought_to: dict[str, CellPlaces] = {}  # by the robot that brings
@@ -265,6 +283,9 @@ class PlacesTruth:
 
     def follow(self, changed: Iterable[RobotTruth]) -> None:
         """Take in what robots did in this step."""
+        changed = list(changed)
+        moved = [each.robot.name for each in changed if any(act.moves for act in each.acts)]
+        self._set_out_at.update(dict.fromkeys(moved, self._world.now))
         for robot in changed:
             name = robot.robot.name
             if name in self._brought_to:
@@ -274,9 +295,21 @@ class PlacesTruth:
                 if not places.has(name):
                     continue
                 carrier = self._robots.get(places.carrier(name))
-                found = places.follow(robot, carrier, is_of_others=self._is_of_others(name, places.cell))
+                is_of_others = self._is_of_others(name, places.cell)
+                is_late = self._is_late(robot, places.carrier(name))
+                found = places.follow(robot, carrier, is_of_others=is_of_others, is_late=is_late)
                 if found is not None and not places.is_doubtful and not self._released(name):
                     self.wrong.append(found)
+
+    def command(self, command: Command) -> None:
+        """Take in that the plant tells a hand to close or to open."""
+        if isinstance(command, Switch) and command.grips is not None:
+            self._told_at[command.robot, command.grips] = self._world.now
+
+    def _is_late(self, hand: RobotTruth, carrier: str) -> bool:
+        """True where the carrier of a hand has set out since the hand was told to be as it is."""
+        told_at = self._told_at.get((hand.robot.name, _holds(hand)), math.inf)
+        return self._set_out_at.get(carrier, -math.inf) > told_at
 
     def take_refusal(self, entry: Entry) -> None:
         """Take in that a command did not leave, where that was for a place: is it as the plant says?

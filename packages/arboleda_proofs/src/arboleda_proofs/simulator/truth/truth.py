@@ -183,6 +183,7 @@ class Truth(RobotsTruth):
     def _command(self, command: Command) -> None:
         super()._command(command)
         self.grips.command(command, runs=self._may_grip)
+        self.places.command(command)
 
     def _may_grip(self, cell: str) -> bool:
         """True for a cell with a task at work, or that somebody teaches; where nobody knows which it is."""
