@@ -108,6 +108,7 @@ class Desk:
         beliefs = [
             {**vars(belief), "robot": None, "_last_words": (), "repeats": 0}
             | {"stillness": vars(belief.stillness) | {"_robot": None}, "rate": vars(belief.rate)}
+            | {"pauses": vars(belief.pauses)}
             for belief in desk.beliefs.values()
         ]
         entries = [
