@@ -146,7 +146,7 @@ class Plant:
             Interference: self._on_interference,
             Uncontested: self._on_uncontested,
             FaultByHand: self._on_fault_by_hand,
-            ClockSet: self._on_clock_set,
+            ClockSet: partial(_note_clock, news, self.provoked, dispatcher.outbox),
             Shutdown: self._on_shutdown,
             Revision: revisions.take,
             RestartRequest: self._on_restart_request,
@@ -371,13 +371,6 @@ class Plant:
         entry = Journal(verb=None, scope=event.robot, cell=cell, sentence=event.sentence)
         self.dispatcher.outbox.append(entry)
 
-    def _on_clock_set(self, event: ClockSet) -> None:
-        self._news.changes += 1
-        did = CLOCK_AHEAD if event.seconds > 0 else CLOCK_BACK
-        sentence = did(seconds=abs(event.seconds))
-        self.provoked.note(event.at, "", sentence)
-        self.dispatcher.outbox.append(Journal(verb=None, scope="", cell=None, sentence=sentence))
-
     def _on_restart_request(self, event: RestartRequest) -> None:
         by = plain(event.by) or "-"
         self.restart_by = by if event.wanted else ""
@@ -401,3 +394,13 @@ def _requests_last(events: Sequence[Event], now: float) -> list[Event]:
     """
     requests = [replace(each, at=now) for each in events if isinstance(each, Request)]
     return [*(each for each in events if not isinstance(each, Request)), *requests]
+
+
+def _note_clock(
+    news: News, provoked: ProvokedFaults, outbox: list[Command | Notice], event: ClockSet
+) -> None:
+    """Have the journal and the time line say that the wall clock was set."""
+    news.changes += 1
+    sentence = (CLOCK_AHEAD if event.seconds > 0 else CLOCK_BACK)(seconds=abs(event.seconds))
+    provoked.note(event.at, "", sentence)
+    outbox.append(Journal(verb=None, scope="", cell=None, sentence=sentence))

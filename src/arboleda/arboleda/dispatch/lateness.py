@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import dataclass, field
 
 from arboleda.model.sentence import Phrase, Sentence
 
@@ -25,11 +26,11 @@ LATE_ON_THE_WAY = Phrase(
 )
 
 
+@dataclass
 class Pauses:
     """The last long pauses of something that is due all the time: when each ended, and how long it was, s."""
 
-    def __init__(self) -> None:
-        self._long: deque[tuple[float, float]] = deque(maxlen=KEPT)
+    _long: deque[tuple[float, float]] = field(default_factory=lambda: deque(maxlen=KEPT))
 
     def note(self, ended_at: float, seconds: float) -> None:
         """Take in a pause of more than LATE_S."""
