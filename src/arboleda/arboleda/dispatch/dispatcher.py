@@ -276,10 +276,11 @@ class Dispatcher:
             self.outlet.count = number
         self.outlet.stop(report.robot, StopMode.HALT)
 
-    def _with_lateness(self, verdict: CommandVerdict, entry: Entry, belief: Belief) -> CommandVerdict:
+    def _with_lateness(
+        self, verdict: CommandVerdict, failure: Failure, entry: Entry, belief: Belief
+    ) -> CommandVerdict:
         """The verdict; of work that stopped short, and that nobody else cut short, it names what was late."""
-        failure = verdict.failure
-        if failure is None or failure.reason is not Reason.STOPPED_SHORT or entry.interference is not None:
+        if failure.reason is not Reason.STOPPED_SHORT or entry.interference is not None:
             return verdict
         why = short_because(entry, self.beat_pauses, belief.pauses)
         return replace(verdict, failure=replace(failure, sentence=why))
@@ -294,7 +295,9 @@ class Dispatcher:
                 entry.number = report.receipt[:2]
             verdict = evidence.judge(entry, before, belief, report)
             if verdict is not None:
-                self.booking.book(entry, self._with_lateness(verdict, entry, belief), now)
+                if verdict.failure is not None:
+                    verdict = self._with_lateness(verdict, verdict.failure, entry, belief)
+                self.booking.book(entry, verdict, now)
         if self.unnamed.ids.get(name):
             self.unnamed.hear(report)
         if name in self.unfinished.by_device:
