@@ -12,13 +12,15 @@ from arboleda.client import Draft, Plant
 from arboleda.client.answers.plant import Event
 from arboleda.client.answers.rows import Rows
 from arboleda.client.calls import Flow, Following, Route
+from arboleda.host.packages import registered
 from arboleda.web import api, stream
-from arboleda.web.routes import routers
+from arboleda.web.routes import GROUP, routers
 from arboleda.web.schema.answers import model_of
 from arboleda.web.schema.openapi import described_route
 
 SIDE: Any = None  # nothing is asked of it
 PUBLIC: list[APIRouter] = [api.routes(SIDE), *routers(SIDE), stream.routes(SIDE, 1)]
+PUBLIC += [point.load()(SIDE) for point in registered(GROUP)]
 ROUTES = {
     f"{method} {each.path}": each
     for router in PUBLIC

@@ -68,6 +68,7 @@ def test_the_script_of_a_package_asks_its_own_code(tmp_path: Path, monkeypatch: 
         page.goto(address)
         connected(page)
         page.wait_for_selector("#shelf:text('begun')", state="attached")
+        page.wait_for_selector("#answer:text('A script of the package broken does not work: no')")
         show(page, "shelf")
         page.wait_for_selector("#answer:text('taken: a box')")
         assert page.inner_text("[data-live=shelf]").endswith(" cells")

@@ -34,12 +34,19 @@ def test_every_package_that_is_missed_is_one_of_this_repository() -> None:
     assert installed == {name: f"arboleda_{package}" for name, package in OF_PACKAGES.items()}
 
 
-def test_of_two_commands_with_one_name_ours_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_of_two_commands_with_one_name_ours_is_taken_and_the_other_one_named(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     other = {"up": Command("acme.up", "Up."), "lift": Command("acme.lift", "Lift.", "Lifts")}
-    point = SimpleNamespace(load=lambda: other)
-    monkeypatch.setattr(command_table, "entry_points", lambda _group: [point])
+    point = SimpleNamespace(name="acme", load=lambda: other)
+    monkeypatch.setattr(command_table, "registered", lambda _group: [point, point])
     found = command_table.commands.__wrapped__()
     assert (found["up"].module, found["lift"].section) == ("up", "Lifts")
+    said = [
+        f"Arboleda goes on without the command {each} of acme: another command has this name"
+        for each in ("up", "lift")
+    ]
+    assert capsys.readouterr().err.splitlines() == said
 
 
 def test_a_package_that_does_not_load_is_named_and_the_other_commands_are_there(
@@ -49,7 +56,7 @@ def test_a_package_that_does_not_load_is_named_and_the_other_commands_are_there(
         raise ImportError("no module acme")
 
     broken = SimpleNamespace(name="acme", load=load)
-    monkeypatch.setattr(command_table, "entry_points", lambda _group: [broken])
+    monkeypatch.setattr(command_table, "registered", lambda _group: [broken])
     assert command_table.commands.__wrapped__() == command_table.OURS
     assert "acme" in capsys.readouterr().err
 

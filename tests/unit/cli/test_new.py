@@ -125,6 +125,7 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path, capsys: pytest
 def _status(*words: str) -> int:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("sys.argv", ["arboleda", *words])
+        patch.setattr("arboleda.cli.entry.leave", lambda _status: None)  # this process goes on
         with pytest.raises(SystemExit) as ended:
             main()
     return int(ended.value.code or 0)

@@ -23,6 +23,7 @@ from arboleda.dashboard.desk import Desk
 from arboleda.dashboard.feed import Feed
 from arboleda.dashboard.page_part import GROUP
 from arboleda.dashboard.wording import words
+from arboleda.host.pieces import Pieces
 from arboleda.views import view
 from arboleda.web.access.auth import Role
 from arboleda_proofs.testing import shipped
@@ -75,7 +76,7 @@ IN_ORDER = {
     "settings": ["settings"],
 }
 Install = Callable[..., None]
-Told = list[tuple[str, str]]
+Told = list[str]
 
 
 @pytest.fixture
@@ -106,8 +107,7 @@ def now() -> Any:
 
 
 def loaded(told: Told | None = None) -> AddedParts:
-    told = [] if told is None else told
-    return AddedParts(lambda package, error: told.append((package, str(error))))
+    return AddedParts(Pieces(tell=([] if told is None else told).append), page.OWN)
 
 
 def test_the_page_has_five_places_with_their_parts() -> None:
@@ -154,31 +154,50 @@ def test_its_script_asks_its_own_code(put: Install) -> None:
 
 
 @pytest.mark.parametrize(
-    ("code", "why"),
+    ("code", "piece", "why"),
     [
-        ("import no_such_library", "No module named"),
-        ("PAGE = 7", "acme:PAGE is no PagePart"),
-        (CODE.replace("PagePart(\n", 'PagePart(assets=Assets(package="acme"),\n'), "acme"),
-        (CODE.replace("Shelf of {", "{1 / 0}{"), "division by zero"),
-        (CODE.replace('["7", ""]', "1 / 0"), "division by zero"),
-        (CODE.replace('server.add_api_route("/shelf.json", ', "print(1 / 0, "), "division by zero"),
+        ("import no_such_library", "the part of the page", "No module named"),
+        ("PAGE = 7", "the part of the page", "acme:PAGE is no PagePart"),
+        (
+            CODE.replace("PagePart(\n", 'PagePart(assets=Assets(package="acme"),\n'),
+            "the part of the page",
+            "acme",
+        ),
+        (CODE.replace("Shelf of {", "{1 / 0}{"), "the section zones", "division by zero"),
+        (CODE.replace('["7", ""]', "1 / 0"), "the face of the page", "division by zero"),
+        (
+            CODE.replace('server.add_api_route("/shelf.json", ', "print(1 / 0, "),
+            "the addresses of the page",
+            "division by zero",
+        ),
     ],
 )
-def test_a_package_that_breaks_is_left_out_and_named(put: Install, code: str, why: str) -> None:
+def test_a_piece_of_a_package_that_breaks_is_left_out_and_named(
+    put: Install, code: str, piece: str, why: str
+) -> None:
     put(code)
     told: Told = []
     parts = loaded(told)
     parts.serve(FastAPI(), Plant())  # type: ignore[arg-type]
     parts.face(now())
     shown = html(parts)
-    assert [package for package, _ in told] == ["acme"] and why in told[0][1]
-    assert "acme" not in parts.packages and "zones.title" not in parts.acts
-    assert "part-zones" not in shown and ".ended" not in shown and "part-make" in shown
+    (said,) = told
+    assert said.startswith(f"Arboleda goes on without {piece} of acme 1: ") and why in said
+    whole = piece.startswith("the part of")
+    assert ("fetch" in parts.acts) is not whole
+    assert ("part-zones" in shown) is not (whole or "section" in piece)
+    assert (".ended" in shown) is not whole and "part-make" in shown
 
 
 def test_a_package_takes_no_part_of_the_runner(put: Install) -> None:
-    put(CODE.replace('name="zones"', 'name="links"'))
-    assert "Shelf of" not in html(loaded())
+    told: Told = []
+    put(CODE.replace('name="zones"', 'name="links"').replace('"fetch"', '"home"'))
+    parts = loaded(told)
+    assert "Shelf of" not in html(parts) and "home" not in parts.acts
+    assert told == [
+        f"Arboleda goes on without {each} of acme 1: another {what} has this name"
+        for each, what in (("the section links", "section"), ("the act home", "act"))
+    ]
 
 
 def test_a_package_is_loaded_only_when_a_page_is_made(put: Install) -> None:

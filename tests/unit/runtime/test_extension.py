@@ -18,6 +18,7 @@ from arboleda.cli.main import cli
 from arboleda.dashboard import page
 from arboleda.dashboard.added import AddedParts
 from arboleda.dashboard.wording import words
+from arboleda.host.pieces import Pieces
 from arboleda.model.messages import Verb
 from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.parts.local_plant import LocalPlant
@@ -80,7 +81,7 @@ def asked(app: App) -> Any:
 
 
 def left_out(app: App) -> list[str]:
-    return [note for note in app.notes if "left out" in note]
+    return [note for note in app.notes if "goes on without" in note]
 
 
 def test_it_is_short() -> None:
@@ -120,7 +121,7 @@ def test_its_card_is_on_the_page(app: App, language: str, said: str) -> None:
     end_a_task(app)
     plant: Any = app.offers.need(LocalPlant)
     layout, told = view.layout(shipped("sis_a")), list[Any]()
-    parts = AddedParts(lambda *why: told.append(why))
+    parts = AddedParts(Pieces(tell=told.append))
     assert 'data-live="sis_a.ended"' in page.drawn(parts, plant, layout, words(language), None)
     snapshot = {"cells": [{"name": "sis_a", "teaching": None, "state": "idle", "not_ready": None}]}
     now: Any = SimpleNamespace(snapshot=snapshot, links=app.links(), words=words(language))
@@ -156,4 +157,6 @@ def test_where_its_part_breaks_the_plant_goes_on(app: App, monkeypatch: pytest.M
     for id in ("lot", "next"):
         end_a_task(app, id)
         app.plant.loop.turn()
-    assert left_out(app) == ["the package ended is left out of this plant: OSError: the disk is full"]
+    assert left_out(app) == [
+        "Arboleda goes on without the listener keep of arboleda_ended 1: OSError: the disk is full"
+    ]

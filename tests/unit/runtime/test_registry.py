@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Iterator
+from importlib.metadata import EntryPoint
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
@@ -26,7 +28,7 @@ RAISES += "    def start(self): {start}\n    def stop(self): {stop}\n\n\n"
 RAISES += "def make(assembly):\n    {make}\n    yield Part()\n\n\n"
 RAISES += "PARTS = [Factory(phase=Phase.VIEWS, make=make)]\n"
 WRONG = "raise ValueError('the shelf is full')"
-SAID = "the package acme is left out of this plant: ValueError: the shelf is full"
+SAID = "Arboleda goes on without {}: ValueError: the shelf is full"
 
 
 @pytest.fixture
@@ -45,6 +47,10 @@ def built(tmp_path: Path, parts: set[str] | None = None, **options: Any) -> App:
 
 def raising(*, start: str = "pass", stop: str = "pass", make: str = "pass") -> str:
     return RAISES.format(start=start, stop=stop, make=make)
+
+
+def gone_on_without(app: App) -> list[str]:
+    return [note for note in app.notes if "goes on without" in note]
 
 
 def kinds(app: App) -> list[str]:
@@ -85,8 +91,8 @@ def test_a_package_that_breaks_when_it_is_loaded_or_made_is_left_out_and_named(
     put("bolt", COUNTER)
     app = built(tmp_path)
     app.stop()
-    (said,) = (note for note in app.notes if "left out" in note)
-    assert said.startswith("the package acme is left out of this plant: ") and why in said
+    (said,) = gone_on_without(app)
+    assert re.match(r"Arboleda goes on without the (parts|factory make) of acme 1: ", said) and why in said
     assert kinds(app)[-1] == "Counter", "the other package is there"
 
 
@@ -137,7 +143,56 @@ def test_a_listener_of_a_package_that_breaks_is_left_out_once_and_the_plant_goes
     finally:
         app.stop()
     assert len(sys.modules["acme"].TOLD) == 1 and len(heard) > 1
-    assert [note for note in app.notes if "left out" in note] == [SAID]
+    assert gone_on_without(app) == [SAID.format("the listener breaks of acme 1")]
+
+
+LINKS = """
+from arboleda.runtime.registry import Factory, Phase
+
+ASKED = []
+
+
+def breaks():
+    ASKED.append("breaks")
+    raise ValueError("the shelf is full")
+
+
+def make(assembly):
+    assembly.links.add(breaks)
+    for name in TOLD:
+        assembly.links.add(lambda name=name: {name: "acme"})
+    return ()
+
+
+PARTS = [Factory(phase=Phase.LINKS, make=make)]
+"""
+
+
+def test_a_source_of_links_that_breaks_is_left_out_and_the_others_go_on_telling(
+    tmp_path: Path, put: Install
+) -> None:
+    put("acme", f"TOLD = ['shelf']{LINKS}")
+    app = built(tmp_path)
+    app.stop()
+    links = [app.links() for _ in range(3)]
+    assert [each["shelf"] for each in links] == ["acme"] * 3 and links[0]["memory"] is not None
+    assert sys.modules["acme"].ASKED == ["breaks"]
+    assert gone_on_without(app) == [SAID.format("a source of links of acme 1")]
+
+
+@pytest.mark.parametrize("name", ["broker", "ros", "memory", "refused", "shelf"])
+def test_no_source_tells_what_the_runner_or_another_one_does(tmp_path: Path, put: Install, name: str) -> None:
+    put("acme", f"TOLD = ['shelf', '{name}', 'lamp']{LINKS}".replace("add(breaks)", "add(dict)"))
+    app = built(tmp_path)
+    app.stop()
+    told = app.links()
+    assert told[name] != "acme" or name == "shelf"
+    assert told["lamp"] == "acme"
+    said = f"Arboleda goes on without a source of links of acme 1: another source tells {name}"
+    assert gone_on_without(app) == [said]
+
+
+ACME: Any = EntryPoint("acme", "acme:PARTS", "arboleda.parts")
 
 
 class Noted:
@@ -167,7 +222,7 @@ def listed(monkeypatch: pytest.MonkeyPatch) -> Callable[..., PartList]:
             return Factory(phase=phase, make=lambda _: [Noted(part[0], notes, part[1])], **more)
 
         package = factory(Phase.RECORD, "package", broken, is_needed=is_needed)
-        monkeypatch.setattr("arboleda.runtime.part_list.packaged", lambda _: [("acme", package)])
+        monkeypatch.setattr("arboleda.runtime.part_list.packaged", lambda _: [(ACME, package)])
         parts = PartList()
         parts.make(None, [factory(Phase.READY, "last", own), factory(Phase.LINKS, "first", "")])
         return parts
@@ -186,7 +241,7 @@ def test_parts_start_by_their_phases_and_end_in_the_opposite_order_even_if_a_pac
     parts.stop()
     names = ["first", "package", "last"]
     assert notes == [*(f"start {each}" for each in names), *(f"stop {each}" for each in reversed(names))]
-    assert parts.notes == ([SAID] if broken else [])
+    assert parts.notes == ([SAID.format("the part Noted of acme")] if broken else [])
 
 
 def test_a_part_of_the_runner_that_breaks_keeps_the_plant_from_starting(

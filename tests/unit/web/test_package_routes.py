@@ -15,6 +15,7 @@ from tests.packages import PACKAGES, leave_out
 from tests.web_plant import Plant
 
 from arboleda.host.packages import package_of, registered
+from arboleda.host.pieces import Pieces
 from arboleda.web import missing, routes
 from arboleda.web.api import make_app
 from arboleda.web.routes import routers
@@ -34,6 +35,20 @@ def routes(side):
     {more}
     return api
 '''
+TAKES = """
+from fastapi import APIRouter
+
+
+async def mine():
+    return "mine"
+
+
+def routes(side):
+    api = APIRouter()
+    for path in ("/api/ended", "/api/plant", "/api/events", "/login", "/api/ended"):
+        api.add_api_route(path, mine)
+    return api
+"""
 Install = Callable[[str], None]
 
 
@@ -57,8 +72,15 @@ def test_a_route_of_a_package_is_asked_and_described(plant: Plant, put: Install)
 
 
 def test_a_package_takes_no_path_of_the_runner(plant: Plant, put: Install) -> None:
-    put(CODE.replace("/ended", "/plant").format(more=""))
-    assert Caller(make_app(plant)).get("/api/plant").json()["plant"] == "demo"
+    told: list[str] = []
+    put(TAKES)
+    app = make_app(plant, pieces=Pieces(tell=told.append))
+    assert Caller(app).get("/api/plant").json()["plant"] == "demo"
+    assert Caller(app).get("/api/ended").json() == "mine"
+    assert told == [
+        f"Arboleda goes on without the route GET {each} of acme 1: another route has this address"
+        for each in ("/api/plant", "/api/events", "/login", "/api/ended")
+    ]
 
 
 @pytest.mark.parametrize(
@@ -73,9 +95,10 @@ def test_a_package_whose_routes_break_is_left_out_and_named(
     plant: Plant, put: Install, code: str, why: str
 ) -> None:
     put(code)
-    told: list[tuple[str, str]] = []
-    app = make_app(plant, leave_out=lambda package, error: told.append((package, str(error))))
-    assert [package for package, _ in told] == ["acme"] and why in told[0][1]
+    told: list[str] = []
+    app = make_app(plant, pieces=Pieces(tell=told.append))
+    (said,) = told
+    assert said.startswith("Arboleda goes on without the routes of acme 1: ") and why in said
     assert Caller(app).get("/api/plant").status_code == 200
 
 
@@ -126,5 +149,5 @@ def test_every_path_of_a_package_is_known_as_its_own() -> None:
 
 
 def test_no_path_of_the_runner_is_a_package_s(bare: Caller) -> None:
-    mine = [path for each in routers(None)[: len(routes.OWN)] for path in paths(each)]
+    mine = [path for each in routers(None) for path in paths(each)]
     assert not [path for path in mine for known in missing.PATHS.values() if known.fullmatch(path)]

@@ -14,20 +14,18 @@ from typing import Any, NamedTuple
 
 import typer
 
-from arboleda.host.packages import entry_points
-from arboleda.model.outside import quoted
+from arboleda.host.packages import registered
+from arboleda.host.pieces import Pieces, piece_of
+from arboleda.model.errors import ArboledaError
 from arboleda.model.packages import BOARDS, CLASS, DRIVERS, FLEET, MAKE, MISSING, PROOFS, PackageMissing
-from arboleda.model.sentence import Phrase
 from arboleda.model.verbs import Verb
 from arboleda.views.verb_words import ABOUT
 
-from .language import say
+from .language import finding
 from .loading import loading
 
 GROUP = "arboleda.commands"
-LEFT_OUT = Phrase(
-    "cli.left_out", "the commands of the installed package {package} are left out, as it does not load: {why}"
-)
+TAKEN = "another command has this name"
 OF_PACKAGES = {  # extras of `arboleda`, by command
     "apply": MAKE,
     "class": CLASS,
@@ -119,14 +117,22 @@ OURS: Mapping[str, Command] = {
 
 @cache
 def commands() -> Mapping[str, Command]:
-    """The commands of Arboleda and of other packages, by name; of two with one name ours is taken."""
+    """The commands of Arboleda and of other packages, by name; of two with one name the first, ours before
+    all."""
     found: dict[str, Command] = {}
-    for each in entry_points(GROUP):
-        try:
-            found = {**each.load(), **found}
-        except Exception as error:  # noqa: BLE001 - whatever a package does, the other commands are there
-            typer.echo(say(LEFT_OUT(package=each.name, why=quoted(str(error)))), err=True)
+    pieces = Pieces(str, _tell)
+    for each in registered(GROUP):
+        with pieces.calling(piece_of(each, "the commands")):
+            for name, command in each.load().items():
+                if name in OURS or name in found:
+                    pieces.leave_out(piece_of(each, f"the command {name}"), ArboledaError(TAKEN))
+                else:
+                    found[name] = command
     return {**found, **OURS}
+
+
+def _tell(line: str) -> None:
+    typer.echo(finding(line), err=True)
 
 
 class LoadedCommands(Mapping[str, Any]):

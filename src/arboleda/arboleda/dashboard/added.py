@@ -1,17 +1,20 @@
-"""Parts that packages add to the page of one plant; a package that breaks is left out of it."""
+"""Parts that packages add to the page of one plant; a piece that breaks is left out of it."""
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Callable
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from functools import partial
+from importlib.metadata import EntryPoint
 from typing import NamedTuple
 
 from fastapi import FastAPI
 
 from arboleda.host.packages import package_of, registered
-from arboleda.web.access.auth import Role
+from arboleda.host.pieces import Piece, Pieces, piece_of
+from arboleda.model.errors import ArboledaError
+from arboleda.model.verbs import Verb
+from arboleda.web.access.auth import SUBMIT, Role
 from arboleda.web.package_routes import guarded
 
 from .asset_files import Assets
@@ -22,8 +25,8 @@ from .page_api import Layout, PageApi
 from .page_part import GROUP, Act, OtherRecord, PagePart, Place, Section, Spot
 from .wording import Words
 
-LOG = logging.getLogger(__name__)
-LeaveOut = Callable[[str, BaseException], None]  # told of a package that breaks
+SECTION, ACT, RECORD = "section", "act", "record"
+TAKEN = "another {kind} has this name"
 
 
 def installed() -> set[str]:
@@ -32,37 +35,57 @@ def installed() -> set[str]:
 
 
 class LeftOut(Exception):
-    """A package broke while it drew, and is left out now: the page is drawn anew."""
+    """A section broke while it was drawn, and is left out now: the page is drawn anew."""
 
 
 class _Added(NamedTuple):
-    package: str
+    point: EntryPoint
     part: PagePart
 
 
 class AddedParts:
-    """AddedParts: the page parts of all packages, in the order of their names."""
+    """AddedParts: the page parts of all packages, in the order of their names. `own` are the runner's."""
 
-    def __init__(self, leave_out: LeaveOut | None = None) -> None:
-        self._tell = leave_out or _log
+    def __init__(self, pieces: Pieces | None = None, own: Collection[str] = ()) -> None:
+        self._pieces = pieces or Pieces()
+        self._taken = (
+            {(SECTION, each) for each in own} | {(ACT, each.value) for each in Verb} | {(ACT, SUBMIT)}
+        )
         self._parts: list[_Added] = []
-        self._left_out: set[str] = set()
         for point in registered(GROUP):
-            if package_of(point) in self._left_out:
-                continue
-            try:
+            with self._pieces.calling(piece_of(point, "the part of the page")):
                 part = point.load()
                 if not isinstance(part, PagePart):
                     raise TypeError(f"{point.value} is no PagePart")
                 _ = part.assets and part.assets.address  # its files are read
-            except (Exception, SystemExit) as error:  # noqa: BLE001 - whatever a package does, the page is shown
-                self._leave_out(package_of(point), error)
-                continue
-            self._parts.append(_Added(package_of(point), part))
+                self._parts.append(_Added(point, self._free(point, part)))
+
+    def _free(self, point: EntryPoint, part: PagePart) -> PagePart:
+        """The part without what has a name that is taken."""
+        sections = (
+            each
+            for each in part.sections
+            if each.place is not Place.TAB or self._is_free(point, SECTION, each.name)
+        )
+        return replace(
+            part,
+            sections=tuple(sections),
+            acts={word: act for word, act in part.acts.items() if self._is_free(point, ACT, word)},
+            records={name: each for name, each in part.records.items() if self._is_free(point, RECORD, name)},
+        )
+
+    def _is_free(self, point: EntryPoint, kind: str, name: str) -> bool:
+        if (kind, name) in self._taken:
+            taken = ArboledaError(TAKEN.format(kind=kind))
+            self._pieces.leave_out(piece_of(point, f"the {kind} {name}"), taken)
+            return False
+        self._taken.add((kind, name))
+        return True
 
     @property
-    def packages(self) -> list[str]:
-        return [package for package, _ in self._parts]
+    def left_out(self) -> int:
+        """How many pieces are left out by now; with each the page is another one."""
+        return len(self._pieces.notes)
 
     @property
     def assets(self) -> list[Assets]:
@@ -70,54 +93,58 @@ class AddedParts:
 
     @property
     def acts(self) -> dict[str, Act]:
-        """The acts by their words; of two alike the first."""
-        return {word: act for _, part in reversed(self._parts) for word, act in part.acts.items()}
+        """The acts by their words."""
+        return {word: act for _, part in self._parts for word, act in part.acts.items()}
 
     @property
     def records(self) -> dict[str, OtherRecord]:
-        """The records by their names in the page's address; of two alike the first."""
-        return {name: each for _, part in reversed(self._parts) for name, each in part.records.items()}
+        """The records by their names in the page's address."""
+        return {name: each for _, part in self._parts for name, each in part.records.items()}
 
     def serve(self, server: FastAPI, plant: PageApi) -> None:
         """Add the addresses of packages to the server."""
-        for package, part in [*self._parts]:
-            try:
+        for point, part in self._parts:
+            with self._pieces.calling(piece_of(point, "the addresses of the page")):
                 if part.serve is not None:
                     beside = FastAPI(openapi_url=None)
                     part.serve(beside, plant)
-                    server.router.routes += guarded(beside.router.routes, package)
-            except Exception as error:  # noqa: BLE001 - whatever a package does, the page is shown
-                self._leave_out(package, error)
+                    server.router.routes += guarded(beside.router.routes, package_of(point))
 
     def face(self, moment: Moment) -> Face:
         """The changes over time in the sections of packages."""
         found: Face = {}
-        for package, part in [*self._parts]:
-            try:
-                found |= {} if part.face is None else part.face(moment)
-            except Exception as error:  # noqa: BLE001 - whatever a package does, the page goes on
-                self._leave_out(package, error)
+        for point, part in self._parts:
+            piece = piece_of(point, "the face of the page")
+            if part.face is not None and piece in self._pieces:
+                with self._pieces.calling(piece):
+                    found |= part.face(moment)
         return found
 
     def drawing(self, plant: PageApi, layout: Layout, words: Words, role: str | None) -> Drawing:
         """The sections for somebody of this role; None is who needs none."""
-        found = [(package, section) for package, part in self._parts for section in part.sections]
-        seen = [each for each in found if role in (None, Role.OPERATOR.value) or not each[1].for_operators]
-        return Drawing(seen, Spot(plant=plant, layout=layout, words=words), self._leave_out)
+        seen = [
+            each
+            for each in self._sections()
+            if role in (None, Role.OPERATOR.value) or not each[1].for_operators
+        ]
+        return Drawing(seen, Spot(plant=plant, layout=layout, words=words), self._pieces)
 
-    def _leave_out(self, package: str, error: BaseException) -> None:
-        self._left_out.add(package)
-        self._parts = [each for each in self._parts if each.package != package]
-        self._tell(package, error)
+    def _sections(self) -> Iterator[tuple[Piece, Section]]:
+        """The sections that are not left out, each as a piece."""
+        for point, part in self._parts:
+            for section in part.sections:
+                piece = piece_of(point, f"the section {section.name or section.place.name.lower()}")
+                if piece in self._pieces:
+                    yield piece, section
 
 
 class Drawing:
-    """Drawing of the sections of packages, each with its package, on one page; what breaks raises LeftOut."""
+    """Drawing of the sections of packages, each as a piece, on one page; what breaks raises LeftOut."""
 
-    def __init__(self, sections: list[tuple[str, Section]], spot: Spot, leave_out: LeaveOut) -> None:
+    def __init__(self, sections: list[tuple[Piece, Section]], spot: Spot, pieces: Pieces) -> None:
         self._sections = sections
         self._spot = spot
-        self._leave_out = leave_out
+        self._pieces = pieces
 
     @property
     def parts(self) -> Parts:
@@ -132,20 +159,15 @@ class Drawing:
 
     def put(self, place: Place, cell: str = "") -> None:
         """Draw the sections of a place."""
-        for package, section in self._sections:
+        for piece, section in self._sections:
             if section.place is place:
-                self._draw(package, section, replace(self._spot, cell=cell))
+                self._draw(piece, section, replace(self._spot, cell=cell))
 
-    def _draw_part(self, package: str, section: Section, _layout: Layout, _words: Words) -> None:
-        self._draw(package, section, self._spot)
+    def _draw_part(self, piece: Piece, section: Section, _layout: Layout, _words: Words) -> None:
+        self._draw(piece, section, self._spot)
 
-    def _draw(self, package: str, section: Section, spot: Spot) -> None:
-        try:
+    def _draw(self, piece: Piece, section: Section, spot: Spot) -> None:
+        with self._pieces.calling(piece):
             section.build(spot)
-        except Exception as error:
-            self._leave_out(package, error)
-            raise LeftOut from error
-
-
-def _log(package: str, error: BaseException) -> None:
-    LOG.error("the package %s is left out of the page: %r", package, error)
+        if piece not in self._pieces:
+            raise LeftOut

@@ -13,8 +13,8 @@ from typing import Any
 
 from fastapi import FastAPI
 
+from arboleda.host.pieces import Pieces
 from arboleda.web.api import answer_in_sentences
-from arboleda.web.routes import LeaveOut
 
 from .page_api import WAITING, PageApi, Seen
 
@@ -32,9 +32,9 @@ class LatePage:
     is there, in a thread.
     """
 
-    def __init__(self, plant: PageApi, leave_out: LeaveOut | None, made: Callable[[], None]) -> None:
+    def __init__(self, plant: PageApi, pieces: Pieces | None, made: Callable[[], None]) -> None:
         self._plant = plant
-        self._leave_out = leave_out
+        self._pieces = pieces
         self._made = made
         self._seen: deque[Seen] = deque(maxlen=WAITING)
         self._wanted = Future[None]()
@@ -89,6 +89,6 @@ class LatePage:
 
         app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None, redirect_slashes=False)
         answer_in_sentences(app)
-        page.mount(app, self._plant, self._leave_out, lambda: [*self._seen])
+        page.mount(app, self._plant, self._pieces, lambda: [*self._seen])
         self._made()
         return app

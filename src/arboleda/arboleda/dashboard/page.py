@@ -11,10 +11,11 @@ from fastapi import FastAPI, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 
+from arboleda.host.pieces import Pieces
 from arboleda.store.task_rows import TaskQuery
 
 from . import header, links, menu, missing_packages, settings, shell, tasks, timeline, trees
-from .added import AddedParts, LeaveOut, LeftOut
+from .added import AddedParts, LeftOut
 from .asset_files import own
 from .body import WITHIN, Parts, Places, body
 from .desk import Desk
@@ -41,22 +42,22 @@ Most = Annotated[int, Query(ge=1, le=200)]
 def mount(
     server: FastAPI,
     plant: PageApi,
-    leave_out: LeaveOut | None = None,
+    pieces: Pieces | None = None,
     seen: Callable[[], Iterable[Seen]] = tuple,
 ) -> None:
-    """Put the page at `/` of this app; StartError where this process shows a page already. `leave_out` is
-    told of a package that breaks, and is called in the server's event loop, too. `seen` gives what the plant
+    """Put the page at `/` of this app; StartError where this process shows a page already. `pieces`
+    calls what is of packages, in the server's event loop, too. `seen` gives what the plant
     did before."""
-    added = AddedParts(leave_out)
+    added = AddedParts(pieces, OWN)
     feed, show = Feed(plant, added.face, seen), Show(plant)
     stills, turns = Stills(), FrameQueue(BESIDE_S)
     others = {name: LastOther(partial(each.side, plant)) for name, each in added.records.items()}
     shown: dict[tuple[object, ...], tuple[Layout, str]] = {}
 
     def made(layout: Layout, language: str, role: str | None) -> str:
-        """The HTML of the parts, made anew once a version has changed what the plant is, or a package was
-        left out."""
-        of = (language, role, *added.packages)
+        """The HTML of the parts, made anew once a version has changed what the plant is, or a piece of a
+        package was left out."""
+        of = (language, role, added.left_out)
         if of not in shown or shown[of][0] is not layout:
             shown[of] = (layout, drawn(added, plant, layout, words(language), role))
         return shown[of][1]
@@ -102,7 +103,7 @@ def drawn(added: AddedParts, plant: PageApi, layout: Layout, wording: Words, rol
 
 
 def all_parts(added: Parts, role: str | None, put: Put) -> Parts:
-    """The parts in their order; no package takes the place of one of the runner's."""
+    """The parts in their order."""
 
     def last(_layout: Layout, wording: Words) -> None:
         settings.build(wording, role, put)
@@ -111,7 +112,7 @@ def all_parts(added: Parts, role: str | None, put: Put) -> Parts:
     return {
         "cells": partial(trees.build, put=put),
         "tasks": partial(tasks.build, put=put),
-        **{name: build for name, build in added.items() if name not in OWN},
+        **added,
         "events": timeline.build,
         "links": links.build,
         "settings": last,

@@ -108,7 +108,10 @@ def in_page(parts: str) -> bytes:
 def head(wording: Words, *scripts: str, added: Sequence[Assets] = ()) -> str:
     """The page's head: its styles, its scripts, and the few words that these use themselves."""
     loaded = [each.of(each.script) for each in added if each.script]
-    data = json.dumps(script_data(wording) | {"added": loaded}).replace("<", "\\u003c")
+    scripts_of = [each.package for each in added if each.script]
+    data = json.dumps(script_data(wording) | {"added": [*zip(loaded, scripts_of, strict=True)]}).replace(
+        "<", "\\u003c"
+    )
     sheets = [own(f"{name}.css") for name in STYLES]
     sheets += [each.of(f"{name}.css") for each in added for name in each.styles]
     styles = "".join(f'<link rel="stylesheet" href="{sheet}">' for sheet in sheets)

@@ -4,23 +4,59 @@ from __future__ import annotations
 
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+
+LEAST_S = 0.001  # a timer of 0 is off
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Call:
+    at_s: float
+    act: Callable[[], None]
+
+
+_waiting: list[_Call] = []
 
 
 @contextmanager
 def called_after(seconds: float, act: Callable[[], None]) -> Iterator[None]:
     """Time after whose first `seconds` a function is called once, unless it is over by then.
 
-    Only in the main thread, and not on Windows. It takes no thread, as what runs meanwhile may fork.
+    One may be within another. What the function raises is raised from the work. Only in the main thread, and
+    not on Windows. It takes no thread, as what runs meanwhile may fork.
     """
     if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "setitimer"):
         yield
         return
-    before = signal.signal(signal.SIGALRM, lambda *_: act())
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    call = _Call(at_s=time.monotonic() + seconds, act=act)
+    before = signal.signal(signal.SIGALRM, _call)
+    _waiting.append(call)
+    _set()
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
+        if call in _waiting:
+            _waiting.remove(call)
+        _set()
         signal.signal(signal.SIGALRM, before)
+
+
+def _call(*_: object) -> None:
+    """Call what is due, the first first."""
+    try:
+        for each in sorted(_waiting, key=lambda each: each.at_s):
+            if each.at_s <= time.monotonic():
+                _waiting.remove(each)
+                each.act()
+    finally:
+        _set()
+
+
+def _set() -> None:
+    """Set the timer of the process for the first call."""
+    first_s = min((each.at_s for each in _waiting), default=None)
+    left_s = 0.0 if first_s is None else max(first_s - time.monotonic(), LEAST_S)
+    signal.setitimer(signal.ITIMER_REAL, left_s)

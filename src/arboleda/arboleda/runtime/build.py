@@ -103,7 +103,7 @@ class App:
             epoch=self._holdings.lead(began) if self._has_plant else began,
             crash=self._crash,
             end=self.end,
-            leave_out=self._parts.leave_out,
+            pieces=self._parts.pieces,
         )
 
     @property

@@ -2,85 +2,72 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, nullcontext
+from importlib.metadata import EntryPoint
 from typing import NamedTuple
 
-from arboleda.model.errors import StartError
-from arboleda.model.outside import plain
+from arboleda.host.pieces import Piece, Pieces, piece_of
 from arboleda.plant_file.python_uses import error_text
 
 from .parts.part import Part
 from .registry import Assembly, Factory, packaged
 
-LOG = logging.getLogger(__name__)
-LONGEST = 300  # characters of an error of a package
-LEFT_OUT = "the package {package} is left out of this plant: {why}"
-
 
 class _Made(NamedTuple):
     part: Part
-    package: str  # that is left out where the part breaks; "" for one that the plant needs
+    piece: Piece | None  # that is left out where the part breaks; None for one that the plant needs
 
 
 class PartList:
     """PartList: makes, starts and ends parts.
 
     A part of the runner that cannot start keeps the plant from starting, and so does a part of a package that
-    the plant needs. Another package may be for a count or a card on the page: where it breaks, robots work
-    without it, and `notes` say so. A StartError is raised, whoever raises it.
+    the plant needs. Another part of a package may be for a count or a card on the page: where it breaks,
+    robots work without it, and `notes` say so. A StartError is raised, whoever raises it.
     """
 
     def __init__(self) -> None:
-        self.notes: list[str] = []
+        self.pieces = Pieces(error_text)
         self._made: list[_Made] = []
         self._started: list[_Made] = []
-        self._left_out: set[str] = set()
 
     def __iter__(self) -> Iterator[Part]:
         return (each.part for each in self._made)
 
+    @property
+    def notes(self) -> list[str]:
+        """What is left out, and why."""
+        return self.pieces.notes
+
     def make(self, assembly: Assembly, own: Iterable[Factory]) -> None:
         """Make all parts, of the runner's `own` factories and of packages, in the order of their phases."""
-        factories = [*(("", each) for each in own), *packaged(self.leave_out)]
-        for package, factory in sorted(factories, key=lambda each: each[1].phase):
-            if package not in self._left_out:
-                spared = "" if factory.is_needed else package
-                with self._sparing(spared):
-                    self._made += [_Made(part, spared) for part in factory.make(assembly)]
+        factories = [*((None, each) for each in own), *packaged(self.pieces)]
+        for point, factory in sorted(factories, key=lambda each: each[1].phase):
+            spared = None if factory.is_needed else point
+            with self._calling(_piece(spared, "the factory", factory.make)):
+                parts = [*factory.make(assembly)]
+                self._made += [_Made(part, _piece(spared, "the part", type(part))) for part in parts]
 
     def start(self) -> None:
         """Start every part in order."""
         for each in self._made:
             self._started.append(each)
-            with self._sparing(each.package):
+            with self._calling(each.piece):
                 each.part.start()
 
     def stop(self) -> None:
-        """End the parts that were started in the opposite order; idempotent."""
+        """End the parts that were started in the opposite order; idempotent. One of a package that does not
+        end is left."""
         while self._started:
-            part, package = self._started.pop()
-            with self._sparing(package):
+            part, piece = self._started.pop()
+            with nullcontext() if piece is None else self.pieces.ending(piece):
                 part.stop()
 
-    def leave_out(self, package: str, error: BaseException) -> None:
-        """Note once that a package breaks, and make no other part of it."""
-        LOG.debug("the package %s broke", package, exc_info=error)
-        if package in self._left_out:
-            return
-        self._left_out.add(package)
-        self.notes.append(LEFT_OUT.format(package=plain(package), why=plain(error_text(error), LONGEST)))
-        LOG.warning("%s", self.notes[-1])
+    def _calling(self, piece: Piece | None) -> AbstractContextManager[None]:
+        return nullcontext() if piece is None else self.pieces.calling(piece)
 
-    @contextmanager
-    def _sparing(self, package: str) -> Iterator[None]:
-        """Leave a package out that breaks, and go on; an error of the runner itself is raised."""
-        try:
-            yield
-        except StartError:
-            raise
-        except Exception as error:
-            if not package:
-                raise
-            self.leave_out(package, error)
+
+def _piece(point: EntryPoint | None, what: str, named: object) -> Piece | None:
+    name = getattr(named, "__name__", type(named).__name__)
+    return None if point is None else piece_of(point, f"{what} {name}")

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import IntEnum
+from importlib.metadata import EntryPoint
 from typing import Any
 
-from arboleda.host.packages import package_of, registered
+from arboleda.host.packages import registered
+from arboleda.host.pieces import Piece, Pieces, piece_of
+from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda.web.offers import Offers
 
 from .holdings import Holdings
 from .options import Options
 from .parts.part import Crash, Part
+from .parts.plant_log import log_defect
 
 GROUP = "arboleda.parts"
+RUNNER = __name__.partition(".")[0]
+OF_RUNNER = frozenset({"broker", "memory", "refused", "ros"})  # in `Links`: what no package tells
 
 
 class Phase(IntEnum):
@@ -41,8 +48,8 @@ class Factory:
     `make` is called once, in the order of phases, before anything starts. What it needs of the parts before
     it, it asks of the assembly; what is made later, it asks for when it uses it. It makes nothing where that
     is not wanted. A StartError says that the plant must not start. Where `make` or one of its parts raises
-    anything else, the factory's package is left out of the plant, and people are told. Without a factory that
-    `is_needed` the plant does not start.
+    anything else, what it makes or that part is left out of the plant, and people are told. Without a factory
+    that `is_needed` the plant does not start.
     """
 
     phase: Phase
@@ -50,13 +57,26 @@ class Factory:
     is_needed: bool = False
 
 
+Source = Callable[[], Mapping[str, Any]]
+
+
+class NameTaken(ArboledaError):
+    """Another piece has a name that this one wants."""
+
+
 class Links:
-    """State of a plant's links, as `PageApi.links` has it, from reports of its parts; for any thread."""
+    """State of a plant's links, as `PageApi.links` has it, from reports of its parts; for any thread.
+
+    A source that raises is left out, and so is one that tells what another one tells.
+    """
 
     def __init__(self) -> None:
-        self._sources: list[Callable[[], Mapping[str, Any]]] = []
+        self._sources: list[Source] = []
+        self.lost: Callable[[Source, Exception], None] = lambda _, error: log_defect(
+            "a source of links", error
+        )
 
-    def add(self, source: Callable[[], Mapping[str, Any]]) -> None:
+    def add(self, source: Source) -> None:
         """Add what a part reports, which is asked for each time; from any thread."""
         self._sources.append(source)
 
@@ -64,9 +84,26 @@ class Links:
         """Broker, ROS 2, refused messages, standbys, the memory's pace, and the like."""
         state: dict[str, Any] = {"broker": None, "ros": None, "refused": {}, "standbys": []}
         state |= {"demo": False, "memory": None, "faults": []}
-        for each in self._sources:
-            state |= each()
+        told: set[str] = set()
+        for each in [*self._sources]:
+            news = self._told(each, told)
+            told |= news.keys()
+            state |= news
         return state
+
+    def _told(self, source: Source, taken: set[str]) -> Mapping[str, Any]:
+        """What a source tells; nothing where it is left out."""
+        try:
+            news = {**source()}
+            is_ours = _top(source.__module__) == RUNNER
+            if doubled := news.keys() & (taken if is_ours else taken | OF_RUNNER):
+                raise NameTaken(f"another source tells {', '.join(sorted(doubled))}")
+        except Exception as error:  # noqa: BLE001 - record and page go on, whatever a source does
+            with suppress(ValueError):  # another thread was first
+                self._sources.remove(source)
+                self.lost(source, error)
+            return {}
+        return news
 
 
 @dataclass(kw_only=True, eq=False)
@@ -75,7 +112,7 @@ class Assembly(Offers):
 
     `parts` says which ones this process has, `began` is the Unix time of the start, `epoch` its number.
     `crash` ends the plant because a part broke down, `end` because somebody wants it to;
-    `leave_out` is told of a package that breaks. `notes` gives the lines that a person should read about the
+    `pieces` calls what is of packages. `notes` gives the lines that a person should read about the
     start, once everything runs.
     """
 
@@ -87,35 +124,50 @@ class Assembly(Offers):
     epoch: int
     crash: Crash
     end: Callable[[], None]
-    leave_out: Callable[[str, BaseException], None]
+    pieces: Pieces
     links: Links = field(default_factory=Links)
     notes: list[Callable[[], Iterable[str]]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         super().__init__()
+        self.links.lost = self._lose_source
 
     def leave_out_raiser(self, error: Exception) -> bool:
-        """Leave out the package of the listener that raised this; False where it is of none."""
+        """Leave out the listener that raised this; False where it is of no package."""
         called = error.__traceback__ and error.__traceback__.tb_next  # the first is who called the listener
-        module = called.tb_frame.f_globals.get("__name__", "") if called else ""
-        for point in registered(GROUP):
-            if _top(point.module) == _top(module):
-                self.leave_out(package_of(point), error)
-                return True
-        return False
+        if called is None:
+            return False
+        module, name = called.tb_frame.f_globals.get("__name__", ""), called.tb_frame.f_code.co_name
+        piece = _piece_in(module, f"the listener {name}")
+        if piece is not None:
+            self.pieces.leave_out(piece, error)
+        return piece is not None
+
+    def _lose_source(self, source: Source, error: Exception) -> None:
+        """Leave out a source of `links`."""
+        piece = _piece_in(source.__module__, "a source of links")
+        if piece is None:
+            log_defect("a source of links", error)
+        else:
+            self.pieces.leave_out(piece, error)
 
 
-def packaged(leave_out: Callable[[str, BaseException], None]) -> Iterator[tuple[str, Factory]]:
-    """The factories of packages, each with its package; one that cannot be loaded is left out."""
+def packaged(pieces: Pieces) -> list[tuple[EntryPoint, Factory]]:
+    """The factories of packages, each with its entry point; what cannot be loaded is left out."""
+    found: list[tuple[EntryPoint, Factory]] = []
     for point in registered(GROUP):
-        try:
+        with pieces.calling(piece_of(point, "the parts")):
             factories = tuple(point.load())
             if not all(isinstance(each, Factory) for each in factories):
                 raise TypeError(f"{point.value} is no sequence of factories of parts")
-        except (Exception, SystemExit) as error:  # noqa: BLE001 - whatever a package does, the plant runs
-            leave_out(package_of(point), error)
-            continue
-        yield from ((package_of(point), each) for each in factories)
+            found += [(point, each) for each in factories]
+    return found
+
+
+def _piece_in(module: str, what: str) -> Piece | None:
+    """A piece whose code is in this module; None where no package with parts has it."""
+    points = (each for each in registered(GROUP) if _top(each.module) == _top(module))
+    return next((piece_of(each, what) for each in points), None)
 
 
 def _top(module: str) -> str:

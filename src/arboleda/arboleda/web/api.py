@@ -26,6 +26,7 @@ from arboleda.client.answers.plant import Snapshot
 from arboleda.client.answers.tasks import Act, Done, KeptTask, Task
 from arboleda.client.protocol import COMMAND_LINE
 from arboleda.departures.leaving import Unkept
+from arboleda.host.pieces import Pieces
 from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, Refused, TextError
 from arboleda.model.messages import Outcome, Verb
 from arboleda.model.outside import plain, quoted
@@ -40,7 +41,7 @@ from .limits import LATER_S
 from .missing import missing, package_missing
 from .plant_api import PlantApi
 from .request import METRICS, is_api
-from .routes import LeaveOut, installed
+from .routes import installed, packaged
 from .routes import routers as looks
 from .schema import openapi
 from .schema.bodies import AnyVerbArguments, Sentence, TaskFilter, TaskForm, TaskText, VerbArguments
@@ -128,12 +129,12 @@ def make_app(
     *,
     streams: int = limits.STREAMS,
     counts: Callable[[], bytes] | None = None,
-    leave_out: LeaveOut | None = None,
+    pieces: Pieces | None = None,
 ) -> FastAPI:
     """An application with the routes; pages may be mounted on it afterwards. It wants a Guard before it.
 
     At most so many `streams` of changes are open at a time; `counts` is what Prometheus gets, in its format.
-    `leave_out` is told of a package whose routes break.
+    `pieces` calls what is of packages.
     """
     app = openapi.DescribedApp(
         OTHERS,
@@ -146,9 +147,10 @@ def make_app(
         redirect_slashes=False,
     )
     answer_in_sentences(app)
-    routers = [routes(side), *looks(side, leave_out), stream.routes(side, streams)]
+    routers = [routes(side), *looks(side), stream.routes(side, streams)]
     routers += [login.routes(), openapi.routes(app)]
     routers += [_metrics(counts)] if counts is not None else []
+    routers += packaged(side, routers, pieces or Pieces())
     app.serve(routers)
     app.router.routes.append(NotFound([route for router in routers for route in router.routes]))
     return app

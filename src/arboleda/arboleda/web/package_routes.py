@@ -24,6 +24,16 @@ def leaves(routes: Sequence[BaseRoute]) -> tuple[Any, ...]:
     return tuple(routes if contexts is None else contexts(routes))
 
 
+def addresses(routes: Sequence[BaseRoute]) -> set[str]:
+    """Methods and paths of these routes, as `POST /api/orders`."""
+    return {
+        f"{method} {each.path}"
+        for each in leaves(routes)
+        for method in getattr(each, "methods", None) or ("websocket",)
+        if getattr(each, "path", None)
+    }
+
+
 class PackageRoute(BaseRoute):
     """Route of a package, or router that it has included, for those whose role is enough."""
 

@@ -31,26 +31,28 @@ function arrive(there) {
   form.offer(cell);
   task.show(named);
   if (tab === "tasks") history.show();
-  for (const each of added) attempt(() => each.arrive?.(there));
+  for (const [each, name] of added) attempt(name, () => each.arrive?.(there));
   tree.close();
   tree.refit();
 }
 
 // Modules of packages, in the order of their names. They begin after the page itself: a stop does not wait for them.
-const loading = Promise.all(window.arboledaPage.added.map((address) => import(address).catch((error) => (console.error(error), null))));
+const loading = window.arboledaPage.added.map(async ([address, name]) => [await attempt(name, () => import(address)), name]);
 let added = [];
 
 async function add() {
-  added = (await loading).filter(Boolean);
-  for (const each of added) attempt(() => each.start()), attempt(() => each.arrive?.(place.here()));
+  added = (await Promise.all(loading)).filter(([each]) => each);
+  for (const [each, name] of added) attempt(name, () => each.start()), attempt(name, () => each.arrive?.(place.here()));
 }
 
-// A module that breaks keeps none of the others from going on.
-async function attempt(act) {
+// A module that breaks keeps none of the others from going on; people are told which one it is.
+async function attempt(name, act) {
   try {
-    await act();
+    return await act();
   } catch (error) {
     console.error(error);
+    const { script_broke } = window.arboledaPage.words;
+    shell.answer(script_broke.replace("{package}", name).replace("{why}", error.message), false, true);
   }
 }
 

@@ -40,7 +40,7 @@ def web(assembly: Assembly) -> Iterator[Part]:
         None if paged is None else paged.mount,
         connections=descriptors.shares(len(assembly.model.robots)).http,
         counts=metrics.text,
-        leave_out=assembly.leave_out,
+        pieces=assembly.pieces,
     )
     assembly.offer(PageAddress, part)
     assembly.notes.append(lambda: part.notes)

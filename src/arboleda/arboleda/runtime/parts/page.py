@@ -36,7 +36,7 @@ class PagePlant(LocalPlant):
         super().__init__(plant, assembly.holdings.history, assembly)
         self._drawn: PlantModel | None = None
         self._layout: dict[str, Any] = {}
-        self._leave_out = assembly.leave_out
+        self._pieces = assembly.pieces
         self._past_acts = assembly.holdings.past_acts
         is_recorded = assembly.options.recording is not None
         self._recorded_in = assembly.holdings.state.path if is_recorded else None
@@ -48,7 +48,7 @@ class PagePlant(LocalPlant):
 
     def mount(self, app: FastAPI) -> None:
         """Put the page on the server's application."""
-        LatePage(self, self._leave_out, garbage.leave_out_more).mount(app)
+        LatePage(self, self._pieces, garbage.leave_out_more).mount(app)
 
     def layout(self) -> dict[str, Any]:
         if self._drawn is not self.model:

@@ -10,11 +10,11 @@ from urllib.parse import urlencode
 
 from fastapi import FastAPI
 
+from arboleda.host.pieces import Pieces
 from arboleda.web import limits
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import DEFAULT_PORT, is_loopback, names_for
 from arboleda.web.api import make_app
-from arboleda.web.routes import LeaveOut
 from arboleda.web.second_loop import SecondLoop
 from arboleda.web.server import Server
 
@@ -46,7 +46,7 @@ class WebPart:
         *,
         connections: int = limits.CONNECTIONS,
         counts: Callable[[], bytes] | None = None,
-        leave_out: LeaveOut | None = None,
+        pieces: Pieces | None = None,
     ) -> None:
         self.plant = plant
         self._options = options
@@ -55,7 +55,7 @@ class WebPart:
         self._port = 0
         self._shows_page = mount is not None
         streams = limits.lasting(limits.STREAMS, connections)
-        app = make_app(self.plant, streams=streams, counts=counts, leave_out=leave_out)
+        app = make_app(self.plant, streams=streams, counts=counts, pieces=pieces)
         if mount is not None:
             mount(app)
         sockets = limits.lasting(limits.SOCKETS, connections)

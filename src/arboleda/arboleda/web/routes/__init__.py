@@ -7,27 +7,26 @@ asks for what the package's parts offer. `access.needs` has who may ask for its 
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Sequence
 from importlib import import_module
 
 from fastapi import APIRouter
 
 from arboleda.host.packages import package_of, registered
+from arboleda.host.pieces import Pieces, piece_of
+from arboleda.model.errors import ArboledaError
 
-from ..package_routes import guarded
+from ..package_routes import PackageRoute, addresses
 from ..plant_api import PlantApi
 
-LOG = logging.getLogger(__name__)
 GROUP = "arboleda.routes"
 OWN = ("assistants", "promises", "recipes")
-LeaveOut = Callable[[str, BaseException], None]  # told of a package that breaks
+TAKEN = "another route has this address"
 
 
-def routers(side: PlantApi, leave_out: LeaveOut | None = None) -> list[APIRouter]:
-    """The routers of the runner, and of packages after them: no package takes a path of the runner's."""
-    own = [import_module(f"{__name__}.{name}").routes(side) for name in OWN]
-    return [*own, *_packaged(side, leave_out or _log)]
+def routers(side: PlantApi) -> list[APIRouter]:
+    """The routers of the runner's own modules here."""
+    return [import_module(f"{__name__}.{name}").routes(side) for name in OWN]
 
 
 def installed() -> set[str]:
@@ -35,19 +34,21 @@ def installed() -> set[str]:
     return {package_of(each) for each in registered(GROUP)}
 
 
-def _packaged(side: PlantApi, leave_out: LeaveOut) -> Iterator[APIRouter]:
+def packaged(side: PlantApi, before: Sequence[APIRouter], pieces: Pieces) -> list[APIRouter]:
+    """The routers of packages, without a route that `before` or another package has."""
+    taken = {each for router in before for each in addresses(router.routes)}
+    found: list[APIRouter] = []
     for point in registered(GROUP):
-        try:
+        with pieces.calling(piece_of(point, "the routes")):
             router = point.load()(side)
             if not isinstance(router, APIRouter):
                 raise TypeError(f"{point.value} makes no APIRouter")
-        except (Exception, SystemExit) as error:  # noqa: BLE001 - whatever a package does, the plant is served
-            leave_out(package_of(point), error)
-            continue
-        beside = APIRouter()
-        beside.routes += guarded(router.routes, package_of(point))
-        yield beside
-
-
-def _log(package: str, error: BaseException) -> None:
-    LOG.error("the routes of the package %s are left out: %r", package, error)
+            found.append(APIRouter())
+            for route in router.routes:
+                mine = addresses([route])
+                if doubled := mine & taken:
+                    pieces.leave_out(piece_of(point, f"the route {min(doubled)}"), ArboledaError(TAKEN))
+                    continue
+                taken |= mine
+                found[-1].routes.append(PackageRoute(route, package_of(point)))
+    return found

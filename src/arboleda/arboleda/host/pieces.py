@@ -1,0 +1,110 @@
+"""Pieces of installed packages: each call of one is named where it takes long, and left out where it breaks.
+
+Every call of a package goes through `Pieces`, so one that breaks takes nothing with it but that piece.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from importlib.metadata import EntryPoint
+
+from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.outside import plain
+
+from .packages import package_of
+from .timer import called_after
+
+LOG = logging.getLogger(__name__)
+LONGEST = 300  # characters of an error of a package
+SLOW_S, ENDS_S = 5.0, 3.0
+LEFT_OUT = "Arboleda goes on without {piece}: {why}"
+SLOW = "Arboleda has waited for {piece} for more than {seconds:g} s"
+HANGS = "it does not end within {seconds:g} s"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Piece:
+    """Piece of an installed package.
+
+    `what` names it, as `the part Counter`; `of` the distribution that brings it, with its version; `package`
+    is the name under which it registers what it adds.
+    """
+
+    what: str
+    of: str
+    package: str
+
+    def __str__(self) -> str:
+        return plain(f"{self.what} of {self.of}", LONGEST)
+
+
+class Hangs(BaseException):
+    """A piece does not end; raised in the middle of its work, which has no handler for it."""
+
+
+def piece_of(point: EntryPoint, what: str) -> Piece:
+    """A piece that comes by this entry point."""
+    of = getattr(point, "dist", None)
+    named = package_of(point) if of is None else f"{of.name} {of.version}"
+    return Piece(what=what, of=named, package=package_of(point))
+
+
+def short(error: BaseException) -> str:
+    """An error in a few words."""
+    return str(error) if isinstance(error, ArboledaError) else f"{type(error).__name__}: {error}"
+
+
+class Pieces:
+    """Pieces: calls those of one process; `notes` has a line for each that is left out."""
+
+    def __init__(
+        self,
+        text_of: Callable[[BaseException], str] = short,
+        tell: Callable[[str], None] | None = None,
+    ) -> None:
+        self.notes: list[str] = []
+        self._text_of = text_of
+        self._tell = tell or partial(LOG.warning, "%s")
+        self._left_out: set[Piece] = set()
+
+    def __contains__(self, piece: Piece) -> bool:
+        """True unless the piece is left out."""
+        return piece not in self._left_out
+
+    @contextmanager
+    def calling(self, piece: Piece) -> Iterator[None]:
+        """Time in which a piece is called: named after SLOW_S, and left out if it breaks.
+
+        A StartError is raised: the plant must not start.
+        """
+        try:
+            with called_after(SLOW_S, partial(self._tell, SLOW.format(piece=piece, seconds=SLOW_S))):
+                yield
+        except StartError:
+            raise
+        except (Exception, SystemExit, Hangs) as error:  # noqa: BLE001 - whatever a package does, the rest goes on
+            self.leave_out(piece, error)
+
+    @contextmanager
+    def ending(self, piece: Piece) -> Iterator[None]:
+        """Time in which a piece ends: left out after ENDS_S."""
+        with self.calling(piece), called_after(ENDS_S, _give_up):
+            yield
+
+    def leave_out(self, piece: Piece, error: BaseException) -> None:
+        """Note once that a piece is left out."""
+        LOG.debug("%s broke", piece, exc_info=error)
+        if piece in self._left_out:
+            return
+        self._left_out.add(piece)
+        why = str(error) if isinstance(error, Hangs) else self._text_of(error)
+        self.notes.append(LEFT_OUT.format(piece=piece, why=plain(why, LONGEST)))
+        self._tell(self.notes[-1])
+
+
+def _give_up() -> None:
+    raise Hangs(HANGS.format(seconds=ENDS_S))
