@@ -63,7 +63,8 @@ WRITING = {"from_above.py", "badge.py", "junit.py", "page.py", "pytest_file.py",
 HELPING = {"command.py"}  # in words of cli.yaml
 VERBATIM = re.compile(
     r"bold \w+|pylabrobot loop|echo:|(sec|def) arboleda_|state: \{|"
-    r"object at 0x|from arboleda|\(\?P<file>|import sys|\^|cell\.\w+\(|becomes\(|def \{\}\(|timeout_s \{\},"
+    r"object at 0x|from arboleda|\(\?P<file>|import sys|\^|cell\.\w+\(|becomes\(|def \{\}\(|timeout_s \{\},|"
+    r"<(Timeout|Metadata) "
 )
 OF_LOG = re.compile("%[sd]")
 OF_OTHERS = {  # by which errors of PyYAML are known

@@ -79,10 +79,16 @@ def attempt(cell):
 
 
 def warned(folder: Path, body: str, decorator: str = '"try"') -> list[str]:
+    """What is wrong; `advised` has what to write."""
     found = advance_check.warnings(written(folder, body, decorator))
     where = f"{folder / 'recipes.py'}:4:1: lab: try "
     assert all(each.startswith(where) for each in found)
-    return [each.removeprefix(where) for each in found]
+    return [each.removeprefix(where).partition("; write ")[0] for each in found]
+
+
+def advised(folder: Path, body: str, decorator: str = '"try"') -> list[str]:
+    found = advance_check.warnings(written(folder, body, decorator))
+    return [each.partition("; write ")[2] for each in found]
 
 
 @pytest.mark.sampled(7)
@@ -229,7 +235,8 @@ def test_an_arm_that_cells_share_does_not_silence_it(tmp_path: Path, body: str, 
         file.write(LOOKS)
     (tmp_path / "plant.yaml").write_text(SHARED, "utf-8")
     where = f"{tmp_path / 'recipes.py'}:4:1: lab: try "
-    assert advance_check.warnings(load(tmp_path / "plant.yaml")) == tuple(where + each for each in wrong)
+    shared = advance_check.warnings(load(tmp_path / "plant.yaml"))
+    assert [each.partition("; write ")[0] for each in shared] == [where + each for each in wrong]
 
 
 PROBE = """
@@ -339,3 +346,27 @@ def attempt(cell, path=Path(), station=Slot("stations")):
     (tmp_path / "recipes.py").write_text(code, "utf-8")
     (tmp_path / "plant.yaml").write_text(STORAGE, "utf-8")
     assert advance_check.warnings(load(tmp_path / "plant.yaml")) == ()
+
+
+ADVICE = {
+    "a need": (f"{INTO}, reader.open(), seen, {OUT}", "reader.close() before"),
+    "a door": (f'reader.close(), take("rack"), put("drawer"), {OUT}', ""),
+    "a robot in the way": (
+        'take("rack"), reader.open(), loader.visit("drawer", jaw.open(), reader.close()), ' + OUT,
+        "loader.home() before",
+    ),
+    "a part left": ('take("rack"), loader.home()', 'ends_with={"jaw.gripped": True} if that is meant'),
+    "a part more": (f"{INTO}, loader.home()", 'ends_with={"drawer": 1} if that is meant'),
+    "two ends": (f"seen, {WAYS % ('reader.close()', 'reader.open()')}", "reader.close() on each way"),
+    "a retry": ("cell.retry(reader.open(), times=1000)", "cell.timeout(step, seconds) around it"),
+}
+
+
+@pytest.mark.parametrize(("body", "advice"), ADVICE.values(), ids=ADVICE)
+def test_a_warning_ends_with_what_to_write_in_python(tmp_path: Path, body: str, advice: str) -> None:
+    assert advice in advised(tmp_path, body)
+
+
+def test_what_an_advice_says_can_be_written(tmp_path: Path) -> None:
+    decorator = '"try", ends_with={"drawer": 1}'
+    assert warned(tmp_path, f"{INTO}, loader.home()", decorator) == []

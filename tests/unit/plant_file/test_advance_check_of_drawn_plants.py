@@ -23,7 +23,9 @@ def found(drawn: DrawnDevices, form: Form, *, plainly: bool = True) -> tuple[lis
     A tree that is written `plainly` has no conditions but those of the recipe.
     """
     plant = loaded(replace(drawn, form=form, spelling=None if plainly else drawn.spelling)).model
-    sentences = dict.fromkeys(each.split(": ", 1)[1] for each in advance_check.warnings(plant))
+    sentences = dict.fromkeys(
+        each.split(": ", 1)[1].partition("; write ")[0] for each in advance_check.warnings(plant)
+    )
     return list(sentences), list(advance_check.ends(plant))
 
 

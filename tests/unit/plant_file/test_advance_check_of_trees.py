@@ -52,10 +52,31 @@ def written(folder: Path, body: str, more: str = "") -> PlantModel:
 
 
 def warned(folder: Path, body: str, more: str = "") -> list[str]:
+    """What is wrong; `advised` has what to write."""
     return [
-        each.removeprefix(f"{folder / 'attempt.xml'}:")
+        each.removeprefix(f"{folder / 'attempt.xml'}:").partition("; write ")[0]
         for each in advance_check.warnings(written(folder, body, more))
     ]
+
+
+def advised(folder: Path, body: str, more: str = "") -> list[str]:
+    return [each.partition("; write ")[2] for each in advance_check.warnings(written(folder, body, more))]
+
+
+ADVICE = {
+    "a need": (INTO + OPEN + READ + OUT, "<reader_close/> before"),
+    "a part left": (take("rack") + HOME, '<Metadata ends_with="jaw.gripped: true"/> if that is meant'),
+    "a part more": (INTO + HOME, '<Metadata ends_with="drawer: 1"/> if that is meant'),
+    "a retry": (
+        f"<RetryUntilSuccessful num_attempts='1000'>{OPEN}</RetryUntilSuccessful>" + CLOSE,
+        '<Timeout msec="60000"> around it',
+    ),
+}
+
+
+@pytest.mark.parametrize(("body", "advice"), ADVICE.values(), ids=ADVICE)
+def test_a_warning_ends_with_what_to_write_in_a_tree(tmp_path: Path, body: str, advice: str) -> None:
+    assert advice in advised(tmp_path, body)
 
 
 @pytest.mark.sampled(4)

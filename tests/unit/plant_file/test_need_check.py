@@ -31,7 +31,7 @@ cells:
 """
 TREE = '<root BTCPP_format="4"><BehaviorTree ID="Turn"><mill_turn/></BehaviorTree></root>'
 OWN = ", needs: {door: open}"
-SILENT = "of oven, and oven reports no facts (evidence: state); it is always refused"
+SILENT = "of oven, and oven reports no facts (evidence: state); it is always refused; write another evidence"
 
 
 @pytest.mark.parametrize(

@@ -83,7 +83,8 @@ def test_nothing_is_wrong_with_a_plant_that_says_all(tmp_path: Path) -> None:
         (
             ("right: {kind: arm, model: scara, base: {origin_m: [0.6, 0], yaw_deg: 45}}",
              "right: {kind: arm, model: scara, base: {origin_m: [0.5, 0], yaw_deg: 45}}"),
-            "lab: nest is one place, and left and right go 100 mm apart",
+            "lab: nest is one place, and left and right go 100 mm apart; correct a target, or "
+            "write base: {origin_m: [x, y]}",
         ),
     ],
 )  # fmt: skip

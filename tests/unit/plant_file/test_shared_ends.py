@@ -33,7 +33,7 @@ def do(cell):
     return BODY
 """
 GIVES = "a: do gives stand back with a part in it, and fails there; "
-HOLDS = f"{GIVES}let go of it before, as by stand lock on=false"
+HOLDS = f"{GIVES}write stand.lock(on=False) before"
 
 
 def checked(folder: Path, body: str, ends: str = "{}") -> tuple[list[str], list[str]]:

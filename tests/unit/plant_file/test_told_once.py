@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader, plant_check
-from arboleda.plant_file.problems import told_once
+from arboleda.plant_file.problems import counted, told_once
 
 PLANT = """
 name: lights
@@ -65,3 +65,39 @@ def test_what_a_file_has_in_place_of_a_cells_name_is_taken_as_it_is_written() ->
     names: list[Any] = ["a[", 1, ".*"]
     sentences = ("a[: it is dark", "1: it is dark", "hall: it is light")
     assert told_once(sentences, names) == sentences
+
+
+PRESSES = """
+name: presses
+uses: [recipes.py]
+kinds:
+  press:
+    facts: {door: [open, shut]}
+    verbs:
+      open: {effect: motion, sets: {door: open}}
+      shut: {effect: motion, sets: {door: shut}}
+      press: {effect: process, needs: {door: shut}}
+cells:
+  a: {devices: {press: {kind: press, name: press_a}}}
+  b: {devices: {press: {kind: press, name: press_b}}}
+  c: {devices: {press: {kind: press, name: press_c}}}
+"""
+
+
+def test_one_mistake_in_three_cells_whose_devices_have_other_names_is_one_line_with_a_count(
+    tmp_path: Path,
+) -> None:
+    body = "press = cell.device('press')\n    return work(press.open(), press.press())"
+    file = plant(tmp_path, body)
+    (tmp_path / "recipes.py").write_text(HEAD.replace("import recipe", "import recipe, work") + body)
+    file.write_text(PRESSES)
+    (found,) = plant_check.warnings(loader.load(file))
+    assert found.removeprefix(f"{tmp_path}/") == (
+        "recipes.py:3:1: a, b, c: shine has press_a press, which needs door of press_a to be shut, "
+        "where it is open; write press.shut() before (3 times)"
+    )
+
+
+def test_devices_of_other_roles_are_no_one_mistake() -> None:
+    roles = {"a": {"left": "one"}, "b": {"right": "other"}}
+    assert counted(("a: left is wet", "b: right is wet"), roles) == ("a: left is wet", "b: right is wet")

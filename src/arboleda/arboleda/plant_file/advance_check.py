@@ -23,6 +23,7 @@ from arboleda.recipes.decorators import Again, AtMost
 
 from .foresight import OVER, Foresight, Scene
 from .node_rules import RULES as NODE_RULES
+from .notation import Notation
 from .recipe_check import orders
 from .recipe_ends import certain_ends, of_ends
 from .scene_variables import first_values
@@ -32,6 +33,8 @@ from .walkthrough import Rule, Walkthrough
 
 MOST_TRIES, LONGEST_S = 100, 3600.0  # of a retry, and the time of its pauses
 ENDLESS = "tries {step} again {how_often}; a task that cannot be done never ends so"
+AROUND = "; write {limit} around it"
+IN_PYTHON, IN_XML = "cell.timeout(step, seconds)", '<Timeout msec="60000">'
 LIMITS = (AtMost, TimedDecorator, Reactive, Parallel, ParallelAll, WhileDoElse)
 RULES: Mapping[type[Behaviour], Rule] = {**STEP_RULES, **NODE_RULES}
 
@@ -74,7 +77,7 @@ class CellCheck:
             ends: list[Scene] = []
             wanted: list[dict[str, Value]] = []
             for order in orders(self.cell, recipe):
-                ends += self._followed(recipe.build(order, self.context))[1]
+                ends += self._followed(recipe.build(order, self.context), self._notation(recipe))[1]
                 wanted.append(recipe.end_of(order.values))
             same = {
                 what: value
@@ -84,9 +87,9 @@ class CellCheck:
             sure = ", ".join(certain_ends(self.cell, same, ends) if ends else ()) or "nothing that is certain"
             yield f"{self.cell.name}: {recipe.name} ends with {sure}"
 
-    def _followed(self, tree: Behaviour) -> tuple[Walkthrough, tuple[Scene, ...]]:
+    def _followed(self, tree: Behaviour, notation: Notation) -> tuple[Walkthrough, tuple[Scene, ...]]:
         """The walkthrough of a recipe's tree, and the scenes at the ends of all paths."""
-        walk = Walkthrough(foresight=Foresight(self.cell, self._back()), rules=RULES)
+        walk = Walkthrough(foresight=Foresight(self.cell, self._back(), notation), rules=RULES)
         begin = walk.foresight.begin().put(first_values(tree))
         return walk, walk.follow(tree.children[0], [begin]).passed
 
@@ -103,10 +106,11 @@ class CellCheck:
         tree = recipe.build(order, self.context)
         for place, sentence in _endless(tree):
             self._say(recipe, [sentence], place)
-        walk, ends = self._followed(tree)
+        notation = self._notation(recipe)
+        walk, ends = self._followed(tree, notation)
         for place, sentence in walk.findings:
             self._say(recipe, [sentence], place)
-        self._say(recipe, of_ends(self.cell, recipe.end_of(order.values), ends))
+        self._say(recipe, of_ends(notation, recipe.end_of(order.values), ends))
         for space in (each for each in self.cell.spaces if each.robot.joints):
             over = {end.get(space.robot.name, OVER) for end in ends}
             if len(over) == 1 and None not in over:
@@ -121,7 +125,12 @@ class CellCheck:
             others = [name for name, target in waits.items() if target == START]
             here = waits.get(recipe.name, START)
             if others and here != START and robot not in self.cell.shared:
-                yield f"ends with {robot} at {here}; {others[0]} ends with it at {START}"
+                home = self._notation(recipe).home(robot)
+                unlike = f"ends with {robot} at {here}; {others[0]} ends with it at {START}"
+                yield unlike + f"; write {home} at its end"
+
+    def _notation(self, recipe: Recipe) -> Notation:
+        return Notation(cell=self.cell, is_tree=isinstance(recipe, TreeRecipe))
 
     def _say(self, recipe: Recipe, sentences: Iterable[str], place: str | None = None) -> None:
         where = f"{place or _place(recipe)}: {self.cell.name}: {recipe.name}"
@@ -152,12 +161,19 @@ def _endless(tree: Behaviour) -> Iterator[tuple[str | None, str]]:
         if isinstance(node, Again) and not _is_limited(node):
             if node.times > MOST_TRIES or node.times * node.pause_s > LONGEST_S:
                 how_often = f"{node.times:,} times, {node.pause_s:g} s apart"
-                yield None, ENDLESS.format(step=node.decorated.name, how_often=how_often)
+                yield (
+                    None,
+                    ENDLESS.format(step=node.decorated.name, how_often=how_often)
+                    + AROUND.format(limit=IN_PYTHON),
+                )
         elif isinstance(node, Loop) and node.goes_on is Result.FAILURE and not _is_limited(node):
             times = _written_rounds(node)
             if times is not None and (times < 0 or times > MOST_TRIES):
                 how_often = f"{times:,} times" if times > 0 else "without end"
-                yield str(node.place), ENDLESS.format(step=node.child.name, how_often=how_often)
+                yield (
+                    str(node.place),
+                    ENDLESS.format(step=node.child.name, how_often=how_often) + AROUND.format(limit=IN_XML),
+                )
 
 
 def _written_rounds(loop: Loop) -> int | None:

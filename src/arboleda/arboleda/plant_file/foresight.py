@@ -8,9 +8,10 @@ from functools import cached_property
 
 from arboleda.model.commands import Command, Motion, Switch
 from arboleda.model.facts import Value, shown
-from arboleda.model.plant_model import Cell, Interlock, Place, Pose, Robot, Workspace
+from arboleda.model.plant_model import Cell, Interlock, Place, Pose, Workspace
 
 from .declared_kinds import verbs_of
+from .notation import Notation, before
 
 HELD, TAKEN, AT, OVER, HAD = "=held", "=taken", "=at", "=over", "=had"
 CHANGE, LEAST, MOST = "=change", "=least", "=most"
@@ -52,12 +53,14 @@ def common(scenes: Sequence[Scene]) -> tuple[Scene, ...]:
 class Foresight:
     """Foresight of one cell: the objections to a command in a scene, and the scene after the command.
 
-    `back` has by robot the target to which a recovery brings a part, where the recipe names one.
+    `back` has by robot the target to which a recovery brings a part, where the recipe names one. `notation`
+    is that of the recipe, in which an objection says what to write.
     """
 
-    def __init__(self, cell: Cell, back: Mapping[str, str]) -> None:
+    def __init__(self, cell: Cell, back: Mapping[str, str], notation: Notation) -> None:
         self.cell = cell
         self.back = back
+        self.notation = notation
         self.places = {place.target: place for place in cell.places}
         self._free = [each for each in cell.interlocks if each.free_while and each.device not in cell.shared]
 
@@ -182,7 +185,8 @@ class Foresight:
             current = scene.get(name, fact)
             if current is not None and current != value and name not in self.cell.shared:
                 needed, is_so = f"{fact} of {name} to be {shown(value)}", shown(current)
-                yield f"has {command.robot} {command.word}, which needs {needed}, where it is {is_so}"
+                unmet = f"has {command.robot} {command.word}, which needs {needed}, where it is {is_so}"
+                yield unmet + before(self.notation.sets(name, fact, value))
 
     def _by_hand(self, command: Switch, scene: Scene) -> Iterator[str]:
         hand, here = command.robot, self._here(command.robot, scene)
@@ -218,7 +222,9 @@ class Foresight:
         here = self.places.get(str(scene.get(robot, AT)))
         holding = space.hand.name, None if here is None else here.device
         if here is not None and all(name is not None and scene.get(name, HELD) for name in holding):
-            yield f"has {robot} leave {here.target} with a part that {here.device} still holds"
+            held = f"has {robot} leave {here.target} with a part that {here.device} still holds"
+            device = next(each for each in self.cell.robots if each.name == here.device)
+            yield held + before(self.notation.lets_go(device))
         goal = self._goal(command)
         for is_so, value in self._locked(robot, goal, scene):
             yield f"has {robot} go to {goal} where {is_so}; it has to be {value}"
@@ -245,7 +251,8 @@ class Foresight:
             if lock.is_ended_by(command):
                 for name, pose in self._standing(scene):
                     if lock.zone in pose.zones and name != command.robot:
-                        yield f"has {command.robot} {command.word} while {name} stands at {pose.name}"
+                        stands = f"has {command.robot} {command.word} while {name} stands at {pose.name}"
+                        yield stands + before(self.notation.home(name))
                 yield from self._shut_out(command, lock.zone, scene)
 
     def _shut_out(self, command: Command, zone: str, scene: Scene) -> Iterator[str]:
@@ -262,24 +269,15 @@ class Foresight:
                 yield space.robot.name, space.targets[str(at)]
 
 
-def still_holding(cell: Cell, devices: Collection[str], scene: Scene) -> list[str]:
+def still_holding(foresight: Foresight, devices: Collection[str], scene: Scene) -> list[str]:
     """An objection to each of these shared devices that holds a part when it is given back."""
-    named = (each for each in cell.robots if each.name in devices)
+    named = (each for each in foresight.cell.robots if each.name in devices)
     return [
-        f"gives {each.name} back with a part in it, and fails there; let go of it before{_as_by(each)}"
+        f"gives {each.name} back with a part in it, and fails there"
+        + before(foresight.notation.lets_go(each))
         for each in named
         if scene.get(each.name, HELD) is True
     ]
-
-
-def _as_by(device: Robot) -> str:
-    """The verb with which a device lets go of a part, with its values, as words behind an advice."""
-    verb = next((each for each in verbs_of(device).values() if each.lets_go()), None)
-    if verb is None:
-        return ""
-    values = [f"{name}={shown(value)}" for name, value in verb.letting_go().items()]
-    command = " ".join([device.name, verb.name, *values])
-    return f", as by {command}"
 
 
 def _guarding_facts(lock: Interlock, scene: Scene) -> Iterator[tuple[str, str]]:

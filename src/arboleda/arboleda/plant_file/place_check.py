@@ -17,6 +17,7 @@ from .declared_kinds import verbs_of
 from .urdf import drawn_arm, robot_urdf
 from .yaml_flow import flow
 
+BASE = f"base: {flow({'origin_m': ['x', 'y']})}"
 APART_M = 0.030  # so far apart two tools may be at one place; a part is hardly smaller
 
 
@@ -126,7 +127,8 @@ def _split(plant: PlantModel, cell: Cell) -> Iterator[str]:
                 apart = math.dist(*at)
                 if apart > APART_M and one.base != other.base:
                     names, mm = f"{one.name} and {other.name}", f"{apart * 1000:.0f} mm"
-                    yield f"{cell.name}: {place.target} is one place, and {names} go {mm} apart"
+                    split = f"{cell.name}: {place.target} is one place, and {names} go {mm} apart"
+                    yield f"{split}; correct a target, or write {BASE}"
 
 
 def _tool(plant: PlantModel, arm: Arm, target: Pose) -> Sequence[float]:

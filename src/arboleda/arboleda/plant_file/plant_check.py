@@ -17,13 +17,16 @@ from . import (
     place_check,
 )
 from .declared_kinds import verbs_of
-from .problems import told_once
+from .problems import counted
+
+OTHERWISE = "; write another evidence"
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
     """The warnings of all checks; a warning that several cells share is one sentence that names them all."""
     sentences = [sentence for check in CHECKS for sentence in check(plant)]
-    return told_once(sentences, [cell.name for cell in plant.cells])
+    roles = {cell.name: {device.name: role for role, device in cell.members} for cell in plant.cells}
+    return counted(sentences, roles)
 
 
 def unmet_needs(plant: PlantModel) -> tuple[str, ...]:
@@ -53,7 +56,7 @@ def _unmet(cell: Cell) -> Iterator[str]:
     for device, word, other, fact in (*own, *of_others):
         if other in silent:
             why = f"{other} reports no facts (evidence: state)"
-            yield f"{device} {word} needs {fact} of {other}, and {why}; it is always refused"
+            yield f"{device} {word} needs {fact} of {other}, and {why}; it is always refused" + OTHERWISE
 
 
 CHECKS: tuple[Callable[[PlantModel], tuple[str, ...]], ...] = (

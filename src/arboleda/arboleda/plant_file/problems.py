@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from arboleda.model.errors import ConfigError
 
@@ -54,11 +54,33 @@ class Problems:
 
 def told_once(sentences: Iterable[str], cells: Collection[str]) -> tuple[str, ...]:
     """The sentences. Of sentences that differ in their cell alone, the first, with the names of all cells."""
-    alike: dict[tuple[str, str], dict[str, str]] = {}  # by the text around the cell's name: sentences by cell
+    return tuple(map(_of_cells, _alike(sentences, {cell: {} for cell in cells})))
+
+
+def counted(sentences: Iterable[str], roles: Mapping[str, Mapping[str, str]]) -> tuple[str, ...]:
+    """The sentences. Those that differ in their cell alone, and in devices of one role, are told once.
+
+    `roles` are those of the devices of each cell, by name. The first sentence says how many there are.
+    """
+    return tuple(
+        f"{_of_cells(each)} ({len(each)} times)" if len(each) > 1 else _of_cells(each)
+        for each in _alike(sentences, roles)
+    )
+
+
+def _alike(sentences: Iterable[str], roles: Mapping[str, Mapping[str, str]]) -> Iterable[Mapping[str, str]]:
+    """The sentences by cell, those together that are alike once each device has the name of its role."""
+    alike: dict[tuple[str, str], dict[str, str]] = {}  # by the text around the cell's name
     for sentence in sentences:
-        before, cell, behind = _at_cell(sentence, cells)
-        alike.setdefault((before, behind), {}).setdefault(cell, sentence)
-    return tuple(_of_cells(list(each), next(iter(each.values()))) for each in alike.values())
+        before, cell, behind = _at_cell(sentence, roles)
+        alike.setdefault((before, _in_roles(behind, roles.get(cell, {}))), {}).setdefault(cell, sentence)
+    return alike.values()
+
+
+def _in_roles(text: str, roles: Mapping[str, str]) -> str:
+    """The text with the role of each device in place of its name."""
+    names = "|".join(map(re.escape, roles))
+    return re.sub(rf"\b({names})\b", lambda match: f"{{{roles[match[0]]}}}", text) if names else text
 
 
 def _at_cell(sentence: str, cells: Collection[str]) -> tuple[str, str, str]:
@@ -74,8 +96,9 @@ def _at_cell(sentence: str, cells: Collection[str]) -> tuple[str, str, str]:
     return f"{place}{text[: match.start()]}", match[0], text[match.end() :]
 
 
-def _of_cells(cells: Sequence[str], sentence: str) -> str:
-    """The sentence, which is about the first of these cells, with the names of all cells before it."""
+def _of_cells(by_cell: Mapping[str, str]) -> str:
+    """The sentence of the first of these cells, with the names of all cells before it."""
+    cells, sentence = list(by_cell), next(iter(by_cell.values()))
     place, text = _placed(sentence)
     return sentence if len(cells) == 1 else f"{place}{', '.join(cells)}: {text.removeprefix(f'{cells[0]}: ')}"
 

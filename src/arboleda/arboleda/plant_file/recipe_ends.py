@@ -8,15 +8,16 @@ from arboleda.model.facts import Value, shown
 from arboleda.model.plant_model import Cell
 
 from .foresight import CHANGE, HAD, HELD, LEAST, MOST, OVER, Scene, SceneKey
+from .notation import Notation
 
 
-def of_ends(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> Iterator[str]:
+def of_ends(notation: Notation, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> Iterator[str]:
     """Sentences on ends of paths that nobody wants, and on differences between them."""
     for end in ends:
-        yield from _held(cell, wanted, end)
-        yield from _changed_places(cell, wanted, end)
-        yield from _otherwise(cell, wanted, end)
-    yield from _unlike(cell, wanted, ends)
+        yield from _held(notation, wanted, end)
+        yield from _changed_places(notation, wanted, end)
+        yield from _otherwise(notation, wanted, end)
+    yield from _unlike(notation, wanted, ends)
 
 
 def certain_ends(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> Iterator[str]:
@@ -55,28 +56,33 @@ def _parts(change: int) -> str:
     return f"{abs(change)} {'more' if change > 0 else 'fewer'}"
 
 
-def _held(cell: Cell, wanted: Mapping[str, Value], end: Scene) -> Iterator[str]:
-    for role, device in cell.members:
-        if end.get(device.name, HELD) is True and f"{role}.{device.held_fact}" not in wanted:
-            yield f"ends with a part that {device.name} still holds"
+def _held(notation: Notation, wanted: Mapping[str, Value], end: Scene) -> Iterator[str]:
+    for role, device in notation.cell.members:
+        fact = f"{role}.{device.held_fact}"
+        if end.get(device.name, HELD) is True and fact not in wanted:
+            yield f"ends with a part that {device.name} still holds" + notation.states(fact, True)
 
 
-def _changed_places(cell: Cell, wanted: Mapping[str, Value], end: Scene) -> Iterator[str]:
-    for place in cell.places:
-        change = int(end.get(place.target, CHANGE) or 0)
+def _changed_places(notation: Notation, wanted: Mapping[str, Value], end: Scene) -> Iterator[str]:
+    for place in notation.cell.places:
+        change, least = (int(end.get(place.target, what) or 0) for what in (CHANGE, LEAST))
         if place.device is not None and not place.by_people and place.target not in wanted and change:
-            yield f"ends with {_parts(change)} at {place.target} of {place.device} than it began with"
+            more = f"ends with {_parts(change)} at {place.target} of {place.device} than it began with"
+            yield more + notation.states(place.target, change - least)
 
 
-def _otherwise(cell: Cell, wanted: Mapping[str, Value], end: Scene) -> Iterator[str]:
+def _otherwise(notation: Notation, wanted: Mapping[str, Value], end: Scene) -> Iterator[str]:
+    cell = notation.cell
     for what, value in wanted.items():
         role, dot, fact = what.partition(".")
         if dot:
             actual = end.get(cell.roles[role].name, fact)
             if actual not in (None, value):
-                yield f"ends with {what} {shown(actual)}, and says that it ends with {shown(value)}"
+                says = f"ends with {what} {shown(actual)}, and says that it ends with {shown(value)}"
+                yield says + notation.states(what, actual)
         elif (number := _unlike_number(cell, what, int(value), end)) is not None:
-            yield f"ends with {what} {number}, and says that it ends with {shown(value)}"
+            says = f"ends with {what} {number}, and says that it ends with {shown(value)}"
+            yield says + (notation.states(what, int(number)) if number.isdecimal() else "")
 
 
 def _unlike_number(cell: Cell, target: str, wanted: int, end: Scene) -> str | None:
@@ -94,8 +100,9 @@ def _unlike_number(cell: Cell, target: str, wanted: int, end: Scene) -> str | No
     return f"at least {fewest + change}" if wanted < fewest + change else f"at most {largest + change}"
 
 
-def _unlike(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> Iterator[str]:
+def _unlike(notation: Notation, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> Iterator[str]:
     """The facts that guard something, and the targets of robots, that differ between the ends."""
+    cell = notation.cell
     guards = {(each.other, each.fact) for each in cell.needs}
     guards |= {(each.device, fact) for each in cell.interlocks for fact, _ in each.free_while}
     guards |= {(space.robot.name, OVER) for space in cell.spaces if space.returns}
@@ -105,5 +112,8 @@ def _unlike(cell: Cell, wanted: Mapping[str, Value], ends: Sequence[Scene]) -> I
     for name, fact in sorted(guards - named):
         values_at_ends = {end.get(name, fact) for end in ends}
         if len(values_at_ends) > 1 and None not in values_at_ends and name not in cell.shared:
-            values = " and ".join(sorted(shown(value) for value in values_at_ends if value is not None))
-            yield f"ends with {name} {'at' if fact == OVER else fact} {values}, by which way it goes"
+            values = sorted((value for value in values_at_ends if value is not None), key=shown)
+            step = notation.home(name) if fact == OVER else notation.sets(name, fact, values[0])
+            advice = f"; write {step} on each way" if step else ""
+            what = "at" if fact == OVER else fact
+            yield f"ends with {name} {what} {' and '.join(map(shown, values))}, by which way it goes" + advice

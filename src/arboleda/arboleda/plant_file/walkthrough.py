@@ -105,7 +105,7 @@ class Walkthrough:
         """The outcome of giving back shared devices, which fails where one of them holds a part."""
         empty = []
         for scene in scenes:
-            held = still_holding(self.foresight.cell, devices, scene)
+            held = still_holding(self.foresight, devices, scene)
             self.findings |= {(self.place, sentence): None for sentence in held}
             empty += [] if held else [scene]
         return Outcome(done=tuple(empty), failed=tuple(scenes))
