@@ -73,7 +73,11 @@ OF_OTHERS = {  # by which errors of PyYAML are known
     "unexpected end of stream",
     "did not find expected",
 }
-OF_CALLS = {"has not succeeded", "is not there", "was refused"}  # behind the name of a call, as by its server
+OF_CALLS = {  # behind the name of a call, as by its server, and of Python
+    *("has not succeeded", "is not there", "was refused"),
+    r"got an unexpected keyword argument '(\w+)'",
+    r"missing \d+ required (?:positional|keyword-only) arguments?: (.+)",
+}
 TO_DEVICES = {  # and in examples of a plant file
     "brake release",
     "close popup",

@@ -20,6 +20,7 @@ from arboleda.recipes.errors import misspelled
 from .document import Document
 from .lost_steps import LostSteps
 from .robot_kind import RobotKind
+from .wrong_call import wrong_call
 
 LONGEST = 500  # characters of a path, or of an error's text
 KindInPython = WrittenKind | RobotKind
@@ -91,6 +92,8 @@ def error_text(error: BaseException) -> str:
     if isinstance(error, ArboledaError):
         return str(error)
     if isinstance(error, AttributeError) and (sentence := misspelled(error)) is not None:
+        return sentence
+    if isinstance(error, TypeError) and (sentence := wrong_call(error)) is not None:
         return sentence
     if isinstance(error, RecursionError):
         return "it calls itself without an end"

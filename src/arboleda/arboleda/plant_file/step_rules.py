@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
 from math import prod
+from typing import cast
 
 from py_trees import composites
 from py_trees.behaviour import Behaviour
@@ -72,7 +73,7 @@ def _await(walk: Walkthrough, node: Await, scenes: Sequence[Scene]) -> Outcome:
     title = title_of(node)
     if title.key != steps.LEAVE_DEVICES.key:
         return _leaf(walk, node, scenes)
-    return walk.given_back(dict(title.values)["devices"], scenes)
+    return walk.given_back(cast("tuple[str, ...]", title.values["devices"]), scenes)
 
 
 def _take_devices(walk: Walkthrough, node: TakeDevices, scenes: Sequence[Scene]) -> Outcome:

@@ -310,6 +310,8 @@ class Kit(Offers):
         cell does not share are always its own.
         """
         names = [roles] if isinstance(roles, str) else roles
+        if not is_list(names) or not all(isinstance(name, str) for name in names):
+            raise RecipeError(f'using is given {quoted(str(roles))}; it takes roles, as using("lift", ...)')
         cell = self._context.cell
         shared = cell.together({self._named(role).name for role in names}.intersection(cell.shared))
         return using(self._context, shared, flat(parts, "using")) if shared else work(*parts)
