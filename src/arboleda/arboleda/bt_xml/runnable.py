@@ -81,11 +81,18 @@ def check_in_cell(forest: Forest, cell: str, kinds: Mapping[str, Kind]) -> None:
 
 
 def check_devices(forest: Forest, cell: str, kinds: Mapping[str, Kind]) -> None:
-    """Raises NoDeviceError if a cell with leaves of these kinds has no device for a node."""
+    """Raises NoDeviceError if a cell with leaves of these kinds has no device for a node.
+
+    The error has one place for each kind of such nodes.
+    """
+    absent: dict[str, NoDeviceError] = {}
     for tree in forest.trees.values():
         for node in tree.root.iterate():
             if not node.is_subtree and nodes.built_in(node.kind) is None and node.kind not in kinds:
-                raise NoDeviceError(_nobody(node, cell, kinds), node.place)
+                absent.setdefault(node.kind, NoDeviceError(_nobody(node, cell, kinds), node.place))
+    if absent:
+        first, *others = absent.values()
+        raise NoDeviceError(str(first), first.place, others)
 
 
 def _nobody(node: Node, cell: str, kinds: Mapping[str, Kind]) -> str:

@@ -141,7 +141,7 @@ class RecipeTrial:
         """
         spot = self.used.spot(recipe)
         if not named and (empty := _without_value(cell, recipe)):
-            self._miss(cell, recipe, empty, spot.problem(empty))
+            self._miss(cell, recipe, empty, [spot.problem(empty)])
             return False
         if not self.is_sound and _without_value(cell, recipe):
             return True
@@ -158,11 +158,13 @@ class RecipeTrial:
             except RoleError as error:
                 if isinstance(error, NoDeviceError) and not self.used.is_whole:
                     return True
-                problem = self.used.where(error, spot).problem(f"{recipe.name}: {error}")
+                others = error.others if isinstance(error, NoDeviceError) else ()
+                tree_problems = [
+                    self.used.where(each, spot).problem(f"{recipe.name}: {each}") for each in (error, *others)
+                ]
                 if number == 0 and not named:
-                    self._miss(cell, recipe, str(error), problem)
+                    self._miss(cell, recipe, str(error), tree_problems)
                     return False
-                tree_problems = (problem,)
             problems |= dict.fromkeys(tree_problems)
         self._keep(list(problems))
         return True
@@ -207,8 +209,8 @@ class RecipeTrial:
     def _spot(self, made: Made) -> SourceSpot:
         return SourceSpot(file=self.used.files.get(made.file, made.file), line=made.line)
 
-    def _miss(self, cell: Cell, recipe: Recipe, why: str, problem: str) -> None:
-        self.misfits.setdefault(recipe.name, []).append(problem)
+    def _miss(self, cell: Cell, recipe: Recipe, why: str, problems: Sequence[str]) -> None:
+        self.misfits.setdefault(recipe.name, []).extend(problems)
         self.missed.setdefault(cell.name, {})[recipe.name] = why
 
     def _keep(self, problems: Sequence[str]) -> None:

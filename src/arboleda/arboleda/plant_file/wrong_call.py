@@ -36,13 +36,15 @@ def wrong_call(error: TypeError) -> str | None:
 def _called(owner: str | None, name: str) -> Callable[..., Any] | None:
     """The function that a recipe, kind or driver calls by this name."""
     if owner is None:
-        return next((vars(each)[name] for each in (recipes, kinds, drivers) if name in each.__all__), None)
+        rooms: tuple[Any, ...] = (recipes, kinds, drivers)
+        return next((getattr(room, name) for room in rooms if name in room.__all__), None)
     owners = [kind for kind in _offers(Offers) if kind.__name__ == owner]
     return getattr(owners[0], name, None) if owners else None
 
 
-def _offers(kind: type) -> Iterator[type]:
-    for each in kind.__subclasses__():
+def _offers(kind: type[Offers]) -> Iterator[type[Offers]]:
+    below: list[type[Offers]] = kind.__subclasses__()
+    for each in below:
         yield each
         yield from _offers(each)
 

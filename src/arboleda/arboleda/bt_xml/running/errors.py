@@ -17,11 +17,12 @@ class TreeError(RecipeError):
 
 
 class NoDeviceError(RoleError):
-    """Error: no device of the cell makes a node."""
+    """Error: no device of the cell makes a node; `others` are the errors of other nodes of the tree."""
 
-    def __init__(self, sentence: str, place: Place) -> None:
+    def __init__(self, sentence: str, place: Place, others: Sequence[NoDeviceError] = ()) -> None:
         super().__init__(sentence)
         self.place = place
+        self.others = tuple(others)
 
 
 class TreeMistakes(RecipeError):
