@@ -11,11 +11,17 @@ from arboleda.cli.client import PlantClient
 from arboleda.model.messages import Verb
 
 from ..patience import PATIENCE_MS
-from .page import connected, running, until
+from .page import connected, operate, running, until
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright"), pytest.mark.timeout(300)]
 
 SIZES = [{"width": 1366, "height": 768}, {"width": 390, "height": 844}]
+DARK = """() => {
+  const ink = getComputedStyle(document.body).color;
+  const dark = (button) => button.checkVisibility() && getComputedStyle(button).backgroundColor === ink;
+  const buttons = [...document.querySelectorAll("[data-cell=sis_a] button")];
+  return buttons.filter(dark).map((button) => button.textContent);
+}"""
 BUTTON = '[data-rows="ready.sis_a"] button'
 
 
@@ -37,6 +43,10 @@ def test_two_presses_lead_from_a_stop_to_work_and_a_stop_ends_what_is_under_way(
     connected(page)
     client.operate(Verb.STOP, "sis_a")
     task = client.submit("sis_a 0B 7")["id"]
+    page.wait_for_selector(BUTTON)
+    page.click("[data-cell=sis_a] .more > summary")
+    page.wait_for_selector('[data-rows="ways.sis_a"] button')
+    assert page.evaluate(DARK) == ["Make ready again"]
     page.click(BUTTON)
     page.wait_for_selector("dialog:has-text('sets ra1, rm_sis_a in motion')")
     page.click("#stop")
@@ -55,3 +65,35 @@ def test_two_presses_lead_from_a_stop_to_work_and_a_stop_ends_what_is_under_way(
     assert client.operate(Verb.STOP, "sis_b")["outcome"] == "sent"
     page.click('[data-rows="for_all"] button')
     page.wait_for_selector("#answer:has-text('Whole plant: ready again.')")
+
+
+REDRAWN = """selector => {
+  const drawn = document.querySelector(selector).closest("span");
+  drawn.replaceWith(drawn.cloneNode(true));
+}"""
+
+
+def test_the_keyboard_is_after_an_answer_where_it_was_before_the_question(
+    browser: Any, plant: tuple[str, PlantClient]
+) -> None:
+    address, client = plant
+    page = browser.new_context(viewport=SIZES[0], locale="en").new_page()
+    page.set_default_timeout(PATIENCE_MS)
+    page.goto(address)
+    connected(page)
+    client.operate(Verb.STOP, "sis_a")
+    client.submit("sis_a 0B 7")
+    page.wait_for_selector('[data-live="sis_a.state"][data-s=aborted]')
+    operate(page, "sis_a")
+    page.focus(".verb[data-verb=clear] button")
+    page.keyboard.press("Enter")
+    page.wait_for_selector(".verb[data-verb=clear] button:disabled")
+    assert page.evaluate("document.getElementById('menu').contains(document.activeElement)")
+    page.click("#menu-close")
+    page.focus(BUTTON)
+    page.keyboard.press("Enter")
+    page.wait_for_selector("dialog:has-text('sets ra1, rm_sis_a in motion')")
+    page.evaluate(REDRAWN, BUTTON)
+    page.keyboard.press("Enter")  # on "No"
+    page.wait_for_selector("dialog", state="detached")
+    assert page.evaluate("selector => document.activeElement.matches(selector)", BUTTON)

@@ -70,6 +70,18 @@ def opened(playground: str, browser: Any) -> Iterator[Open]:
     assert not troubles
 
 
+REACHED = """() => {
+  const code = [...document.querySelectorAll("#book-text pre")];
+  const wide = code.filter((each) => each.scrollWidth > each.clientWidth);
+  return wide.length > 0 && code.every((each) => wide.includes(each) === (each.tabIndex === 0));
+}"""
+
+
+def test_code_that_is_wider_than_its_box_is_reached_by_keys(opened: Open) -> None:
+    page = opened("lesson=11_first_recipe", viewport={"width": 390, "height": 844})
+    page.wait_for_function(REACHED)
+
+
 def write(page: Any, text: str) -> None:
     page.evaluate("text => arboledaWork.write(text)", text)
 

@@ -63,15 +63,22 @@ export function drawList(list) {
 }
 
 export function keepingFocus(change) {
-  const focused = document.activeElement;
-  const list = focused?.closest("[data-rows]");
+  const back = wayBack();
   change();
-  const next = focused?.isConnected ? focused : list && nearest(list);
-  next?.focus({ preventScroll: true });
+  back();
 }
 
-// Where a button was pressed and has gone, the keyboard is at what is offered now in its place, else at its card.
-const nearest = (list) => list.querySelector("button:enabled") ?? list.closest("article")?.querySelector("[data-choose]");
+// The way back to what has the focus now. Where that was pressed and has gone, the keyboard is at what is offered now
+// in its row or its list, else at its card, or in the header at what opens the menu.
+export function wayBack() {
+  const focused = document.activeElement;
+  const [row, list, around] = ["[data-row]", "[data-rows]", "article, .top"].map((each) => focused?.closest(each));
+  const offered = () => [row, list].map((each) => each?.isConnected && each.querySelector("button:enabled")).find(Boolean);
+  return () => {
+    const next = focused?.isConnected && !focused.disabled ? focused : list && (offered() || around?.querySelector("[data-choose], [data-menu]"));
+    next?.focus({ preventScroll: true });
+  };
+}
 
 // Only what has changed is drawn anew: a button that somebody is pressing must not go away under the finger.
 function drawRow(list, id, row, columns) {

@@ -1,6 +1,8 @@
 // A question to the person before something is done. It must never keep anybody from the stop: showModal() would take
 // the header's stop away from mouse, touch and keyboard, so the rest of the page is made inert here, and the stop is not.
 
+import { wayBack } from "./live.js";
+
 const words = window.arboledaPage.words;
 const setAside = () => document.querySelectorAll("#parts, #node, #menu, .top > :not(.stop, #connection, #answer)");
 let dismissOpen = () => {};
@@ -14,7 +16,7 @@ export function start() {
 
 export function confirmed(question) {
   dismiss();
-  const before = document.activeElement;
+  const back = wayBack();
   const dialog = drawn(question);
   const [no, yes] = dialog.querySelectorAll("button");
   setAside().forEach((part) => (part.inert = true));
@@ -26,7 +28,7 @@ export function confirmed(question) {
       dismissOpen = () => {};
       dialog.remove();
       setAside().forEach((part) => (part.inert = false));
-      before?.focus?.();
+      back();
       resolve(answer);
     };
     dismissOpen = () => close(false);

@@ -33,7 +33,10 @@ function suggest() {
     const why = refused[verb.dataset.verb];
     const says = verb.querySelector("[data-does]");
     verb.classList.toggle("suggested", words.includes(verb.dataset.verb));
-    verb.querySelector(".act").disabled = why !== undefined;
+    const act = verb.querySelector(".act");
+    const held = why !== undefined && act === document.activeElement;
+    act.disabled = why !== undefined;
+    if (held) document.getElementById("menu").focus({ preventScroll: true }); // not at another verb, which Enter would do
     says.textContent = why ?? says.dataset.does;
   }
 }

@@ -27,6 +27,11 @@ let hints = 0;
 let pending = 0;
 window.arboledaPython = { ask: (what, request) => ask(what, request) };
 
+// What is wider than its box is scrolled by keys, too.
+const wide = new ResizeObserver((seen) => {
+  for (const { target } of seen) target.scrollWidth > target.clientWidth ? (target.tabIndex = 0) : target.removeAttribute("tabindex");
+});
+
 function page() {
   document.documentElement.lang = language;
   for (const each of document.querySelectorAll("[data-word]")) each.textContent = say(each.dataset.word);
@@ -68,6 +73,8 @@ async function open() {
   book = await json(`${chosen.kind}-${chosen.name}`);
   at("book-title").textContent = document.title = book.title[language];
   at("book-text").innerHTML = book.text[language]; // made with the site, of its own pages
+  for (const each of at("book-text").querySelectorAll("pre")) wide.observe(each);
+  wide.observe(at("book-output"));
   if (book.note) at("book-text").prepend(made("p", say(book.note), "book-note"));
   const kept = keep.read();
   files = { ...book.files, ...kept.files };
@@ -272,7 +279,7 @@ async function judge() {
   for (const { says, seen, story } of verdict.findings) {
     const lines = seen.split("\n").map((line) => made("p", `${say("not_so")} ${line}`, "is-bad"));
     at("book-said").append(made("p", `${say("to")} ${says[language] ?? says.en}`), ...lines);
-    if (story.length) at("book-said").append(made("pre", story.join("\n")));
+    if (story.length) wide.observe(at("book-said").appendChild(made("pre", story.join("\n"))));
   }
   if (!verdict.film) return;
   const play = made("button", say("play"), "act");
