@@ -40,6 +40,7 @@ LEFT_TO_THE_PAGE = {
     *(path for path in ROUTES if "/api/teach/" in path),
     "POST /api/make/drawn/check",
     "POST /api/make/drawn/edit",
+    "POST /api/make/objections",
     "POST /api/make/remove",
     "POST /api/make/runs/reach",
 }

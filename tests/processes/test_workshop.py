@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from queue import SimpleQueue
+from types import SimpleNamespace
 from typing import Any, TypeAlias
 
 import pytest
@@ -15,6 +16,7 @@ import pytest
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda_make.drafts.api import DraftRefused
+from arboleda_make.trying.bench import MakeBench
 from arboleda_make.trying.workshop import ENDING, Workshop
 
 Processes: TypeAlias = "SimpleQueue[subprocess.Popen[bytes]]"
@@ -62,6 +64,23 @@ def test_a_draft_that_cannot_be_read_is_shown_as_it_was_with_its_problems(worksh
     assert [each["name"] for each in found["cells"]] == ["cell"]
     assert any(each.startswith("plant.yaml:") and "persn" in each for each in found["problems"])
     assert workshop.cells(BASE, BASE)["problems"] == []
+
+
+def test_what_check_finds_in_a_device_is_said_at_its_place_and_nothing_of_others(tmp_path: Path) -> None:
+    desk: Any = SimpleNamespace(files=(BASE, changed("plant.yaml", b"kind: person", b"kind: persn")))
+    folder: Any = SimpleNamespace(file=OWN_TREE)
+    bench = MakeBench(folder, tmp_path, desk, ())
+    verb = {"effect": "switch", "sets": {"down": True}}
+    kind = {"facts": {"up": "bool"}, "verbs": {"raise": verb}}
+    lift = {"cell": "cell", "role": "Lift", "kind": "lift", "declared": kind}
+    try:
+        rows = bench.objections({**lift, "driver": "", "settings": {}, "keys": {}})
+    finally:
+        bench.stop()
+    found = {row["place"]: row["sentence"] for row in rows}
+    device, raises = "cells.cell.devices.Lift", "kinds.lift.verbs.raise"
+    assert found.keys() == {device, raises, f"{raises}.sets"}
+    assert found[raises] == f'{raises}: the name "raise" is a word of Python; give a verb another one'
 
 
 @pytest.fixture

@@ -56,6 +56,8 @@ REST = '<root BTCPP_format="4"><BehaviorTree ID="Rest"><loader_home/></BehaviorT
 TAKES = '<loader_visit target="feed"><jaw_close width_mm="30" force_n="20"/></loader_visit>'
 LAPTOP = {"viewport": {"width": 1366, "height": 900}, "locale": "en"}
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "locale": "es"}
+RED = "rgb(179, 36, 28)"
+COLOUR = "selector => getComputedStyle(document.querySelector(selector)).color"
 PANELS = ("draft", "cells", "try", "prove", "device")
 PANEL_NAMES = ("Changes", "Cells and recipes", "Try", "Prove", "Devices", "Proposals")
 LONG_MS = 4 * PATIENCE_MS  # of what takes another process
@@ -325,6 +327,42 @@ def test_an_offer_that_is_pressed_just_as_the_draft_changes_counts(
     me.go()
 
 
+def test_a_device_that_the_draft_is_wrong_about_is_marked_and_its_form_refuses_what_check_does(
+    browser: Any, address: str
+) -> None:
+    ana = {"editor": "ana-12345", "name": "Ana"}
+    wrong = {"effect": "switch", "sets": {"lit": True}}
+    post = httpx.Client(base_url=address, timeout=PATIENCE_S).post
+    post("/api/draft/take", json=ana).raise_for_status()
+    step = {"editor": "ana-12345", "place": ["kinds", "lamp", "verbs", "raise"], "value": wrong}
+    post("/api/draft/set", json=step).raise_for_status()
+    step |= {"place": ["cells", "cell", "devices", "lift"], "value": {"kind": "lamp"}}
+    post("/api/draft/set", json=step).raise_for_status()
+    me = Person(browser, address, "draw", **LAPTOP)
+    me.sees("#draw-who", "Ana edits the draft since")
+    me.press("#draw [data-make=take]")
+    me.sees("#draw-who", "You edit the draft.")
+    me.part("make")
+    me.panel("cells")
+    for role in ("lamp", "lift"):
+        me.page.wait_for_selector(f"[data-mark=mistake] [data-remove-device={role}]", timeout=LONG_MS)
+    assert me.page.evaluate(COLOUR, ".make-lines [data-mark=mistake] strong") == RED
+    me.press("[data-remove-device=lift]")
+    me.page.wait_for_selector("[data-remove-device=lift]", state="detached")
+    me.press("[data-change-device=lamp]")
+    me.write("#make-verbs .make-form >> nth=2 >> [data-key=verb]", "lift")
+    me.write("#make-verbs .make-form >> nth=0 >> [data-key=verb]", "raise")
+    me.press("[data-make=add_device]")
+    me.sees("#make-verbs .make-wrong", 'the name "raise" is a word of Python')
+    me.page.wait_for_function("document.activeElement.value === 'raise'")
+    me.write("#make-verbs .make-form >> nth=0 >> [data-key=verb]", "shine")
+    me.press("[data-make=add_device]")
+    me.sees("#make-note", "lamp is changed in the draft")
+    me.panel("draft")
+    me.sees("#make-problems", "Nothing to object to")
+    me.go()
+
+
 def test_a_device_is_changed_and_taken_away_and_a_cell_made_and_the_form_says_what_is_wrong(
     browser: Any, address: str
 ) -> None:
@@ -335,9 +373,10 @@ def test_a_device_is_changed_and_taken_away_and_a_cell_made_and_the_form_says_wh
     me.write(f"{shine}[data-key=with]", "on: boolean")
     me.write(f"{shine}[data-key=sets]", "light: $on")
     me.page.press(f"{shine}[data-key=sets]", "Tab")
-    me.sees("#make-verbs .make-wrong", "There is no fact light; there are: lit.")
+    me.sees("#make-verbs .make-wrong", 'there is no fact "light"; did you mean "lit"?')
+    assert me.page.evaluate(COLOUR, "#make-verbs .make-wrong") == RED
     me.press("[data-make=add_device]")
-    assert me.page.evaluate("document.activeElement.dataset.key") == "sets"
+    me.page.wait_for_function("document.activeElement.dataset.key === 'sets'")
     me.write(f"{shine}[data-key=sets]", "lit: $on")
     me.press("[data-make=add_device]")
     me.sees("#make-note", "lamp is changed in the draft")
@@ -355,7 +394,7 @@ def test_a_device_is_changed_and_taken_away_and_a_cell_made_and_the_form_says_wh
     me.page.select_option("#make-kind", "arm")
     me.write("#make-role", "Loader")
     me.page.press("#make-role", "Tab")
-    me.sees("#make-device .make-wrong", "Small letters, digits and single _")
+    me.sees("#make-device .make-wrong", "a role must be a name of at most 64 small letters")
     me.write("#make-role", "loader")
     me.write("#make-x_m", "3")
     me.press("[data-make=add_device]")

@@ -25,6 +25,7 @@ POSTS = {
     "carry": CARRY,
     "copy": COPY,
     "device": DEVICE | {"editor": "ana-12345"},
+    "objections": DEVICE | {"role": "Not a name", "kind": ""},
     "remove": {"editor": "ana-12345", "cell": "lab", "role": "door"},
     "runs/reach": DEVICE,
     "drawn/check": {"cell": "lab", "text": "<root/>"},
@@ -66,6 +67,10 @@ class Make:
     def add_device(self, editor: str, device: dict[str, Any]) -> dict[str, Any]:
         self.asked.append((editor, device))
         return STATE
+
+    def objections(self, device: dict[str, Any]) -> list[dict[str, Any]]:
+        self.asked.append((device,))
+        return [{"place": "kinds.gate", "sentence": "kinds.gate: no"}]
 
     def remove(self, editor: str, cell: str, role: str) -> dict[str, Any]:
         self.asked.append((editor, cell, role))
@@ -148,6 +153,11 @@ def test_a_device_is_added_with_its_driver(web: Any, make: Make) -> None:
     assert web.post("/api/make/device", json=POSTS["device"]).json() == STATE
     [(editor, device)] = make.asked
     assert editor == "ana-12345" and DEVICE.items() <= device.items() and device["declared"] is None
+
+
+def test_what_is_no_name_yet_is_judged_too(web: Any, make: Make) -> None:
+    assert web.post("/api/make/objections", json=POSTS["objections"]).json()[0]["place"] == "kinds.gate"
+    assert make.asked == [(POSTS["objections"] | {"declared": None},)]
 
 
 def test_a_device_is_taken_away_or_a_whole_cell(web: Any, make: Make) -> None:

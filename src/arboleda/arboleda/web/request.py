@@ -13,7 +13,8 @@ from .access.names import is_loopback
 
 API, LOGIN, LOGOUT, METRICS = "/api/", "/login", "/logout", "/metrics"
 DRAFT_TREES = "/api/draft/set_trees"
-TREES = ("/api/trees/", "/api/make/drawn/", "/api/make/device", "/api/make/runs/reach", "/api/proposals")
+OF_DEVICES = ("/api/make/device", "/api/make/objections", "/api/make/runs/reach")
+TREES = ("/api/trees/", "/api/make/drawn/", *OF_DEVICES, "/api/proposals")
 STOP = re.compile(r"/api/(plant|cells/[^/]+|plants(/[^/]+)?)/stop")
 JOG = re.compile(r"/api/teach/[^/]+/jog")
 READS = {"GET", "HEAD"}

@@ -45,6 +45,9 @@ def _bar(spot: Spot) -> None:
                     tag("input", id="draw-copy", type="text", maxlength="40", autocomplete="off")
                 _button(words, "copy_recipe")
         if spot.plant.ask(MakeApi) is not None:
+            with tag("div", classes="make-who"):
+                tag("p", id="draw-who", role="status")
+                tag("button", words("make.act.take"), type="button", classes="act", data_make="take")
             way(words("draw.to_make"), {"tab": "make"}, classes="act primary", data_to_panel="try")
 
 

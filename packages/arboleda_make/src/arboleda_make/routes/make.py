@@ -10,7 +10,7 @@ from fastapi.responses import FileResponse, JSONResponse, Response
 from pydantic import Field
 from starlette.exceptions import HTTPException
 
-from arboleda.client.answers.drafts import DraftCells, DraftState, DriverRow, RunState
+from arboleda.client.answers.drafts import DraftCells, DraftState, DriverRow, Objection, RunState
 from arboleda.client.answers.trees import Drawn, Nodes
 from arboleda.web.access.auth import Role
 from arboleda.web.access.needs import needs
@@ -56,12 +56,12 @@ class Language(RequestModel):
     language: Short = FIRST
 
 
-class NewDevice(RequestModel):
+class DeviceForm(RequestModel):
     """Device with its driver; none: its board speaks by itself. Settings are texts, nested ones YAML."""
 
     cell: Short
-    role: DeviceName
-    kind: DeviceName
+    role: Short
+    kind: Short
     driver: Short = ""
     settings: dict[Short, Annotated[str, Field(max_length=20_000)]] = Field(default={}, max_length=100)
     declared: dict[str, Any] | None = Field(
@@ -70,6 +70,11 @@ class NewDevice(RequestModel):
     keys: dict[Short, Any] = Field(
         default={}, max_length=20, description="Other keys of the device in the plant file, such as `model`."
     )
+
+
+class NewDevice(DeviceForm):
+    role: DeviceName
+    kind: DeviceName
 
 
 class AddedDevice(Step, NewDevice):
@@ -165,6 +170,12 @@ def _device(api: APIRouter, side: PlantApi) -> None:
         """The drivers that a device of a declared kind can have, with a form for each of their settings."""
         make, wanted = _make(side), query_of(request, Language)
         return PlainJson(await run_in_threadpool(make.drivers, wanted.language))
+
+    @api.post("/objections", **answering(list[Objection], REFUSED, described_body(DeviceForm)))
+    async def objections(request: Request) -> JSONResponse:
+        """The problems that `check` finds in such a device, its kind and the name of its cell."""
+        make, form = _make(side), read_body(await request.body(), DeviceForm)
+        return PlainJson(await run_in_threadpool(make.objections, form.model_dump()))
 
     @api.post("/device", **answering(DraftState, REFUSED, described_body(AddedDevice)))
     async def device(request: Request) -> JSONResponse:

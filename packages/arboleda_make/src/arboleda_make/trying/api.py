@@ -56,6 +56,11 @@ class MakeApi(Protocol):
         state of the draft."""
 
     @abstractmethod
+    def objections(self, device: Mapping[str, Any]) -> list[Row]:
+        """The problems that `check` finds in such a device, its kind and the name of its cell, and does not
+        find in the draft without it: an Objection each."""
+
+    @abstractmethod
     def remove(self, editor: str, cell: str, role: str) -> Row:
         """Take a device away with all that names it, or the whole cell where the role is empty. The draft's
         state."""

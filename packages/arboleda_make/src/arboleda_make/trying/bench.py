@@ -9,6 +9,7 @@ from typing import Any
 
 from arboleda.drivers.address import address
 from arboleda.model.outside import plain
+from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import Robot
 from arboleda.plant_file.robot_models import pose_at_home
 from arboleda.plant_file.tree_file import ENDING
@@ -23,6 +24,7 @@ from ..drafts.desk import DraftDesk
 from ..drafts.devices import with_device, without_cell, without_device
 from ..drafts.plant_folder import NOT_OURS, PlantFolder
 from .errands import ErrandRun, Work
+from .problem_places import is_at, placed
 from .workshop import Workshop
 
 LOG = logging.getLogger("arboleda.operators")
@@ -93,6 +95,19 @@ class MakeBench(MakeApi):
     def add_device(self, editor: str, device: Mapping[str, Any]) -> Row:
         return self._desk.rewrite(editor, self._adding(device))
 
+    def objections(self, device: Mapping[str, Any]) -> list[Row]:
+        cell = f"cells.{device['cell']}"
+        own = (f"{cell}.devices.{device['role']}", f"kinds.{device['kind']}")
+        found = [*map(placed, self._workshop.problems(self._with(device)))]
+        named = [each for each in found if each[0] == cell]
+        before = self._workshop.problems(self._desk.files[1]) if named else []  # also of a cell that is there
+        of_cell = set(named) - {*map(placed, before)}
+        return [
+            {"place": place, "sentence": said}
+            for place, said in found
+            if (place, said) in of_cell or any(is_at(place, each) for each in own)
+        ]
+
     def remove(self, editor: str, cell: str, role: str) -> Row:
         def change(values: Any) -> Any:
             return without_device(values, cell, role) if role else without_cell(values, cell)
@@ -100,14 +115,18 @@ class MakeBench(MakeApi):
         return self._desk.rewrite(editor, change)
 
     def reach(self, device: Mapping[str, Any]) -> Row:
-        try:
-            draft = draft_of(self._desk.files[1]).rewritten(self._adding(device))
-        except EditRefused as error:
-            raise DraftRefused(error.sentence) from error
+        files = self._with(device)
         wanted = {"cell": device["cell"], "role": device["role"], "at_work": self._at_work}
-        self._runs["reach"].begin(draft.files, self._plant_file(), wanted)
+        self._runs["reach"].begin(files, self._plant_file(), wanted)
         LOG.info("a new device is listened to: %s, by %s", plain(device["role"]), plain(device["driver"]))
         return self.run("reach")
+
+    def _with(self, device: Mapping[str, Any]) -> PlantFiles:
+        """The files of the draft with a device."""
+        try:
+            return draft_of(self._desk.files[1]).rewritten(self._adding(device)).files
+        except EditRefused as error:
+            raise DraftRefused(error.sentence) from error
 
     def _adding(self, device: Mapping[str, Any]) -> Callable[[Any], Any]:
         """The edit that adds a device, with the settings of its driver, to the values of a plant file."""

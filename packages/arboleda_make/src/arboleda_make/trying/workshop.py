@@ -94,6 +94,13 @@ class Workshop:
             translated: list[str] = self._ask("translate", language, lines)
             return translated
 
+    def problems(self, files: PlantFiles) -> list[str]:
+        """The problems of these files; the other requests go on with those that they know."""
+        with self._turns:
+            if self._run is None or self._run.poll() is not None:
+                self._begin()
+            return list(self._ask("problems", files, self._plant_file()))
+
     def drivers(self, base: PlantFiles, files: PlantFiles, language: str) -> list[Row]:
         """The drivers that a device of a declared kind can have, with a field for each setting."""
         found: list[Row] = self._answer(base, files, "drivers", language)

@@ -52,6 +52,15 @@ class WorkshopPlant:
         self._open = opened
         return ()
 
+    def problems(self, files: PlantFiles, plant_file: Path) -> tuple[str, ...]:
+        """The problems of these files, which are not taken."""
+        with draft_check.shaded(files, plant_file) as shade:
+            try:
+                loader.load_with_drivers(shade.plant_file)
+            except ConfigError as error:
+                return tuple(map(shade.shortened, error.problems))
+        return ()
+
     def translate(self, language: str, lines: list[str]) -> list[str]:
         """Findings, given in English, in a language."""
         return [findings(language)(line) for line in lines]

@@ -110,6 +110,14 @@ class RunState:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Objection:
+    """Problem of the draft with a device that a form has."""
+
+    place: Annotated[str, "In the plant file, as `kinds.lamp.verbs.shine`; empty where it names none."]
+    sentence: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class DriverRow:
     """Driver that a device of a declared kind can have."""
 

@@ -25,6 +25,7 @@ export function start() {
   form.start();
   copies.start();
   part.querySelector("[data-to-panel]")?.addEventListener("click", ({ target }) => toTry(target.dataset.toPanel));
+  part.querySelector("[data-make=take]")?.addEventListener("click", takeOver);
   make.onDraft(() => state.now && !behind && buttons());
 }
 
@@ -142,6 +143,9 @@ async function keep(text) {
   await make.look();
   await reload();
 }
+
+// Whoever takes over goes on with what the draft has by then.
+const takeOver = () => next(async () => (await make.take()) && state.now && (await reload()));
 
 // Show the tree that the draft has now.
 async function reload() {

@@ -14,6 +14,7 @@ const LOOK_MS = 5000; // what others do
 const WAIT_MS = 1500; // while another check is under way, or too many wait
 const FIRST = "draft";
 let shown = false;
+let watched = false; // its trees are drawn
 let checked = null; // the digest of the draft whose check is shown
 let latest = null; // that check
 let offers = new Map(); // by its text, the step of each offer of the last check
@@ -30,8 +31,10 @@ export function start() {
   proof.start();
   device.start();
   proposals.start();
-  setInterval(() => shown && !document.hidden && look(), LOOK_MS);
+  setInterval(() => (shown || watched) && !document.hidden && look(), LOOK_MS);
 }
+
+export const watch = (is) => (watched = is && there());
 
 export async function show(is) {
   shown = is && there();
@@ -76,10 +79,12 @@ function drawn() {
   box("not-ours").hidden = state.is_ours;
   const who = state.editor;
   const since = who && new Date(who.since).toLocaleTimeString();
-  box("who").textContent = !who ? words.make_nobody : isMine() ? words.make_you : fill(words.make_other, { name: who.name, since });
-  const taking = button("take");
-  taking.textContent = isReading() ? words.make_take_over : words.make_take;
-  taking.hidden = isMine();
+  const said = !who ? words.make_nobody : isMine() ? words.make_you : fill(words.make_other, { name: who.name, since });
+  all("#make-who, #draw-who").forEach((each) => (each.textContent = said));
+  for (const taking of all('[data-make="take"]')) {
+    taking.textContent = isReading() ? words.make_take_over : words.make_take;
+    taking.hidden = isMine();
+  }
   button("undo").disabled = !state.undo;
   button("redo").disabled = !state.redo;
   button("keep").disabled = button("discard").disabled = !state.changes.length;

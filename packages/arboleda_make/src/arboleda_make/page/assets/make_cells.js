@@ -26,14 +26,32 @@ export async function read() {
   const found = await reading;
   reading = null;
   if (!found) return;
-  draft.cells = found.cells;
+  draft.cells = found.problems.length ? withDraft(found) : found.cells;
   draft.faults = await spoken(found.faults);
   offer();
   const problems = (await inWords(found.problems)).map((text) => element("li", `✕ ${text}`, { "data-mark": "mistake" }));
   const list = element("ul", "", { class: "draw-marks make-unread" });
   list.append(element("li", words.make_unread), ...problems);
-  box("cell-list").replaceChildren(...(problems.length ? [list] : []), ...found.cells.map(drawn));
+  box("cell-list").replaceChildren(...(problems.length ? [list] : []), ...draft.cells.map(drawn));
   for (const listener of listeners) listener();
+}
+
+// The cells as they could be read last, with the devices that the draft has now, those marked that it is wrong about.
+function withDraft({ cells, problems }) {
+  const now = draft.state.values.cells ?? {};
+  const unread = Object.keys(now).filter((name) => !cells.some((each) => each.name === name));
+  const all = [...cells, ...unread.map((name) => ({ name, devices: [], targets: [], carriers: [], recipes: [] }))];
+  const isWrong = (place) => problems.some((text) => text.includes(` ${place}.`) || text.includes(` ${place}:`));
+  return all.map((cell) => {
+    const written = now[cell.name]?.devices;
+    if (!written) return cell;
+    const before = new Map(cell.devices.map((each) => [each.role, each]));
+    const devices = Object.entries(written).map(([role, device]) => {
+      const kind = `${device?.kind ?? ""}`;
+      return { role, kind, ...before.get(role), isWrong: !before.has(role) || isWrong(`cells.${cell.name}.devices.${role}`) || isWrong(`kinds.${kind}`) };
+    });
+    return { ...cell, devices };
+  });
 }
 
 const chosen = () => draft.cells.find(({ name }) => name === box("cell").value);
@@ -136,9 +154,10 @@ function drawn({ name, devices, recipes }) {
   return made;
 }
 
-function deviceRow(cell, { role, kind, shared }) {
-  const made = element("li");
-  made.append(element("strong", role), ` ${kind}${shared ? ` (${words.make_shared})` : ""} `);
+function deviceRow(cell, { role, kind, shared, isWrong }) {
+  const made = element("li", "", isWrong ? { "data-mark": "mistake" } : {});
+  made.append(element("strong", isWrong ? `✕ ${role}` : role), ` ${kind}${shared ? ` (${words.make_shared})` : ""} `);
+  if (isWrong) made.append(element("span", words.make_is_wrong, { class: "make-wrong" }), " ");
   if (!draft.state.values.cells?.[cell]?.devices?.[role]) return made; // of an arm's cell, or gone
   if (!shared) made.append(act(words.make_change, { cell, changeDevice: role }, role), " ");
   made.append(act(words.make_remove, { cell, removeDevice: role }, role));

@@ -3,14 +3,13 @@
 
 import { onCells, read } from "./make_cells.js";
 import * as kinds from "./make_kind.js";
-import { ask, box, draft, element, fill, options, say, step } from "./make_state.js";
+import { ask, box, draft, element, fill, inWords, options, say, step } from "./make_state.js";
 import { ended } from "./make_try.js";
 import { words } from "../shell.js";
 
 // The kinds that come with Arboleda, with the fields that each has here; no driver is offered for them.
 const SHIPPED = { arm: ["model", "x_m", "y_m", "yaw_deg"], mobile: ["x_m", "y_m", "yaw_deg"], gripper: ["tool_of"], effector: ["tool_of"], conveyor: [], camera: ["answers"], sensor: ["answers"], person: [] };
 const KEYS = ["model", "x_m", "y_m", "yaw_deg", "tool_of", "answers"];
-const TAKEN = { kind: ["arm", "mobile", "person"], cell: ["plant", "system"] };
 let changing = null; // the cell and the role of the device that is changed
 let drivers = null; // as the server has them, once this panel was open
 let reading = null; // while, and once, they are asked for
@@ -151,7 +150,7 @@ function clicked({ target }) {
 }
 
 async function add() {
-  const device = written();
+  const device = await right();
   if (!device || !(await step("../make/device", device))) return;
   const said = fill(changing ? words.make_device_changed : words.make_device_added, { role: device.role, name: device.kind });
   await read();
@@ -164,7 +163,7 @@ async function add() {
 
 // Have its driver listen for a moment, in a process of its own; the draft stays as it is.
 async function reach() {
-  const device = written();
+  const device = await right();
   if (!device) return;
   const says = (sentence) => (box("reach-state").textContent = sentence);
   says(words.make_reaching);
@@ -177,16 +176,13 @@ const heard = ({ facts, missing }) => [...Object.entries(facts).map(([fact, valu
 
 // --- what the form says
 
-// The device that the form says; null where a field is wrong, which then has the focus.
-function written() {
-  const fields = [...box("device").querySelectorAll("input, select")].filter((each) => each.offsetParent && !each.dataset.setting);
-  const wrong = fields.filter((each) => judge(each) || (isNeeded(each) && !each.value.trim()));
-  if (wrong.length) return say(judge(wrong[0], true)), wrong[0].focus(), null;
+// The device that the form says; a name that is still missing is made up where its fields are judged before.
+function written(madeUp = "") {
   const known = box("kind").value;
-  const kind = known || box("new_kind").value.trim();
+  const kind = known || box("new_kind").value.trim() || madeUp;
   const driver = box("driver-form").hidden ? "" : box("driver").value;
   const declared = box("kind-form").hidden ? {} : { declared: kinds.written(known ? declaredKinds()[known] : undefined) };
-  return { cell: cell(), role: box("role").value.trim(), kind, driver, settings: driver ? settings() : {}, keys: keys(kind), ...declared };
+  return { cell: cell() || madeUp, role: box("role").value.trim() || madeUp, kind, driver, settings: driver ? settings() : {}, keys: keys(kind), ...declared };
 }
 
 // Other keys of a kind that comes with Arboleda; what is empty is taken away.
@@ -197,24 +193,72 @@ function keys(kind) {
   return { ...others, ...(x === undefined ? {} : { [kind === "arm" ? "base" : "grid"]: stands }), ...(answers === undefined ? {} : { answers: answers ? kinds.list(answers) : null }) };
 }
 
-const isNeeded = ({ id }) => ["make-role", "make-new_kind", "make-new_cell"].includes(id);
+// --- what is wrong with it, below the field that it is about
 
-// What is wrong with a field, said below it; an empty one is wrong only where it is needed now.
-function judge(input, needed = false) {
-  if (!input.matches("input, select") || input.dataset.setting) return "";
-  const text = input.value.trim();
-  const sentence = text || input.dataset.key ? (input.dataset.key ? kinds.objection(input) : (NAMES[input.id]?.(text) ?? "")) : needed ? words.make_bad_name : "";
-  const label = input.closest("label");
-  label.querySelector(".make-wrong")?.remove();
-  if (sentence) label.append(element("small", sentence, { class: "make-wrong", role: "alert" }));
-  input.setAttribute("aria-invalid", Boolean(sentence));
-  return sentence;
+const MADE_UP = "new";
+let asked = 0; // the last question about it
+const shownFields = () => [...box("device").querySelectorAll("input, select")].filter((each) => each.offsetParent && !each.dataset.setting);
+
+// The device that is right; null where it is not, and then the first wrong field has the focus.
+async function right() {
+  const wrong = await objections();
+  if (!wrong) return null;
+  for (const field of shownFields()) mark(field, wrong.get(field));
+  const first = shownFields().find((field) => wrong.has(field));
+  if (first) return say(wrong.get(first)), first.focus(), null;
+  if (wrong.size) return say([...wrong.values()].join(" ")), null;
+  return written();
 }
 
-const name = (text, isTaken) => (!kinds.NAME.test(text) ? words.make_bad_name : isTaken(text) ? fill(words.make_known, { name: text }) : "");
+// Say what is wrong with a field that somebody leaves; what is right by now of others is no longer said.
+async function judge(left) {
+  if (!left.matches("input, select") || left.dataset.setting) return;
+  if (left.dataset.key === "type") left.value = kinds.usual(left.value.trim());
+  const number = (asked += 1);
+  const wrong = await objections();
+  if (!wrong || number !== asked) return;
+  if (left.value.trim()) mark(left, wrong.get(left));
+  for (const field of shownFields()) if (!wrong.has(field)) mark(field, "");
+}
 
+// What is wrong by field: what `check` would refuse, and names that are there already. What it says of no field here
+// has a key of its own.
+async function objections() {
+  const needed = shownFields().filter((field) => NAMES[field.id] && !field.value.trim());
+  const device = written(MADE_UP);
+  const found = await ask("/api/make/objections", device);
+  if (!found) return null;
+  const said = await inWords(found.map(({ sentence }) => sentence));
+  const wrong = new Map();
+  found.forEach((each, n) => {
+    const field = fieldAt(each, device);
+    wrong.set(field ?? each.sentence, field ? said[n].replace(`${each.place}: `, "") : said[n]);
+  });
+  for (const field of shownFields()) if (NAMES[field.id]?.(field.value.trim())) wrong.set(field, fill(words.make_known, { name: field.value.trim() }));
+  for (const field of needed) wrong.set(field, words.make_required);
+  return wrong;
+}
+
+// The field whose place in the plant file is the nearest to that of an objection.
+function fieldAt({ place, sentence }, { cell: at, role, kind }) {
+  const device = `cells.${at}.devices.${role}`;
+  const own = { new_cell: `cells.${at}`, role: device, kind: `${device}.kind`, new_kind: `kinds.${kind}`, x_m: `${device}.base`, driver: `${device}.driver` };
+  const all = [...Object.entries({ ...own, ...Object.fromEntries(["model", "tool_of", "answers"].map((key) => [key, `${device}.${key}`])) }).map(([id, at]) => [box(id), at]), ...kinds.fields(kind)];
+  const named = sentence.startsWith(`${place}: the name `);
+  const near = all.filter(([field, at]) => field.offsetParent && (place === at || place.startsWith(`${at}.`) || place.startsWith(`${at}[`)) && !(field.dataset.key === "fact" && !named) && !(field.dataset.key === "type" && named));
+  return near.sort(([, one], [, other]) => other.length - one.length)[0]?.[0];
+}
+
+function mark(field, sentence = "") {
+  const label = field.closest("label");
+  label.querySelector(".make-wrong")?.remove();
+  if (sentence) label.append(element("small", sentence, { class: "make-wrong", role: "alert" }));
+  field.setAttribute("aria-invalid", Boolean(sentence));
+}
+
+// A name that is there already would be changed by a form for what is new.
 const NAMES = {
-  "make-role": (text) => name(text, (each) => !changing && cellsOf()[cell()]?.devices?.[each] !== undefined),
-  "make-new_kind": (text) => name(text, (each) => TAKEN.kind.includes(each) || each in declaredKinds()),
-  "make-new_cell": (text) => name(text, (each) => TAKEN.cell.includes(each) || each in cellsOf()),
+  "make-role": (text) => !changing && cellsOf()[cell()]?.devices?.[text] !== undefined,
+  "make-new_kind": (text) => text in declaredKinds(),
+  "make-new_cell": (text) => text in cellsOf(),
 };

@@ -1,9 +1,8 @@
 // The form of a kind: rows of facts and verbs as text, checked as each field is left, and read as the plant file has it.
 
-import { box, draft, element, fill } from "./make_state.js";
+import { box, draft, element } from "./make_state.js";
 import { words } from "../shell.js";
 
-export const NAME = /^[a-z](_?[a-z0-9]){0,31}$/;
 const EFFECTS = ["motion", "process", "switch", "query"];
 const TYPES = ["bool", "number", "int", "text"];
 const ALSO = { boolean: "bool", integer: "int", float: "number", real: "number", string: "text", str: "text" };
@@ -93,7 +92,7 @@ export const list = (text) => text.split(",").map((each) => plain(each.trim())).
 
 // "open, closed" is a list of words, anything else is a type.
 const typed = (text) => (text.includes(",") ? list(text) : usual(text));
-const usual = (text) => ALSO[text.toLowerCase()] ?? text;
+export const usual = (text) => ALSO[text.toLowerCase()] ?? text;
 
 // "seconds: 1, 3, 5; gentle: bool", where one parameter without choices may end with a comma, too
 const parameters = (text) => split(text, text.includes(";") ? /;/ : /,(?=[^:,]*:)|;/);
@@ -101,42 +100,12 @@ const parameters = (text) => split(text, text.includes(";") ? /;/ : /,(?=[^:,]*:
 const pairs = (text) => mapped(split(text, /[,;]/), (value) => plain(value || "true"));
 const split = (text, joint) => Object.fromEntries(text.split(joint).filter((each) => each.trim()).map((each) => [each.split(":")[0].trim(), each.split(":").slice(1).join(":").trim()]));
 
-// --- what is wrong with a field; "" where nothing is
+// --- where the plant file has what a field says
 
-export function objection(input) {
-  const row = Object.fromEntries([...input.closest(".make-form").querySelectorAll("[data-key]")].map((each) => [each.dataset.key, each.value.trim()]));
-  const { key } = input.dataset;
-  if (key === "type") input.value = usual(input.value.trim());
-  return row[key] || key === "answers" ? (OBJECTIONS[key]?.(row[key], row) ?? "") : "";
-}
-
-const OBJECTIONS = {
-  fact: nameObjection,
-  verb: nameObjection,
-  type: typeObjection,
-  with: (text) => Object.entries(parameters(text)).map(([name, type]) => nameObjection(name) || typeObjection(type)).find(Boolean) ?? "",
-  sets: (text, row) => Object.entries(pairs(text)).map(([fact, value]) => valueObjection(fact, value, parameters(row.with))).find(Boolean) ?? "",
-  needs: (text) => Object.entries(pairs(text)).map(([fact, value]) => (fact.includes(".") ? "" : valueObjection(fact, value, {}))).find(Boolean) ?? "",
-  takes_s: (text) => (Number(text) >= 0 ? "" : words.make_bad_number),
-  answers: (text, { verb, effect }) => (verb && effect === "query" && list(text).length < 1 ? words.make_bad_answers : ""),
-};
-
-function nameObjection(text) {
-  return NAME.test(text) ? "" : words.make_bad_name;
-}
-
-function typeObjection(text) {
-  const several = text.includes(",") ? list(text) : null;
-  return TYPES.includes(usual(text)) || (several?.length > 1 && new Set(several).size === several.length) ? "" : words.make_bad_type;
-}
-
-function valueObjection(fact, value, given) {
-  const facts = Object.fromEntries(rows("facts").filter((row) => row.fact).map((row) => [row.fact, typed(row.type || "bool")]));
-  if (!(fact in facts)) return fill(words.make_bad_fact, { fact, facts: Object.keys(facts).join(", ") || "–" });
-  if (`${value}`.startsWith("$")) return value.slice(1) in given ? "" : fill(words.make_bad_parameter, { name: value.slice(1) });
-  const type = facts[fact];
-  const fits = Array.isArray(type) ? type.includes(value) : { bool: typeof value === "boolean", int: Number.isInteger(value), number: typeof value === "number" }[type] ?? true;
-  return fits ? "" : fill(words.make_bad_value, { fact, allowed: Array.isArray(type) ? type.join(", ") : type === "bool" ? "true, false" : type });
+// [field, place] of each field of a row with a name; the type of a fact stands at its name.
+export function fields(kind) {
+  const of = (where, name) => [...box(where).children].flatMap((row) => [...row.querySelectorAll("[data-key]")].map((input) => [input, `kinds.${kind}.${where}.${row.querySelector(`[data-key=${name}]`).value.trim()}`]));
+  return [...of("facts", "fact"), ...of("verbs", "verb").map(([input, at]) => [input, input.dataset.key === "verb" ? at : `${at}.${input.dataset.key}`])];
 }
 
 // Whether a device of a kind of the plant file is in other roles too: they change with it.

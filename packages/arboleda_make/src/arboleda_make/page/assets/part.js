@@ -15,5 +15,6 @@ export function arrive({ tab, cell }) {
   if (tab === "teach") teach.show(cell);
   else teach.leave();
   make.show(tab === "make");
+  make.watch(tab === "draw");
   if (tab === "settings") versions.show();
 }
