@@ -52,6 +52,10 @@ OVERFLOWING = """() => {
   const circles = [...document.querySelectorAll(".place, .places .act")];
   return circles.filter((each) => each.checkVisibility() && !inside(each)).map((each) => each.textContent);
 }"""
+BELOW_THE_HEADER = """() => {
+  const [top, parts] = [".top", "#parts"].map((each) => document.querySelector(each).getBoundingClientRect());
+  return parts.top >= top.bottom;
+}"""
 Open = Callable[..., Any]
 
 
@@ -145,11 +149,14 @@ def test_on_a_phone_the_stop_and_the_cell_in_trouble_come_first(
 
 def test_on_a_phone_a_place_opens_at_its_top_and_the_stop_alone_stays_when_it_is_scrolled(look: Open) -> None:
     page = look(**PHONE)
+    at_top = page.evaluate("document.getElementById('stop').getBoundingClientRect().top")
     for part in ("tasks", "cells"):
         show(page, part)
         assert page.evaluate("scrollY") == 0
+        page.wait_for_function(BELOW_THE_HEADER)
         page.evaluate("scrollTo(0, 400)")
         page.wait_for_function("document.querySelector('.top').getBoundingClientRect().bottom <= 120")
+        assert page.evaluate("document.getElementById('stop').getBoundingClientRect().top") == at_top
         wait_for_sight(page, "#stop")
 
 

@@ -9,6 +9,7 @@ export const words = window.arboledaPage.words;
 export const parts = () => all("[data-part]").map((part) => part.dataset.part);
 const MOVED = { twin: "cells", panel: "cells", log: "events" }; // addresses of before
 export const cells = () => all("[data-choose]").map((card) => card.dataset.choose);
+const SCROLLED_PX = 8;
 const filters = {};
 const hearers = [];
 
@@ -19,17 +20,19 @@ export function start() {
   document.documentElement.lang = window.arboledaPage.language;
   look(lookNow());
   new ResizeObserver(measure).observe(document.querySelector(".top"));
+  window.addEventListener("scroll", () => document.documentElement.toggleAttribute("data-scrolled", scrollY > SCROLLED_PX), { passive: true });
   setRowFilter((list, row) => !filters[list] || row?.cell === filters[list]);
   document.addEventListener("click", clicked);
   onChange(inOrder);
   document.querySelector(".cells")?.addEventListener("pointerleave", inOrder);
 }
 
-// How high the header is, which nothing else may cover, and what of it is above the stop, which a phone scrolls away.
+// How high the header is, which nothing else may cover. Of one that is fixed the whole height stays kept free, also
+// where a part of it goes away.
 function measure([{ target: top }]) {
-  const { style } = document.documentElement;
-  style.setProperty("--top", `${top.offsetHeight}px`);
-  style.setProperty("--above-stop", `${top.querySelector(".stop")?.offsetTop ?? 0}px`);
+  const { dataset, style } = document.documentElement;
+  if ("scrolled" in dataset && getComputedStyle(top).position === "fixed") return;
+  style.setProperty("--top", `${Math.ceil(top.getBoundingClientRect().height)}px`);
 }
 
 let isOfPart = false; // whether the answer goes away when its part of the page is left
