@@ -197,8 +197,8 @@ OF_PLACES = (
     bug(
         PLACES,
         "Supplies are not filled when a task begins.",
-        "        if self._by_people:\n            self.set(self._by_people)",
-        "        if self._by_people:\n            self._keep()",
+        "self._parts |= self._by_people",
+        "pass",
     ),
     bug(
         "trees/parts.py",

@@ -45,6 +45,16 @@ def test_what_people_keep_so_is_not_for_them_to_say() -> None:
     assert row["texts"][1] == "people fill or empty it" and row["acts"][0]["refused"]
 
 
+@pytest.mark.parametrize(
+    ("language", "question"),
+    [("en", "Is a part still in vise?"), ("es", "¿Sigue habiendo una pieza en vise?")],
+)
+def test_a_place_that_a_failed_task_has_left_full_is_a_question(language: str, question: str) -> None:
+    row = shown(place("vise", 1, by_people=True, asked=True), language=language)["row/places.lab/vise"]
+    assert row["texts"][1] == question
+    assert [(dot["act"], dot["refused"]) for dot in row["acts"]] == [("unload", False)]
+
+
 def test_the_places_of_a_rack_are_one_row_of_dots_by_their_numbers() -> None:
     found = shown(place("station_0", 0, station=0), place("nest", 0), place("station_1", 1, station=1))
     assert found["rows/places.lab"] == ["station", "nest"]

@@ -76,6 +76,11 @@ def test_nothing_is_wrong_with_a_plant_that_says_all(tmp_path: Path) -> None:
             "places: {TARGET: {of: oven}}",
         ),
         (
+            ("inside: {of: oven}", "inside: {of: oven, output: true}"),
+            "lab: inside is inside oven, and an output, so it counts as empty when a task begins, whoever "
+            "has looked; leave out `output`, and say unload once it is empty",
+        ),
+        (
             ("jaw:   {kind: gripper, tool_of: left}", "jaw:   {kind: gripper}"),
             "lab: jaw takes hold of a part (close), and no place is of it; say where: "
             "places: {TARGET: {of: jaw}}, or tool_of",

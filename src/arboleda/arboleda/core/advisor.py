@@ -353,9 +353,16 @@ def _running_again(run: CellRun) -> Iterator[Advice]:
 
 
 def _mending_books(run: CellRun) -> Iterator[Advice]:
-    """Advice to make room at a place, or to bring a part there, where the last task failed for that."""
-    trouble = run.place_trouble
-    if trouble is not None and run.context.places.is_so_still(trouble):
+    """Advice to say what is at places in question, then to mend the place for which the last task failed."""
+    name, places, trouble = run.cell.name, run.context.places, run.place_trouble
+    for place in places.asked.targets:
+        why = part_places.ASKED(place=place)
+        yield Advice(do=Hand.TAKE_OUT, scope=f"{name} {place}", why=why)
+        if not places.asked.is_output(place):
+            yield Advice(do=Hand.LEAVE_IN, scope=f"{name} {place}", why=why, instead=True)
+    if trouble is None or trouble.values["place"] in places.asked.targets:
+        return
+    if places.is_so_still(trouble):
         hand = Hand.TAKE_OUT if trouble.key == part_places.FULL.key else Hand.PUT_IN
         yield Advice(do=hand, scope=f"{run.cell.name} {trouble.values['place']}", why=trouble)
 

@@ -304,6 +304,8 @@ class CellRun:
         self.task = self.stranded = self.awaits = None
         self.context.answers, self.context.commands.task = [], None
         self.keeping.end()
+        if state is not TaskState.DONE:
+            self.context.places.asked.fail()
         task.become(state, self.context.time.plant_now)
         self._changed(task)
         self.run.take_apart()

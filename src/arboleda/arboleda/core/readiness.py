@@ -8,6 +8,7 @@ from arboleda.model.messages import Failure, Reason
 from arboleda.model.plant_model import Cell
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.trees.context import Context
+from arboleda.trees.part_places import ASKED
 
 STILL_ASKED = Phrase("robot.still_asked", "{person} has a question to answer first")
 STILL_DOING = Phrase("robot.still_doing", "{robot} is still {doing}")
@@ -39,7 +40,8 @@ class Readiness:
         failures = [self._context.robots.obstacle(robot.name) for robot in self._cell.reached]
         astray = self._context.zones.astray()
         failures += [astray[1] if astray else None, self.part_in_hand()]
-        return next((failure.sentence for failure in failures if failure), None)
+        asked = (ASKED(place=place) for place in self._context.places.asked.targets)
+        return next((failure.sentence for failure in failures if failure), None) or next(asked, None)
 
     def busy(self) -> Sentence | None:
         """The command that a robot of the cell still carries out, or the question that a person has open."""

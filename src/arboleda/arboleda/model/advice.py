@@ -23,6 +23,7 @@ class Hand(str, Enum):
         "take_out"  # the parts at a place; the scope is the cell and the place, as of the verb `unload`
     )
     PUT_IN = "put_in"  # a part that is missing at a place; the scope is the same
+    LEAVE_IN = "leave_in"  # the part that is at a place in question; the scope is the same
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,6 +53,7 @@ DO: dict[Verb | Hand, Phrase] = {
     Hand.FREE: Phrase("do.free", "get {scope} out of the way by its own controls"),
     Hand.TAKE_OUT: Phrase("do.take_out", "see that {scope} is empty and say so (unload {scope})"),
     Hand.PUT_IN: Phrase("do.put_in", "put a part at {scope} and say so (load {scope})"),
+    Hand.LEAVE_IN: Phrase("do.leave_in", "say that a part is still at {scope} (load {scope})"),
     Hand.CHECK: Phrase("do.check", "see that nobody is in {scope}"),
 }
 BY_HAND: dict[Verb, Phrase] = {

@@ -24,8 +24,8 @@ APART_M = 0.030  # so far apart two tools may be at one place; a part is hardly 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
     """A sentence for each unguarded place, each device without a place, and each place that is two."""
     placed = frozenset(place.device for cell in plant.cells for place in cell.places)
-    unsaid = [each for cell in plant.cells for each in (*_unguarded(cell), *_without_place(cell, placed))]
-    unsaid += _said_differently(plant)
+    rows = ((*_unguarded(cell), *_without_place(cell, placed), *_forgotten(cell)) for cell in plant.cells)
+    unsaid = [*(sentence for row in rows for sentence in row), *_said_differently(plant)]
     try:
         return (*unsaid, *(each for cell in plant.cells for each in _split(plant, cell)))
     except ArboledaError:  # `meeting_points` names the reason
@@ -115,6 +115,15 @@ def _words(place: Place) -> str:
     """What a plant file says of a place."""
     given = {"holds": place.holds, "of": place.device, "supply": place.supply, "output": place.output}
     return flow({key: value for key, value in given.items() if value})
+
+
+def _forgotten(cell: Cell) -> Iterator[str]:
+    """The outputs in devices: a part that a task leaves there is forgotten when the next one begins."""
+    for place in cell.places:
+        if place.output and place.device is not None:
+            inside = f"{cell.name}: {place.target} is inside {place.device}, and an output"
+            how = "leave out `output`, and say unload once it is empty"
+            yield f"{inside}, so it counts as empty when a task begins, whoever has looked; {how}"
 
 
 def _split(plant: PlantModel, cell: Cell) -> Iterator[str]:

@@ -13,6 +13,7 @@ from arboleda.model.messages import Fact, Failure, Reason
 from arboleda.model.plant_model import Cell, Evidence, Workspace
 from arboleda.model.sentence import Phrase, Sentence
 
+from .asked_places import AskedPlaces
 from .cell_devices import CellDevices
 from .cell_robots import CellRobots
 
@@ -26,6 +27,7 @@ FULL = Phrase(
 HOLDS_ONE = Phrase("place.holds_one", "{robot} holds a part already, taken at {place}")
 STILL_HELD = Phrase("place.still_held", "{robot} stays at {place}: {device} still holds the part there")
 NO_PART = Phrase("place.no_part", "{robot} has no part to work on: none is known to be at {places}")
+ASKED = Phrase("place.asked", "Is a part still in {place}? The last task put it there, and failed")
 
 
 def trouble_in(sentence: Sentence) -> Sentence | None:
@@ -33,7 +35,7 @@ def trouble_in(sentence: Sentence) -> Sentence | None:
     return next((each for each in sentence.parts() if each.key in (EMPTY.key, FULL.key)), None)
 
 
-OF_PLACE, OF_HAND, SURE, LETTING_GO = "=", ":", "+", "-"
+OF_PLACE, OF_HAND, IN_QUESTION, SURE, LETTING_GO = "=", ":", "?", "+", "-"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,13 +99,14 @@ class Places:
                 self._of_device.setdefault(place.device, []).append(place.target)
         self._parts = {place.target: 0 for place in cell.counted}
         self._held: dict[str, HeldPart] = {}
+        self.asked = AskedPlaces(self._places, self._parts, self._keep)
         self._left_there: dict[
             str, str
         ] = {}  # by hand: the target whose part it was told to take, and did not
         if self._parts:
             self._take_over(self._earlier_words())
-            for hand in self._hands:
-                dispatcher.effectors.watchers[hand].append(self._follow)
+            for holder in {*self._hands, *self._of_device}.intersection(dispatcher.effectors.watchers):
+                dispatcher.effectors.watchers[holder].append(self._follow)
 
     def _earlier_words(self) -> list[str]:
         """The words of an earlier start; one of version 0.1 kept the numbers of full stations."""
@@ -115,6 +118,7 @@ class Places:
     def _take_over(self, books: list[str]) -> None:
         numbers = [(target, n) for target, n in _read(books, OF_PLACE) if n.isdigit()]
         self._parts |= {target: int(n) for target, n in numbers if target in self._parts}
+        self.asked.take_over(dict(_read(books, IN_QUESTION)))
         grips, words = self._dispatcher.effectors.grips, dict(_read(books, OF_HAND))
         for hand in self._hands:
             taken = HeldPart(is_sure=True, lets_go=grips[hand] is Grip.SWITCHING)  # from no place
@@ -168,12 +172,15 @@ class Places:
 
     def begin(self) -> None:
         """Begin a task: people have filled the supplies and emptied the outputs."""
+        self._parts |= self._by_people
+        self.asked.begin()
         if self._by_people:
-            self.set(self._by_people)
+            self._keep()
 
     def set(self, parts: Mapping[str, int]) -> None:
         """Take a person's word on how many parts are at places."""
         self._parts |= parts
+        self.asked.answer(parts)
         self._keep()
 
     def objection(self, command: Command) -> Failure | None:
@@ -252,7 +259,11 @@ class Places:
         return next(iter(counted or targets), None)
 
     def _follow(self, hand: str, handling: HandlingStep) -> None:
-        """Take in a step of a part's way through a hand."""
+        """Take in a step of a part's way through a hand, or that a person has taken parts out of a device."""
+        if hand not in self._hands:
+            if handling is HandlingStep.TAKEN_OUT:
+                self.set(dict.fromkeys(self._of_device[hand], 0))
+            return
         held = self._held.get(hand) or HeldPart()
         here = held.target
         if handling in (HandlingStep.TOLD_TO_TAKE, HandlingStep.TOLD_TO_LET_GO):
@@ -308,7 +319,8 @@ class Places:
         return not self._devices.is_lent(hand)
 
     def _keep(self) -> None:
-        """Have the books kept: `nest=1` for a place, `jaw:nest+` for a hand and where it took its part.
+        """Have the books kept: `nest=1` for a place, `jaw:nest+` for a hand and where it took its part,
+        `nest?` for a place in question.
 
         In a cell with a rack and no places, a part from elsewhere is not kept: the grip of its hand says
         enough.
@@ -316,6 +328,7 @@ class Places:
         words = [f"{target}{OF_PLACE}{number}" for target, number in sorted(self._parts.items()) if number]
         held = sorted([each for each in self._held.items() if self._places or each[1].target in self._noted])
         words += [f"{hand}{OF_HAND}{part.written}" for hand, part in held]
+        words += [f"{target}{IN_QUESTION}" for target in self.asked.targets]
         self._dispatcher.memory.remember(Fact.STORED, self._cell.name, None)
         self._dispatcher.memory.remember(Fact.PARTS, self._cell.name, " ".join(words) or None)
 

@@ -13,7 +13,7 @@ from arboleda.model.sentence import Sentence
 
 Row = dict[str, Any]
 UNREPORTED = (Hand.CHECK, Hand.REFERENCE)  # a person says that it is done, by the verb that follows
-TOLD = {Hand.TAKE_OUT: Verb.UNLOAD, Hand.PUT_IN: Verb.LOAD}
+TOLD = {Hand.TAKE_OUT: Verb.UNLOAD, Hand.PUT_IN: Verb.LOAD, Hand.LEAVE_IN: Verb.LOAD}
 """Work of a hand that a verb tells the plant, with the place behind the cell in its scope."""
 FIRST = (Verb.STOP, Verb.CLEAR, Verb.RESET)
 LAST = (Verb.RESUME, Verb.RETRY, Verb.ABANDON)  # robots go to work once all are ready

@@ -262,6 +262,7 @@ def teaching(plant: Plant, cell: CellRun) -> dict[str, Any] | None:
 def _places(run: CellRun) -> list[dict[str, Any]]:
     """The places of a cell."""
     counts, stations = run.context.places.counts, run.cell.station_targets
+    asked = run.context.places.asked.targets
     return [
         {
             "name": place.target,
@@ -269,6 +270,7 @@ def _places(run: CellRun) -> list[dict[str, Any]]:
             "holds": place.holds,
             "device": place.device,
             "by_people": place.by_people,
+            "asked": place.target in asked,
             "station": stations.index(place.target) if place.target in stations else None,
         }
         for place in run.cell.counted

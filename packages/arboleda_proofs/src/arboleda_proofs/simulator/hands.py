@@ -85,4 +85,5 @@ HANDS: dict[Hand, Callable[[World, str], None]] = {
     Hand.FREE: _free,
     Hand.TAKE_OUT: _take_out,
     Hand.PUT_IN: _put_in,
+    Hand.LEAVE_IN: _put_in,
 }

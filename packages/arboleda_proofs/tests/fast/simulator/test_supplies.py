@@ -9,6 +9,7 @@ from tests.unit.kinds.test_places import PLANT, written
 
 from arboleda.model.messages import Verb
 from arboleda.plant_file.loader import load
+from arboleda.trees.asked_places import AskedPlaces
 from arboleda_proofs.simulator.faults.kind import Fault
 from arboleda_proofs.simulator.invariants.part_places import PLACES
 from arboleda_proofs.simulator.judged_world import JudgedWorld
@@ -31,6 +32,22 @@ def test_it_may_not_empty_a_device_that_people_do_not_fill(tmp_path: Path) -> No
     broken = result.run(cycles=2).broken
     assert broken is not None
     assert broken.invariant == "done_tasks_leave_nothing_behind"
+
+
+OUTPUT = PLANT.replace("inside: {of: oven}", "inside: {of: oven, output: true}")
+LEAVES_A_PART = 'take("rack_1"), put("inside"), mover.home(), cell.fail("not today")'
+
+
+@pytest.mark.parametrize("asks", [True, False])
+def test_nobody_empties_an_output_that_a_failed_task_has_left_full_unasked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, asks: bool
+) -> None:
+    if not asks:
+        monkeypatch.setattr(AskedPlaces, "fail", lambda self: None)
+    model = load(written(tmp_path, OUTPUT, LEAVES_A_PART))
+    broken = Simulation(model, 1, lambda minute: [], invariants=PLACES).run(cycles=2).broken
+    assert (broken is None) is asks
+    assert asks or broken.sentence == "hand lets go of a part at inside, which has 1 already"
 
 
 RESTING = """

@@ -61,6 +61,7 @@ class Place:
     holds: Annotated[int, "How many it holds at most."]
     device: Annotated[str | None, "The device in or under which it is."]
     by_people: Annotated[bool, "Whether people fill or empty it before each task."]
+    asked: Annotated[bool, "Whether a failed task has left it full, and a person has to say what is there."]
     station: Annotated[int | None, "Its number in the rack of a cell that stores."]
 
 

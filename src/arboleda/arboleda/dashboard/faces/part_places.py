@@ -55,11 +55,17 @@ def _dot(words: Words, cell: str, place: Row) -> Row:
         "does": words(f"places.{verb.value}", place=name, holds=holds),
         "arguments": {"place": name},
         "state": "taken" if parts else "free",
-        "refused": place["by_people"],
+        "refused": place["by_people"] and not _is_asked(place),
     }
 
 
 def _note(words: Words, place: Row) -> str:
+    if _is_asked(place):
+        return words("places.asked", place=place["name"])
     if place["by_people"]:
         return words("places.by_people")
     return words("places.of", device=place["device"]) if place["device"] else ""
+
+
+def _is_asked(place: Row) -> bool:
+    return bool(place.get("asked"))  # older records have none

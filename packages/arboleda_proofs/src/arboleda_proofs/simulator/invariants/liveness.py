@@ -79,7 +79,7 @@ def _idle_though_ready(look: Look) -> Iterator[str]:
 def ready(look: Look, cell: KnownCell) -> bool:
     """True if a cell would start a task, by what its robots said and what operators asked for."""
     plant, robots = look.world.plant, look.record.robots
-    if cell.stopped or plant.intake.closed:
+    if cell.stopped or plant.intake.closed or _is_asked(look, cell):
         return False
     for robot in cell.cell.robots:
         if robot.link is Link.SCREEN:
@@ -95,6 +95,13 @@ def ready(look: Look, cell: KnownCell) -> bool:
         if not robot.says_homed and plant.dispatcher.beliefs[robot.name].displaced:
             return False
     return not _is_busy(look, cell) and _outside(look, cell)
+
+
+def _is_asked(look: Look, cell: KnownCell) -> bool:
+    """True while a person has to say what a task that is not done has left at a place."""
+    places = look.truth.places.cells.get(cell.name)
+    asked = look.world.plant.cells[cell.name].context.places.asked
+    return places is not None and places.has_failed and bool(asked.targets)
 
 
 def _is_stopped_with_another_cell(look: Look, person: str) -> bool:

@@ -305,10 +305,17 @@ def _booked(look: Look, request: OperatorRequest) -> Iterator[str]:
     if _ended_a_grip(look):
         return
     named = with_common_places(look.record.scopes.parts(request), look.world.model.cells)
+    begun = {
+        change.message.cell
+        for change in look.record.tasks.changes
+        if change.message.state is TaskState.RUNNING and not change.answer
+    }
     for before in look.record.before_requests.cells:
+        cell = look.record.cells[before.name]
+        seen_to = {each.target for each in cell.cell.places if each.by_people and before.name in begun}
         wanted = before.parts | named.get(before.name, {})
-        booked = look.record.cells[before.name].context.places.counts
-        if booked != wanted:
+        booked = cell.context.places.counts
+        if any(booked[each] != wanted[each] for each in wanted.keys() - seen_to):
             yield f"{before.name} has the parts {booked}, and had to have {wanted}"
 
 

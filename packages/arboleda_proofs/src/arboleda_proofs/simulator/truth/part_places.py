@@ -57,13 +57,16 @@ class CellPlaces:
         self._rack = frozenset(place.target for place in cell.rack)
         self._hands = {space.hand.name: space for space in cell.spaces if space.hand.held_fact}
         self._task = ""
+        self.has_failed = False  # its last task, which is not done
         self._giver: Robot | None = None  # that brings what its task takes
         self.came: set[Position] = set()  # where the giver has stood since that task began
         self._held = {hand: _holds(robots[hand]) for hand in self._hands if hand in robots}
 
     def begin(self, task: str, recipe: Recipe, booked: Mapping[str, int], in_grip: Iterable[str]) -> None:
-        """A task begins: people have filled the supplies and emptied the outputs; these hands are about to
-        close or to open. What a task has put at stations counts also if it begins anew in a later start.
+        """A task begins: people have filled the supplies and emptied the outputs, but for one that a failed
+        task has left full; these hands are about to close or to open.
+
+        What a task has put at stations counts also if it begins anew in a later start.
         """
         handover = self.cell.handover
         is_brought = handover is not None and recipe.alone is None
@@ -75,14 +78,17 @@ class CellPlaces:
             self.parts = dict(booked)
             # a hand has what the plant may not know of, or is about to take what is booked as taken
             self.is_doubtful = any(self._held.values()) or bool(self._began_in_grip)
-        for target in self.by_people:
-            place = self._places[target]
-            self.parts[target] = place.holds if place.supply else 0
+        left = {each for each, n in self.parts.items() if self.has_failed and n >= self._places[each].holds}
+        for place in map(self._places.__getitem__, self.by_people):
+            if place.supply or place.target not in left:
+                self.parts[place.target] = place.holds if place.supply else 0
+        self.has_failed = True  # as long as it is not done
         self._began_with = dict(self.parts)
         self._left, self._moved_by_others, self._brought = {}, set(), Counter()
 
     def end(self) -> None:
         """The task is done."""
+        self.has_failed = False
         self.at_begin, self.at_end = self._began_with, dict(self.parts)
         unseen = self._moved_by_others - self._left.keys()
         left = self._without_people | self._left | {each: int(each in self._put) for each in self._rack}

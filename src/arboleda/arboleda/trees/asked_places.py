@@ -1,0 +1,58 @@
+"""Places in question: a failed task has left them full, and nobody has said since what is there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+
+from arboleda.model.plant_model import Place
+
+
+class AskedPlaces:
+    """Places of a cell of which a person has to say whether a part is still there.
+
+    A task that fails may leave a place full that the next task fills. People may have taken that part out
+    without a word, so whether it is still there is a question, which keeps the next task from beginning.
+    `parts` are the books, which go on changing; `changed` has them kept.
+    """
+
+    def __init__(
+        self, places: Mapping[str, Place], parts: Mapping[str, int], changed: Callable[[], None]
+    ) -> None:
+        self._places = places
+        self._parts = parts
+        self._changed = changed
+        self._known: dict[str, int] = {}  # as the last task began, or as a person has said since
+        self._failed = False  # the last task
+
+    @property
+    def targets(self) -> tuple[str, ...]:
+        """The places in question now."""
+        return tuple(filter(self._is_filled_since, self._places)) if self._failed else ()
+
+    def take_over(self, asked: Collection[str]) -> None:
+        """Take the questions of an earlier start."""
+        self._failed = bool(asked)
+        self._known = {target: n for target, n in self._parts.items() if asked and target not in asked}
+
+    def begin(self) -> None:
+        """Begin a task: the books are as people have left the places."""
+        self._known, self._failed = dict(self._parts), False
+
+    def fail(self) -> None:
+        """End a task that is not done: nobody knows whether people take out what it has left."""
+        self._failed = True
+        if self.targets:
+            self._changed()
+
+    def answer(self, parts: Mapping[str, int]) -> None:
+        """Take a person's word on how many parts are at places; an output in question has to be emptied."""
+        self._known |= {target: n for target, n in parts.items() if not self.is_output(target)}
+
+    def is_output(self, target: str) -> bool:
+        """True for a place that people empty before each task."""
+        return target in self._places and self._places[target].output
+
+    def _is_filled_since(self, target: str) -> bool:
+        place = self._places[target]
+        known = self._known.get(target, place.holds if place.supply else 0)
+        return self._parts[target] >= place.holds and self._parts[target] > known
