@@ -87,13 +87,26 @@ def test_what_a_file_does_not_state_is_offered_with_its_place_in_the_file(tmp_pa
         f"{PLACES}; cells.lab.places: {{inside: {{output: true}}, rack: {{supply: true}}}} would state it",
         f"{GUARD}; zones.in_the_oven.free_while: "
         "{oven: {door: open}} or {oven: {door: closed}} would state it",
-        f"{NEEDS}; kinds.oven.verbs.bake.needs: {{door: closed}} or {{door: open}} would state it",
+        f"{NEEDS}; kinds.oven.verbs.bake.needs: {{door: closed}} or {{door: open}} or {{}} would state it",
     )
     assert notes([Plant(declared=model)]) == [PLACES, GUARD, NEEDS], "as simulate and prove say it"
 
 
 def test_nothing_is_offered_where_all_of_it_is_stated(tmp_path: Path) -> None:
     assert unstated.notes(loader.load(written(tmp_path, STATED))) == ()
+
+
+def test_work_may_need_nothing(tmp_path: Path) -> None:
+    free = PLANT.replace("takes_s: 5", "takes_s: 5, needs: {}")
+    assert NEEDS not in unstated.unknowns(loader.load(written(tmp_path, free)))
+
+
+@pytest.mark.parametrize(("more", "is_known"), [("", False), (", needs={}", True)])
+def test_work_of_a_kind_in_python_may_need_nothing(tmp_path: Path, more: str, is_known: bool) -> None:
+    oven = PLANT[PLANT.index("kinds:") : PLANT.index("cells:")]
+    file = written(tmp_path, PLANT.replace(oven, "").replace("[recipes.py]", "[recipes.py, kinds.py]"))
+    (tmp_path / "kinds.py").write_text(KIND.replace("takes_s=5", f"takes_s=5{more}"))
+    assert (NEEDS not in unstated.unknowns(loader.load(file))) is is_known
 
 
 def test_a_zone_with_two_robots_guards_them(tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ from arboleda.model.facts import Facts, Value, shown
 from arboleda.model.messages import Report
 from arboleda.model.outside import among, quoted
 from arboleda.model.plant_model import Robot
+from arboleda.model.recipe import FOR_PEOPLE
 
 Computed = Callable[..., object]
 """A function of a verb's values, by name; one for a virtual device takes the facts before them."""
@@ -105,7 +106,7 @@ class FactType:
 
 @dataclass(frozen=True, kw_only=True)
 class DeviceVerb:
-    """Verb of a device, as the engine knows it; times in s."""
+    """Verb of a device, as the engine knows it; times in s. `says_needs`: also where it needs nothing."""
 
     name: str
     effect: Effect
@@ -113,6 +114,7 @@ class DeviceVerb:
     sets: tuple[tuple[str, Value | Slot], ...] = ()
     needs: Facts = ()
     needs_of_others: Facts = ()  # facts of other devices of the cell, by role: "reader.lid"
+    says_needs: bool = field(default=False, compare=False, metadata={FOR_PEOPLE: True})
     takes_s: float = 0.0
     at_most_s: float
     on_stop: OnStop = OnStop.HALT

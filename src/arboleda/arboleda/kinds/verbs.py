@@ -50,7 +50,8 @@ class Verb:
       or `Number(lower, upper)`.
     - `sets`: the value of each fact that the verb makes true, by name; `"$mm"` is the value of the parameter
       mm. Or a function of the parameters, given by name, that returns such a mapping.
-    - `needs`: the value that each of these facts must have for the verb to begin, by name.
+    - `needs`: the value that each of these facts must have for the verb to begin, by name; {} says that it
+      needs nothing.
     - `takes_s`: the time that a virtual device takes, s; or a function of the parameters that returns it.
     - `at_most_s`: the time after which the verb has failed, s. None: three times `takes_s`, and at least 2 s;
       it must be given where `takes_s` is a function.
@@ -68,7 +69,7 @@ class Verb:
     effect: Effect
     parameters: Mapping[str, object] = field(default_factory=dict)
     sets: Sets = field(default_factory=dict)
-    needs: Mapping[str, Value] = field(default_factory=dict)
+    needs: Mapping[str, Value] | None = None
     takes_s: Seconds = 0.0
     at_most_s: float | None = None
     on_stop: OnStop = OnStop.HALT
@@ -96,7 +97,7 @@ def motion(
         effect=Effect.MOTION,
         parameters=parameters or {},
         sets=sets or {},
-        needs=needs or {},
+        needs=needs,
         takes_s=takes_s,
         at_most_s=at_most_s,
         works_on_part=works_on_part,
@@ -124,7 +125,7 @@ def process(
         effect=Effect.PROCESS,
         parameters=parameters or {},
         sets=sets or {},
-        needs=needs or {},
+        needs=needs,
         takes_s=takes_s,
         at_most_s=at_most_s,
         on_stop=OnStop.FINISH if finishes else OnStop.HALT,
@@ -152,7 +153,7 @@ def switch(
         effect=Effect.SWITCH,
         parameters=parameters or {},
         sets=sets,
-        needs=needs or {},
+        needs=needs,
         takes_s=takes_s,
         at_most_s=at_most_s,
         holds_part=holds_part,
@@ -178,7 +179,7 @@ def query(
     return Verb(
         effect=Effect.QUERY,
         parameters=parameters or {},
-        needs=needs or {},
+        needs=needs,
         takes_s=takes_s,
         at_most_s=at_most_s,
         answers=answers,

@@ -49,13 +49,15 @@ def verb_of(name: str, verb: Verb, facts: Mapping[str, FactType]) -> DeviceVerb:
     if callable(verb.takes_s) and verb.at_most_s is None:
         raise KindError(f"{name}: takes_s is computed, so it needs at_most_s, how long it is waited for")
     at_most_s = rules.patience_s(takes_s) if verb.at_most_s is None else verb.at_most_s
+    needs = verb.needs or {}
     made = DeviceVerb(
         name=name,
         effect=verb.effect,
         parameters=tuple(slots.items()),
         sets=() if callable(verb.sets) else tuple(_sets(name, verb.sets, facts, slots)),
-        needs=tuple(_needs(name, verb.needs, facts)),
-        needs_of_others=tuple(each for each in verb.needs.items() if rules.OF_OTHER in each[0]),
+        needs=tuple(_needs(name, needs, facts)),
+        needs_of_others=tuple(each for each in needs.items() if rules.OF_OTHER in each[0]),
+        says_needs=verb.needs is not None,
         takes_s=takes_s,
         at_most_s=_seconds(f"{name}.at_most_s", at_most_s, at_least=1e-3),
         on_stop=verb.on_stop,

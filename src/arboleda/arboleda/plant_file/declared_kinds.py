@@ -73,7 +73,8 @@ def _verb(document: Document, place: Place, facts: Types) -> DeviceVerb | None:
     shape = document.read(VerbShape, place)
     slots = _types(document, (*place, "with"), "a parameter", ("self",))
     sets = _facts(document, (*place, "sets"), facts, slots)
-    needs = _facts(document, (*place, "needs"), facts, None)
+    is_free = document.has((*place, "needs")) and document.value((*place, "needs")) == {}
+    needs = () if is_free else _facts(document, (*place, "needs"), facts, None)
     others = _needs_of_others(document, (*place, "needs"))
     answers = _answers(document, place, shape.effect) if shape else None
     parameters = _right(slots)
@@ -86,6 +87,7 @@ def _verb(document: Document, place: Place, facts: Types) -> DeviceVerb | None:
         sets=sets,
         needs=tuple((fact, value) for fact, value in needs if not isinstance(value, Slot)),
         needs_of_others=others,
+        says_needs=document.has((*place, "needs")),
         takes_s=shape.takes_s,
         at_most_s=shape.at_most_s or rules.patience_s(shape.takes_s),
         on_stop=shape.on_stop,

@@ -162,17 +162,17 @@ def _guards(plant: PlantModel, seen: _Seen) -> Iterator[Unstated]:
 
 
 def _needs(seen: _Seen) -> Iterator[Unstated]:
-    """The work of devices that needs nothing, although recipes move a part of the device before it."""
+    """The work of devices of which nobody says what it needs, and whose part recipes move before it."""
     cell = seen.cell
     for role, device in cell.members:
         stated = {each.word for each in cell.needs if each.device == device.name}
         for name, verb in verbs_of(device).items():
-            if verb.effect is not Effect.PROCESS or verb.needs or verb.needs_of_others or name in stated:
+            if verb.effect is not Effect.PROCESS or verb.says_needs or name in stated:
                 continue
             for _, fact, values in seen.doors(seen.called.get((device.name, name), []), [role]):
                 unknown = f"{cell.name}: nothing is known of what {name} of {device.name} needs"
                 place = ("kinds", device.kind_name, "verbs", name, "needs")
-                yield Unstated(unknown=unknown, place=place, values=tuple({fact: each} for each in values))
+                yield Unstated(unknown=unknown, place=place, values=(*({fact: each} for each in values), {}))
 
 
 def _moved(cell: Cell, name: str) -> dict[str, list[Value]]:
