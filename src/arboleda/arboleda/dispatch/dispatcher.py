@@ -128,6 +128,8 @@ class Dispatcher:
             self.effectors.command(command)
         elif isinstance(command, Motion):
             self.whereabouts.set_out(command.robot)
+        elif command.makes_part:
+            self.effectors.make(command.robot)
         self.outlet.leave(command, token)
         return entry
 

@@ -29,6 +29,7 @@ class HandlingStep(Enum):
     """Step of a part's way through an effector."""
 
     TOLD_TO_TAKE = "told to take"
+    TOLD_TO_MAKE = "told to make"  # a device, at a place of its own
     HELD = "held"
     TOLD_TO_LET_GO = "told to let go"
     EMPTY = "empty"
@@ -40,7 +41,7 @@ class Effectors:
 
     `unopened` are robots whose last command to let go failed. `opened` has a sentence for each robot whose
     effector let go unbidden since its last command. `cut_off` are robots that may still switch on a command
-    of an earlier start. `watchers` of an effector are called at each step of a part's way through it.
+    of an earlier start. `watchers` of a device are called at each step of a part's way through it.
     """
 
     def __init__(
@@ -54,7 +55,9 @@ class Effectors:
         self.opened: dict[str, Sentence] = {}
         self.cut_off: set[str] = set()
         self.version = 0
-        self.watchers: dict[str, list[Callable[[str, HandlingStep], None]]] = {name: [] for name in holders}
+        self.watchers: dict[str, list[Callable[[str, HandlingStep], None]]] = {
+            name: [] for name in model.robots
+        }
         self._emptied = {name for name in holders if memory.value(Fact.EMPTIED, name) is not None}
         self._memory = memory
         self._ledger = ledger
@@ -75,6 +78,10 @@ class Effectors:
             handling = HandlingStep.TOLD_TO_TAKE if command.grips else HandlingStep.TOLD_TO_LET_GO
             self._tell(command.robot, handling)
         self.set(command.robot, Grip.SWITCHING)
+
+    def make(self, device: str) -> None:
+        """Book a command that makes a part, which leaves now."""
+        self._tell(device, HandlingStep.TOLD_TO_MAKE)
 
     def declare_empty(self, belief: Belief) -> None:
         """Book that a person has taken the part out of a device.

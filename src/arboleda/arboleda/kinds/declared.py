@@ -119,6 +119,7 @@ class DeviceVerb:
     at_most_s: float
     on_stop: OnStop = OnStop.HALT
     works_on_part: bool = False  # there has to be a part at the device
+    makes_part: bool = field(default=False, metadata={FOR_PEOPLE: True})  # at a place of the device
     holds: bool = False  # the fact that it sets tells whether the device holds a part
     answers: tuple[Value, ...] = ()  # to a query; the first is what a virtual device answers
     sets_by: Computed | None = None  # the facts by its values, in place of `sets`
@@ -294,6 +295,10 @@ class VerbCall(Command):
     @property
     def works_on_part(self) -> bool:
         return self.definition.works_on_part
+
+    @property
+    def makes_part(self) -> bool:
+        return self.definition.makes_part
 
     @property
     def at_most_s(self) -> float:

@@ -60,6 +60,7 @@ class Verb:
       query, the first answer.
     - `on_stop`: HALT ends the verb at a stop, FINISH lets it go on.
     - `works_on_part`: there has to be a part at a place of the device for the verb to begin.
+    - `makes_part`: the verb makes a part, which lies at a place of the device from its beginning on.
     - `holds_part`: the one bool among `sets` tells whether the device holds a part.
     - `answers`: all answers to a query, words or numbers.
 
@@ -74,6 +75,7 @@ class Verb:
     at_most_s: float | None = None
     on_stop: OnStop = OnStop.HALT
     works_on_part: bool = False
+    makes_part: bool = False
     holds_part: bool = False
     answers: Sequence[Value] = ()
     virtual: Computed | None = None
@@ -114,6 +116,7 @@ def process(
     at_most_s: float | None = None,
     finishes: bool = False,
     works_on_part: bool = False,
+    makes_part: bool = False,
     virtual: Computed | None = None,
 ) -> Verb:
     """Returns a verb for work that the device does by itself, such as a machine's program.
@@ -130,6 +133,7 @@ def process(
         at_most_s=at_most_s,
         on_stop=OnStop.FINISH if finishes else OnStop.HALT,
         works_on_part=works_on_part,
+        makes_part=makes_part,
         virtual=virtual,
     )
 

@@ -62,6 +62,7 @@ def verb_of(name: str, verb: Verb, facts: Mapping[str, FactType]) -> DeviceVerb:
         at_most_s=_seconds(f"{name}.at_most_s", at_most_s, at_least=1e-3),
         on_stop=verb.on_stop,
         works_on_part=verb.works_on_part,
+        makes_part=verb.makes_part,
         holds=verb.holds_part,
         answers=_listed(f"{name}.answers", verb.answers).words if verb.effect is Effect.QUERY else (),
         sets_by=verb.sets if callable(verb.sets) else None,

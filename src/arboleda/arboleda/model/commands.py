@@ -68,6 +68,11 @@ class Command:
         return False
 
     @property
+    def makes_part(self) -> bool:
+        """True where it makes a part, which lies at its device then."""
+        return False
+
+    @property
     def at_most_s(self) -> float | None:
         """The longest time that it may take, s; None where that follows from the robot and its way."""
         return None

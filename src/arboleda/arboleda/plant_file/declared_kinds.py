@@ -92,10 +92,11 @@ def _verb(document: Document, place: Place, facts: Types) -> DeviceVerb | None:
         at_most_s=shape.at_most_s or rules.patience_s(shape.takes_s),
         on_stop=shape.on_stop,
         works_on_part=document.has((*place, "works_on")),
+        makes_part=document.has((*place, "makes")),
         holds=document.has((*place, "holds")),
         answers=answers or (),
     )
-    fits = [check(document, place, verb) for check in (_check_time, _check_stop, _check_holds, _check_query)]
+    fits = [check(document, place, verb) for check in CHECKS]
     return verb if named and answers is not None and all(fits) else None
 
 
@@ -122,6 +123,13 @@ def _check_stop(document: Document, place: Place, verb: DeviceVerb) -> bool:
     return not wrong
 
 
+def _check_makes(document: Document, place: Place, verb: DeviceVerb) -> bool:
+    wrong = verb.makes_part and verb.effect is not Effect.PROCESS
+    if wrong:
+        document.problem((*place, "makes"), f"only a process makes a part, and this is a {verb.effect.value}")
+    return not wrong
+
+
 def _check_query(document: Document, place: Place, verb: DeviceVerb) -> bool:
     wrong = verb.effect is Effect.QUERY and bool(verb.sets)
     if wrong:
@@ -131,6 +139,9 @@ def _check_query(document: Document, place: Place, verb: DeviceVerb) -> bool:
 
 def _check_holds(document: Document, place: Place, verb: DeviceVerb) -> bool:
     return _is_free_of(document, (*place, "holds"), rules.holding_objection(verb))
+
+
+CHECKS = (_check_time, _check_stop, _check_makes, _check_holds, _check_query)
 
 
 def _answers(document: Document, place: Place, effect: Effect) -> tuple[Value, ...] | None:

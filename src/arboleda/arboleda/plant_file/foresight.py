@@ -87,7 +87,7 @@ class Foresight:
     def touched(self, command: Command) -> set[SceneKey]:
         """The facts and places that a command may change."""
         keys = {(command.robot, what) for what in (HELD, TAKEN, AT, OVER, *dict(command.sets))}
-        if isinstance(command, Switch) and command.grips is not None:
+        if command.makes_part or (isinstance(command, Switch) and command.grips is not None):
             keys |= {(target, what) for target in self.places for what in OF_PLACES}
         return keys
 
@@ -98,7 +98,15 @@ class Foresight:
             yield from self._by_hand(command, scene)
         if isinstance(command, Motion) and command.robot in self.cell.reach:
             yield from self._on_move(command, scene)
+        made_at = self._made_at(command)
+        if len(made_at) == 1 and not self._can(scene, made_at[0], +1):
+            target = made_at[0].target
+            yield f"has {command.robot} {command.word} a part at {target}, which is full already"
         yield from self._closing(command, scene)
+
+    def _made_at(self, command: Command) -> list[Place]:
+        """The places at which a command may make a part."""
+        return [each for each in self.cell.places if command.makes_part and each.device == command.robot]
 
     def after(self, command: Command, scene: Scene) -> Scene:
         """The scene once a command is done."""
@@ -107,7 +115,10 @@ class Foresight:
             return self._gone(command, scene)
         if isinstance(command, Switch) and command.grips is not None:
             return self._taken(command, self._handled(command, scene))
-        return scene
+        made_at = self._made_at(command)
+        if len(made_at) == 1:
+            return self._moved(scene, made_at[0].target, +1)
+        return scene.without({(each.target, what) for each in made_at for what in OF_PLACES})
 
     def _taken(self, command: Switch, scene: Scene) -> Scene:
         """The scene with HELD and TAKEN of a hand after it gripped or let go."""

@@ -68,10 +68,11 @@ def _without_place(cell: Cell, placed: frozenset[str | None]) -> Iterator[str]:
     for role, device in cell.members:
         if device.name in placed_somewhere:
             continue
-        works = [name for name, verb in verbs_of(device).items() if verb.works_on_part]
-        holds = [name for name, verb in verbs_of(device).items() if verb.holds and cell.places]
-        if works or holds:
-            what = f"works on a part ({works[0]})" if works else f"takes hold of a part ({holds[0]})"
+        verbs = verbs_of(device).items()
+        works = [f"works on a part ({name})" for name, verb in verbs if verb.works_on_part]
+        works += [f"makes a part ({name})" for name, verb in verbs if verb.makes_part]
+        holds = [f"takes hold of a part ({name})" for name, verb in verbs if verb.holds and cell.places]
+        for what in [*works, *holds][:1]:
             how = f"places: {{TARGET: {{of: {role}}}}}" + ("" if works else ", or tool_of")
             yield f"{cell.name}: {device.name} {what}, and no place is of it; say where: {how}"
 

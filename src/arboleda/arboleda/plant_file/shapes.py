@@ -224,6 +224,7 @@ class VerbShape(Shape):
     on_stop: Annotated[OnStop, Field(strict=False)] = OnStop.HALT
     holds: Literal["part"] = "part"
     works_on: Literal["part"] = "part"
+    makes: Literal["part"] = "part"
     answers: Any = None
 
 

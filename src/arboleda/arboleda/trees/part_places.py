@@ -105,8 +105,8 @@ class Places:
         ] = {}  # by hand: the target whose part it was told to take, and did not
         if self._parts:
             self._take_over(self._earlier_words())
-            for holder in {*self._hands, *self._of_device}.intersection(dispatcher.effectors.watchers):
-                dispatcher.effectors.watchers[holder].append(self._follow)
+            for device in {*self._hands, *self._of_device}:
+                dispatcher.effectors.watchers[device].append(self._follow)
 
     def _earlier_words(self) -> list[str]:
         """The words of an earlier start; one of version 0.1 kept the numbers of full stations."""
@@ -225,7 +225,14 @@ class Places:
         return STILL_HELD(robot=robot, place=place.target, device=place.device) if both else None
 
     def _to_work(self, command: Command) -> Sentence | None:
-        return self._without_part(command.robot) if command.works_on_part else None
+        """The reason why a device has no part to work on, or no room for the part that it is to make."""
+        device = command.robot
+        if not command.makes_part:
+            return self._without_part(device) if command.works_on_part else None
+        full = [target for target in self._of_device.get(device, ()) if not self.is_free(target)]
+        if not full or len(full) < len(self._of_device[device]):
+            return None
+        return FULL(robot=device, place=full[0], parts=self.parts(full[0]), cell=self._cell.name)
 
     def _without_part(self, device: str) -> Sentence | None:
         """The reason why a device has no part to take or to work on; parts in hands and carts there count."""
@@ -259,10 +266,14 @@ class Places:
         return next(iter(counted or targets), None)
 
     def _follow(self, hand: str, handling: HandlingStep) -> None:
-        """Take in a step of a part's way through a hand, or that a person has taken parts out of a device."""
+        """Take in a step of a part's way through a hand, or in another device."""
         if hand not in self._hands:
+            targets = self._of_device[hand]
             if handling is HandlingStep.TAKEN_OUT:
-                self.set(dict.fromkeys(self._of_device[hand], 0))
+                self.set(dict.fromkeys(targets, 0))
+            elif handling is HandlingStep.TOLD_TO_MAKE and any(map(self.is_free, targets)):
+                self._move(next(filter(self.is_free, targets)), +1, hand)
+                self._keep()
             return
         held = self._held.get(hand) or HeldPart()
         here = held.target

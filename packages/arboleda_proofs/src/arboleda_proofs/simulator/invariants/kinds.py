@@ -73,6 +73,7 @@ LIKE: tuple[tuple[str, Callable[[VerbCall], bool]], ...] = (
     ("at_most_s", lambda call: call.at_most_s == call.definition.at_most_s),
     ("on_stop", _as_end),
     ("holds", _as_grip),
+    ("makes", lambda call: call.makes_part is call.definition.makes_part),
     ("works_on", lambda call: call.works_on_part is call.definition.works_on_part),
 )
 

@@ -16,6 +16,7 @@ from arboleda.model.grips import Grip
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Cell, Evidence, Place, Robot, Workspace
 from arboleda.model.recipe import Recipe
+from arboleda.plant_file.declared_kinds import verbs_of
 
 from ..recorded.scopes import Scopes
 from ..world import World
@@ -54,6 +55,8 @@ class CellPlaces:
         self.is_doubtful = self.end_is_doubtful = False
         self.by_people = {place.target for place in cell.counted if place.by_people}
         self._places = {place.target: place for place in cell.counted}
+        makers = [device for device in cell.robots if any(v.makes_part for v in verbs_of(device).values())]
+        self.makes_parts = bool(makers)
         self._rack = frozenset(place.target for place in cell.rack)
         self._hands = {space.hand.name: space for space in cell.spaces if space.hand.held_fact}
         self._task = ""
@@ -132,6 +135,15 @@ class CellPlaces:
         else:
             self._left[place.target] = self._without_people[place.target]
         return sentence
+
+    def make(self, device: str) -> str | None:
+        """Take in that a device is told to make a part: from then on it may be there."""
+        targets = [each.target for each in self._places.values() if each.device == device]
+        free = [each for each in targets if self.parts[each] < self.capacity(each)]
+        for target in free[:1]:
+            self.parts[target] += 1
+            self._left[target] = self._without_people[target]
+        return f"{device} makes a part, and has no room for it" if targets and not free else None
 
     def _move(self, place: Place, name: str, moved: int, *, is_of_others: bool) -> str | None:
         """Count a part that a hand took or put; the sentence about what cannot be."""
@@ -308,9 +320,13 @@ class PlacesTruth:
                     self.wrong.append(found)
 
     def command(self, command: Command) -> None:
-        """Take in that the plant tells a hand to close or to open."""
+        """Take in that the plant tells a hand to close or to open, or a device to make a part."""
         if isinstance(command, Switch) and command.grips is not None:
             self._told_at[command.robot, command.grips] = self._world.now
+        for places in self.cells.values() if command.makes_part else ():
+            found = places.make(command.robot)
+            if found is not None and not places.is_doubtful:
+                self.wrong.append(found)
 
     def _is_late(self, hand: RobotTruth, carrier: str) -> bool:
         """True where the carrier of a hand has set out since the hand was told to be as it is."""
@@ -337,8 +353,10 @@ class PlacesTruth:
 
     def restart(self, words: Iterable[object], kept: Mapping[str, str]) -> None:
         """Begin with a new plant: what a person said in the step in which the old one died is so if it was
-        kept, though nobody was answered.
+        kept, though nobody was answered. Nobody knows of the order to make a part whether it had left.
         """
+        for places in self.cells.values():
+            places.is_doubtful |= places.makes_parts
         for word in words:
             if isinstance(word, OperatorRequest) and word.verb in (Verb.LOAD, Verb.UNLOAD):
                 named = with_common_places(self._scopes.parts(word), self._world.model.cells)

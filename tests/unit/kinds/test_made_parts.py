@@ -1,0 +1,87 @@
+"""Devices that make parts: a printer, whose bed is full from when it is told to print."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.model.errors import ConfigError
+from arboleda.model.messages import TaskState
+from arboleda.model.verbs import Verb
+from arboleda.plant_file import advance_check, place_check
+from arboleda.plant_file.loader import load
+from arboleda_proofs.simulator.invariants.part_places import PLACES
+from arboleda_proofs.simulator.run import Simulation
+
+from .test_places import PLANT as LAB
+from .test_places import Lab, advice, written
+
+PLANT = LAB.replace(
+    "  oven:\n    facts",
+    "  printer: {verbs: {print: {effect: process, makes: part, takes_s: 3}}}\n  oven:\n    facts",
+).replace("      oven: {kind: oven}\n", "      oven: {kind: printer}\n")
+PRINT = 'oven.print(), take("inside"), put("bin"), mover.home()'
+
+
+def test_a_hand_takes_what_a_device_has_made(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, PRINT, PLANT)
+    assert [lab.run(), lab.run()] == [None, None]
+    assert lab.places.counts["inside"] == 0 and lab.places.counts["bin"] == 1
+
+
+def test_nothing_is_made_where_a_part_is(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, "oven.print(), oven.print()", PLANT)
+    assert "oven: inside has 1 already" in str(lab.run())
+
+
+@pytest.mark.parametrize("restarts", [False, True])
+def test_whether_a_part_is_on_the_bed_is_asked_after_a_failure(tmp_path: Path, restarts: bool) -> None:
+    lab = Lab(tmp_path, PRINT, PLANT)
+    lab.bench.submit("lab try")
+    assert lab.bench.wait(30.0, lambda: "oven print" in lab.bench.told)
+    lab.bench.power_off("oven")
+    assert lab.bench.outcome(60.0).state is TaskState.FAILED
+    lab.bench.power_on("oven")
+    if restarts:
+        lab.bench.crash()
+    lab.bench.wait(5.0)
+    assert lab.bench.plant.cells["lab"].context.places.asked.targets == ("inside",)
+    assert "see that lab inside is empty and say so (unload lab inside)" in advice(lab)
+    assert lab.bench.operate(Verb.UNLOAD, "lab", place="inside") is None
+    assert lab.bench.plant.cells["lab"].not_ready is None
+
+
+@pytest.mark.parametrize(
+    ("body", "sentence"),
+    [
+        ("oven.print(), oven.print()", "has oven print a part at inside, which is full already"),
+        ("oven.print()", "ends with 1 more at inside of oven than it began with"),
+    ],
+)
+def test_check_knows_what_is_made(tmp_path: Path, body: str, sentence: str) -> None:
+    warnings = advance_check.warnings(load(written(tmp_path, PLANT, body)))
+    assert any(sentence in each for each in warnings), warnings
+
+
+def test_check_finds_nothing_wrong_with_a_part_that_is_made_and_taken(tmp_path: Path) -> None:
+    assert advance_check.warnings(load(written(tmp_path, PLANT, PRINT))) == ()
+
+
+def test_check_misses_the_place_of_what_is_made(tmp_path: Path) -> None:
+    plant = PLANT.replace("inside: {of: oven}", "inside: {}")
+    (warning,) = place_check.warnings(load(written(tmp_path, plant, PRINT)))
+    assert warning.startswith("lab: oven makes a part (print), and no place is of it; say where: ")
+
+
+def test_only_a_process_makes_a_part(tmp_path: Path) -> None:
+    plant = PLANT.replace("effect: process, makes: part", "effect: motion, makes: part")
+    with pytest.raises(ConfigError, match="only a process makes a part, and this is a motion"):
+        load(written(tmp_path, plant, PRINT))
+
+
+def test_the_simulator_judges_what_is_made(tmp_path: Path) -> None:
+    result = Simulation(load(written(tmp_path, PLANT, PRINT)), 1, lambda minute: [], invariants=PLACES).run(
+        cycles=2
+    )
+    assert result.broken is None and result.outcomes == {"done": result.cycles}
