@@ -700,7 +700,17 @@ def test_a_task_that_cannot_be_kept_is_not_acknowledged(plant, store, monkeypatc
     answer = plant.submit("sis_a 0B 1")
     plant.plant.says = lambda events: [replace(TASK, request=events[0].request)]
     plant.loop.turn()
-    with pytest.raises(ArboledaError, match="The disk is full"):
+    with pytest.raises(ArboledaError, match=r"The disk is full\. The task may have been kept all the same"):
+        answer.result(timeout=0)
+
+
+def test_a_task_that_came_after_the_memory_was_lost_was_not_kept(plant, store, monkeypatch):
+    break_disk(store, monkeypatch)
+    turn(plant, GRIP)
+    answer = plant.submit("sis_a 0B 1")
+    plant.plant.says = lambda events: [replace(TASK, request=events[0].request)]
+    plant.loop.turn()
+    with pytest.raises(ArboledaError, match=r"^The disk is full\.$"):
         answer.result(timeout=0)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import shutil
@@ -51,6 +52,18 @@ def test_its_files_are_for_their_owner_only(tmp_path):
         modes = {file.name: stat.S_IMODE(file.stat().st_mode) for file in owner.path.iterdir()}
         assert modes == {"plant.lock": 0o600, "plant.json": 0o600}
         assert stat.S_IMODE(owner.path.stat().st_mode) == 0o700
+
+
+def test_a_disk_that_has_become_read_only_keeps_nobody_from_ending(tmp_path, monkeypatch):
+    def fail(*_, **__):
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+
+    owner = StateDir(tmp_path)
+    owner.open()
+    owner.announce(7)
+    monkeypatch.setattr(Path, "unlink", fail)
+    owner.close()
+    assert find_running(tmp_path) is None
 
 
 def test_closing_twice_leaves_the_next_owner_alone(tmp_path):

@@ -8,7 +8,7 @@ import os
 import re
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
@@ -158,7 +158,8 @@ class StateDir:
         """Give the directory back; idempotent. The lock file stays: removing it would let two owners in."""
         if self._lock is not None:
             self._held = HeldFiles()
-            (self.path / FACTS).unlink(missing_ok=True)
+            with suppress(OSError):  # the lock says that nobody runs, and the disk may be read-only by now
+                (self.path / FACTS).unlink(missing_ok=True)
             os.close(self._lock)
             self._lock = None
         if self._claim is not None:

@@ -46,13 +46,15 @@ from arboleda.model.messages import (
     Shutdown,
     TaskChanged,
     TaskRequest,
+    TaskState,
     Undelivered,
     Verb,
 )
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
-from arboleda.model.sentence import as_sentence
+from arboleda.model.sentence import Phrase, as_sentence
 from arboleda.model.verbs import Arguments
+from arboleda.store.lead import Superseded
 from arboleda.store.plant_memory import PlantMemory
 from arboleda.store.task_rows import COMMAND, History, TaskQuery
 
@@ -70,6 +72,13 @@ from .urgency import Urgency
 
 LOG = logging.getLogger(__name__)
 PATIENCE_S = 6.0  # a stop is confirmed within stop_timeout_s, 5 s in the shipped plant
+
+
+IN_DOUBT = Phrase(
+    "plant.task_in_doubt",
+    "{why} The task may have been kept all the same: look at the tasks after the next start, before you send"
+    " it again without an id",
+)
 
 
 class Facts(NamedTuple):
@@ -330,7 +339,7 @@ class Orchestrator:
     def _tell(self, message: Durable, failure: Exception | None) -> None:
         """Tell whoever waits for it of a change that is durable, or that it is not; in the thread of that."""
         if failure is not None:
-            self._refuse_unkept(message, failure)
+            self._refuse_unkept(message, _in_doubt(message, failure))
             return
         log_answer(message)
         self._answer(message)
@@ -395,7 +404,7 @@ class Orchestrator:
         if isinstance(message, Facts | Journal | TaskChanged | CommandsLeft):
             self.keeping.fail(error)
             if isinstance(message, TaskChanged):
-                self._answer(message, error)
+                self._answer(message, _in_doubt(message, error))
         elif isinstance(message, Command):
             event = Undelivered(
                 at=clock.seconds(), id=message.id, robot=message.robot, sentence=as_sentence(error)
@@ -418,6 +427,13 @@ class Orchestrator:
         if self.plant.intake.closed and self.plant.at_rest:
             self._at_rest.set()
         self.screens.stepped(now)
+
+
+def _in_doubt(message: Durable, failure: Exception) -> Exception:
+    """The failure to keep a message that was written: nobody knows whether the next start finds a task."""
+    if not isinstance(message, TaskChanged) or message.state is not TaskState.QUEUED:
+        return failure
+    return failure if isinstance(failure, Superseded) else ArboledaError(IN_DOUBT(why=as_sentence(failure)))
 
 
 def _bundled(messages: Sequence[Any]) -> list[Any]:
