@@ -76,3 +76,27 @@ def test_no_second_plant_starts_beside_one_whose_directory_was_deleted(
     assert first.wait() == 1 and "while the plant ran" in first.lines[-1]
     third = arboleda(*UP)
     third.wait_for("HTTP API")
+
+
+def flip(log: Path) -> None:
+    content = bytearray(log.read_bytes())
+    content[len(content) // 2] ^= 1
+    log.write_bytes(content)
+
+
+@pytest.mark.parametrize(
+    "lose",
+    [flip, lambda log: os.truncate(log, log.stat().st_size // 2), Path.unlink],
+    ids=["one bit", "half", "removed"],
+)
+def test_a_killed_plant_whose_log_has_lost_a_stop_does_not_start_as_if_nothing_was_stopped(
+    lose: Callable[[Path], object], arboleda: Callable[..., Any], tmp_path: Path
+) -> None:
+    first = arboleda(*UP)
+    first.wait_for("HTTP API")
+    assert arboleda("stop", "sis_a").wait() == 0
+    first.kill()
+    lose(tmp_path / "state" / "plant.sqlite-wal")
+    second = arboleda(*UP)
+    assert second.wait() == 1
+    assert "is older than what the plant has told" in second.lines[-1], second.output

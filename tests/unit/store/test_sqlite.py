@@ -465,10 +465,18 @@ def of_before_courses(path):
 
 def of_before_checks(path):
     """The file as a format had it in which no task said what of it nobody confirmed."""
-    db = sqlite3.connect(path)
+    db = of_before_counts(path)
     if db.execute("SELECT 1 FROM sqlite_master WHERE name = 'task'").fetchone():
         db.execute("DROP INDEX task_ran")
     return without_column(without_column(db, "ran_s", 11), "unchecked", 10)
+
+
+def of_before_counts(path):
+    """The file as a format had it that did not count its changes."""
+    db = sqlite3.connect(path)
+    db.execute("DROP TABLE written")
+    db.execute("PRAGMA user_version = 12")
+    return db
 
 
 def without_column(db, column, version):
@@ -589,7 +597,7 @@ def test_a_damaged_file_is_found_at_the_start(path):
     with path.open("r+b") as file:
         file.seek(4096 * 4)
         file.write(b"\xaa" * 4096 * 4)
-    assert "malformed): move it away, together with its -wal, -shm and -ahead files" in refusal(path)
+    assert "malformed): move it away, together with its -wal, -shm, -ahead and .told files" in refusal(path)
 
 
 @pytest.mark.parametrize("left", [0, 1, 100, 4096, 5000])
@@ -768,7 +776,7 @@ def test_a_full_disk_at_the_start_is_named(path, small_disk):
 
 
 def test_a_fact_that_finds_no_room_is_an_error_and_what_was_kept_stays(path, small_disk):
-    small_disk(11)
+    small_disk(13)
     long = Remember(fact=Fact.QUARANTINE, name="mesa", value="x" * 40_000)
     with Store(path) as store:
         store.keep(LATCH)

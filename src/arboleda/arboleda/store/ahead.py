@@ -45,17 +45,27 @@ class Ahead:
 
     def read(self) -> list[Remember]:
         """The facts that were not committed; none if the file was not written as a whole."""
-        try:
-            words = self.path.read_bytes()
-        except FileNotFoundError:
-            return []
-        length = int.from_bytes(words[:LENGTH], "big")
-        text = words[LENGTH + SUM :][:length]
-        if not length or len(text) < length or zlib.crc32(text).to_bytes(SUM, "big") != words[LENGTH:][:SUM]:
+        text = self._text()
+        if not text:
             return []
         boot, rows = literal_eval(text.decode())
         facts = [Remember(fact=Fact(fact), name=name, value=value) for fact, name, value in rows]
         return facts if boot == self._boot else []
+
+    def is_damaged(self) -> bool:
+        """True if the file is not as a process leaves it, killed or not; a power cut may have done that."""
+        return self._text() is None
+
+    def _text(self) -> bytes | None:
+        """What was noted, b"" if nothing was; None if that is not there as a whole."""
+        try:
+            words = self.path.read_bytes()
+        except FileNotFoundError:
+            return b""
+        length = int.from_bytes(words[:LENGTH], "big")
+        text = words[LENGTH + SUM :][:length]
+        is_whole = len(text) == length and zlib.crc32(text).to_bytes(SUM, "big") == words[LENGTH:][:SUM]
+        return text if is_whole or not words else None
 
     def clear(self) -> None:
         """Forget the facts: they are committed. Before the first are written the file itself goes."""

@@ -28,6 +28,7 @@ from .memory_file import (
 )
 from .sqlite import Store
 from .task_rows import TaskQuery
+from .told import Told
 
 BESIDE = ("-wal", "-shm", "-journal", "-ahead")
 
@@ -78,6 +79,7 @@ def restore(source: sqlite3.Connection, copy: Path, memory: Path, plant: str = "
             restored.tasks.select(TaskQuery(limit=1))
         with explained(memory, StartError, "cannot be replaced"):
             _set_aside(memory)
+            Told(memory).forget()  # a backup is older on purpose
             fresh.replace(memory)
     except ArboledaError as error:
         raise StartError(str(error).replace(str(fresh), str(copy))) from error
@@ -127,9 +129,14 @@ def _refuse_other(found: str | None, copy: Path, plant: str | None) -> None:
 def _fold(memory: Path) -> str | None:
     """Merge a memory and its log into one file, unless it is too damaged; returns the plant's name.
 
-    None: there is no memory, or its owner is unknown. Raises StartError if another program uses it.
+    None: there is no memory, or its owner is unknown. Raises StartError if another program uses it. What has
+    lost something stays as it is: folding would delete the rest of a damaged log.
     """
     if not memory.exists():
+        return None
+    try:
+        Told(memory).refuse_older()
+    except (StartError, *SPOILT):
         return None
     try:
         with closing(sqlite3.connect(memory, timeout=BUSY_S, isolation_level=None)) as db:

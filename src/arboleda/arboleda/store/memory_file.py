@@ -12,7 +12,8 @@ from arboleda.model.outside import plain, quoted
 
 from . import row_sums
 
-VERSION = 12
+VERSION = 13
+VERSION_COUNTS = 13  # from this one on a memory counts its changes
 BUSY_S = 1.0  # a person may look into the file with another program; the plant's own lock keeps plants apart
 OWNER = ("plant", "name")  # the row of `fact` that says whose memory it is; no `Fact` has this name
 BOOT = ("host", "boot")  # the row that says on which boot of its host a start writes that has not ended yet
@@ -20,7 +21,10 @@ LOST_WITH_IT = (
     "lost with it are stop latches, what the effectors hold, quarantined zones, the tasks and the operators'"
     " journal"
 )
-MOVE_AWAY = f"move it away, together with its -wal, -shm and -ahead files, and start again; {LOST_WITH_IT}"
+MOVE_AWAY = (
+    f"move it away, together with its -wal, -shm, -ahead and .told files, and start again; {LOST_WITH_IT}"
+)
+PUT_BACK = f"put it, or a backup, in its place and start again; {LOST_WITH_IT}"
 ADVICE = {  # by SQLite's text; Python 3.10 has no error codes
     "not a database": MOVE_AWAY,
     "malformed": MOVE_AWAY,
@@ -63,8 +67,7 @@ def advice(what: str) -> str:
 
 def read_only(path: Path) -> sqlite3.Connection:
     """A connection that only reads, for one thread at a time; raises sqlite3.Error if there is no file."""
-    address = f"{path.resolve().as_uri()}?mode=ro"
-    db = _connected(address)
+    db = _connected(path, "mode=ro")
     try:
         version(db)
     except SPOILT as error:
@@ -73,11 +76,17 @@ def read_only(path: Path) -> sqlite3.Connection:
         if not unmade or not path.exists() or (log.exists() and log.stat().st_size):
             raise
         # Read-only, or with a full disk, no log can be made; without one nothing is missing.
-        db = _connected(f"{address}&immutable=1")
+        db = immutable(path)
     return db
 
 
-def _connected(address: str) -> sqlite3.Connection:
+def immutable(path: Path) -> sqlite3.Connection:
+    """A connection that reads the main file alone, without its log."""
+    return _connected(path, "mode=ro&immutable=1")
+
+
+def _connected(path: Path, how: str) -> sqlite3.Connection:
+    address = f"{path.resolve().as_uri()}?{how}"
     return sqlite3.connect(address, uri=True, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
 
 

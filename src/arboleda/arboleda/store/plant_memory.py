@@ -69,6 +69,10 @@ class PlantMemory(ABC):
         """Make sure that this process still leads, and that what it wrote can be found again; ArboledaError.
         Costs next to nothing while that is known."""
 
+    def look(self) -> None:
+        """Do what `confirm` does, and look for what other programs have written; from any thread."""
+        self.confirm()
+
     def keep(self, *facts: Remember) -> None:
         """Commit facts, and forget those whose value is None: all of them, or none."""
         last_words = {(fact.fact, fact.name): fact for fact in facts}.values()

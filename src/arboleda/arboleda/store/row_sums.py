@@ -1,4 +1,5 @@
-"""Checksums of the rows of a plant's memory, so that a changed bit does not pass for what was written."""
+"""Checksums of the rows of a plant's memory, so that a changed bit does not pass for what was written, and
+a count of their changes, so that an older memory does not pass for the last one."""
 
 from __future__ import annotations
 
@@ -15,6 +16,12 @@ KEYS = {
     "run": ("number",),
 }
 COLUMNS = tuple(f"ALTER TABLE {table} ADD COLUMN crc INTEGER" for table in KEYS)
+COUNT = (
+    # the number stands there twice: `integrity_check` finds a bit of it that has changed
+    "CREATE TABLE written (number INTEGER NOT NULL, negative INTEGER NOT NULL CHECK (number + negative = 0))",
+    "INSERT INTO written (number, negative) VALUES (0, 0)",
+)
+ONE_MORE = "UPDATE written SET number = number + 1, negative = negative - 1"
 UPPER_BIT = 2**31  # SQLite keeps the sum of the schema in a number with a sign
 
 
@@ -24,15 +31,24 @@ def know(db: sqlite3.Connection) -> None:
 
 
 def watch(db: sqlite3.Connection) -> None:
-    """Have each row that this connection writes summed in the same commit. Triggers of the connection do it,
-    not of the file: other programs have no such function."""
+    """Have each row that this connection writes summed in the same commit, and each change counted. Triggers
+    of the connection do it, not of the file: other programs have no such function."""
     for table, keys in KEYS.items():
         names = _columns(db, table)
         values, wanted = ", ".join(names), " AND ".join(f"{key} = new.{key}" for key in keys)
-        body = f"UPDATE {table} SET crc = arboleda_crc({values}) WHERE {wanted}"
+        body = f"UPDATE {table} SET crc = arboleda_crc({values}) WHERE {wanted}; {ONE_MORE}"
         for event in ("INSERT", f"UPDATE OF {values}"):
             name = f"{table}_{event.split()[0].lower()}"
             db.execute(f"CREATE TEMP TRIGGER {name} AFTER {event} ON main.{table} BEGIN {body}; END")
+    db.execute(f"CREATE TEMP TRIGGER fact_delete AFTER DELETE ON main.fact BEGIN {ONE_MORE}; END")
+
+
+def written(db: sqlite3.Connection) -> int:
+    """The number of the last change that a connection sees; sqlite3.Error if there is none."""
+    found = [number for (number,) in db.execute("SELECT number FROM written") if isinstance(number, int)]
+    if len(found) != 1:
+        raise sqlite3.DatabaseError("database disk image is malformed")
+    return found[0]
 
 
 def fill(db: sqlite3.Connection) -> Iterator[str]:

@@ -3,7 +3,7 @@
 A commit appends to the log of the file (`-wal`) and waits for no disk: it survives a killed process. `sync`
 has the system write the log to the disk, by a descriptor of its own: from any thread, and while the plant
 commits more. `fold` brings the log into the file, by a connection of its own. What is noted is in a file
-beside them (`-ahead`) until it is committed.
+beside them (`-ahead`) until it is committed. How far people were told is beside them, too (`told.py`).
 """
 
 from __future__ import annotations
@@ -23,12 +23,13 @@ from arboleda.model.messages import Remember
 from . import row_sums
 from .ahead import Ahead
 from .held_files import HeldFiles
+from .main_file import MainFile
 from .memory_file import (
     BOOT,
     BUSY_S,
-    LOST_WITH_IT,
     MOVE_AWAY,
     OWNER,
+    PUT_BACK,
     VERSION,
     boot,
     explained,
@@ -40,6 +41,7 @@ from .memory_file import (
 )
 from .plant_memory import PlantMemory
 from .rows import Statement, row_of_fact
+from .told import Told
 
 TASKS = (
     # `ended_s` is null as long as a task waits or runs; times are Unix times
@@ -85,6 +87,7 @@ SCHEMA = (
     *row_sums.COLUMNS,
     *UNCHECKED,
     *AGES,
+    *row_sums.COUNT,
 )
 SINCE = {
     1: ("ALTER TABLE journal ADD COLUMN cell TEXT",),
@@ -98,11 +101,15 @@ SINCE = {
     9: row_sums.COLUMNS,
     10: UNCHECKED,
     11: AGES,
+    12: row_sums.COUNT,
 }
 IN_MEMORY = Path(":memory:")
-FOLDED = 250  # commits after which the log is folded into the file: about 1,000 pages
+FOLDED = 250  # commits after which the log is folded into the file: about 1,250 pages
 LONGEST_LOG = 10_000  # pages at which a commit does that itself
-PUT_BACK = f"put it, or a backup, in its place and start again; {LOST_WITH_IT}"
+NOTE_DAMAGED = (
+    "{path} is not as it was written, and it may say what robots were told last: look what their effectors"
+    " hold, move it away and start again."
+)
 IN_PLACE = "start again; as the plant ends now, all that it kept goes into the memory itself, if it is there"
 
 
@@ -125,14 +132,19 @@ class Store(PlantMemory):
         self._held = HeldFiles()
         self._ahead = None if path == IN_MEMORY else Ahead(Path(f"{path}-ahead"), self._boot)
         self._noted: Sequence[Remember] = ()
+        self._told: Told | None = None
+        self._main: MainFile | None = None
 
     def open(self) -> None:
         """Open the file, or make a new one; raises StartError. Idempotent."""
         if self._opened is not None:
             return
         with self._explained(StartError):
-            if not self._is_there():
+            told = None if self.path == IN_MEMORY else Told(self.path)
+            if not self._is_there(told):
                 self._make()
+            elif told is not None:
+                told.refuse_older()
             db = sqlite3.connect(self.path, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
             try:
                 self._prepare(db)
@@ -143,12 +155,14 @@ class Store(PlantMemory):
                 raise
         self._opened = db
         self.may_lack_writes = boot(db) not in (None, self._boot)
-        if self._ahead is not None:
+        if self._ahead is not None and told is not None:
             self._held = HeldFiles([self.path, self._log])
             self._log_file = os.open(self._log, os.O_RDONLY)
             with self._explained(StartError):
                 self._folder = sqlite3.connect(self.path, isolation_level=None, check_same_thread=False)
                 version(self._folder)  # it opens the file when it is first used
+                told.open()
+                self._told, self._main = told, MainFile(self.path, told)
                 self._noted = self._ahead.read()
             self.settle()
             with self._explained(StartError):
@@ -167,6 +181,9 @@ class Store(PlantMemory):
                 with suppress(sqlite3.Error):  # then the next start is more careful than it need be
                     self._opened.execute(*row_of_fact(BOOT, None))
                 self._ends_well = False
+            if self._told is not None:
+                self._told.close()
+                self._told = self._main = None
             if self._folder is not None:
                 self._folder.close()
                 self._folder = None
@@ -206,17 +223,29 @@ class Store(PlantMemory):
     def sync(self) -> None:
         try:
             with self.timing, self._explained(ArboledaError):
+                number = 0 if self._told is None else self._told.number()
                 self._wait_for_disk()
         except ArboledaError:
             self._ends_well = False
             raise
         self.confirm()
+        if self._told is not None:
+            self._told.tell(number)
 
     def fold(self) -> None:
-        if self._folder is not None and self._unfolded >= FOLDED:
+        if self._folder is not None and self._main is not None and self._unfolded >= FOLDED:
             self._unfolded = 0
-            with suppress(sqlite3.Error):  # the log grows on, until a commit cannot be made
-                self._folder.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchall()
+            with suppress(
+                sqlite3.Error, ArboledaError, OSError
+            ):  # the log grows on, until a commit cannot be made
+                self._main.fold(self._folder)
+
+    def look(self) -> None:
+        """Raises ArboledaError as well if another program has written into the file."""
+        self.confirm()
+        main = self._main  # another thread may close the memory meanwhile
+        if main is not None:
+            main.look()
 
     def confirm(self) -> None:
         """Raises ArboledaError if the open file is no longer in its place: later writes would be lost.
@@ -275,6 +304,8 @@ class Store(PlantMemory):
         row_sums.watch(db)
         if self._plant:
             self._claim(db)
+        if self._ahead is not None and boot(db) == self._boot and self._ahead.is_damaged():
+            raise StartError(NOTE_DAMAGED.format(path=self._ahead.path))
 
     def _claim(self, db: sqlite3.Connection) -> None:
         """Enter the plant's name in a memory that has none; raises StartError if it is another plant's."""
@@ -287,15 +318,14 @@ class Store(PlantMemory):
             f"The plant's memory {self.path} cannot be used (a row is not as it was written): {MOVE_AWAY}."
         )
 
-    def _is_there(self) -> bool:
+    def _is_there(self, told: Told | None) -> bool:
         """True if there is a memory to open; raises StartError if only a part of one is there."""
-        log = self._log
-        if self.path == IN_MEMORY or self.path.exists():
+        if told is None or self.path.exists():
             return True
-        if log.exists():
-            raise StartError(
-                f"The plant's memory {self.path} is gone, but {log} is there: put it back, or {MOVE_AWAY}."
-            )
+        for left in (self._log, told.path):
+            if left.exists():
+                gone = f"The plant's memory {self.path} is gone, but {left} is there"
+                raise StartError(f"{gone}: put it back, or {MOVE_AWAY}.")
         return False
 
     def _make(self) -> None:

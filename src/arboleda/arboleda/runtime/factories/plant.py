@@ -68,7 +68,7 @@ def looks(assembly: Assembly) -> Iterator[Part]:
         return
     held = assembly.holdings
     is_leased = held.memory.lead.renew_s is not None  # then the thread of the lease finds out
-    places = [held.state.confirm] if is_leased else [held.memory.confirm, held.state.confirm]
+    places = [held.state.confirm] if is_leased else [held.memory.look, held.state.confirm]
     each: list[Callable[[], None]] = [held.pace.look, *places]  # a disk that hangs may hold up the others
     yield Periodic("place", each, assembly.crash)
 
