@@ -15,6 +15,7 @@ from arboleda.plant_file import loader
 from arboleda.runtime.state import STORE
 from arboleda.store.task_rows import TaskHistory, TaskQuery, TaskRow
 
+from .damages import unnoticed
 from .judge import Kill, Verdict, judge
 from .people import ROUND_S, People
 from .processes import PATIENCE_S, Boards, Ended, Plant
@@ -29,11 +30,14 @@ class Outcome:
     """What is known at the end.
 
     `api_s`, `boards_s`: how long each start took until its API answered, and until every robot was heard.
-    `trouble`: why it came to no good end.
+    `damages`: how often a file of the memory was damaged in a copy after a kill. `unnoticed`: after which of
+    them a start would know less than people were told. `trouble`: why it came to no good end.
     """
 
     kills: list[Kill] = field(default_factory=list)
     at_start: int = 0
+    damages: int = 0
+    unnoticed: list[str] = field(default_factory=list)
     api_s: list[float] = field(default_factory=list)
     boards_s: list[float] = field(default_factory=list)
     seconds: float = 0.0
@@ -46,7 +50,7 @@ class Outcome:
 
     @property
     def ok(self) -> bool:
-        return self.verdict.ok and not self.trouble
+        return self.verdict.ok and not self.trouble and not self.unnoticed
 
 
 class Campaign:
@@ -102,6 +106,7 @@ class Campaign:
             killed_at = time.time()
             plant.kill()
             self._boards.leave()
+        self._damage()
         rows = self._rows(is_open=True)
         running = frozenset(row.id for row in rows if row.state == "running")
         kill = Kill(
@@ -111,6 +116,13 @@ class Campaign:
         self._outcome.at_start += at_start
         when = "while it started" if at_start else f"{share * LATEST_S:.2f} s into work"
         self._say(f"kill {len(self._outcome.kills)} of {self._wanted}, {when}: {len(running)} at work")
+
+    def _damage(self) -> None:
+        """Damage copies of what the kill has left of the memory, in each way."""
+        customers = self._people.customers
+        tried, silent = unnoticed(self._state, customers.accepted, customers.ends, self._dice)
+        self._outcome.damages += tried
+        self._outcome.unnoticed += silent
 
     def _last_round(self) -> Kill:
         """Start once more and let all that is open end."""

@@ -20,6 +20,8 @@ def lines(outcome: Outcome) -> Iterator[str]:
     yield f"{kills} kills, {outcome.at_start} of them while the plant started, in {outcome.seconds:.0f} s"
     if kills:
         yield f"  {outcome.seconds / kills:.1f} s for each"
+    yield f"{outcome.damages} damages to copies of the memory after these kills"
+    yield from told({"unnoticed": outcome.unnoticed})
     yield f"{outcome.accepted} tasks accepted: " + counts(outcome.tasks)
     yield from told({**verdict.wrong, "trouble": outcome.trouble})
     left = sum(len(kill.running) for kill in outcome.kills)
