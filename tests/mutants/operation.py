@@ -158,9 +158,9 @@ ADVICE = (
         "After a reboot it is advised to retry, which is held again, for ever.",
         edit(Advisor._readying, "obstacle.reason is Reason.NOT_HOMED", "False"),
         edit(Advisor._recovering, "(Verb.RETRY, name) in run.in_vain", "False"),
-        weather={"reboot": 10.0},
+        weather={"reboot": 2.0},  # so seldom that seven acts follow on one
         likely=70,
-        cycles=1,
+        cycles=20,
     ),
     mutant(
         "refusals_are_foretold",
