@@ -142,7 +142,7 @@ class Store(PlantMemory):
         with self._explained(StartError):
             told = None if self.path == IN_MEMORY else Told(self.path)
             if not self._is_there(told):
-                self._make()
+                _make(self.path)
             elif told is not None:
                 told.refuse_older()
             db = sqlite3.connect(self.path, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
@@ -328,22 +328,23 @@ class Store(PlantMemory):
                 raise StartError(f"{gone}: put it back, or {MOVE_AWAY}.")
         return False
 
-    def _make(self) -> None:
-        """Make an empty memory. It appears with all its tables: one that has none was not made here."""
-        fresh = self.path.with_name(f".{self.path.name}.new")
-        fresh.unlink(missing_ok=True)
-        db = sqlite3.connect(fresh, isolation_level=None)
-        try:
-            row_sums.know(db)
-            _carry_out(db, _made(db, SCHEMA))
-            db.close()
-            fresh.replace(self.path)
-        finally:
-            db.close()
-            fresh.unlink(missing_ok=True)
-
     def _explained(self, kind: type[ArboledaError]) -> AbstractContextManager[None]:
         return explained(self.path, kind)
+
+
+def _make(path: Path) -> None:
+    """Make an empty memory. It appears with all its tables: one that has none was not made here."""
+    fresh = path.with_name(f".{path.name}.new")
+    fresh.unlink(missing_ok=True)
+    db = sqlite3.connect(fresh, isolation_level=None)
+    try:
+        row_sums.know(db)
+        _carry_out(db, _made(db, SCHEMA))
+        db.close()
+        fresh.replace(path)
+    finally:
+        db.close()
+        fresh.unlink(missing_ok=True)
 
 
 def _made(db: sqlite3.Connection, statements: Iterable[str]) -> Iterator[str]:
