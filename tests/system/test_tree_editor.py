@@ -162,13 +162,14 @@ def test_values_are_written_a_part_becomes_a_tree_and_somebody_else_is_not_overw
     assert there.node("Milling", "root").name == "RetryUntilSuccessful"
     ben = {"editor": "test-of-ben", "name": "Ben"}
     httpx.post(f"{address}/api/draft/take", json=ben, timeout=PATIENCE_S).raise_for_status()
-    page.click("[data-draw-tree=Tend]")
-    page.click(row("0"))
-    page.click("[data-draw=remove]")
-    page.wait_for_function(
-        "document.getElementById('draw-note').textContent.includes('Ben edits this draft')"
-    )
-    labelled(page, "0", "have the door open")
+    page.wait_for_selector("#draw-who:has-text('Ben edits the draft since')")
+    assert page.is_disabled("[data-draw=remove]")
+    step = {"editor": "test-of-ben", "file": "tend.xml", "text": TEXT}
+    httpx.post(f"{address}/api/draft/set_trees", json=step, timeout=PATIENCE_S).raise_for_status()
+    page.click("#draw [data-make=take]")
+    page.wait_for_selector("#draw-who:has-text('You edit the draft.')")
+    page.wait_for_selector("[data-draw-tree=Milling]", state="detached")
+    assert page.is_enabled("[data-draw=remove]")
 
 
 def test_by_keys_alone_a_tree_is_drawn(editor: Open) -> None:
