@@ -98,15 +98,11 @@ class Foresight:
             yield from self._by_hand(command, scene)
         if isinstance(command, Motion) and command.robot in self.cell.reach:
             yield from self._on_move(command, scene)
-        made_at = self._made_at(command)
+        made_at = _made_at(self.cell, command)
         if len(made_at) == 1 and not self._can(scene, made_at[0], +1):
             target = made_at[0].target
             yield f"has {command.robot} {command.word} a part at {target}, which is full already"
         yield from self._closing(command, scene)
-
-    def _made_at(self, command: Command) -> list[Place]:
-        """The places at which a command may make a part."""
-        return [each for each in self.cell.places if command.makes_part and each.device == command.robot]
 
     def after(self, command: Command, scene: Scene) -> Scene:
         """The scene once a command is done."""
@@ -115,7 +111,7 @@ class Foresight:
             return self._gone(command, scene)
         if isinstance(command, Switch) and command.grips is not None:
             return self._taken(command, self._handled(command, scene))
-        made_at = self._made_at(command)
+        made_at = _made_at(self.cell, command)
         if len(made_at) == 1:
             return self._moved(scene, made_at[0].target, +1)
         return scene.without({(each.target, what) for each in made_at for what in OF_PLACES})
@@ -297,3 +293,8 @@ def _guarding_facts(lock: Interlock, scene: Scene) -> Iterator[tuple[str, str]]:
         current = scene.get(lock.device, fact)
         if current not in (None, value):
             yield f"{fact} of {lock.device} is {shown(current)}", shown(value)
+
+
+def _made_at(cell: Cell, command: Command) -> list[Place]:
+    """The places at which a command may make a part."""
+    return [each for each in cell.places if command.makes_part and each.device == command.robot]
