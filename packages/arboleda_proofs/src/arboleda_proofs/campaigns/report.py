@@ -14,13 +14,12 @@ from arboleda.model.counting import counted
 from arboleda_proofs.simulator.faults.titles import title
 from arboleda_proofs.simulator.findings import Finding
 
-from .screen import ends_of, say_of
+from .screen import WIDEST, ends_of, say_of
 from .tally import Tally
 from .words import seeds, short
 
 Rows = Sequence[tuple[str, int]]
 
-WIDEST = 1000  # columns of characters
 ONE_COLUMN = 8  # kinds of faults; more are drawn in two, where there is room
 
 
@@ -85,9 +84,10 @@ def _where(finding: Finding) -> str:
 
 
 def amount(tally: Tally) -> str:
-    """The amount simulated: seeds, cycles, faults and the plant's time."""
+    """The amount simulated: seeds, cycles, faults, the plant's time and that of a seed."""
     done = [seeds(tally.rows), counted(tally.cycles, "cycle"), counted(tally.faults.total(), "fault")]
-    return f"{', '.join(done)}, {tally.seconds:,.0f} s of plant time"
+    each = f", {tally.seconds / len(tally.rows):,.0f} s a seed" if len(tally.rows) > 1 else ""
+    return f"{', '.join(done)}, {tally.seconds:,.0f} s of plant time{each}"
 
 
 def speed(tally: Tally, elapsed_s: float) -> str:

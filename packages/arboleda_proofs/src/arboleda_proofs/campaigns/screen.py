@@ -21,6 +21,7 @@ from arboleda.web.languages.templates import heading
 EVERY_S = 5.0  # between plain lines
 FIRST_S = 1.0  # until the first of a command that loads for a second before
 WIDTH = 120  # columns where there is no terminal that has a width
+WIDEST = 1000  # columns of a table there
 Show = Callable[[str, int], None]  # (what to say, how much is done)
 
 
@@ -65,6 +66,14 @@ def console(*, language: str = FIRST, quiet: bool = False) -> SpeakingConsole:
     if not made.is_terminal:
         made.width = max(made.width, WIDTH)
     return made
+
+
+def print_whole(console: Console, table: Table) -> None:
+    """Print a table; where no terminal has a width, as wide as it is."""
+    if not console.is_terminal:
+        as_wide_as_it_is = console.options.update(max_width=WIDEST)
+        console.width = max(console.width, console.measure(table, options=as_wide_as_it_is).maximum)
+    console.print(table)
 
 
 def ends_of(console: Console) -> Callable[[str], str]:

@@ -9,6 +9,10 @@ import pytest
 
 from arboleda.model.messages import Verb
 from arboleda.plant_file.loader import load
+from arboleda_proofs.campaigns.plants import Plant
+from arboleda_proofs.campaigns.proof.calm import calm_runs
+from arboleda_proofs.campaigns.proof.proof import Proof
+from arboleda_proofs.campaigns.proof.scenario import scenarios
 from arboleda_proofs.simulator.faults.kind import Fault
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 from arboleda_proofs.simulator.people import Attendant
@@ -79,6 +83,7 @@ def carry(cell):
     take, put = arm.visit("in", arm.grip()), arm.visit("bin", arm.let_go())
     return work(take, put, arm.home(), bed.clamp(on=True), cell.wait(5), bed.clamp(on=False))
 """
+EACH = 40  # of so many portions of a proof one is run
 FAULTS = {
     "a gripper closes late, where the recovery has carried it": Fault(
         kind="board_stall", at=3.845405, seconds=3.266041, target="jaw"
@@ -170,3 +175,14 @@ def opening(world: World) -> float:
     world.request_task("a carry")
     assert world.advance(20.0, lambda: bool(opened))
     return opened[0]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("plant", "recipes"), [(ONE, CARRY), (THREE, CARRY), (CLAMP, CLAMPED)], ids=["one", "three", "clamp"]
+)
+def test_a_sample_of_all_single_faults_breaks_nothing(tmp_path: Path, plant: str, recipes: str) -> None:
+    model = Plant(declared=written(tmp_path, plant, recipes)).model
+    proof = Proof(model=model, calm=tuple(calm_runs(model, scenarios(model))))
+    proved = [proof.run(number) for number in range(0, len(proof.portions), EACH)]
+    assert [each.broken for portion in proved for each in portion.outcomes if each.broken] == []

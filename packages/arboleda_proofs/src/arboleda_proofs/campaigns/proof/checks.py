@@ -43,6 +43,11 @@ def checks(proof: Proof, case: Case) -> Sequence[Check]:
     return proof.checked[key]
 
 
+def tried_checks(proof: Proof, case: Case) -> Sequence[Check] | None:
+    """The checks of a case; None where they were not tried, as there was no time."""
+    return proof.checked.get((case.row, case.fault))
+
+
 def _checks(proof: Proof, case: Case) -> Iterator[Check]:
     cell = proof.model.cell(case.scenario.cell)
     known = [*_facts(case, cell, proof.calm[case.row].state)]

@@ -14,7 +14,8 @@ from .proof import Proof
 @dataclass(frozen=True, kw_only=True)
 class Forecast:
     """Forecast of the runs of a proof that are not `kept` from before; `pace`: seconds of a processor for a
-    second of a run without faults. `budget_s` is what is left for them.
+    second of a run without faults. `budget_s` is what is left for them. `share`: the number of all tasks for
+    each one that has run.
     """
 
     proof: Proof
@@ -22,6 +23,7 @@ class Forecast:
     jobs: int
     budget_s: float = math.inf
     kept: int = 0
+    share: float = 1.0
 
     @property
     def words(self) -> str:
@@ -29,9 +31,9 @@ class Forecast:
         recipes = counted(
             len({(each.scenario.cell, each.scenario.recipe) for each in self.proof.calm}), "recipe"
         )
-        runs, cores = counted(self.proof.total - self.kept, "run"), counted(self.jobs, "core")
-        share = self.budget_s / self.seconds if self.seconds else 1.0
-        part = f"; --budget is enough for about {share:.1%}" if share < 1.0 else ""
+        runs, cores = counted(self._total - self.kept, "run"), counted(self.jobs, "core")
+        enough = self.budget_s / self.seconds if self.seconds else 1.0
+        part = f"; --budget is enough for about {enough:.1%}" if enough < 1.0 else ""
         if self.proof.every:
             return f"{recipes}, every instant: about {runs}, {_time(self.seconds)} on {cores}{part}"
         return f"{recipes}, classes of instants: about {runs}, {_time(self.seconds)} on {cores}{part}"
@@ -43,8 +45,12 @@ class Forecast:
         It would take half of that, but many fail soon, or soon are as the calm one again.
         """
         each_s = [self.pace * calm.lasts_s / 3 + FORK_TAKES_S for calm in self.proof.calm]
-        all_s = sum(each_s[row] * runs for row, runs in self.proof.by_scenario.items())
-        return all_s * (1.0 - self.kept / max(self.proof.total, 1)) / self.jobs
+        all_s = sum(each_s[row] * runs for row, runs in self.proof.by_scenario.items()) * self.share
+        return all_s * (1.0 - self.kept / max(self._total, 1)) / self.jobs
+
+    @property
+    def _total(self) -> int:
+        return round(self.proof.total * self.share)
 
 
 def _time(seconds: float) -> str:

@@ -19,7 +19,7 @@ from ..from_above import as_svg
 from ..setting import rules
 from ..words import fault_said
 from .calm import Calm
-from .checks import Check, checks
+from .checks import Check, tried_checks
 from .instants import Instant
 from .moment import Moment
 from .outcome import MOST_ACTS, End
@@ -83,7 +83,9 @@ def _parts(proof: ProofPage) -> Iterator[str]:
     yield from _amount(proof)
     yield f"<h2>{_each('unnoticed')}</h2><p class=quiet>{_each('unnoticed_note')}</p>"
     unnoticed = proof.tally.unnoticed()
-    found = "".join(_unnoticed(case, count, checks(proof.tally.proof, case)) for case, count in unnoticed)
+    found = "".join(
+        _unnoticed(case, count, tried_checks(proof.tally.proof, case)) for case, count in unnoticed
+    )
     nothing = f"<li>{_each('nothing')}</li>"
     yield f"<ul>{found or nothing}</ul>"
     unmended = "".join(_unmended(*each) for each in proof.tally.unmended())
@@ -138,10 +140,11 @@ def _check(check: Check) -> str:
     return _each(key, steps=", ".join(check.steps), behind=check.behind)
 
 
-def _unnoticed(case: Case, count: int, found: Sequence[Check]) -> str:
+def _unnoticed(case: Case, count: int, found: Sequence[Check] | None) -> str:
     what = "; ".join(map(_found, case.outcome.untrue))
     befell = _found(f"{case.scenario.name}: {fault_said(case.fault)}; {case.instant.name}")
-    check = "; ".join(map(_check, found)) or _each("check_none")
+    checks = "; ".join(map(_check, found or ()))
+    check = checks or _each("check_untried" if found is None else "check_none")
     like = _each("runs_like_it", count=count)
     return f"<li>{what}<br>{check}<br><span class=quiet>{befell} ({like})</span></li>"
 

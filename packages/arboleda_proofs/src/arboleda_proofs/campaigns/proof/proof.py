@@ -22,7 +22,7 @@ from .scenario import Scenario
 
 T = TypeVar("T")
 Tick = Callable[[], None]
-MOST = 32  # faults of a portion
+MOST = 8  # faults of a portion: once begun, it goes on when the budget is over
 RANKS = (0, 1, 1, 1, 2, 3)  # of the parts of an instant
 
 

@@ -17,10 +17,10 @@ from arboleda.plant_file.check_answer import CheckAnswer
 
 from ..campaign import Campaign, Runs
 from ..plants import notes
-from ..screen import Show, ends_of, progress, say_of
+from ..screen import Show, ends_of, print_whole, progress, say_of
 from ..seed_campaign import BROKEN, HELD, INTERRUPTED
 from ..workers import Workers
-from . import proof_report, proof_summary
+from . import equal_cells, proof_report, proof_summary
 from .badge import badge
 from .breaches import breaches_of
 from .calm import Calm, calm_runs, run_findings
@@ -41,6 +41,7 @@ from .scenario import scenarios
 
 MEND_S = 120.0  # a mend is looked for so long
 CALM_SHARE = 0.5  # of the budget, in which runs without faults begin
+CHECKS_SHARE = 1.1  # of the budget, in which the last checks are tried of what nobody notices
 SAID_BY_S = 6.0  # when it is said what is known so far, if that is not all by then
 Work = TypeVar("Work")
 NOTHING_RUN = 2  # exit status: of nothing it cannot be said that it held
@@ -57,6 +58,7 @@ class ProofCampaign:
         self._calm: list[Calm] = []
         self._tally = ProofTally(proof=Proof(model=self._plant.model))
         self._pairs: PairTally | None = None
+        self._tasks = 0  # of all recipes, before any answer leads elsewhere
         self._is_cut = False  # the budget left no time for all tasks without faults
         self._known = 0  # runs that were kept from before
         self._total = 0
@@ -68,7 +70,7 @@ class ProofCampaign:
     def run(self, jobs: int) -> int:
         """Prove, and return the exit status. Ctrl-C ends it with what was done so far."""
         self._jobs = jobs
-        for note in notes([self._plant]):
+        for note in (*notes([self._plant]), *equal_cells.notes(self._plant.model)):
             self._say(note, "dim")
         status = INTERRUPTED
         try:
@@ -94,10 +96,12 @@ class ProofCampaign:
         return sum(outcome.broken is not None or outcome.end is not End.UNFINISHED for outcome in bad)
 
     def _run_calmly(self) -> None:
-        found = scenarios(self._plant.model, self._request.recipes)
+        found = [*scenarios(self._plant.model, self._request.recipes)]
+        self._tasks = len(found)
         doing, self._began_work = "running without faults", time.process_time()
         with progress(self._console, doing, None) as show, self._lines.progress(doing) as tell:
-            for calm in self._within(CALM_SHARE, calm_runs(self._plant.model, found, self._say_in_time)):
+            runs = calm_runs(self._plant.model, found, self._say_in_time)
+            for calm in self._within(CALM_SHARE, runs):
                 self._calm.append(calm)
                 self._simulated_s += calm.run.seconds + calm.lasts_s
                 show(counted(len(self._calm), "task"), len(self._calm))
@@ -119,14 +123,27 @@ class ProofCampaign:
     def _forecast(self, proof: Proof, kept: int = 0) -> Forecast:
         pace = (time.process_time() - self._began_work) / max(self._simulated_s, 1.0)
         left_s = self._request.budget_s - (time.monotonic() - self._began)
-        return Forecast(proof=proof, pace=pace, jobs=self._jobs, budget_s=max(left_s, 0.0), kept=kept)
+        return Forecast(
+            proof=proof,
+            share=self._share_to_come,
+            pace=pace,
+            jobs=self._jobs,
+            budget_s=max(left_s, 0.0),
+            kept=kept,
+        )
+
+    @property
+    def _share_to_come(self) -> float:
+        """The number of all tasks for each one that has run without faults: what is planned is of all."""
+        ran = len({(each.scenario.cell, each.scenario.task) for each in self._calm})
+        return self._tasks / ran if self._is_cut and ran else 1.0
 
     def _prove(self) -> None:
         proof = self._proof()
         kept = Kept(self._request.folder, recipe_digests(self._plant.model, self._request.files), proof)
         kept.forget(all=self._request.anew)
         self._tally = ProofTally(proof=proof, proved=kept.known(), is_cut=self._is_cut)
-        self._total = proof.total
+        self._total = round(proof.total * self._share_to_come)
         if self._total:
             self._say(self._forecast(proof, self._tally.runs).words)
         self._run(proof, range(len(proof.portions)), self._tally, kept, total=self._total)
@@ -207,7 +224,7 @@ class ProofCampaign:
         for line in proof_report.unmended_lines(tally.unmended()):
             self._console.print(line, soft_wrap=True)
         for table in proof_report.tables(tally, ends_of(self._console), say_of(self._console)):
-            self._console.print(table)
+            print_whole(self._console, table)
         for breach in breaches:
             proof_report.story(self._console, breach)
         self._say(self._amount())
@@ -235,11 +252,11 @@ class ProofCampaign:
             return CheckAnswer(findings=findings, mend=mend)
 
     def _try_checks(self) -> None:
-        """Try the checks of all that nobody notices and that will be named; a check takes a few runs."""
-        is_whole = self._request.html or self._request.json
+        """Try the checks of what nobody notices and will be named, in time; a check takes a few runs."""
+        is_whole = self._request.html or self._request.json or self._console.quiet
         found = self._tally.unnoticed()[: None if is_whole else proof_report.MOST_UNNOTICED]
         with progress(self._console, "trying checks", len(found)) as show:
-            for number, (case, _) in enumerate(found, start=1):
+            for number, (case, _) in enumerate(self._within(CHECKS_SHARE, found), start=1):
                 checks(self._tally.proof, case)
                 show(f"{number:,} of {len(found):,}", number)
 

@@ -14,7 +14,7 @@ from arboleda_proofs.simulator.faults.titles import title
 from .. import breach_text
 from ..setting import rules
 from .calm import Calm
-from .checks import Check, checks
+from .checks import Check, tried_checks
 from .outcome import MOST_ACTS, End
 from .pairs import PairTally
 from .proof_tally import Case, ProofTally, Row
@@ -57,9 +57,13 @@ def unnoticed_lines(tally: ProofTally) -> Iterator[Text]:
         what = "; ".join(case.outcome.untrue)
         times = f"{counted(count, 'run')}, e.g. {case.instant.name}"
         yield Text(f"  {case.scenario.task}: {_befell(case)}: {what}; {times}", "yellow")
-        yield Text(f"    {_check_words(checks(tally.proof, case))}", "dim")
+        if (tried := tried_checks(tally.proof, case)) is not None:
+            yield Text(f"    {_check_words(tried)}", "dim")
     if len(found) > MOST_UNNOTICED:
         yield Text(f"  and {len(found) - MOST_UNNOTICED} more; --json has all", "yellow")
+    untried = sum(tried_checks(tally.proof, case) is None for case, _ in found[:MOST_UNNOTICED])
+    if untried:
+        yield Text(f"  --budget was over before checks were tried for {untried:,} of these", "dim")
 
 
 def _befell(case: Case) -> str:

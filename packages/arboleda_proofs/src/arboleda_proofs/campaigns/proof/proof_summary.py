@@ -14,7 +14,7 @@ from arboleda.plant_file.check_answer import CheckAnswer
 from arboleda.plant_file.unstated import unknowns
 
 from .calm import Calm
-from .checks import checks
+from .checks import Check, tried_checks
 from .outcome import plain
 from .pairs import PairTally
 from .proof_tally import Case, ProofTally
@@ -58,13 +58,17 @@ def summary(
         "scenarios": [_scenario(each) for each in calm],
         "table": [_row(*each) for each in tally.table().items()],
         "unnoticed": [
-            {**_case(case), "runs": count, "checks": [asdict(each) for each in checks(tally.proof, case)]}
+            {**_case(case), "runs": count, "checks": _checks(tried_checks(tally.proof, case))}
             for case, count in tally.unnoticed()
         ],
         "unmended": [{**_case(case), "runs": count} for case, count in tally.unmended()],
         "breaches": [_breach(each, plant) for each in breaches],
         "digests": [proved.digest for _, proved in sorted(tally.proved.items())],
     }
+
+
+def _checks(tried: Sequence[Check] | None) -> list[dict[str, Any]] | None:
+    return None if tried is None else [asdict(each) for each in tried]
 
 
 def _scenario(calm: Calm) -> dict[str, Any]:

@@ -16,6 +16,8 @@ from arboleda.model.task import Order
 from arboleda.model.tree_nodes import nodes_of
 from arboleda.plant_file.recipe_check import orders
 
+from .equal_cells import equal_cells
+
 MOST_CLASSES = 32  # of one recipe
 
 
@@ -42,9 +44,12 @@ class Scenario:
 
 
 def scenarios(model: PlantModel, recipes: Collection[str] = ()) -> Iterator[Scenario]:
-    """A scenario for each class of parameters, of these recipes or of all; who is asked answers the first."""
+    """A scenario for each class of parameters, of these recipes or of all, in the first of cells that are
+    equal; who is asked answers the first.
+    """
+    firsts = equal_cells(model)
     runs = Plant(model, epoch=0, now=0.0).cells
-    for cell in model.cells:
+    for cell in (each for each in model.cells if firsts[each.name] == each.name):
         for recipe in cell.recipes:
             if not recipes or recipe.name in recipes:
                 yield from _of_recipe(cell, recipe, runs[cell.name].context)
