@@ -93,6 +93,7 @@ class SeedCampaign:
         parts = [
             f"{done:,} of {counted(count, 'seed')}" if count else counted(done, "seed"),
             f"{passed.minutes:,} min",
+            *([f"{tally.seconds / done:,.0f} s of plant time a seed"] if done else []),
             counted(passed.cycles, "cycle"),
             f"{passed.cycles / self._since():,.0f}/s",
             counted(passed.faults, "fault"),

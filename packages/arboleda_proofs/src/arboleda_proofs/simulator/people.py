@@ -20,6 +20,7 @@ from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import OrderGoal
 
 from .chance import Dice
+from .cycles import has_told
 from .hands import do
 from .task_words import task_words
 from .world import World
@@ -35,9 +36,10 @@ STANDS_BY_S = (1.5, 1.5)  # the same of one who does nothing else
 class Customers:
     """Bring every cell its next task soon after one of theirs left its queue, until they `go`.
 
-    They know their own tasks by the tokens of their requests. `cycles` counts the tasks, whoever asked for
-    them, that started and ended. Once the plant has died, their tasks have ids of their own: when it is
-    back, they ask for the last of them again, whatever they know of them.
+    They know their own tasks by the tokens of their requests. Once the plant has died, their tasks have ids
+    of their own: when it is back, they ask for the last of them again, whatever they know of them. `cycles`
+    counts the tasks, whoever asked for them, that ended and had told a device to do something; `outcomes` has
+    all that began and ended.
 
     With `any_of` about half of their tasks name several cells, of which the plant chooses one.
     """
@@ -48,7 +50,7 @@ class Customers:
         self._groups = Dice(seed, "groups of cells") if any_of else None
         self._open_requests: dict[str, Cell] = {}  # by token
         self._waiting: set[str] = set()  # their own tasks that are in a queue
-        self._started: set[str] = set()
+        self._started: dict[str, float] = {}  # when a task began
         self._gone = False
         self._tokens = count(1)
         self._starts = world.plant_process.starts
@@ -118,13 +120,12 @@ class Customers:
             self._waiting.discard(change.task)
             self._come(self._world.model.cell(change.cell))
         if change.state is TaskState.RUNNING:
-            self._started.add(change.task)
+            self._started.setdefault(change.task, self._world.now)
         elif change.task in self._started:
-            self._started.discard(change.task)
-            self._count(change)
+            self._count(change, since=self._started.pop(change.task))
 
-    def _count(self, change: TaskChanged) -> None:
-        self.cycles += 1
+    def _count(self, change: TaskChanged, *, since: float) -> None:
+        self.cycles += has_told(self._world, change.cell, since)
         outcome = change.reason.value if change.reason else change.state.value
         self.outcomes[outcome] = self.outcomes.get(outcome, 0) + 1
 

@@ -100,7 +100,7 @@ class Simulation:
 
     @property
     def cycles(self) -> int:
-        """The number of tasks that were begun and have ended so far."""
+        """The number of tasks that have ended so far and had told a device to do something."""
         return self._people.cycles
 
     def run(self, *, cycles: int | None = None, seconds: float | None = None) -> Result:

@@ -14,6 +14,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.verbs import Arguments, as_text, from_text
 
 from .checks import BadFaults, is_number, only, within
+from .cycles import has_told
 from .hands import BEFOREHAND
 from .manual_work import BY_HAND_S
 from .world import World
@@ -137,7 +138,7 @@ class ScriptedPeople:
         self._gone = False
         self._left = len(script.acts)
         self._open: set[str] = set()
-        self._started: set[str] = set()
+        self._started: dict[str, float] = {}
         world.watchers.append(self._look)
         for act in script.acts:
             if act.by_hand and act.verb in BEFOREHAND:
@@ -176,11 +177,10 @@ class ScriptedPeople:
         if change.state not in ENDED:
             self._open.add(change.task)
             if change.state is TaskState.RUNNING:
-                self._started.add(change.task)
+                self._started.setdefault(change.task, self._world.now)
             return
         self._open.discard(change.task)
         if change.task in self._started:
-            self._started.discard(change.task)
-            self.cycles += 1
+            self.cycles += has_told(self._world, change.cell, self._started.pop(change.task))
             outcome = change.reason.value if change.reason else change.state.value
             self.outcomes[outcome] = self.outcomes.get(outcome, 0) + 1

@@ -1,0 +1,11 @@
+"""Cycles of a run: a task that ends is one if it has told a device, or a person, to do something."""
+
+from __future__ import annotations
+
+from .world import World
+
+
+def has_told(world: World, cell: str | None, since: float) -> bool:
+    """True where a cell has told somebody to do something since then, as far as the running plant knows."""
+    last = world.plant.dispatcher.ledger.last_sent.values()
+    return any(each.cell == cell and each.sent_at >= since for each in last)
