@@ -207,8 +207,8 @@ OF_BELIEF = (
     bug(
         BELIEF,
         "Who is not homed takes commands while it moves.",
-        "return UNHOMED if self.unhomed and (trouble is None or trouble is MOVING) else trouble",
-        "return UNHOMED if self.unhomed and trouble is MOVING else trouble",
+        "return _unhomed(self) if self.unhomed and (trouble is None or trouble is MOVING) else trouble",
+        "return _unhomed(self) if self.unhomed and trouble is MOVING else trouble",
     ),
     bug(
         BELIEF,

@@ -179,7 +179,7 @@ OF_PLACES = (
     bug(
         PLACES,
         "A device works on nothing.",
-        "return self._without_part(command.robot) if command.works_on_part else None",
+        "return self._without_part(device) if command.works_on_part else None",
         "return None",
     ),
     bug(

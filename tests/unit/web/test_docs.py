@@ -31,6 +31,7 @@ DRAFT_STEPS = (
 )
 MAKE_PATHS = (
     "cells",
+    "objections",
     "recipe",
     "carry",
     "copy",
