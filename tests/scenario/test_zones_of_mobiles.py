@@ -80,23 +80,8 @@ def test_its_zone_is_kept_while_its_last_node_may_be_from_before_its_stop(tmp_pa
     assert result.outcomes["stopped"] == 1
 
 
-UNSEEN = """
-name: unseen
-uses: [recipes.py]
-cells:
-  yard:
-    devices: {one: {kind: mobile, evidence: state}}
-    targets:
-      home: {one: {node: 6}}
-      gate: {one: {node: 3}}
-      far: {one: {node: 0}}
-zones:
-  gate: {poses: [yard gate]}
-"""
-
-
 def test_a_person_who_puts_it_home_gives_back_its_zone_though_nobody_sees_it(tmp_path: Path) -> None:
-    (tmp_path / "plant.yaml").write_text(UNSEEN, "utf-8")
+    (tmp_path / "plant.yaml").write_text(LONELY.replace("joints", "state"), "utf-8")
     (tmp_path / "recipes.py").write_text(THERE_AND_BACK, "utf-8")
     plant = Plant(load(tmp_path / "plant.yaml"), epoch=7, now=0.0)
     assert plant.zones.request("one", frozenset({"gate"}))
