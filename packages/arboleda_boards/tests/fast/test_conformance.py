@@ -18,7 +18,7 @@ from arboleda.sim.board import Board
 from arboleda.sim.body import BodyReport
 from arboleda.sim.motors import Motors
 from arboleda.wire.payloads import Beat, EffectorGoal, Goal, HomeGoal, JointsGoal, StopGoal, Telemetry
-from arboleda.wire.transport import Delivery
+from arboleda.wire.transport import Delivery, Publication
 from arboleda_boards.conformance.judge import CHECKS, Judge
 from arboleda_proofs.testing import shipped
 from arboleda_proofs.testing.storage_layout import StorageLayout
@@ -291,6 +291,20 @@ def test_a_board_that_says_only_its_code_reaches_state() -> None:
     judge = trial(OnlyCodes)
     assert wrong(judge) == {}
     assert judge.reached is Evidence.STATE
+
+
+def test_a_board_that_falls_silent_under_way_is_gone_and_blamed_for_nothing() -> None:
+    class Unplugged(Board):
+        told = 0
+
+        def take(self) -> list[Publication]:
+            self.told += len(heard := super().take())
+            return heard if self.told <= 300 else []
+
+    judge = trial(Unplugged)
+    assert judge.is_gone and wrong(judge) == {}
+    assert judge.findings[-1].untried == "nothing was heard of the board for 15 s"
+    assert len(judge.findings) < len(CHECKS)
 
 
 def test_silence_is_one_finding_and_no_level() -> None:

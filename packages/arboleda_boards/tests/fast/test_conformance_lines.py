@@ -55,8 +55,15 @@ def test_the_level_that_a_board_reaches_is_said(language: str) -> None:
         Finding(check=MOVES),
         Finding(check=MOVES),
     ]
-    judge = SimpleNamespace(findings=found, checks=CHECKS, reached=Evidence.JOINTS, spoken=Evidence.IDS)
+    levels = {"reached": Evidence.JOINTS, "spoken": Evidence.IDS}
+    judge = SimpleNamespace(findings=found, checks=CHECKS, is_gone=False, **levels)
     assert _verdict(ARM, judge).plain == VERDICTS[language]  # type: ignore[arg-type]
+
+
+def test_a_board_that_is_gone_is_named_and_not_judged(language: str) -> None:
+    judge = SimpleNamespace(findings=[Finding(check=MOVES, untried="silent")], is_gone=True)
+    said = {"en": f"{ARM.mqtt} is gone since moves, and", "es": f"{ARM.mqtt} no responde desde moves, y"}
+    assert _verdict(ARM, judge).plain.startswith(said[language])  # type: ignore[arg-type]
 
 
 def test_what_an_arm_will_do_is_said(language: str) -> None:

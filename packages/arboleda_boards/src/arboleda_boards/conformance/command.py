@@ -28,7 +28,7 @@ every verb, as often as it has to. Nobody may be near it, no part in its effecto
 on the broker. Stop (software) is not a safety function. A hard-wired latching button that removes motor power
 is required: have it at hand.
 
-Exit status: 0 it does all that belongs to the level it speaks at, 1 it does not, 2 bad input."""
+Exit status: 0 it does all that belongs to the level it speaks at, 1 it does not or is gone, 2 bad input."""
 MEANING = {
     Evidence.STATE: Phrase("cli.conformance.state", "0 and 1 only: moving or not")(),
     Evidence.JOINTS: Phrase("cli.conformance.joints", "joints: where it is, too")(),
@@ -55,6 +55,11 @@ MADE = Phrase("cli.conformance.made", "{reaches}; {made} of {needed} checks made
 LESS_THAN_SPOKEN = Phrase(
     "cli.conformance.less_than_spoken",
     "{reaches}, speaks as one of {spoken}; {made} of {needed} checks made; wrong: {wrong}",
+)
+IS_GONE = Phrase(
+    "cli.conformance.is_gone",
+    "{name} is gone since {check}, and not judged: look at its power and its connection to the broker, then"
+    " begin anew",
 )
 
 Name = Annotated[str, typer.Option(metavar="NAME", help="The robot's name on MQTT, or in the plant file.")]
@@ -119,7 +124,8 @@ def _try(robot: Robot, broker: str, credentials: Credentials | None) -> int:
     trial = Trial(robot, where, credentials, report)
     trial.run()
     console.print(_verdict(robot, trial.judge), soft_wrap=True)
-    return PASSED if trial.judge.reached is trial.judge.spoken else FAILED
+    judge = trial.judge
+    return PASSED if judge.reached is judge.spoken and not judge.is_gone else FAILED
 
 
 def _line(found: Finding) -> Text:
@@ -140,6 +146,8 @@ def _result(of: Sentence) -> str:
 def _verdict(robot: Robot, judge: Judge) -> Text:
     from arboleda_boards.conformance.judge import LEVELS
 
+    if judge.is_gone:
+        return Text(say(IS_GONE(name=robot.mqtt, check=judge.findings[-1].check.name)), style="red")
     wrong = tuple(found.check.name for found in judge.findings if found.wrong)
     if judge.reached is None:
         return Text(say(NO_LEVEL(name=robot.mqtt, wrong=wrong)), style="red")

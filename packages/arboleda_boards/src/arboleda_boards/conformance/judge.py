@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -26,6 +27,8 @@ from .device_bench import DeviceBench
 from .procedures import settle
 
 BEAT_S = 0.25
+GONE_S = 15.0  # a board that reports 10 times a second, and may take 10 s to connect again, is heard before
+GONE = f"nothing was heard of the board for {GONE_S:g} s"
 LEVELS = (Evidence.STATE, Evidence.JOINTS, Evidence.IDS)  # each includes those before it
 
 
@@ -131,7 +134,10 @@ COURSES: dict[type[Robot], Course] = {
 
 
 class Judge:
-    """Events are what the board published; messages are `Send` and `Jostle`. `over` when all is known."""
+    """Events are what the board published; messages are `Send` and `Jostle`. `over` when all is known.
+
+    `is_gone` once a board that reports all the time has fallen silent: nothing more is tried then.
+    """
 
     def __init__(self, robot: Robot, *, epoch: int, now: float) -> None:
         course = nearest(COURSES, type(robot))
@@ -140,7 +146,7 @@ class Judge:
         self.bench, self.checks, self._ready = course.bench(robot, epoch), course.checks, course.ready
         self.findings: list[Finding] = []
         self.current: Check | None = None
-        self.over = False
+        self.over = self.is_gone = False
         self._course = self._all()
         self._wait = Wait(seconds=0.0)
         self._deadline = self._beat_at = now
@@ -149,7 +155,8 @@ class Judge:
     def next_deadline(self) -> float | None:
         if self.over:
             return None
-        return min(self._deadline, self._beat_at) if self.bench.beating else self._deadline
+        beats = [self._beat_at] if self.bench.beating else []
+        return min(self._deadline, self._gone_at, *beats)
 
     @property
     def spoken(self) -> Evidence:
@@ -168,6 +175,9 @@ class Judge:
         for event in events:
             self.bench.hear(event)
         self.bench.now = max(self.bench.now, now)
+        if now >= self._gone_at and self.current is not None and not self.over:
+            self.findings.append(Finding(check=self.current, untried=GONE))
+            self.over = self.is_gone = True
         out = self._beat(now)
         while not self.over:
             met = self._wait.until()
@@ -175,6 +185,11 @@ class Judge:
                 break
             out += self._resume(now, met)
         return out
+
+    @property
+    def _gone_at(self) -> float:
+        """The time from which on the board counts as gone; one that says only its state may be silent."""
+        return math.inf if self.spoken is Evidence.STATE else self.bench.last.at + GONE_S
 
     def _beat(self, now: float) -> list[Send | Jostle]:
         if not self.bench.beating or now < self._beat_at:
