@@ -122,9 +122,10 @@ def _forgotten(cell: Cell) -> Iterator[str]:
     """The outputs in devices: a part that a task leaves there is forgotten when the next one begins."""
     for place in cell.places:
         if place.output and place.device is not None:
-            inside = f"{cell.name}: {place.target} is inside {place.device}, and an output"
-            how = "leave out `output`, and say unload once it is empty"
-            yield f"{inside}, so it counts as empty when a task begins, whoever has looked; {how}"
+            yield (
+                f"{cell.name}: {place.target} is inside {place.device}, and an output, so it counts as empty"
+                " when a task begins, whoever has looked; leave out `output`, and say unload once it is empty"
+            )
 
 
 def _split(plant: PlantModel, cell: Cell) -> Iterator[str]:
