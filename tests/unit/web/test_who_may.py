@@ -52,7 +52,7 @@ READ_BY_OPERATORS = {
 }
 FILLED = {"{hash}": "0" * 64, "{number}": "1", "{what}": "try", "{cell}": "saw", "{task_id}": "t-1"}
 STRANGE = """
-from fastapi import APIRouter, FastAPI
+from fastapi import APIRouter, Depends, FastAPI
 from fastapi.responses import PlainTextResponse
 from starlette.websockets import WebSocket
 from arboleda.web.access.auth import Role
@@ -63,6 +63,14 @@ async def answer():
     return {"orders": 3}
 
 
+async def asks(_=needs(Role.OPERATOR)):
+    return await answer()
+
+
+async def nested(_=Depends(asks)):
+    return await answer()
+
+
 async def plain(request):
     return PlainTextResponse("taken")
 
@@ -70,6 +78,10 @@ async def plain(request):
 async def follow(socket: WebSocket):
     await socket.accept()
     await socket.close()
+
+
+async def hear(socket: WebSocket, _=needs(Role.OPERATOR)):
+    await follow(socket)
 
 
 def add(api, at=""):
@@ -84,6 +96,14 @@ def add(api, at=""):
     server = FastAPI()
     server.add_api_route("/{path:path}", answer, methods=["GET", "POST"])
     api.mount(f"{path}/mounted", server)
+    api.add_api_route(f"{path}/parameter", asks)
+    api.add_api_route(f"{path}/nested", nested)
+    api.add_api_route(f"{path}/beside", answer, dependencies=[Depends(asks)])
+    api.add_api_route(f"{path}/both", asks, dependencies=[needs(Role.VIEWER)])
+    api.add_api_websocket_route(f"{path}/heard", hear)
+    strict = FastAPI(dependencies=[needs(Role.OPERATOR)])
+    strict.add_api_route("/prices", answer)
+    api.mount(f"{path}/strict", strict)
 
 
 def routes(side):
@@ -92,6 +112,7 @@ def routes(side):
     add(inner)
     strict.add_api_route("/prices", answer)
     strict.add_api_route("/open", answer, methods=["POST"], dependencies=[needs(Role.VIEWER)])
+    strict.add_api_route("/both", asks, dependencies=[needs(Role.VIEWER)])
     api.include_router(inner, prefix="/api/inner")
     api.include_router(strict, prefix="/api/strict")
     return api
@@ -204,23 +225,40 @@ def test_what_a_route_declares_counts_before_what_its_router_does(
     assert refused(app, asked, Role.VIEWER) == {"GET /api/strict/prices"}
 
 
+@pytest.mark.parametrize("where", ["/api", "/api/inner", "page"])
+def test_what_is_declared_anywhere_else_counts_too(strange: Callable[[str], FastAPI], where: str) -> None:
+    app, at = strange(where), where.removeprefix("page")
+    names = ("parameter", "nested", "beside", "both", "strict/prices")
+    asked = {f"GET {at}/orders/{each}" for each in names}
+    assert {*statuses(app, asked, Role.VIEWER).values()} == {403}
+    assert {*statuses(app, asked, Role.OPERATOR).values()} == {200}
+
+
+def test_a_parameter_counts_beside_what_its_router_declares(strange: Callable[[str], FastAPI]) -> None:
+    assert statuses(strange("/api"), {"GET /api/strict/both"}, Role.VIEWER) == {"GET /api/strict/both": 403}
+
+
 def test_the_refusal_names_what_is_refused(strange: Callable[[str], FastAPI]) -> None:
     web = guarded(Plant(), dict(ALL), behind=strange("/api"))
     said = [
         web.client(token=Role.VIEWER).request(*each).json()
-        for each in (("DELETE", "/api/orders"), ("GET", "/api/orders/prices"))
+        for each in (("DELETE", "/api/orders"), ("GET", "/api/orders/prices"), ("GET", "/api/orders/both"))
     ]
     assert [each["sentence"] for each in said] == [
         "A viewer may look and stop; DELETE /api/orders needs the operator's token.",
         "A viewer may look and stop; reading prices needs the operator's token.",
+        "A viewer may look and stop; GET /api/orders/both needs the operator's token.",
     ]
 
 
 @pytest.mark.parametrize("where", ["/api", "/api/inner", "page"])
 @pytest.mark.parametrize("role", [*Role])
-def test_a_websocket_is_no_reading(strange: Callable[[str], FastAPI], where: str, role: Role) -> None:
+@pytest.mark.parametrize("name", ["live", "heard"])
+def test_a_websocket_is_no_reading(
+    strange: Callable[[str], FastAPI], where: str, role: Role, name: str
+) -> None:
     app, sent = strange(where), list[dict[str, Any]]()
-    path = f"{where.removeprefix('page')}/orders/live"
+    path = f"{where.removeprefix('page')}/orders/{name}"
     scope = {"type": "websocket", "path": path, "query_string": b"", "headers": [], "arboleda.role": role}
 
     async def receive() -> dict[str, Any]:

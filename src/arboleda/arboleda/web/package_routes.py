@@ -9,12 +9,10 @@ from fastapi import routing
 from starlette.routing import BaseRoute, Match
 from starlette.types import Receive, Scope, Send
 
-from arboleda.model.outside import plain
-
-from .access.needs import OPERATORS, Need, declared
+from .access.needs import LOOKED, OPERATORS, Need, declared, method_of
 from .request import READS
 
-NEED = "arboleda.need"  # in the scope of a request for a route of a package
+NEEDS = "arboleda.needs"  # in the scope of a request for a route of a package, the last one counts
 APART = "arboleda.apart"  # in the scope of each request: what runs an application in the loop of a package
 
 
@@ -47,30 +45,25 @@ class PackageRoute(BaseRoute):
         match, found = self.behind.matches(scope)
         if match is not Match.FULL:
             return match, found
-        return match, {**found, NEED: self._need(scope)}  # what is found changes the scope
+        return match, {**found, NEEDS: self._needs(scope)}  # what is found changes the scope
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
-        need: Need | None = scope.pop(NEED, OPERATORS)
-        if need is not None:
-            need.check(scope["arboleda.role"], f"{_method(scope)} {plain(scope['path'], 80)}")
+        scope[LOOKED] = scope.pop(NEEDS, (OPERATORS,))
+        for need in scope[LOOKED][-1:]:
+            need.check(scope)
         apart = scope.get(APART)
         if apart is None:  # in a process without a server there is one loop
             await self.behind.handle(scope, receive, send)
         else:
             await apart(self._package, self.behind.handle, scope, receive, send)
 
-    def _need(self, scope: Scope) -> Need | None:
-        """The need of this request; None where whoever is logged in may ask."""
+    def _needs(self, scope: Scope) -> tuple[Need, ...]:
+        """The needs of this request, the last of which counts; none where whoever is logged in may ask."""
         asked = next((each for each in self._leaves if each.matches(scope)[0] is Match.FULL), None)
         if asked is None:
-            return OPERATORS
+            return (OPERATORS,)
         found = declared(getattr(asked, "dependencies", ()))
-        return OPERATORS if found is None and _method(scope) not in READS else found
-
-
-def _method(scope: Scope) -> str:
-    """The method of a request; a websocket is no reading, as it may bring anything."""
-    return str(scope.get("method", "websocket"))
+        return (OPERATORS,) if not found and method_of(scope) not in READS else found
 
 
 def guarded(routes: Iterable[BaseRoute], package: str) -> list[BaseRoute]:
