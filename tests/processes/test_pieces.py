@@ -99,3 +99,45 @@ def test_a_thread_that_does_not_end_does_not_keep_the_process(status: int | None
     )
     assert ended.returncode == code
     assert ended.stderr == "the process ends without its thread shelf, which does not end\n"
+
+
+WORKER = """
+import asyncio, sys, threading
+from concurrent.futures import ThreadPoolExecutor
+from arboleda.host import last_threads
+
+hangs = threading.Event()
+
+
+def hang():
+    hangs.set()
+    threading.Event().wait()
+
+
+def routes():
+    {begin}
+
+
+threading.Thread(target=routes, daemon=True).start()
+hangs.wait()
+last_threads.ENDS_S = 0.1
+last_threads.leave(0)
+"""
+
+
+@pytest.mark.parametrize(
+    ("begin", "name"),
+    [
+        ("asyncio.run(asyncio.to_thread(hang))", "asyncio_0"),
+        ("ThreadPoolExecutor().submit(hang).result()", "ThreadPoolExecutor-0_0"),
+    ],
+)
+def test_a_worker_that_hangs_does_not_keep_the_process(begin: str, name: str) -> None:
+    ended = subprocess.run(
+        [sys.executable, "-c", WORKER.format(begin=begin)],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+    )
+    assert ended.returncode == 0
+    assert ended.stderr == f"the process ends without its thread {name}, which does not end\n"

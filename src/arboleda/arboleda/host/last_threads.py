@@ -9,6 +9,7 @@ import time
 
 ENDS_S = 3.0  # for threads that are about to end
 LEFT = "the process ends without its thread {name}, which does not end\n"
+WORKERS = ("asyncio_", "ThreadPoolExecutor-")  # daemons of executors, which Python joins all the same
 
 
 def leave(status: object) -> None:
@@ -23,10 +24,15 @@ def leave(status: object) -> None:
 
 def _end(code: int) -> None:
     time.sleep(ENDS_S)
-    left = [each for each in threading.enumerate() if not each.daemon and each is not threading.main_thread()]
+    left = [each for each in threading.enumerate() if _is_waited_for(each)]
     if not left:
         return  # Python itself is about to end
     sys.stderr.write("".join(LEFT.format(name=each.name) for each in left))
     sys.stderr.flush()
     sys.stdout.flush()
     os._exit(code)
+
+
+def _is_waited_for(thread: threading.Thread) -> bool:
+    """True if Python waits for its end before the process ends."""
+    return thread is not threading.main_thread() and (not thread.daemon or thread.name.startswith(WORKERS))
