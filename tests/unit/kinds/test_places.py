@@ -489,3 +489,36 @@ def test_a_place_with_room_for_more_is_no_question(tmp_path: Path) -> None:
     lab.bench.submit("lab try")
     assert lab.bench.outcome(300.0).state is TaskState.FAILED
     assert lab.places.counts["bin"] == 1 and lab.places.asked.targets == ()
+
+
+SUPPLIED_ON_THE_RIGHT = SHARE_AN_ARM.replace("places: {nest: {}}", "places: {nest: {}, bin: {supply: true}}")
+HANDED_OVER = """
+from arboleda.recipes import recipe, work
+
+@recipe("fail")
+def give_up(cell):
+    return work(cell.wait(0.5), cell.fail("not today"))
+
+@recipe("bring")
+def bring(cell):
+    arm, hand = cell.devices("arm", "hand")
+    return work(arm.visit("bin", hand.close()), arm.visit("nest", hand.open()), arm.home())
+
+@recipe("rest")
+def rest(cell):
+    return work(cell.wait(0.5))
+"""
+
+
+def test_what_another_cell_puts_at_a_place_of_both_is_no_question_to_this_one(tmp_path: Path) -> None:
+    (tmp_path / "recipes.py").write_text(HANDED_OVER, "utf-8")
+    (tmp_path / "plant.yaml").write_text(SUPPLIED_ON_THE_RIGHT, "utf-8")
+    bench = Bench(load(tmp_path / "plant.yaml"))
+    bench.wait(1.0)
+    ends = []
+    for task in ("left fail", "right bring"):
+        bench.submit(task)
+        ends.append(bench.outcome().state)
+    left = bench.plant.cells["left"]
+    assert ends == [TaskState.FAILED, TaskState.DONE] and left.context.places.counts["nest"] == 1
+    assert left.not_ready is None and left.context.places.asked.targets == ()

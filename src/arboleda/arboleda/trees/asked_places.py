@@ -48,11 +48,18 @@ class AskedPlaces:
         """Take a person's word on how many parts are at places; an output in question has to be emptied."""
         self._known |= {target: n for target, n in parts.items() if not self.is_output(target)}
 
+    def moved_by_others(self, target: str, parts: int) -> None:
+        """Count what another cell put at a place of both, or took there: the last task has no part in it."""
+        self._known[target] = max(self._known_at(target) + parts, 0)
+
     def is_output(self, target: str) -> bool:
         """True for a place that people empty before each task."""
         return target in self._places and self._places[target].output
 
     def _is_filled_since(self, target: str) -> bool:
+        parts = self._parts[target]
+        return parts >= self._places[target].holds and parts > self._known_at(target)
+
+    def _known_at(self, target: str) -> int:
         place = self._places[target]
-        known = self._known.get(target, place.holds if place.supply else 0)
-        return self._parts[target] >= place.holds and self._parts[target] > known
+        return self._known.get(target, place.holds if place.supply else 0)

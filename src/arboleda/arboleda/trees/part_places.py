@@ -321,9 +321,11 @@ class Places:
         if target in self._rack:
             self._parts[target] = max(parts, 0)
         elif target in self._places:
-            self._parts[target] = max(self._parts[target] + parts, 0)
-            if not self._is_ours(hand):  # a step of this cell may wait for it
-                self._dispatcher.wake([self._cell.name])
+            before = self._parts[target]
+            self._parts[target] = max(before + parts, 0)
+            if not self._is_ours(hand):
+                self.asked.moved_by_others(target, self._parts[target] - before)
+                self._dispatcher.wake([self._cell.name])  # a step of this cell may wait for it
 
     def _is_ours(self, hand: str) -> bool:
         """False while another cell has a hand that it shares with this one."""

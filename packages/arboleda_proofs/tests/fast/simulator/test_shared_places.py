@@ -5,10 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from tests.unit.kinds.test_places import HANDED_OVER, SUPPLIED_ON_THE_RIGHT
 
 from arboleda.model.commands import Home
 from arboleda.model.messages import Verb
 from arboleda.plant_file.loader import load
+from arboleda.trees.asked_places import AskedPlaces
+from arboleda_proofs.simulator.invariants.liveness import no_starvation
 from arboleda_proofs.simulator.invariants.part_places import PLACES, done_tasks_leave_nothing_behind
 from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
 
@@ -325,3 +328,35 @@ def test_a_run_comes_to_rest_once_its_boards_have_done_what_the_plant_has_given_
     watched.world.request_verb(Verb.CANCEL, "left")
     watched.come_to_rest()
     assert watched.world.boards["reader"].body.facts["clamped"] is True
+
+
+def handed_over(folder: Path) -> JudgedWorld:
+    """A world in which a task of the left cell has failed, and the right one has brought a part to both."""
+    (folder / "recipes.py").write_text(HANDED_OVER, "utf-8")
+    (folder / "plant.yaml").write_text(SUPPLIED_ON_THE_RIGHT, "utf-8")
+    watched = JudgedWorld(load(folder / "plant.yaml"))
+    for task in ("left fail", "right bring"):
+        watched.world.request_task(task)
+        watched.world.advance(10.0)
+    watched.world.request_verb(Verb.RESUME, "left")
+    watched.world.request_task("left rest")
+    return watched
+
+
+def test_a_cell_goes_on_after_a_failure_whatever_another_one_brings_meanwhile(tmp_path: Path) -> None:
+    watched = handed_over(tmp_path)
+    watched.world.advance(3.0)
+    assert [each.state.value for each in watched.world.plant.intake.tasks.values()] == [
+        "failed",
+        "done",
+        "done",
+    ]
+
+
+def test_a_question_about_what_another_cell_has_brought_excuses_no_wait(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(AskedPlaces, "moved_by_others", lambda self, target, parts: None)
+    watched = handed_over(tmp_path)
+    with pytest.raises(BrokenInvariant, match=f"{no_starvation.name}.*left is ready"):
+        watched.world.advance(3.0)

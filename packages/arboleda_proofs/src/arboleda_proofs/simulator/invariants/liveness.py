@@ -101,7 +101,7 @@ def _is_asked(look: Look, cell: KnownCell) -> bool:
     """True while a person has to say what a task that is not done has left at a place."""
     places = look.truth.places.cells.get(cell.name)
     asked = look.world.plant.cells[cell.name].context.places.asked
-    return places is not None and places.has_failed and bool(asked.targets)
+    return places is not None and bool(asked.targets) and places.may_have_left(asked.targets)
 
 
 def _is_stopped_with_another_cell(look: Look, person: str) -> bool:

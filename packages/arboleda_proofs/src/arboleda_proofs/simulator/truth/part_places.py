@@ -47,6 +47,7 @@ class CellPlaces:
         self.at_begin = self.at_end = self.as_left = dict(self.parts)
         self._left: dict[str, int] = {}  # by this task, since it began
         self._put: set[str] = set()  # the stations at which it has put a part, over all starts
+        self._touched: set[str] = set()  # the places at which it has put or taken a part, over all starts
         self._moved_by_others: set[str] = set()
         self._brought: Counter[str] = Counter()  # by people since it began, less what they took out
         self._began_with = dict(self.parts)
@@ -75,7 +76,7 @@ class CellPlaces:
         is_brought = handover is not None and recipe.alone is None
         self._giver = self.cell.reach[handover.giver].robot if handover is not None and is_brought else None
         if task != self._task:
-            self._task, self._put, self.came = task, set(), set()
+            self._task, self._put, self._touched, self.came = task, set(), set(), set()
         self._began_in_grip = frozenset(in_grip)
         if self.is_doubtful:
             self.parts = dict(booked)
@@ -133,8 +134,16 @@ class CellPlaces:
         if is_of_others:
             self._moved_by_others.add(place.target)
         else:
-            self._left[place.target] = self._without_people[place.target]
+            self._note_as_left(place.target)
         return sentence
+
+    def _note_as_left(self, target: str) -> None:
+        self._touched.add(target)
+        self._left[target] = self._without_people[target]
+
+    def may_have_left(self, targets: Iterable[str]) -> bool:
+        """True where its last task, which is not done, may have left a part at one of these places."""
+        return self.has_failed and (self.is_doubtful or not self._touched.isdisjoint(targets))
 
     def make(self, device: str) -> str | None:
         """Take in that a device is told to make a part: from then on it may be there."""
@@ -142,7 +151,7 @@ class CellPlaces:
         free = [each for each in targets if self.parts[each] < self.capacity(each)]
         for target in free[:1]:
             self.parts[target] += 1
-            self._left[target] = self._without_people[target]
+            self._note_as_left(target)
         return f"{device} makes a part, and has no room for it" if targets and not free else None
 
     def _move(self, place: Place, name: str, moved: int, *, is_of_others: bool) -> str | None:
