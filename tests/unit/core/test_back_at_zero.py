@@ -99,3 +99,13 @@ def test_one_that_says_itself_if_it_is_homed_is_believed(hand: Any) -> None:
     fall_silent(plant)
     plant.tell("ra1", state=STILL, q=ZERO)
     assert obstacle(plant) is None
+
+
+def test_one_that_somebody_moved_from_its_reference_is_asked_about_once_it_is_back_there(hand: Any) -> None:
+    plant = hand(Evidence.JOINTS, assume_homed=True)
+    plant.awake(ra1=ZERO)
+    plant.plant.dispatcher.whereabouts.arrive("ra1", ZERO)
+    plant.tell("ra1", state=STILL, q=HALFWAY)
+    fall_silent(plant)
+    plant.tell("ra1", state=STILL, q=ZERO)
+    assert obstacle(plant).reason is Reason.NOT_HOMED

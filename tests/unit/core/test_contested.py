@@ -81,3 +81,14 @@ def test_a_robot_that_reports_all_the_time_has_to_be_heard_first(hand: Any) -> N
     assert obstacle(plant, "ra1").reason is Reason.LINK_LOST
     plant.tell("ra1", q=plant.plant.dispatcher.beliefs["ra1"].q)
     assert obstacle(plant, "ra1") is None
+
+
+def test_a_robot_that_said_itself_that_it_has_no_link_has_none_after_a_contest(hand: Any) -> None:
+    plant = hand(Evidence.STATE)
+    plant.tell("rm_sis_a", state=STILL)
+    plant.tell("rm_sis_a", state=MotionState.NO_LINK)
+    contest(plant)
+    plant.uncontested("rm_sis_a")
+    assert obstacle(plant).reason is Reason.LINK_LOST
+    plant.tell("rm_sis_a", state=STILL)
+    assert obstacle(plant) is None

@@ -163,7 +163,8 @@ class Belief:
         self._hear(report)
         if report.epoch is not None and report.epoch != self.epoch:
             self.barred = False  # a bridge that restarted has forgotten the stop
-        if report.state is MotionState.NO_LINK and self.state is not MotionState.NO_LINK:
+        is_told_why = self.lost is None and report.lost is not None
+        if report.state is MotionState.NO_LINK and (self.state is not MotionState.NO_LINK or is_told_why):
             self.said_before_loss, self.is_unplaced = self.state, True
         for name, value in zip(MERGED, _merged(report), strict=True):
             if value is not None:
@@ -202,12 +203,14 @@ class Belief:
     def find_again(self) -> MotionState | None:
         """Take it for linked again although it says nothing; returns the state that it said before.
 
-        It may have come to a stop meanwhile. One that can fall silent has to be heard first.
+        It may have come to a stop meanwhile. One that can fall silent has to be heard first. One that said
+        itself that it has no link has none.
         """
         before = self.said_before_loss
         self.state = None if before is MotionState.MOVING else before
         self._last = self.lost = None
-        self.online = self.online or not (self.supervised or self.drawn)
+        is_lost = before is MotionState.NO_LINK
+        self.online = not is_lost and (self.online or not (self.supervised or self.drawn))
         return before
 
     def _hear(self, report: Report) -> None:

@@ -223,7 +223,7 @@ class Dispatcher:
         self._prove(belief, report, now, before)
         if latched and (new_link or (belief.online and not was_online)):  # its board may have lost the stop
             self.outlet.stop(report.robot, StopMode.LATCH)
-        came = was_moving or belief.position != before.position
+        came = was_moving or _stands_elsewhere(before, belief)
         stands_there = came and belief.state is not MotionState.MOVING
         if belief.stillness.is_sure and (stands_there or not was_sure):
             self.wake([report.robot])  # a step may wait to see it there, whoever has moved it
@@ -353,6 +353,14 @@ class Dispatcher:
 def _facts_shown(belief: Belief) -> tuple[object, ...]:
     """The part of a belief to which trees and screens react; positions are no part of it."""
     return (belief.trouble, belief.piece, belief.effector, belief.facts_no)
+
+
+def _stands_elsewhere(before: Before, belief: Belief) -> bool:
+    """True where a robot stands at another position than before; encoders differ in the last digits."""
+    here, was = belief.position, before.position
+    if here == was or here is None or was is None:
+        return here != was
+    return not belief.robot.motion.stands_at(here, was)
 
 
 def _is_new_link(belief: Belief, report: Report) -> bool:

@@ -240,7 +240,8 @@ def came_back_at_zero(before: Before, belief: Belief, report: Report, stood: Pos
     if robot.evidence is not Evidence.JOINTS or not robot.assume_homed:
         return False
     at_reference = partial(robot.motion.stands_at, robot.reference)
-    return at_reference(place) and (stood is None or not at_reference(stood))
+    stood_there = stood is not None and at_reference(stood) and at_reference(before.position)
+    return at_reference(place) and not stood_there
 
 
 def rebooted(before: Before, belief: Belief, report: Report) -> bool:
