@@ -19,6 +19,9 @@ kinds:
       open:  {effect: motion, sets: {door: open}}
       close: {effect: motion, sets: {door: closed}}
       bake:  {effect: process, works_on: part, takes_s: 2}
+  clamp:
+    facts: {shut: bool}
+    verbs: {hold: {effect: switch, with: {on: bool}, sets: {shut: $on}, holds: part}}
 cells:
   lab:
     devices:
@@ -26,12 +29,13 @@ cells:
       right: {kind: arm, model: scara, base: {origin_m: [0.6, 0], yaw_deg: 45}}
       jaw:   {kind: gripper, tool_of: left}
       oven:  {kind: oven}
+      clamp: {kind: clamp}
     targets:
       home:   {left: {deg: [0, 0], mm: 0}, right: {deg: [0, 0], mm: 0}}
       nest:   {left: {deg: [-52.24, -87.7], mm: 80}, right: {deg: [52.24, 87.7], mm: 80}}
       inside: {left: {deg: [60, 10], mm: 80}}
     places:
-      nest:   {}
+      nest:   {of: clamp}
       inside: {of: oven}
 zones:
   over_the_nest: {poses: [lab nest]}
@@ -76,8 +80,8 @@ def test_nothing_is_wrong_with_a_plant_that_says_all(tmp_path: Path) -> None:
             "places: {TARGET: {of: oven}}",
         ),
         (
-            ("inside: {of: oven}", "inside: {of: oven, output: true}"),
-            "lab: inside is inside oven, and an output, so it counts as empty when a task begins, whoever "
+            ("nest:   {of: clamp}", "nest:   {of: clamp, output: true}"),
+            "lab: nest is inside clamp, and an output, so it counts as empty when a task begins, whoever "
             "has looked; leave out `output`, and say unload once it is empty",
         ),
         (

@@ -119,9 +119,13 @@ def _words(place: Place) -> str:
 
 
 def _forgotten(cell: Cell) -> Iterator[str]:
-    """The outputs in devices: a part that a task leaves there is forgotten when the next one begins."""
+    """The outputs in devices that hold parts: one that a task leaves there is forgotten by the next one.
+
+    A device that holds none, as a conveyor, may carry it away.
+    """
+    holders = {robot.name for robot in cell.robots if robot.held_fact is not None}
     for place in cell.places:
-        if place.output and place.device is not None:
+        if place.output and place.device in holders:
             yield (
                 f"{cell.name}: {place.target} is inside {place.device}, and an output, so it counts as empty"
                 " when a task begins, whoever has looked; leave out `output`, and say unload once it is empty"
