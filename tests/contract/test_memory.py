@@ -144,7 +144,7 @@ def test_times_of_cells(places: Places) -> None:
         memory.times.note_run(560.0, ended=True)
 
     def set_back(memory: PlantMemory) -> None:
-        memory.move_times(-40.0, 0.0, "1")
+        memory.move_times(-40.0, 520.0, 0.0, 60.0)
         memory.tasks.keep(queued("b"), "storage", 565.0)
         memory.tasks.forget(1.0)
 

@@ -168,6 +168,15 @@ def test_old_files_go_whoever_made_them(tmp_path: Path) -> None:
     assert left == {"900-0001.mcap", "900-0002.mcap", "1000-0001.mcap", "notes.txt"}
 
 
+def test_a_part_that_cannot_be_read_keeps_no_older_ones(tmp_path: Path) -> None:
+    for days in range(4):
+        path = part_path(tmp_path, 900, days)
+        PartFile(path, beginning_of(shipped()), days, 0, ran_s=days * 86_400.0).drop()
+    part_path(tmp_path, 900, 1).write_bytes(b"")
+    prune(tmp_path, Limits(days=2.0), ran_s=4.5 * 86_400.0)
+    assert [part.number for part in parts_in(tmp_path)] == [2, 3]
+
+
 def test_what_cannot_be_read_makes_no_file_old(tmp_path: Path) -> None:
     for number in (1, 2):
         part_path(tmp_path, 900, number).write_bytes(b"x" * 100)

@@ -195,7 +195,7 @@ def test_times_of_a_start_follow_its_clock_and_those_of_earlier_ones_stay(site):
         store.tasks.keep(queued("open"), "storage", 2040.0)
         store.times.stands("sis_b", "held", 2045.0)
         for _ in range(2):  # a database may get it again
-            store.move_times(-500.0, 50.0, "1")
+            store.move_times(-500.0, 1550.0, 50.0, 50.0)
         tasks = store.tasks.select(TaskQuery())
     rows = {row.id: (row.accepted_s, row.started_s, row.ended_s) for row in tasks}
     assert rows == {
@@ -206,6 +206,19 @@ def test_times_of_a_start_follow_its_clock_and_those_of_earlier_ones_stay(site):
     runs, downs = times(site)
     assert [run[:2] for run in runs] == [(1000.0, 1040.0), (1500.0, 1540.0)]
     assert [down[2:] for down in downs] == [(1035.0, 1036.0), (1535.0, 1536.0), (1545.0, None)]
+
+
+def test_times_of_earlier_starts_stay_though_their_clock_was_ahead_of_that_of_this_one(site):
+    with site.memory() as store:
+        tell_of_a_start(store, "a", 90_000.0, ran_s=50.0)
+        store.tasks.keep(queued("open"), "storage", 90_050.0)
+        store.times.began(2000.0)
+        store.move_times(88_100.0, 90_150.0, 50.0, 50.0)
+        tasks = store.tasks.select(TaskQuery())
+    assert {row.id: row.accepted_s for row in tasks} == {"a": 90_010.0, "open": 90_050.0}
+    runs, downs = times(site)
+    assert [run[:2] for run in runs] == [(90_000.0, 90_040.0), (90_100.0, 90_100.0)]
+    assert [down[2:] for down in downs] == [(90_035.0, 90_036.0)]
 
 
 def tell_of_a_start(memory, task, unix_s, *, ran_s):

@@ -22,6 +22,7 @@ from arboleda.store.task_rows import TaskQuery
 from .memory_samples import ACT, LATCH, ended, queued
 
 HEADER = 32  # bytes of a log, which SQLite syncs before it writes over the log of before
+PAGE = 4096  # bytes of a page of a memory
 BLOCK = 512  # bytes that a disk writes as a whole
 ENDS = ("kill", "power cut")
 FILES = ("plant.sqlite", "plant.sqlite-wal", "plant.sqlite-shm", "plant.sqlite-ahead", "plant.told")
@@ -183,6 +184,30 @@ def test_a_damaged_memory_has_all_that_was_told_or_is_refused(how, file, damage,
         assert found in life.states[life.told :]
 
 
+def test_a_memory_whose_folding_was_cut_short_is_whole(tmp_path: Path) -> None:
+    """A folding writes pages one after the other, the first one with the new length of the file."""
+    (tmp_path / "at work").mkdir()
+    store = Store(tmp_path / "at work" / "plant.sqlite")
+    store.open()
+    store.begin()
+    for number in range(60):
+        store.tasks.keep(queued(f"t{number}"), "x" * 300, float(number))
+        if number in (20, 59):
+            store.sync()
+            before, left = (tmp_path / "at work" / "plant.sqlite").read_bytes(), tmp_path / f"after {number}"
+            shutil.copytree(tmp_path / "at work", left)
+            store.fold()
+    after = (tmp_path / "at work" / "plant.sqlite").read_bytes()
+    store.close()
+    assert len(after) > len(before) + PAGE
+    for written in range(0, len(after) + 1, PAGE):
+        place = tmp_path / f"{written} written"
+        shutil.copytree(left, place)
+        (place / "plant.sqlite").write_bytes(after[:written] + before[written:])
+        found = opened(place)
+        assert isinstance(found, tuple) and len(found[1]) == 60, found
+
+
 def half(path: Path) -> None:
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
 
@@ -283,7 +308,7 @@ def test_a_file_that_is_written_by_another_program_is_noticed_and_refused_from_t
         spoil(killed, before)
         with suppress(ArboledaError):
             long_work(store)  # which does not fold into it
-        with pytest.raises(ArboledaError, match=r"another program has written into it.*put it, or a backup"):
+        with pytest.raises(ArboledaError, match=r"another program has written into it.*arboleda restore"):
             store.look()
         with suppress(ArboledaError):
             long_work(store)

@@ -81,10 +81,11 @@ def part_bytes(limits: Limits) -> int:
 def prune(folder: Path, limits: Limits, ran_s: float) -> None:
     """Delete the oldest parts to make room for another one, and those that are too old.
 
-    The age of a part is the time that the plant has run since the next one began: a wall clock may be wrong.
+    The age of a part is the time that the plant has run since the next one began that can be read: a wall
+    clock may be wrong.
     """
     left = parts_in(folder)
-    while len(left) > 1 and _began_ran_s(left[1]) < ran_s - limits.days * DAY_S:
+    while _next_began_ran_s(left[1:]) < ran_s - limits.days * DAY_S:
         left.pop(0).path.unlink(missing_ok=True)
     total = sum(part.bytes for part in left)
     for part in left:
@@ -94,10 +95,14 @@ def prune(folder: Path, limits: Limits, ran_s: float) -> None:
         part.path.unlink(missing_ok=True)
 
 
+def _next_began_ran_s(parts: list[Part]) -> float:
+    return next((each_s for each_s in map(_began_ran_s, parts) if each_s < math.inf), math.inf)
+
+
 def _began_ran_s(part: Part) -> float:
     """The time that the plant had run when a part began; 0 of a version that did not say it.
 
-    A part that cannot be read counts as new.
+    inf of one that cannot be read.
     """
     with suppress(OSError, McapError, UnicodeDecodeError, ValueError), part.path.open("rb") as opened:
         for record in islice(StreamReader(opened).records, 2):  # its header comes first

@@ -79,8 +79,8 @@ def restore(source: sqlite3.Connection, copy: Path, memory: Path, plant: str = "
             restored.tasks.select(TaskQuery(limit=1))
         with explained(memory, StartError, "cannot be replaced"):
             _set_aside(memory)
-            Told(memory).forget()  # a backup is older on purpose
             fresh.replace(memory)
+            Told(memory).forget()  # a backup is older on purpose
     except ArboledaError as error:
         raise StartError(str(error).replace(str(fresh), str(copy))) from error
     finally:

@@ -9,13 +9,8 @@ from pathlib import Path
 
 from arboleda.model.errors import ArboledaError
 
-from .memory_file import PUT_BACK, SPOILT, read_only, refuse_damage, refuse_version
-from .told import Told
-
-FOREIGN = (
-    "The plant's memory {path} cannot be used any more (another program has written into it while the plant"
-    " ran): {advice}."
-)
+from .memory_file import MOVE_AWAY, SPOILT, read_only, refuse_damage, refuse_version
+from .told import FOREIGN, Told
 
 
 class MainFile:
@@ -58,7 +53,7 @@ class MainFile:
             return
         except (ArboledaError, *SPOILT) as error:
             self._told.spoil()
-            raise ArboledaError(FOREIGN.format(path=self._path, advice=PUT_BACK)) from error
+            raise ArboledaError(FOREIGN.format(path=self._path, advice=MOVE_AWAY)) from error
         self._known = found
 
     def _stamp(self) -> tuple[int, int]:

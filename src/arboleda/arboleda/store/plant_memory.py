@@ -93,12 +93,15 @@ class PlantMemory(ABC):
         if facts:
             self.keep(*facts)
 
-    def move_times(self, by_s: float, since_ran_s: float, setting: str) -> None:
-        """Move the times of a start, which began when the plant had run so long: its wall clock was set.
+    def move_times(self, by_s: float, now_s: float, since_ran_s: float, started_ago_s: float) -> None:
+        """Move the times of a start, whose wall clock was set by so much and says `now_s`.
 
-        `setting` names the occasion: a database may get a statement again whose answer was lost.
+        It began `started_ago_s` before, when the plant had run for `since_ran_s`.
         """
-        moves = (self.tasks.moved(by_s, since_ran_s), *self.times.moved(by_s))
+        setting = repr(now_s)  # a database may get a statement again whose answer was lost
+        until_s = now_s - by_s
+        of_tasks = self.tasks.moved(by_s, since_ran_s, until_s - started_ago_s, until_s)
+        moves = (of_tasks, *self.times.moved(by_s))
         once = " AND NOT EXISTS (SELECT 1 FROM fact WHERE fact = ? AND name = ? AND value = ?)"
         rows = ((text + once, (*values, *CLOCK, setting)) for text, values in moves)
         self.write(*rows, row_of_fact(CLOCK, setting), durable=False)

@@ -163,6 +163,9 @@ class Store(PlantMemory):
                 version(self._folder)  # it opens the file when it is first used
                 told.open()
                 self._told, self._main = told, MainFile(self.path, told)
+                if told.path.exists():
+                    with suppress(sqlite3.Error, ArboledaError, OSError):
+                        self._main.fold(self._folder)  # what a kill cut short; it syncs the file first
                 self._noted = self._ahead.read()
             self.settle()
             with self._explained(StartError):

@@ -84,14 +84,18 @@ class TaskTable:
         ((last_s,),) = self._rows.read("SELECT max(ran_s) FROM task")
         return last_s or 0.0
 
-    def moved(self, by_s: float, since_ran_s: float) -> Statement:
-        """The statement that moves the times of open tasks, and the last that ended after `since_ran_s`."""
+    def moved(self, by_s: float, since_ran_s: float, began_s: float, until_s: float) -> Statement:
+        """The statement that moves the times of open tasks, and the last that ended after `since_ran_s`.
+
+        Only times between `began_s` and `until_s` are of the start whose clock was set.
+        """
         ended = "SELECT number FROM task WHERE ran_s > ? ORDER BY ran_s DESC LIMIT ?"
-        move = (
-            "UPDATE task SET accepted_s = accepted_s + ?, started_s = started_s + ?, ended_s = ended_s + ?"
-            f" WHERE (ended_s IS NULL OR number IN ({ended}))"
+        moves = ", ".join(
+            f"{each} = {each} + CASE WHEN {each} BETWEEN ? AND ? THEN ? ELSE 0 END"
+            for each in ("accepted_s", "started_s", "ended_s")
         )
-        return move, (by_s, by_s, by_s, since_ran_s, MOST_MOVED)
+        move = f"UPDATE task SET {moves} WHERE (ended_s IS NULL OR number IN ({ended}))"
+        return move, (*(began_s, until_s, by_s) * 3, since_ran_s, MOST_MOVED)
 
     def forget(self, before_ran_s: float) -> None:
         """Forget the oldest tasks that ended before the plant had run for so long, at most PRUNED of them."""

@@ -12,12 +12,16 @@ class TimeTable:
 
     def __init__(self, rows: Rows) -> None:
         self._rows = rows
+        self._older: int | None = None  # the last downtime of an earlier start; None before `began`
 
     def began(self, unix_s: float) -> None:
         """Commit that the plant runs, and forget what was over before the oldest task that is kept."""
+        ((self._older,),) = self._rows.read("SELECT coalesce(max(number), 0) FROM down")
         oldest = "(SELECT min(accepted_s) FROM task)"
         last = "SELECT seen_s FROM run WHERE number = (SELECT max(number) FROM run) AND seen_s > down.since_s"
         for statement in (
+            # of a leader of an older version, on a database that a standby of this one has brought up
+            ("UPDATE task SET ran_s = 0 WHERE ended_s IS NOT NULL AND ran_s IS NULL", ()),
             (f"UPDATE down SET until_s = coalesce(({last}), since_s) WHERE until_s IS NULL", ()),
             (f"DELETE FROM down WHERE until_s < {oldest}", ()),
             (f"DELETE FROM run WHERE seen_s < {oldest}", ()),
@@ -33,11 +37,13 @@ class TimeTable:
 
     def moved(self, by_s: float) -> Sequence[Statement]:
         """The statements that move the times of this run, and of downtimes in it."""
+        if self._older is None:
+            return ()
         run = "number = (SELECT max(number) FROM run)"
         down = "UPDATE down SET since_s = since_s + ?, until_s = until_s + ?"
         values = (by_s, by_s)
         return (
-            (f"{down} WHERE since_s >= (SELECT since_s FROM run WHERE {run})", values),
+            (f"{down} WHERE number > ?", (*values, self._older)),
             (f"UPDATE run SET since_s = since_s + ?, seen_s = seen_s + ? WHERE {run}", values),
         )
 

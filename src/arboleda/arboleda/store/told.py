@@ -49,8 +49,6 @@ class Told:
         """Begin to mark, once the memory is there; raises sqlite3.Error."""
         self._reader = sqlite3.connect(self._memory, isolation_level=None, check_same_thread=False)
         self.number()  # the connection opens the file when it is first used
-        if self._told:
-            self.fold()
 
     def number(self) -> int:
         """The number of the last change that is committed; raises sqlite3.Error."""
@@ -90,7 +88,9 @@ class Told:
 
     def refuse_foreign(self) -> None:
         """Raises StartError, or sqlite3.Error, if the main file is older than its mark."""
-        self._refuse(self._in_main_file(), self._folded)
+        folded = self._folded
+        with suppress(sqlite3.DatabaseError):  # half folded: with its log it is right, which others check
+            self._refuse(self._in_main_file(), folded)
 
     def forget(self) -> None:
         """Remove the mark, durably: another memory comes in the place of this one. Raises OSError."""

@@ -68,7 +68,7 @@ def test_a_clock_that_is_set_while_tasks_run_takes_none_from_the_figures(tmp_pat
                     store.tasks.keep(message, "storage", calendar.unix_s(), ran_s=rig.now)
             times.stepped(rig.plant)
             if by_s := calendar.look():
-                store.move_times(by_s, 0.0, repr(calendar.unix_s()))
+                store.move_times(by_s, calendar.unix_s(), 0.0, rig.now)
 
         rig.watchers.append(keep)
         for task, ahead_s in zip("abcd", (86_400.0, 0.0, -86_400.0, 0.0), strict=True):

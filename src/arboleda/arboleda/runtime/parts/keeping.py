@@ -19,6 +19,7 @@ from .durability import Durability
 from .part import Crash
 
 DAY_S = 86_400.0
+AT_ONCE_S = 1.0  # a start reads its clocks within it
 
 
 class Keeping:
@@ -51,7 +52,8 @@ class Keeping:
         by_s = self._calendar.look()
         if by_s and self.store is not None and self.failure is None:
             try:
-                self.store.move_times(by_s, self._ran_before_s, repr(self._calendar.unix_s()))
+                now_s, before_s = self._calendar.unix_s(), self._ran_before_s
+                self.store.move_times(by_s, now_s, before_s, self.ran_s() - before_s + AT_ONCE_S)
             except ArboledaError as error:
                 self.fail(error)
         return by_s
