@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from importlib.metadata import EntryPoint
 from typing import Any
 
@@ -43,7 +44,19 @@ def for_ever() -> None:
     pytest.fail("nobody left it")
 
 
-def test_what_takes_long_is_named_while_it_does(monkeypatch: pytest.MonkeyPatch) -> None:
+def here(work: Callable[[], None]) -> None:
+    work()
+
+
+def in_a_worker(work: Callable[[], None]) -> None:
+    with ThreadPoolExecutor(1) as pool:
+        pool.submit(work).result(PATIENCE_S)
+
+
+@pytest.mark.parametrize("run", [here, in_a_worker])
+def test_what_takes_long_is_named_while_it_does(
+    monkeypatch: pytest.MonkeyPatch, run: Callable[[Callable[[], None]], None]
+) -> None:
     monkeypatch.setattr(pieces, "SLOW_S", 0.01)
     named, told = threading.Event(), list[str]()
 
@@ -51,8 +64,11 @@ def test_what_takes_long_is_named_while_it_does(monkeypatch: pytest.MonkeyPatch)
         told.append(line)
         named.set()
 
-    with Pieces(tell=tell).calling(PIECE):
-        assert named.wait(PATIENCE_S)
+    def work() -> None:
+        with Pieces(tell=tell).calling(PIECE):
+            assert named.wait(PATIENCE_S), "nobody named it"
+
+    run(work)
     assert told == [SLOW]
 
 

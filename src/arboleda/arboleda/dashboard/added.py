@@ -116,7 +116,7 @@ class AddedParts:
         for point, part in self._parts:
             piece = piece_of(point, "the face of the page")
             if part.face is not None and piece in self._pieces:
-                with self._pieces.calling(piece):
+                with self._pieces.sparing(piece):
                     found |= part.face(moment)
         return found
 

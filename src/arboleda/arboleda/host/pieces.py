@@ -16,7 +16,7 @@ from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
 
 from .packages import package_of
-from .timer import called_after
+from .timer import called_after, told_after
 
 LOG = logging.getLogger(__name__)
 LONGEST = 300  # characters of an error of a package
@@ -77,13 +77,19 @@ class Pieces:
 
     @contextmanager
     def calling(self, piece: Piece) -> Iterator[None]:
-        """Time in which a piece is called: named after SLOW_S, and left out if it breaks.
+        """Time in which a piece is called: named after SLOW_S, and left out if it breaks."""
+        slow = partial(self._tell, SLOW.format(piece=piece, seconds=SLOW_S))
+        with self.sparing(piece), told_after(SLOW_S, slow):
+            yield
+
+    @contextmanager
+    def sparing(self, piece: Piece) -> Iterator[None]:
+        """Time in which a piece is called so often that it has no timer, and left out if it breaks.
 
         A StartError is raised: the plant must not start.
         """
         try:
-            with called_after(SLOW_S, partial(self._tell, SLOW.format(piece=piece, seconds=SLOW_S))):
-                yield
+            yield
         except StartError:
             raise
         except (Exception, SystemExit, Hangs) as error:  # noqa: BLE001 - whatever a package does, the rest goes on

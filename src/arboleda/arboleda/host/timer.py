@@ -1,4 +1,4 @@
-"""Timer of the process: calls a function in the middle of the work of the main thread."""
+"""Timer of the process: calls a function in the middle of the main thread's work, or beside another's."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def called_after(seconds: float, act: Callable[[], None]) -> Iterator[None]:
     One may be within another. What the function raises is raised from the work. Only in the main thread, and
     not on Windows. It takes no thread, as what runs meanwhile may fork.
     """
-    if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "setitimer"):
+    if not _can_interrupt():
         yield
         return
     call = _Call(at_s=time.monotonic() + seconds, act=act)
@@ -42,6 +42,29 @@ def called_after(seconds: float, act: Callable[[], None]) -> Iterator[None]:
             _waiting.remove(call)
         _set()
         signal.signal(signal.SIGALRM, before)
+
+
+@contextmanager
+def told_after(seconds: float, tell: Callable[[], None]) -> Iterator[None]:
+    """Time after whose first `seconds` a function is called once, unless it is over by then; in any thread.
+
+    Where the work cannot be interrupted, a thread of its own calls the function meanwhile.
+    """
+    if _can_interrupt():
+        with called_after(seconds, tell):
+            yield
+        return
+    beside = threading.Timer(seconds, tell)
+    beside.daemon = True
+    beside.start()
+    try:
+        yield
+    finally:
+        beside.cancel()
+
+
+def _can_interrupt() -> bool:
+    return threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")
 
 
 def _call(*_: object) -> None:
