@@ -459,6 +459,19 @@ def test_a_task_that_an_earlier_start_began_leaves_the_same_question(tmp_path: P
     assert cell.context.places.asked.targets == ("inside",)
 
 
+def test_a_part_from_before_the_task_is_no_question_though_the_plant_has_started_anew(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, "cell.wait(100)")
+    assert lab.bench.operate(Verb.LOAD, "lab", place="nest") is None
+    lab.bench.submit("lab try")
+    lab.bench.wait(2.0)
+    lab.bench.crash()
+    lab.bench.wait(2.0)
+    assert lab.bench.operate(Verb.ABANDON, "lab") is None
+    cell = lab.bench.plant.cells["lab"]
+    assert lab.bench.wait(30.0, lambda: cell.task is None)
+    assert cell.context.places.counts["nest"] == 1 and cell.context.places.asked.targets == ()
+
+
 def test_a_part_that_is_still_there_is_known_to_be_there(tmp_path: Path) -> None:
     lab = failed_with_a_part_in_the_oven(tmp_path)
     assert lab.bench.operate(Verb.RELEASE, "oven") is None

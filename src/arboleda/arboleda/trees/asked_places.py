@@ -29,10 +29,17 @@ class AskedPlaces:
         """The places in question now."""
         return tuple(filter(self._is_filled_since, self._places)) if self._failed else ()
 
-    def take_over(self, asked: Collection[str]) -> None:
-        """Take the questions of an earlier start."""
+    @property
+    def known(self) -> dict[str, int]:
+        """The numbers of parts known at places, for `take_over`; without those that go without saying."""
+        known = ((target, n) for target, n in self._known.items() if target in self._places)
+        return {target: n for target, n in known if n != self._unused(target)}
+
+    def take_over(self, asked: Collection[str], known: Mapping[str, int]) -> None:
+        """Take the questions of an earlier start, and the numbers it knew, which older books lack."""
         self._failed = bool(asked)
         self._known = {target: n for target, n in self._parts.items() if asked and target not in asked}
+        self._known |= known
 
     def begin(self) -> None:
         """Begin a task: the books are as people have left the places."""
@@ -61,5 +68,8 @@ class AskedPlaces:
         return parts >= self._places[target].holds and parts > self._known_at(target)
 
     def _known_at(self, target: str) -> int:
+        return self._known.get(target, self._unused(target))
+
+    def _unused(self, target: str) -> int:
         place = self._places[target]
-        return self._known.get(target, place.holds if place.supply else 0)
+        return place.holds if place.supply else 0

@@ -35,7 +35,7 @@ def trouble_in(sentence: Sentence) -> Sentence | None:
     return next((each for each in sentence.parts() if each.key in (EMPTY.key, FULL.key)), None)
 
 
-OF_PLACE, OF_HAND, IN_QUESTION, SURE, LETTING_GO = "=", ":", "?", "+", "-"
+OF_PLACE, OF_HAND, IN_QUESTION, KNOWN, SURE, LETTING_GO = "=", ":", "?", "~", "+", "-"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,9 +116,9 @@ class Places:
         return [f"{name}{OF_PLACE}1" for name in stations] + (value(Fact.PARTS, cell.name) or "").split()
 
     def _take_over(self, books: list[str]) -> None:
-        numbers = [(target, n) for target, n in _read(books, OF_PLACE) if n.isdigit()]
-        self._parts |= {target: int(n) for target, n in numbers if target in self._parts}
-        self.asked.take_over(dict(_read(books, IN_QUESTION)))
+        parts = _numbers(books, OF_PLACE)
+        self._parts |= {target: n for target, n in parts.items() if target in self._parts}
+        self.asked.take_over(dict(_read(books, IN_QUESTION)), _numbers(books, KNOWN))
         grips, words = self._dispatcher.effectors.grips, dict(_read(books, OF_HAND))
         for hand in self._hands:
             taken = HeldPart(is_sure=True, lets_go=grips[hand] is Grip.SWITCHING)  # from no place
@@ -174,7 +174,7 @@ class Places:
         """Begin a task: people have filled the supplies and emptied the outputs."""
         self._parts |= self._by_people
         self.asked.begin()
-        if self._by_people:
+        if self._places:
             self._keep()
 
     def set(self, parts: Mapping[str, int]) -> None:
@@ -333,7 +333,7 @@ class Places:
 
     def _keep(self) -> None:
         """Have the books kept: `nest=1` for a place, `jaw:nest+` for a hand and where it took its part,
-        `nest?` for a place in question.
+        `nest?` for a place in question, `nest~1` for what was known to be there before its last task.
 
         In a cell with a rack and no places, a part from elsewhere is not kept: the grip of its hand says
         enough.
@@ -342,6 +342,7 @@ class Places:
         held = sorted([each for each in self._held.items() if self._places or each[1].target in self._noted])
         words += [f"{hand}{OF_HAND}{part.written}" for hand, part in held]
         words += [f"{target}{IN_QUESTION}" for target in self.asked.targets]
+        words += [f"{target}{KNOWN}{number}" for target, number in sorted(self.asked.known.items())]
         self._dispatcher.memory.remember(Fact.STORED, self._cell.name, None)
         self._dispatcher.memory.remember(Fact.PARTS, self._cell.name, " ".join(words) or None)
 
@@ -360,3 +361,7 @@ def _read(words: Iterable[str], mark: str) -> list[tuple[str, str]]:
     """The words with this mark, as pairs of the names before it and the values after it."""
     parts = (word.partition(mark) for word in words)
     return [(name, value) for name, separator, value in parts if separator]
+
+
+def _numbers(words: Iterable[str], mark: str) -> dict[str, int]:
+    return {name: int(number) for name, number in _read(words, mark) if number.isdigit()}
