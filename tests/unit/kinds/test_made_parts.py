@@ -8,6 +8,7 @@ import pytest
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskState
+from arboleda.model.sentence import as_sentence
 from arboleda.model.verbs import Verb
 from arboleda.plant_file import advance_check, place_check
 from arboleda.plant_file.loader import load
@@ -85,3 +86,20 @@ def test_the_simulator_judges_what_is_made(tmp_path: Path) -> None:
         cycles=2
     )
     assert result.broken is None and result.outcomes == {"done": result.cycles}
+
+
+def test_nothing_is_made_of_an_order_that_the_device_refuses(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, PRINT, PLANT)
+    lab.bench.machines["oven"].refuses = lambda goal: "ocupado"
+    lab.bench.submit("lab try")
+    assert lab.bench.outcome(60.0).state is TaskState.FAILED
+    assert lab.places.counts["inside"] == 0 and lab.bench.plant.cells["lab"].not_ready is None
+
+
+def test_nothing_is_made_of_an_order_that_never_left(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, PRINT, PLANT)
+    lab.bench.submit("lab try")
+    assert lab.bench.wait(30.0, lambda: lab.places.counts["inside"] == 1)
+    (entry,) = lab.bench.plant.dispatcher.ledger.of_robot("oven")
+    lab.bench.plant.dispatcher.booking.undelivered(entry.command.id, "oven", as_sentence("it is off"), 0.0)
+    assert lab.places.counts["inside"] == 0

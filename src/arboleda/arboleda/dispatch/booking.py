@@ -71,7 +71,7 @@ class Booking:
         if entry.state is State.DONE:
             self._done(entry.command)
         elif verdict.feed is Feed.REJECTED:
-            self._reject(entry.command.robot, verdict.failure)
+            self._reject(entry.command, verdict.failure)
         failed = entry.state is State.FAILED and verdict.feed is not Feed.REJECTED
         if failed:
             self._doubt(entry)
@@ -98,6 +98,8 @@ class Booking:
         for entry in self._ledger.of_robot(robot):
             if entry.command.id == id:
                 self._effectors.grips.will_not_open(robot, id)
+                if entry.command.makes_part:
+                    self._effectors.unmake(robot)
                 feed = Feed.HALTED if entry.state is State.CANCELLING else Feed.FAILED
                 self.book(entry, CommandVerdict(feed=feed, failure=failure), now)
 
@@ -118,7 +120,10 @@ class Booking:
             facts = self.doubtful.setdefault(entry.command.robot, set())
             facts.update(name for name, _ in entry.sets)
 
-    def _reject(self, robot: str, failure: Failure | None) -> None:
+    def _reject(self, command: Command, failure: Failure | None) -> None:
+        robot = command.robot
+        if command.makes_part:
+            self._effectors.unmake(robot)
         count, _ = self.rejected.get(robot, (0, None))
         self.rejected[robot] = (count + 1, failure.sentence if failure else None)
         belief, stopped = self._beliefs[robot], failure is not None and failure.reason is Reason.STOPPED

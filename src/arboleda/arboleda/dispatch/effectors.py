@@ -30,6 +30,7 @@ class HandlingStep(Enum):
 
     TOLD_TO_TAKE = "told to take"
     TOLD_TO_MAKE = "told to make"  # a device, at a place of its own
+    NOT_MADE = "not made"  # it refused to, or was never told
     HELD = "held"
     TOLD_TO_LET_GO = "told to let go"
     EMPTY = "empty"
@@ -82,6 +83,10 @@ class Effectors:
     def make(self, device: str) -> None:
         """Book a command that makes a part, which leaves now."""
         self._tell(device, HandlingStep.TOLD_TO_MAKE)
+
+    def unmake(self, device: str) -> None:
+        """Book that a device has made nothing of a command that it refused, or that never left."""
+        self._tell(device, HandlingStep.NOT_MADE)
 
     def declare_empty(self, belief: Belief) -> None:
         """Book that a person has taken the part out of a device.

@@ -100,6 +100,7 @@ class Places:
         self._parts = {place.target: 0 for place in cell.counted}
         self._held: dict[str, HeldPart] = {}
         self.asked = AskedPlaces(self._places, self._parts, self._keep)
+        self._made_at: dict[str, str | None] = {}  # by device, of the part that it was told to make last
         self._left_there: dict[
             str, str
         ] = {}  # by hand: the target whose part it was told to take, and did not
@@ -271,8 +272,12 @@ class Places:
             targets = self._of_device[hand]
             if handling is HandlingStep.TAKEN_OUT:
                 self.set(dict.fromkeys(targets, 0))
-            elif handling is HandlingStep.TOLD_TO_MAKE and any(map(self.is_free, targets)):
-                self._move(next(filter(self.is_free, targets)), +1, hand)
+            elif handling is HandlingStep.TOLD_TO_MAKE:
+                self._made_at[hand] = next(filter(self.is_free, targets), None)
+                self._move(self._made_at[hand], +1, hand)
+                self._keep()
+            elif handling is HandlingStep.NOT_MADE:
+                self._move(self._made_at.pop(hand, None), -1, hand)
                 self._keep()
             return
         held = self._held.get(hand) or HeldPart()

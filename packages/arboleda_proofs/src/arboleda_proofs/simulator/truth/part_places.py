@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from arboleda.engine import Entry
+from arboleda.engine import Entry, State
 from arboleda.engine.inspection import EMPTY, trouble_in
 from arboleda.model import text
 from arboleda.model.commands import Command, Position, Switch
@@ -336,6 +336,12 @@ class PlacesTruth:
             found = places.make(command.robot)
             if found is not None and not places.is_doubtful:
                 self.wrong.append(found)
+
+    def end(self, entry: Entry) -> None:
+        """Take in how a command ended: nobody knows of an order to make a part that no device accepted."""
+        if entry.command.makes_part and entry.state is not State.DONE and entry.accepted_at is None:
+            for places in self.cells.values():
+                places.is_doubtful |= places.makes_parts and places.depends_on(entry.command.robot)
 
     def _is_late(self, hand: RobotTruth, carrier: str) -> bool:
         """True where the carrier of a hand has set out since the hand was told to be as it is."""

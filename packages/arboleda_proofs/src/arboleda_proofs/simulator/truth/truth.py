@@ -148,6 +148,7 @@ class Truth(RobotsTruth):
 
     def _end(self, booked: EndedCommand) -> None:
         command = booked.command
+        self.places.end(booked.entry)
         if not isinstance(command, Query):
             self._last[command.robot] = booked
 
