@@ -26,6 +26,7 @@ from arboleda.dashboard.wording import words
 from arboleda.host.pieces import Pieces
 from arboleda.views import view
 from arboleda.web.access.auth import Role
+from arboleda.web.package_routes import PackageRoute
 from arboleda_proofs.testing import shipped
 
 CODE = """
@@ -81,10 +82,15 @@ Told = list[str]
 
 @pytest.fixture
 def put(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
-    """Installs a package `acme` with this code."""
+    """Installs a package with this code, `acme` where no other is named."""
     monkeypatch.syspath_prepend(tmp_path / "site")
-    yield lambda code=CODE: install(tmp_path / "site", "acme", code, group=GROUP, what="PAGE")
-    sys.modules.pop("acme", None)
+
+    def put(code: str = CODE, name: str = "acme") -> None:
+        install(tmp_path / "site", name, code, group=GROUP, what="PAGE")
+
+    yield put
+    for name in ("acme", "bolt"):
+        sys.modules.pop(name, None)
 
 
 def html(parts: AddedParts, role: str | None = None, plant: Any = None) -> str:
@@ -99,6 +105,10 @@ class Plant:
 
     def layout(self) -> dict[str, Any]:
         return LAYOUT
+
+
+def served(server: FastAPI) -> list[str]:
+    return [each.behind.path for each in server.routes if isinstance(each, PackageRoute)]  # type: ignore[attr-defined]
 
 
 def now() -> Any:
@@ -189,14 +199,40 @@ def test_a_piece_of_a_package_that_breaks_is_left_out_and_named(
     assert (".ended" in shown) is not whole and "part-make" in shown
 
 
-def test_a_package_takes_no_part_of_the_runner(put: Install) -> None:
+@pytest.mark.parametrize("act", ["home", "download"])
+def test_a_package_takes_no_part_of_the_runner(put: Install, act: str) -> None:
     told: Told = []
-    put(CODE.replace('name="zones"', 'name="links"').replace('"fetch"', '"home"'))
+    put(CODE.replace('name="zones"', 'name="links"').replace('"fetch"', f'"{act}"'))
     parts = loaded(told)
-    assert "Shelf of" not in html(parts) and "home" not in parts.acts
+    assert "Shelf of" not in html(parts) and act not in parts.acts
     assert told == [
         f"Arboleda goes on without {each} of acme 1: another {what} has this name"
-        for each, what in (("the section links", "section"), ("the act home", "act"))
+        for each, what in (("the section links", "section"), (f"the act {act}", "act"))
+    ]
+
+
+@pytest.mark.parametrize("address", ["/", "/task.json", "/{path:path}"])
+def test_a_package_takes_no_address_of_the_page(put: Install, address: str) -> None:
+    told: Told = []
+    put(CODE.replace("/shelf.json", address))
+    server = FastAPI(openapi_url=None)
+    loaded(told).serve(server, Plant())  # type: ignore[arg-type]
+    assert address not in served(server)
+    taken = address.replace("{path:path}", "")
+    assert told == [
+        f"Arboleda goes on without the route GET {taken} of acme 1: another route has this address"
+    ]
+
+
+def test_of_two_packages_that_serve_one_address_the_first_does(put: Install) -> None:
+    told: Told = []
+    put()
+    put("from acme import serve, PagePart\n\nPAGE = PagePart(serve=serve)\n", "bolt")
+    server = FastAPI(openapi_url=None)
+    loaded(told).serve(server, Plant())  # type: ignore[arg-type]
+    assert served(server).count("/shelf.json") == 1
+    assert told == [
+        "Arboleda goes on without the route GET /shelf.json of bolt 1: another route has this address"
     ]
 
 

@@ -36,7 +36,7 @@ def routes(side):
     return api
 '''
 TAKES = """
-from fastapi import APIRouter
+from fastapi import APIRouter, FastAPI
 
 
 async def mine():
@@ -45,8 +45,11 @@ async def mine():
 
 def routes(side):
     api = APIRouter()
-    for path in ("/api/ended", "/api/plant", "/api/events", "/login", "/api/ended"):
+    for path in ("/api/ended", "/api/plant", "/api/events", "/login", "/api/ended", "/", "/task.json"):
         api.add_api_route(path, mine)
+    api.add_api_route("/twin/{what}", mine)
+    api.mount("/shelf", FastAPI())
+    api.mount("", FastAPI())
     return api
 """
 Install = Callable[[str], None]
@@ -77,9 +80,18 @@ def test_a_package_takes_no_path_of_the_runner(plant: Plant, put: Install) -> No
     app = make_app(plant, pieces=Pieces(tell=told.append))
     assert Caller(app).get("/api/plant").json()["plant"] == "demo"
     assert Caller(app).get("/api/ended").json() == "mine"
+    assert Caller(app).get("/anything").status_code == 404
     assert told == [
         f"Arboleda goes on without the route GET {each} of acme 1: another route has this address"
-        for each in ("/api/plant", "/api/events", "/login", "/api/ended")
+        for each in (
+            "/api/plant",
+            "/api/events",
+            "/login",
+            "/api/ended",
+            "/",
+            "/task.json",
+            "/twin/scene.json",
+        )
     ]
 
 

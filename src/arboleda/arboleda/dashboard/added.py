@@ -15,10 +15,11 @@ from arboleda.host.pieces import Piece, Pieces, piece_of
 from arboleda.model.errors import ArboledaError
 from arboleda.model.verbs import Verb
 from arboleda.web.access.auth import SUBMIT, Role
-from arboleda.web.package_routes import guarded
+from arboleda.web.package_routes import addresses, guarded
 
 from .asset_files import Assets
 from .body import Parts
+from .desk import DOWNLOAD
 from .faces import Face
 from .faces.moment import Moment
 from .page_api import Layout, PageApi
@@ -48,9 +49,8 @@ class AddedParts:
 
     def __init__(self, pieces: Pieces | None = None, own: Collection[str] = ()) -> None:
         self._pieces = pieces or Pieces()
-        self._taken = (
-            {(SECTION, each) for each in own} | {(ACT, each.value) for each in Verb} | {(ACT, SUBMIT)}
-        )
+        acts = (SUBMIT, DOWNLOAD, *(each.value for each in Verb))
+        self._taken = {(SECTION, each) for each in own} | {(ACT, each) for each in acts}
         self._parts: list[_Added] = []
         for point in registered(GROUP):
             with self._pieces.calling(piece_of(point, "the part of the page")):
@@ -103,12 +103,13 @@ class AddedParts:
 
     def serve(self, server: FastAPI, plant: PageApi) -> None:
         """Add the addresses of packages to the server."""
+        taken = addresses(server.router.routes)
         for point, part in self._parts:
             with self._pieces.calling(piece_of(point, "the addresses of the page")):
                 if part.serve is not None:
                     beside = FastAPI(openapi_url=None)
                     part.serve(beside, plant)
-                    server.router.routes += guarded(beside.router.routes, package_of(point))
+                    server.router.routes += guarded(beside.router.routes, point, taken, self._pieces)
 
     def face(self, moment: Moment) -> Face:
         """The changes over time in the sections of packages."""

@@ -13,6 +13,7 @@ from fastapi.responses import JSONResponse
 
 from arboleda.host.pieces import Pieces
 from arboleda.store.task_rows import TaskQuery
+from arboleda.web.request import HISTORY, TASK
 
 from . import header, links, menu, missing_packages, settings, shell, tasks, timeline, trees
 from .added import AddedParts, LeftOut
@@ -133,8 +134,8 @@ def _serve_tasks(server: FastAPI, plant: PageApi, feed: Feed) -> None:
         rows = await run_in_threadpool(plant.history, query)
         return JSONResponse(history.face(rows, words(language_of(request)), time.time()))
 
-    server.add_api_route("/task.json", one_task, include_in_schema=False)
-    server.add_api_route("/history.json", kept, include_in_schema=False)
+    server.add_api_route(TASK, one_task, include_in_schema=False)
+    server.add_api_route(HISTORY, kept, include_in_schema=False)
 
 
 def open_page(client: Client, desk: Desk, feed: Feed) -> None:

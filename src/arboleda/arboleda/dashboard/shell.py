@@ -13,6 +13,7 @@ from arboleda.model.errors import StartError
 from arboleda.web.access.auth import Role
 from arboleda.web.api import refuse
 from arboleda.web.languages import spoken
+from arboleda.web.request import PAGE
 
 from .asset_files import Assets, own, own_address, own_folder
 from .body import script_data
@@ -46,7 +47,7 @@ def serve(
     for address, folder in [*((each.address, each.folder) for each in added), (own_address(), own_folder())]:
         app.add_static_files(address, folder, max_cache_age=3600)
 
-    @ui.page("/", title=f"{layout['plant']} · Arboleda")
+    @ui.page(PAGE, title=f"{layout['plant']} · Arboleda")
     def page(request: Request, client: Client) -> Response:
         unopened.add(client)
         parts = build(request, client)

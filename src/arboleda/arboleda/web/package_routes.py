@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from importlib.metadata import EntryPoint
 from typing import Any
 
 from fastapi import routing
 from starlette.routing import BaseRoute, Match
 from starlette.types import Receive, Scope, Send
 
+from arboleda.host.packages import package_of
+from arboleda.host.pieces import Pieces, piece_of
+from arboleda.model.errors import ArboledaError
+
 from .access.needs import LOOKED, OPERATORS, Need, declared, method_of
-from .request import READS
+from .request import HISTORY, PAGE, READS, SCENE, TASK
 
 NEEDS = "arboleda.needs"  # in the scope of a request for a route of a package, the last one counts
 APART = "arboleda.apart"  # in the scope of each request: what runs an application in the loop of a package
+OF_PAGE = tuple(f"GET {each}" for each in (PAGE, TASK, HISTORY, SCENE))  # which is asked after all routes
+TAKEN = "another route has this address"
 
 
 def leaves(routes: Sequence[BaseRoute]) -> tuple[Any, ...]:
@@ -66,6 +73,24 @@ class PackageRoute(BaseRoute):
         return (OPERATORS,) if not found and method_of(scope) not in READS else found
 
 
-def guarded(routes: Iterable[BaseRoute], package: str) -> list[BaseRoute]:
-    """The routes of a package, each behind a look at who asks."""
-    return [PackageRoute(each, package) for each in routes]
+def guarded(
+    routes: Iterable[BaseRoute], point: EntryPoint, taken: set[str], pieces: Pieces
+) -> list[BaseRoute]:
+    """The routes of a package, each behind a look at who asks, without those with an address of the page or
+    one that is `taken`. What the others have is taken then."""
+    found: list[BaseRoute] = []
+    for route in routes:
+        mine = addresses([route])
+        if doubled := mine & taken | {each for each in OF_PAGE if _answers(route, each)}:
+            pieces.leave_out(piece_of(point, f"the route {min(doubled)}"), ArboledaError(TAKEN))
+            continue
+        taken |= mine
+        found.append(PackageRoute(route, package_of(point)))
+    return found
+
+
+def _answers(route: BaseRoute, request: str) -> bool:
+    """True if a route is for this request, as `GET /task.json`."""
+    method, path = request.split()
+    scope = {"type": "http", "method": method, "path": path, "root_path": "", "headers": []}
+    return route.matches(scope)[0] is Match.FULL

@@ -12,6 +12,7 @@ from starlette.types import Message, Scope, Send
 from .access.names import is_loopback
 
 API, LOGIN, LOGOUT, METRICS = "/api/", "/login", "/logout", "/metrics"
+PAGE, TASK, HISTORY, SCENE = "/", "/task.json", "/history.json", "/twin/scene.json"  # of the page
 DRAFT_TREES = "/api/draft/set_trees"
 OF_DEVICES = ("/api/make/device", "/api/make/objections", "/api/make/runs/reach")
 TREES = ("/api/trees/", "/api/make/drawn/", *OF_DEVICES, "/api/proposals")
@@ -97,7 +98,7 @@ class RequestHead:
     @property
     def opens_page(self) -> bool:
         """True if the request is for a page itself, not for one of the files of pages."""
-        return not self.socket and self.path == "/"
+        return not self.socket and self.path == PAGE
 
     @property
     def logs_in(self) -> bool:

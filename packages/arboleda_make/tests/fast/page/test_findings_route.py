@@ -12,7 +12,7 @@ from tests.in_process import Caller, without_threads
 
 from arboleda.web.access.auth import Role
 from arboleda.web.api import answer_in_sentences
-from arboleda.web.package_routes import guarded
+from arboleda.web.package_routes import PackageRoute
 from arboleda_make.page import findings_route
 
 FOUND = {"lines": ['the key "a" is missing', "cells.b: there is nothing to undo"]}
@@ -34,7 +34,7 @@ def page(role: Role, make: Make | None) -> Caller:
     answer_in_sentences(app)
     side: Any = SimpleNamespace(ask=lambda _kind: make)
     findings_route.serve(beside, side)
-    app.router.routes += guarded(beside.router.routes, "make")
+    app.router.routes += [PackageRoute(each, "make") for each in beside.router.routes]
 
     async def as_role(scope: Scope, receive: Receive, send: Send) -> None:
         await app({**scope, "arboleda.role": role}, receive, send)

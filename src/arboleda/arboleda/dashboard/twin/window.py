@@ -13,12 +13,12 @@ from fastapi import FastAPI, Request, Response
 from arboleda.geometry import bodies
 from arboleda.model.errors import ArboledaError
 from arboleda.web.access.auth import require
+from arboleda.web.request import SCENE
 
 from ..toolkit import Client, GenericEventArguments, ui
 from .show import Show
 from .twin import Twin
 
-SCENE = "/twin/scene.json"
 EVENT = "arboleda-twin"
 LOOK, LEAVE, DRAWN = "look", "leave", "drawn"
 

@@ -14,14 +14,12 @@ from fastapi import APIRouter
 
 from arboleda.host.packages import package_of, registered
 from arboleda.host.pieces import Pieces, piece_of
-from arboleda.model.errors import ArboledaError
 
-from ..package_routes import PackageRoute, addresses
+from ..package_routes import addresses, guarded
 from ..plant_api import PlantApi
 
 GROUP = "arboleda.routes"
 OWN = ("assistants", "promises", "recipes")
-TAKEN = "another route has this address"
 
 
 def routers(side: PlantApi) -> list[APIRouter]:
@@ -35,7 +33,7 @@ def installed() -> set[str]:
 
 
 def packaged(side: PlantApi, before: Sequence[APIRouter], pieces: Pieces) -> list[APIRouter]:
-    """The routers of packages, without a route that `before` or another package has."""
+    """The routers of packages, without a route that `before`, the page or another package has."""
     taken = {each for router in before for each in addresses(router.routes)}
     found: list[APIRouter] = []
     for point in registered(GROUP):
@@ -44,11 +42,5 @@ def packaged(side: PlantApi, before: Sequence[APIRouter], pieces: Pieces) -> lis
             if not isinstance(router, APIRouter):
                 raise TypeError(f"{point.value} makes no APIRouter")
             found.append(APIRouter())
-            for route in router.routes:
-                mine = addresses([route])
-                if doubled := mine & taken:
-                    pieces.leave_out(piece_of(point, f"the route {min(doubled)}"), ArboledaError(TAKEN))
-                    continue
-                taken |= mine
-                found[-1].routes.append(PackageRoute(route, package_of(point)))
+            found[-1].routes += guarded(router.routes, point, taken, pieces)
     return found
