@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from fastapi.routing import APIRoute
 from tests.added_package import install
+from tests.guarded_plant import guarded
 from tests.in_process import Caller
 from tests.packages import PACKAGES, leave_out
 from tests.web_plant import Plant
@@ -18,6 +19,7 @@ from arboleda.host.packages import package_of, registered
 from arboleda.host.pieces import Pieces
 from arboleda.web import missing, routes
 from arboleda.web.api import make_app
+from arboleda.web.package_routes import TAKEN
 from arboleda.web.routes import routers
 
 CODE = '''
@@ -50,6 +52,19 @@ def routes(side):
     api.add_api_route("/twin/{what}", mine)
     api.mount("/shelf", FastAPI())
     api.mount("", FastAPI())
+    return api
+"""
+STOPS = """
+from fastapi import APIRouter
+
+
+async def act(verb: str = ""):
+    return verb
+
+
+def routes(side):
+    api = APIRouter()
+    api.add_api_route("PATH", act, methods=["POST"])
     return api
 """
 Install = Callable[[str], None]
@@ -93,6 +108,31 @@ def test_a_package_takes_no_path_of_the_runner(plant: Plant, put: Install) -> No
             "/twin/scene.json",
         )
     ]
+
+
+@pytest.mark.parametrize(
+    ("path", "taken"),
+    [
+        ("/api/plants/stop", "/api/plants/stop"),
+        ("/api/plants/{name}/stop", "/api/plants/x/stop"),
+        ("/api/plants/north/stop", "/api/plants/north/stop"),
+        ("/api/{what}/stop", "/api/plant/stop"),
+        ("/api/{rest:path}", "/api/cells/x/stop"),
+    ],
+)
+def test_a_package_takes_no_address_of_a_stop(plant: Plant, put: Install, path: str, taken: str) -> None:
+    told: list[str] = []
+    put(STOPS.replace("PATH", path))
+    make_app(plant, pieces=Pieces(tell=told.append))
+    assert told == [f"Arboleda goes on without the route POST {taken} of acme 1: {TAKEN}"]
+
+
+def test_no_route_of_a_package_is_asked_for_a_stop(plant: Plant, put: Install) -> None:
+    told: list[str] = []
+    put(STOPS.replace("PATH", "/api/plants/north/{verb}"))
+    web = guarded(plant, behind=make_app(plant, pieces=Pieces(tell=told.append))).client()
+    assert not told and web.post("/api/plants/north/home").json() == "home"
+    assert web.post("/api/plants/north/stop").status_code == 404
 
 
 @pytest.mark.parametrize(

@@ -15,11 +15,15 @@ from arboleda.host.pieces import Pieces, piece_of
 from arboleda.model.errors import ArboledaError
 
 from .access.needs import LOOKED, OPERATORS, Need, declared, method_of
-from .request import HISTORY, PAGE, READS, SCENE, TASK
+from .request import HISTORY, PAGE, READS, SCENE, TASK, is_stop
 
 NEEDS = "arboleda.needs"  # in the scope of a request for a route of a package, the last one counts
 APART = "arboleda.apart"  # in the scope of each request: what runs an application in the loop of a package
-OF_PAGE = tuple(f"GET {each}" for each in (PAGE, TASK, HISTORY, SCENE))  # which is asked after all routes
+STOPS = ("plant", "cells/x", "plants", "plants/x")
+KEPT = (
+    *(f"GET {each}" for each in (PAGE, TASK, HISTORY, SCENE)),  # of the page, which is asked after all routes
+    *(f"POST /api/{each}/stop" for each in STOPS),
+)
 TAKEN = "another route has this address"
 
 
@@ -49,6 +53,8 @@ class PackageRoute(BaseRoute):
         self._leaves = leaves([route])
 
     def matches(self, scope: Scope) -> tuple[Match, Scope]:
+        if is_stop(method_of(scope), scope["path"]):  # made in the server's loop, in which nothing may hang
+            return Match.NONE, {}
         match, found = self.behind.matches(scope)
         if match is not Match.FULL:
             return match, found
@@ -76,12 +82,13 @@ class PackageRoute(BaseRoute):
 def guarded(
     routes: Iterable[BaseRoute], point: EntryPoint, taken: set[str], pieces: Pieces
 ) -> list[BaseRoute]:
-    """The routes of a package, each behind a look at who asks, without those with an address of the page or
-    one that is `taken`. What the others have is taken then."""
+    """The routes of a package, each behind a look at who asks, without those with an address of the page,
+    of a stop, or one that is `taken`. What the others have is taken then."""
     found: list[BaseRoute] = []
     for route in routes:
         mine = addresses([route])
-        if doubled := mine & taken | {each for each in OF_PAGE if _answers(route, each)}:
+        stops = {each for each in mine if is_stop(*each.split(" ", 1))}
+        if doubled := mine & taken | stops | {each for each in KEPT if _answers(route, each)}:
             pieces.leave_out(piece_of(point, f"the route {min(doubled)}"), ArboledaError(TAKEN))
             continue
         taken |= mine

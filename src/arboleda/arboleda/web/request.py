@@ -28,6 +28,11 @@ def is_api(path: str) -> bool:
     return path in (API.rstrip("/"), METRICS) or path.startswith(API)
 
 
+def is_stop(method: str, path: str) -> bool:
+    """True if a request is a stop, which is made before all else."""
+    return method == "POST" and bool(STOP.fullmatch(path))
+
+
 class RequestHead:
     """HTTP request or websocket handshake; header values are latin-1, "" if missing."""
 
@@ -75,7 +80,7 @@ class RequestHead:
 
     @property
     def stops(self) -> bool:
-        return not self.socket and self.scope["method"] == "POST" and bool(STOP.fullmatch(self.path))
+        return not self.socket and is_stop(self.scope["method"], self.path)
 
     @property
     def for_api(self) -> bool:
