@@ -236,6 +236,17 @@ def test_of_two_packages_that_serve_one_address_the_first_does(put: Install) -> 
     ]
 
 
+def test_of_two_sections_in_one_place_only_the_one_that_breaks_is_left_out(put: Install) -> None:
+    told: Told = []
+    broken = "Section(place=Place.CARD, build=lambda spot: 1 / 0),"
+    put(CODE.replace("sections=(", f"sections=({broken}"))
+    shown = html(loaded(told))
+    assert ".ended" in shown
+    assert told == [
+        "Arboleda goes on without the section card of acme 1: ZeroDivisionError: division by zero"
+    ]
+
+
 def test_a_package_is_loaded_only_when_a_page_is_made(put: Install) -> None:
     put()
     assert "acme" in added.installed() and "acme" not in sys.modules

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 from functools import partial
@@ -131,10 +132,14 @@ class AddedParts:
         return Drawing(seen, Spot(plant=plant, layout=layout, words=words), self._pieces)
 
     def _sections(self) -> Iterator[tuple[Piece, Section]]:
-        """The sections that are not left out, each as a piece."""
+        """The sections that are not left out, each as a piece; several in one place are numbered."""
+        count = Counter[Piece]()
         for point, part in self._parts:
             for section in part.sections:
                 piece = piece_of(point, f"the section {section.name or section.place.name.lower()}")
+                count[piece] += 1
+                if count[piece] > 1:
+                    piece = replace(piece, what=f"{piece.what} {count[piece]}")
                 if piece in self._pieces:
                     yield piece, section
 
