@@ -147,6 +147,8 @@ def test_a_listener_of_a_package_that_breaks_is_left_out_once_and_the_plant_goes
 
 
 LINKS = """
+from functools import partial
+
 from arboleda.runtime.registry import Factory, Phase
 
 ASKED = []
@@ -168,10 +170,11 @@ PARTS = [Factory(phase=Phase.LINKS, make=make)]
 """
 
 
+@pytest.mark.parametrize("source", ["breaks", "partial(breaks)"])
 def test_a_source_of_links_that_breaks_is_left_out_and_the_others_go_on_telling(
-    tmp_path: Path, put: Install
+    tmp_path: Path, put: Install, source: str
 ) -> None:
-    put("acme", f"TOLD = ['shelf']{LINKS}")
+    put("acme", f"TOLD = ['shelf']{LINKS}".replace("add(breaks)", f"add({source})"))
     app = built(tmp_path)
     app.stop()
     links = [app.links() for _ in range(3)]

@@ -95,7 +95,7 @@ class Links:
         """What a source tells; nothing where it is left out."""
         try:
             news = {**source()}
-            is_ours = _top(source.__module__) == RUNNER
+            is_ours = _top(_module_of(source)) == RUNNER
             if doubled := news.keys() & (taken if is_ours else taken | OF_RUNNER):
                 raise NameTaken(f"another source tells {', '.join(sorted(doubled))}")
         except Exception as error:  # noqa: BLE001 - record and page go on, whatever a source does
@@ -145,7 +145,7 @@ class Assembly(Offers):
 
     def _lose_source(self, source: Source, error: Exception) -> None:
         """Leave out a source of `links`."""
-        piece = _piece_in(source.__module__, "a source of links")
+        piece = _piece_in(_module_of(source), "a source of links")
         if piece is None:
             log_defect("a source of links", error)
         else:
@@ -168,6 +168,11 @@ def _piece_in(module: str, what: str) -> Piece | None:
     """A piece whose code is in this module; None where no package with parts has it."""
     points = (each for each in registered(GROUP) if _top(each.module) == _top(module))
     return next((piece_of(each, what) for each in points), None)
+
+
+def _module_of(source: Source) -> str:
+    """The module of a source; a `functools.partial` has none of its own."""
+    return str(getattr(getattr(source, "func", source), "__module__", ""))
 
 
 def _top(module: str) -> str:
