@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
-from arboleda.model.messages import Verb
+from arboleda.model.messages import Check, Verb
 from arboleda.plant_file.loader import load
+from arboleda.trees.handling import Handling
 from arboleda_proofs.campaigns.plants import Plant
 from arboleda_proofs.campaigns.proof.calm import calm_runs
 from arboleda_proofs.campaigns.proof.proof import Proof
@@ -96,6 +97,15 @@ FAULTS = {
     ),
 }
 
+BY_ARM = """
+from arboleda.recipes import recipe, work
+
+@recipe("carry")
+def carry(cell):
+    arm = cell.device("arm")
+    return work(arm.visit("in", arm.grip()), arm.visit("bin", arm.let_go()), arm.home())
+"""
+
 
 def written(folder: Path, plant: str, recipes: str = CARRY) -> Any:
     (folder / "recipes.py").write_text(recipes, "utf-8")
@@ -149,6 +159,16 @@ def test_a_cell_that_waits_for_a_shared_arm_goes_on_as_it_is_seen_at_home_again(
 def test_a_release_may_be_unchecked_where_another_holder_of_the_cell_has_booted(tmp_path: Path) -> None:
     model = written(tmp_path, CLAMP, CLAMPED)
     assert run(model, Fault(kind="forgets", at=10.0, target="bed")).broken is None
+
+
+def test_a_holder_that_the_task_never_uses_excuses_no_unchecked_release(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begin = Handling.begin
+    monkeypatch.setattr(Handling, "begin", lambda self: begin(self, unchecked=[Check.RELEASE]))
+    silent = CLAMP.replace("bed: {kind: bed}", "bed: {kind: bed, evidence: state}")
+    broken = run(written(tmp_path, silent, BY_ARM)).broken
+    assert broken is not None and broken.invariant == "unchecked_is_as_said"
 
 
 def test_a_task_may_open_a_shared_hand_in_the_step_in_which_an_operator_has_another_device_let_go(

@@ -93,7 +93,7 @@ def unchecked_is_as_said(look: Look) -> Iterator[str]:
         if not arms:
             continue
         silent = any(arm.robot.evidence is not Evidence.IDS for arm in arms)
-        may_miss = any(_may_miss_a_release(each, began) for each in _holders(look, cell))
+        may_miss = any(_may_miss_a_release(look, each, began) for each in _holders(look, cell))
         unchecked = look.truth.unchecked[task]
         if (Check.GRIP in unchecked) not in _may_be_unchecked(look, cell, task, silent=silent):
             yield f"{task} is done, and its grip is {_checked(Check.GRIP, unchecked)}"
@@ -106,10 +106,13 @@ def _holders(look: Look, cell: str) -> Iterator[RobotTruth]:
     return (each for each in found if each is not None)
 
 
-def _may_miss_a_release(holder: RobotTruth, began: float) -> bool:
-    """True for what has booted since then, and for a device that is no arm and names no command."""
+def _may_miss_a_release(look: Look, holder: RobotTruth, began: float) -> bool:
+    """True for what has booted since then, and for a device that is no arm and names no command, if it was
+    told to open since then.
+    """
     is_silent = holder.robot.evidence is not Evidence.IDS and not isinstance(holder, ArmTruth)
-    return is_silent or holder.booted_us / 1e6 >= began
+    was_told = look.truth.places.was_told_to_open(holder.robot.name, since=began)
+    return (is_silent and was_told) or holder.booted_us / 1e6 >= began
 
 
 def _may_be_unchecked(look: Look, cell: str, task: str, *, silent: bool) -> tuple[bool, ...]:

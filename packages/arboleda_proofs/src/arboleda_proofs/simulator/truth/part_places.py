@@ -337,6 +337,10 @@ class PlacesTruth:
             if found is not None and not places.is_doubtful:
                 self.wrong.append(found)
 
+    def was_told_to_open(self, hand: str, *, since: float) -> bool:
+        """True for a hand that was told to open at this time (s) or later."""
+        return self._told_at.get((hand, False), -math.inf) >= since
+
     def end(self, entry: Entry) -> None:
         """Take in how a command ended: nobody knows of an order to make a part that no device accepted."""
         if entry.command.makes_part and entry.state is not State.DONE and entry.accepted_at is None:
