@@ -9,6 +9,7 @@ from typing import Any
 
 from arboleda.engine import Entry, State
 from arboleda.engine.inspection import EMPTY, trouble_in
+from arboleda.kinds.declared import Device
 from arboleda.model import text
 from arboleda.model.commands import Command, Position, Switch
 from arboleda.model.common_places import with_common_places
@@ -16,7 +17,6 @@ from arboleda.model.grips import Grip
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Cell, Evidence, Place, Robot, Workspace
 from arboleda.model.recipe import Recipe
-from arboleda.plant_file.declared_kinds import verbs_of
 
 from ..recorded.scopes import Scopes
 from ..world import World
@@ -56,8 +56,8 @@ class CellPlaces:
         self.is_doubtful = self.end_is_doubtful = False
         self.by_people = {place.target for place in cell.counted if place.by_people}
         self._places = {place.target: place for place in cell.counted}
-        makers = [device for device in cell.robots if any(v.makes_part for v in verbs_of(device).values())]
-        self.makes_parts = bool(makers)
+        devices = [each for each in cell.robots if isinstance(each, Device)]
+        self.makes_parts = any(verb.makes_part for each in devices for verb in each.kind.verbs.values())
         self._rack = frozenset(place.target for place in cell.rack)
         self._hands = {space.hand.name: space for space in cell.spaces if space.hand.held_fact}
         self._task = ""
