@@ -85,7 +85,7 @@ class AddedParts:
 
     @property
     def left_out(self) -> int:
-        """How many pieces are left out by now; with each the page is another one."""
+        """The number of pieces that are left out by now; with each the page is another one."""
         return len(self._pieces.notes)
 
     @property

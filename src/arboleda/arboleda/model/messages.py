@@ -448,7 +448,7 @@ class Interference:
 
 @dataclass(frozen=True, kw_only=True)
 class Uncontested:
-    """What a robot reports counts again, after more than one node has published it."""
+    """The reports of a robot count again, after more than one node has published them."""
 
     at: float
     robot: str

@@ -113,7 +113,7 @@ def _contradict(places: Sequence[Place]) -> bool:
 
 
 def _words(place: Place) -> str:
-    """What a plant file says of a place."""
+    """The words of a plant file about a place."""
     given = {"holds": place.holds, "of": place.device, "supply": place.supply, "output": place.output}
     return flow({key: value for key, value in given.items() if value})
 

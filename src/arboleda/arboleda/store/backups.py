@@ -28,7 +28,7 @@ from .memory_file import (
 )
 from .sqlite import Store
 from .task_rows import TaskQuery
-from .told import Told
+from .told_number import Told
 
 BESIDE = ("-wal", "-shm", "-journal", "-ahead")
 

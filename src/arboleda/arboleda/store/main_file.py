@@ -10,7 +10,7 @@ from pathlib import Path
 from arboleda.model.errors import ArboledaError
 
 from .memory_file import MOVE_AWAY, SPOILT, read_only, refuse_damage, refuse_version
-from .told import FOREIGN, Told
+from .told_number import FOREIGN, Told
 
 
 class MainFile:

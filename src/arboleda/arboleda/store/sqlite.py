@@ -3,7 +3,7 @@
 A commit appends to the log of the file (`-wal`) and waits for no disk: it survives a killed process. `sync`
 has the system write the log to the disk, by a descriptor of its own: from any thread, and while the plant
 commits more. `fold` brings the log into the file, by a connection of its own. What is noted is in a file
-beside them (`-ahead`) until it is committed. How far people were told is beside them, too (`told.py`).
+beside them (`-ahead`) until it is committed. How far people were told is beside them, too (`told_number.py`).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from .memory_file import (
 )
 from .plant_memory import PlantMemory
 from .rows import Statement, row_of_fact
-from .told import Told
+from .told_number import Told
 
 TASKS = (
     # `ended_s` is null as long as a task waits or runs; times are Unix times
