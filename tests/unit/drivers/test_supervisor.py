@@ -169,14 +169,15 @@ def test_what_could_not_leave_is_told_and_the_link_stays(driven: Driven) -> None
     assert driven.asks(LIGHT) == [driven.given(LIGHT)]
 
 
-def test_a_defect_in_send_also_loses_the_link_until_the_device_is_heard(driven: Driven) -> None:
+def test_after_a_defect_in_send_the_link_is_lost_and_nobody_says_that_nothing_left(driven: Driven) -> None:
     driven.asks(GO)
     broken = SendResult(
         at=driven.now, life=driven.life, command=GO, error=OWN(text="KeyError: 'go'"), broken=True
     )
-    undelivered, gone = driven.step(broken)
-    assert isinstance(undelivered, Undelivered) and isinstance(gone, Report)
-    assert gone.lost == undelivered.sentence
+    (gone,) = driven.step(broken)
+    assert isinstance(gone, Report) and gone.state is MotionState.NO_LINK
+    why = "its driver plc broke down while it sent a command, which may have left (KeyError: 'go')"
+    assert str(gone.lost) == why
     driven.says()
     assert driven.asks(LIGHT) == [driven.given(LIGHT)]
 

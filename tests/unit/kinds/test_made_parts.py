@@ -6,8 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from arboleda.drivers.supervisor import CommandRequest, DriverOutput, Life, SendResult, Supervisor
+from arboleda.model.commands import Command
 from arboleda.model.errors import ConfigError
-from arboleda.model.messages import TaskState
+from arboleda.model.messages import MotionState, Report, TaskState, Undelivered
+from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import as_sentence
 from arboleda.model.verbs import Verb
 from arboleda.plant_file import advance_check, place_check
@@ -103,3 +106,28 @@ def test_nothing_is_made_of_an_order_that_never_left(tmp_path: Path) -> None:
     (entry,) = lab.bench.plant.dispatcher.ledger.of_robot("oven")
     lab.bench.plant.dispatcher.booking.undelivered(entry.command.id, "oven", as_sentence("it is off"), 0.0)
     assert lab.places.counts["inside"] == 0
+
+
+def test_a_part_may_be_made_of_an_order_in_which_the_driver_broke_down(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, PRINT, PLANT)
+    lab.bench.submit("lab try")
+    assert lab.bench.wait(30.0, lambda: lab.places.counts["inside"] == 1)
+    (entry,) = lab.bench.plant.dispatcher.ledger.of_robot("oven")
+    for event in broken_send(lab.bench.plant.model.robots["oven"], entry.command):
+        lab.bench.plant.step(lab.bench.now, [event])
+    assert lab.bench.outcome(60.0).state is TaskState.FAILED
+    assert lab.places.counts["inside"] == 1 and lab.places.asked.targets == ("inside",)
+
+
+def broken_send(device: Robot, command: Command) -> list[Report | Undelivered]:
+    """What the plant hears where the driver of a device breaks down in `send`."""
+    life = Life(driver=0, number=1)
+    supervisor = Supervisor([("plc", [device])], epoch=1, stale_after_s=1.5)
+    heard = DriverOutput(
+        at=0.0, life=life, report=Report(at=0.0, robot=device.name, state=MotionState.STOPPED)
+    )
+    asked = CommandRequest(at=0.0, command=command)
+    supervisor.step(0.0, [])
+    supervisor.step(0.0, [heard, asked])
+    broke = SendResult(at=0.0, life=life, command=command, error=as_sentence("KeyError"), broken=True)
+    return [each for each in supervisor.step(0.0, [broke]) if isinstance(each, Report | Undelivered)]

@@ -56,8 +56,8 @@ class Driver(Protocol):
     def send(self, command: Command) -> None:
         """Send a command now, and return soon; its end comes as a report.
 
-        Raises NotSent if the command could not leave. Any other exception loses the link as well, until the
-        device is heard again.
+        Raises NotSent if the command could not leave. After any other exception the command may have left:
+        the link is lost until the device is heard again.
         """
 
     def stop(self) -> None:

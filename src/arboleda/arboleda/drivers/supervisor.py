@@ -30,6 +30,10 @@ FAILED = Phrase("driver.failed", "its driver {driver} broke down ({error}), and 
 NOT_STARTED = Phrase("driver.not_started", "its driver {driver} cannot start ({error}), and tries again")
 LATE = Phrase("driver.late", "it waited for too long and must not leave any more")
 NOT_SENT = Phrase("driver.not_sent", "its driver {driver} could not send a command ({error})")
+BROKE_IN_SEND = Phrase(
+    "driver.broke_in_send",
+    "its driver {driver} broke down while it sent a command, which may have left ({error})",
+)
 UNSAID = Phrase("driver.unsaid", "its driver {driver} says that there is no link")
 UNWATCHED = Phrase(
     "driver.unwatched",
@@ -84,7 +88,7 @@ class DriverCrash:
 class SendResult:
     """A driver came back from `send`; `error` says why the command did not leave.
 
-    `broken`: a defect, not a refusal; its effects are unknown.
+    `broken`: a defect, not a refusal; the command may have left.
     """
 
     at: float
@@ -195,11 +199,12 @@ class SupervisedDriver:
         if event.error is None:
             return []
         name = event.command.robot
-        if not event.command.id and not event.broken:
+        if event.broken:
+            return [*self.devices[name].lose(event.at, BROKE_IN_SEND(driver=self.name, error=event.error))]
+        if not event.command.id:
             return []  # the plant has not asked for it
         why = NOT_SENT(driver=self.name, error=event.error)
-        news: list[Message] = [Undelivered(at=event.at, id=event.command.id, robot=name, sentence=why)]
-        return [*news, *(self.devices[name].lose(event.at, why) if event.broken else [])]
+        return [Undelivered(at=event.at, id=event.command.id, robot=name, sentence=why)]
 
     def broken(self, event: DriverCrash) -> list[Message]:
         """End the driver, and start it anew after a pause, which grows while it keeps breaking down early."""
