@@ -11,6 +11,7 @@ from rich.console import Console
 from arboleda.cli import screen
 from arboleda.dispatch.belief import Belief
 from arboleda.model.advice import in_words
+from arboleda.model.cell_states import CellState
 from arboleda.model.commands import FRESH_S
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Reason, TaskState
@@ -130,6 +131,22 @@ def test_people_fill_supplies_and_empty_outputs_before_a_task(tmp_path: Path) ->
 def test_what_cannot_be_is_refused(tmp_path: Path, body: str, sentence: str) -> None:
     why = Lab(tmp_path, body).run()
     assert why is not None and sentence in why
+
+
+def test_advice_opens_a_device_first_that_holds_what_a_hand_holds(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, 'take("rack_1"), mover.visit("inside", oven.clamp(on=True)), mover.home()')
+    lab.run()
+    lab.bench.wait(10.0)  # its recovery cannot bring the part back either
+
+    def first() -> str:
+        (advice, *_) = lab.bench.plant.advice("lab")
+        lab.bench.operate(advice.do, advice.scope)
+        lab.bench.wait(30.0)
+        return str(in_words(advice))
+
+    assert [first(), first()] == ["release oven", "retry lab"]
+    assert lab.bench.plant.cells["lab"].state is CellState.IDLE
+    assert lab.places.counts["rack_1"] == 1
 
 
 def test_a_part_that_a_hand_holds_in_a_device_is_there_for_it(tmp_path: Path) -> None:

@@ -96,10 +96,13 @@ class Advisor:
         name, holding, why = run.cell.name, run.context.parts.holding, reasons.cause_of_hold(run)
         yield from self._freeing(run, run.context.zones.awaited_by_recovery(), visited)
         retry = Advice(do=Verb.RETRY, scope=name, why=why, moves=_recovered(run))
+        beside = _held_beside(run)
+        for device in beside:
+            yield from _releasing(run, device, why)
         helps, failed = not holding or _can_bring_back(run), (Verb.RETRY, name) in run.in_vain
         if helps and not failed:
             yield retry
-        for number, robot in enumerate(holding):
+        for number, robot in enumerate(each for each in holding if each not in beside):
             yield from _releasing(run, robot, why, instead=helps and not failed and number == 0)
         if holding and run.waits_for_grip:
             yield from _running_again(run)
@@ -123,13 +126,15 @@ class Advisor:
     def _stopped(self, run: CellRun, visited: frozenset[str]) -> Iterator[Advice]:
         yield Advice(do=Verb.RESET, scope=run.cell.name, why=reasons.cause_of_stop(run))
         yield from self._readying(run, visited)
+        for device in (beside := _held_beside(run)):
+            yield from _releasing(run, device, reasons.cause_of_stop(run))
         failed = (Verb.RETRY, run.cell.name) in run.in_vain
         if run.context.parts.holding and _can_bring_back(run) and not failed:
             yield Advice(
                 do=Verb.RETRY, scope=run.cell.name, why=reasons.cause_of_stop(run), moves=_recovered(run)
             )
         elif run.context.parts.holding:
-            for robot in run.context.parts.holding:
+            for robot in [each for each in run.context.parts.holding if each not in beside]:
                 yield from _releasing(run, robot, reasons.cause_of_stop(run))
         yield from _running_again(run)
 
@@ -365,6 +370,12 @@ def _mending_books(run: CellRun) -> Iterator[Advice]:
     if places.is_so_still(trouble):
         hand = Hand.TAKE_OUT if trouble.key == part_places.FULL.key else Hand.PUT_IN
         yield Advice(do=hand, scope=f"{run.cell.name} {trouble.values['place']}", why=trouble)
+
+
+def _held_beside(run: CellRun) -> list[str]:
+    """The devices that hold the same part as a hand: no recovery carries it off before they let go."""
+    beside = map(run.context.places.holder_beside, run.cell.workspaces)
+    return [device for device in dict.fromkeys(beside) if device is not None]
 
 
 def _can_bring_back(run: CellRun) -> bool:

@@ -215,15 +215,19 @@ class Places:
             return None
         return FULL(robot=hand, place=here, parts=self.parts(here), cell=self._cell.name)
 
-    def _to_leave(self, robot: str) -> Sentence | None:
-        """The reason why a robot must not leave with its part: a device holds the same part."""
-        space = self._cell.reach[robot]
-        here, grips = self._target(space), self._dispatcher.effectors.grips
-        place = self._places.get(here or "")
+    def holder_beside(self, robot: str) -> str | None:
+        """The device that holds the same part as a robot's hand, which stands at it; no robot leaves so."""
+        space, grips = self._cell.reach[robot], self._dispatcher.effectors.grips
+        place = self._places.get(self._target(space) or "")
         if place is None or place.device not in self._cell.holders or space.hand.held_fact is None:
             return None
         both = grips[place.device] is Grip.ON and grips[space.hand.name] is Grip.ON
-        return STILL_HELD(robot=robot, place=place.target, device=place.device) if both else None
+        return place.device if both else None
+
+    def _to_leave(self, robot: str) -> Sentence | None:
+        """The reason why a robot must not leave with its part: a device holds the same part."""
+        device, here = self.holder_beside(robot), self._target(self._cell.reach[robot])
+        return STILL_HELD(robot=robot, place=here, device=device) if device and here else None
 
     def _to_work(self, command: Command) -> Sentence | None:
         """The reason why a device has no part to work on, or no room for the part that it is to make."""
