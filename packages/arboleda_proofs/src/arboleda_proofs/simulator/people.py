@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -263,12 +263,12 @@ class Attendant:
     """Attendant: comes by every few seconds and does the first thing that is advised, cell by cell.
 
     It neither brings back what is lost nor repairs what is broken: that ends with its fault. What several
-    cells advise in one round, as to clear a device that they share, it does once. `acts` counts what it has
-    done; between two rounds there are `round_s`.
+    cells advise in one round, as to clear a device that they share, it does once. `acts` has how many acts it
+    did that a cell advised, by cell; between two rounds there are `round_s`.
     """
 
     def __init__(self, world: World, seed: int, *, round_s: tuple[float, float] = ROUND_S) -> None:
-        self.acts = 0
+        self.acts = Counter[str]()
         self._round_s = round_s
         self._world = world
         self._dice = Dice(seed, "attendant")
@@ -283,7 +283,7 @@ class Attendant:
         self._answer()
         done: set[Hashable] = set()
         for cell in self._world.plant.cells:
-            self._see_to(self._world.plant.advice(cell), done)
+            self._see_to(cell, self._world.plant.advice(cell), done)
         self._next_round()
 
     def _answer(self) -> None:
@@ -295,9 +295,9 @@ class Attendant:
                 answer = self._dice.pick(entry.command.answers)
                 self._world.request_verb(Verb.ANSWER, name, arguments=(("answer", answer),))
 
-    def _see_to(self, ways: tuple[Advice, ...], done: set[Hashable]) -> None:
-        """Follow the first advice, if it is not `done` in this round; after a look into a zone, or work at a
-        reference, also the next, as the plant cannot know that this was done.
+    def _see_to(self, cell: str, ways: tuple[Advice, ...], done: set[Hashable]) -> None:
+        """Follow the first advice of a cell, if it is not `done` in this round; after a look into a zone, or
+        work at a reference, also the next, as the plant cannot know that this was done.
         """
         for advice in ways:
             if advice.refusal is not None or advice.do in BY_THEMSELVES:
@@ -306,6 +306,6 @@ class Attendant:
             if act not in done:
                 do(self._world, advice)
                 done.add(act)
-                self.acts += 1
+            self.acts[cell] += 1
             if advice.do not in (Hand.CHECK, Hand.REFERENCE):
                 return

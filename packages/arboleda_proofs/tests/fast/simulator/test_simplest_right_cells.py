@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.model.advice import Advice
 from arboleda.model.messages import Check, Verb
 from arboleda.plant_file.loader import load
 from arboleda.trees.handling import Handling
@@ -14,7 +15,9 @@ from arboleda_proofs.campaigns.plants import Plant
 from arboleda_proofs.campaigns.proof.calm import calm_runs
 from arboleda_proofs.campaigns.proof.proof import Proof
 from arboleda_proofs.campaigns.proof.scenario import scenarios
+from arboleda_proofs.simulator import people
 from arboleda_proofs.simulator.faults.kind import Fault
+from arboleda_proofs.simulator.hands import do
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 from arboleda_proofs.simulator.people import Attendant
 from arboleda_proofs.simulator.run import Result, Simulation
@@ -134,14 +137,29 @@ def test_a_part_that_a_person_brought_is_none_that_the_recipe_has_left(tmp_path:
     assert broken.broken.sentence == "t-1000-1 is called done, and mid is 0, not 1"
 
 
-def test_what_each_cell_advises_of_a_device_that_they_share_is_done_once(tmp_path: Path) -> None:
+def test_what_each_cell_advises_of_a_device_that_they_share_is_done_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done: list[Advice] = []
+    monkeypatch.setattr(people, "do", lambda world, advice: (done.append(advice), do(world, advice)))
     watched = JudgedWorld(written(tmp_path, THREE))
     watched.world.advance(1.0)
     watched.world.crash("arm")  # each of the three cells advises to home it
     attendant = Attendant(watched.world, seed=0)
     watched.world.advance(30.0)
     assert [cell.not_ready for cell in watched.world.plant.cells.values()] == [None] * 3
-    assert attendant.acts == 1
+    assert len(done) == 1 and attendant.acts == {"a": 1, "b": 1, "c": 1}
+
+
+def test_acts_that_only_other_cells_need_count_for_none_but_those(tmp_path: Path) -> None:
+    watched = JudgedWorld(written(tmp_path, THREE))
+    watched.world.advance(1.0)
+    watched.world.request_verb(Verb.STOP, "a")
+    watched.world.advance(1.0)
+    attendant = Attendant(watched.world, seed=0)
+    watched.world.advance(30.0)
+    assert [cell.not_ready for cell in watched.world.plant.cells.values()] == [None] * 3
+    assert attendant.acts["a"] > attendant.acts["b"] == attendant.acts["c"]
 
 
 def test_a_cell_that_waits_for_a_shared_arm_goes_on_as_it_is_seen_at_home_again(tmp_path: Path) -> None:

@@ -271,7 +271,7 @@ class Stage:
         ):
             self._look_up(self.last_change)
         if self._attendant is not None and self._acts is None and self._is_ready():
-            self._acts = self._attendant.acts
+            self._acts = self._attendant.acts[self.cell.name]
 
     def _count_ended(self) -> None:
         """Count the commands of the task that are done, have failed, or could not even be given."""
