@@ -374,8 +374,8 @@ def _mending_books(run: CellRun) -> Iterator[Advice]:
 
 def _held_beside(run: CellRun) -> list[str]:
     """The devices that hold the same part as a hand: no recovery carries it off before they let go."""
-    beside = map(run.context.places.holder_beside, run.cell.workspaces)
-    return [device for device in dict.fromkeys(beside) if device is not None]
+    beside = map(run.context.places.held_beside, run.cell.workspaces)
+    return [*dict.fromkeys(place.device for place in beside if place and place.device)]
 
 
 def _can_bring_back(run: CellRun) -> bool:

@@ -10,7 +10,7 @@ from arboleda.dispatch.effectors import HandlingStep
 from arboleda.model.commands import Command, Motion, Position, Switch
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Failure, Reason
-from arboleda.model.plant_model import Cell, Evidence, Workspace
+from arboleda.model.plant_model import Cell, Evidence, Place, Workspace
 from arboleda.model.sentence import Phrase, Sentence
 
 from .asked_places import AskedPlaces
@@ -189,7 +189,7 @@ class Places:
         if isinstance(command, Switch) and command.grips is not None:
             sentence = self._to_grip(command.robot) if command.grips else self._to_let_go(command.robot)
         elif isinstance(command, Motion) and command.robot in self._cell.reach:
-            sentence = self._to_leave(command.robot)
+            sentence = _to_leave(command.robot, self.held_beside(command.robot))
         else:
             sentence = self._to_work(command)
         return None if sentence is None else Failure(reason=Reason.PRECONDITION, sentence=sentence)
@@ -215,19 +215,14 @@ class Places:
             return None
         return FULL(robot=hand, place=here, parts=self.parts(here), cell=self._cell.name)
 
-    def holder_beside(self, robot: str) -> str | None:
-        """The device that holds the same part as a robot's hand, which stands at it; no robot leaves so."""
+    def held_beside(self, robot: str) -> Place | None:
+        """The place whose device holds the same part as a robot's hand there; no robot leaves so."""
         space, grips = self._cell.reach[robot], self._dispatcher.effectors.grips
         place = self._places.get(self._target(space) or "")
         if place is None or place.device not in self._cell.holders or space.hand.held_fact is None:
             return None
         both = grips[place.device] is Grip.ON and grips[space.hand.name] is Grip.ON
-        return place.device if both else None
-
-    def _to_leave(self, robot: str) -> Sentence | None:
-        """The reason why a robot must not leave with its part: a device holds the same part."""
-        device, here = self.holder_beside(robot), self._target(self._cell.reach[robot])
-        return STILL_HELD(robot=robot, place=here, device=device) if device and here else None
+        return place if both else None
 
     def _to_work(self, command: Command) -> Sentence | None:
         """The reason why a device has no part to work on, or no room for the part that it is to make."""
@@ -354,6 +349,13 @@ class Places:
         words += [f"{target}{KNOWN}{number}" for target, number in sorted(self.asked.known.items())]
         self._dispatcher.memory.remember(Fact.STORED, self._cell.name, None)
         self._dispatcher.memory.remember(Fact.PARTS, self._cell.name, " ".join(words) or None)
+
+
+def _to_leave(robot: str, place: Place | None) -> Sentence | None:
+    """The reason why a robot must not leave with its part: a device holds the same part."""
+    return (
+        STILL_HELD(robot=robot, place=place.target, device=place.device) if place and place.device else None
+    )
 
 
 def _carts(cell: Cell) -> list[Workspace]:
