@@ -191,7 +191,7 @@ OF_PLACES = (
     bug(
         PLACES,
         "A robot leaves with what a device still holds.",
-        "return STILL_HELD(robot=robot, place=place.target, device=place.device) if place and place.device else None",
+        "return STILL_HELD(robot=robot, place=place.target, device=place.device)",
         "return None",
     ),
     bug(

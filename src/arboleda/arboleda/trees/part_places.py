@@ -353,9 +353,9 @@ class Places:
 
 def _to_leave(robot: str, place: Place | None) -> Sentence | None:
     """The reason why a robot must not leave with its part: a device holds the same part."""
-    return (
-        STILL_HELD(robot=robot, place=place.target, device=place.device) if place and place.device else None
-    )
+    if place is None or place.device is None:
+        return None
+    return STILL_HELD(robot=robot, place=place.target, device=place.device)
 
 
 def _carts(cell: Cell) -> list[Workspace]:
