@@ -8,6 +8,7 @@ import pytest
 
 from arboleda.core.envelope import unsettled
 from arboleda.model.messages import Fact, KeptTask, Remember, TaskChanged, TaskState
+from arboleda.resume.trail import Trail
 from arboleda_proofs.testing import Rig, shipped
 
 AT_WORK = KeptTask(id="a", text="sis_a 0B 7", cell="sis_a", state=TaskState.RUNNING)
@@ -29,16 +30,31 @@ def trail(rig: Rig) -> str:
     return str(rig.disk.facts[Fact.STEP]["a"])
 
 
-@pytest.mark.parametrize("grip", [{}, {"ra1": "off"}, {"ra1": "on"}])
-def test_whatever_was_kept_an_effector_of_a_running_task_counts_as_switching(
+@pytest.mark.parametrize("grip", [{}, {"ra1": "off"}, {"ra1": "switching"}])
+def test_an_effector_that_was_off_at_the_step_may_have_gripped_since(
     trail: str, grip: dict[str, str]
 ) -> None:
     memory = {Fact.STEP: {"a": trail}, Fact.EFFECTOR: grip}
+    assert [*unsettled(memory, [AT_WORK])] == [replace(SWITCHING, value="on")]
+
+
+def test_another_power_cut_changes_nothing_of_that(trail: str) -> None:
+    memory = {Fact.STEP: {"a": trail}, Fact.EFFECTOR: {"ra1": "on"}}
+    assert [*unsettled(memory, [AT_WORK])] == []
+
+
+@pytest.mark.parametrize("grip", [{}, {"ra1": "off"}, {"ra1": "on"}])
+def test_an_effector_that_held_a_part_at_the_step_may_have_let_go_since(
+    trail: str, grip: dict[str, str]
+) -> None:
+    holding = Trail.read(trail)._replace(grips={"ra1": "on"}).text()
+    memory = {Fact.STEP: {"a": holding}, Fact.EFFECTOR: grip}
     assert [*unsettled(memory, [AT_WORK])] == [SWITCHING]
 
 
 def test_what_counts_as_switching_does_so_already(trail: str) -> None:
-    memory = {Fact.STEP: {"a": trail}, Fact.EFFECTOR: {"ra1": "switching"}}
+    switching = Trail.read(trail)._replace(grips={"ra1": "switching"}).text()
+    memory = {Fact.STEP: {"a": switching}, Fact.EFFECTOR: {"ra1": "switching"}}
     assert [*unsettled(memory, [AT_WORK])] == []
 
 

@@ -226,8 +226,8 @@ class Plant:
         """True for a notice that has to be durable before any command leaves.
 
         Of a task only its begin precedes: its envelope is kept then. An effector of the envelope does not
-        precede, since after a power cut it counts as switching anyway. People hear of all other changes once
-        these are durable.
+        precede, since after a power cut it does not count as off anyway. People hear of all other changes
+        once these are durable.
         """
         if isinstance(notice, TaskChanged):
             return notice.state is TaskState.RUNNING

@@ -58,7 +58,7 @@ class Begun:
     """Beginning of a task, which does not change while it runs; `made` is the fingerprint of its tree.
 
     `envelope` are effectors that the task may tell to switch before their new grip is durable. So after a
-    power cut they count as switching until they report what they hold.
+    power cut none of them counts as off until it reports what it holds.
     """
 
     made: str

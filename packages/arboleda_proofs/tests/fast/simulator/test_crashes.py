@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from importlib.resources import as_file, files
 from itertools import product
+from pathlib import Path
 
 import pytest
 from tests.lengths import length, sample
@@ -24,6 +25,8 @@ from arboleda_proofs.simulator.plant_process import Fuse, Side
 from arboleda_proofs.simulator.run import Simulation
 from arboleda_proofs.simulator.world import PLANT, World
 from arboleda_proofs.testing import shipped
+
+LESSONS = Path(__file__).parents[5] / "examples" / "plants" / "lessons.yaml"
 
 
 def dies(world: World, count: int, side: Side) -> None:
@@ -132,6 +135,19 @@ def test_a_power_cut_takes_the_bridge_along_and_what_nothing_has_synced() -> Non
     assert world.disk.facts[Fact.EFFECTOR]["ra1"] in ("on", "switching")
     world.advance(6.0)
     assert world.bridge is not None and world.is_on(PLANT)
+
+
+def test_a_power_cut_before_the_first_grip_puts_no_part_where_the_arm_stands() -> None:
+    world = World(load(LESSONS))  # its arms are at home at station 0
+    world.advance(2.0)
+    world.request_task("sis_a palletizing #a")
+    assert world.advance(5.0, lambda: "a" in world.disk.facts.get(Fact.STEP, {}))
+    for _ in range(2):
+        world.plant_process.cut_power(reached=99)
+        world.plant_process.start()
+    world.advance(5.0)
+    assert world.disk.facts[Fact.EFFECTOR]["ra1"] == "off"
+    assert world.plant.cells["sis_a"].context.places.counts["station_0"] == 0
 
 
 def test_customers_come_back_for_their_ids_and_each_is_one_task() -> None:

@@ -151,4 +151,4 @@ def test_a_power_cut_leaves_effectors_of_the_envelope_unsettled() -> None:
     disk.commit(fact(Fact.EFFECTOR, "switching"), NOW, precedes_commands=False)
     disk.commit(fact(Fact.EFFECTOR, "on"), NOW, precedes_commands=False)
     disk.cut_power(0, NOW)
-    assert disk.facts[Fact.EFFECTOR] == {"ra1": "switching"}
+    assert disk.facts[Fact.EFFECTOR] == {"ra1": "on"}
