@@ -8,6 +8,7 @@ from typing import Any
 
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
+from std_msgs.msg import UInt8
 
 from arboleda.model.messages import Event, Interference, MotionState, Report, Uncontested
 from arboleda.model.sentence import Sentence
@@ -18,6 +19,7 @@ from arboleda_ros.exclusive_topics import UNNAMED, full_name
 LOG = logging.getLogger("arboleda.ros.speakers")
 Known = tuple[int, int, frozenset[tuple[int, ...]]]  # how many ever came, how many are there, and who
 NOBODY: Known = (0, 0, frozenset())
+STATES = frozenset(map(int, MotionState)) - {int(MotionState.NO_LINK)}  # of a robot that is linked
 _FRESH_S = 0.2  # within this time publishers are not looked up again for each message
 
 
@@ -38,6 +40,7 @@ class Speakers:
         self._matches: dict[str, Callable[[], Any]] = {}  # by topic
         self._looked: dict[str, float] = {}  # by topic, where several publish
         self._known: dict[str, Known] = {}  # by topic
+        self._said: set[MotionState] = set()  # while nobody is believed
         self._is_doubted = False  # since the plant was told, until it is told that reports count again
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._timer = node.create_timer(_FRESH_S, self._follow, clock=steady)
@@ -51,6 +54,7 @@ class Speakers:
             if not self._speaker.believed(self._clock()) or not qos.TELLS_MATCHES:
                 self._look_again(topic)
                 if not self._speaker.believed(self._clock()):
+                    self._overhear(message)
                     return
             self._believe()
             handle(message)
@@ -87,11 +91,18 @@ class Speakers:
             self._timer.cancel()
             self._believe()
 
+    def _overhear(self, message: Any) -> None:
+        """Note a state that may be the robot's word. One that has no `status` may not say it again."""
+        if isinstance(message, UInt8) and message.data in STATES:
+            self._said.add(MotionState(message.data))
+
     def _believe(self) -> None:
-        """Tell the plant once that what the robot reports counts again."""
+        """Tell the plant once that what the robot reports counts again, and what was said meanwhile."""
         if self._is_doubted:
+            said = tuple(sorted(self._said))
+            self._on_event(Uncontested(at=self._clock(), robot=self._robot, said=said))
             self._is_doubted = False
-            self._on_event(Uncontested(at=self._clock(), robot=self._robot))
+            self._said.clear()
 
     def _look_again(self, topic: str) -> None:
         if self._clock() >= self._looked.get(topic, 0.0) + _FRESH_S:

@@ -49,9 +49,9 @@ class Hand:
         self.now = until
         return self._step([Report(at=self.now, robot=robot, **said)])
 
-    def uncontested(self, robot: str) -> list[Any]:
-        """One node is left that speaks for a robot."""
-        return self._step([Uncontested(at=self.now, robot=robot)])
+    def uncontested(self, robot: str, *said: MotionState) -> list[Any]:
+        """One node is left that speaks for a robot; `said` were states meanwhile."""
+        return self._step([Uncontested(at=self.now, robot=robot, said=said)])
 
     def wait(self, seconds: float) -> list[Any]:
         """Let time pass, deadline by deadline, with nobody saying anything."""

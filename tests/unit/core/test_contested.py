@@ -56,6 +56,46 @@ def test_a_fault_outlasts_a_contest(hand: Any) -> None:
     assert obstacle(plant).reason is Reason.DEVICE_FAULT
 
 
+@pytest.mark.parametrize(
+    ("said", "reason"),
+    [
+        (MotionState.FAULT, Reason.DEVICE_FAULT),
+        (MotionState.NOT_HOMED, Reason.NOT_HOMED),
+        (MotionState.STOP_LATCHED, Reason.STOPPED),
+    ],
+)
+def test_a_robot_for_which_somebody_said_that_it_cannot_work_has_to_say_itself_that_it_can(
+    hand: Any, said: MotionState, reason: Reason
+) -> None:
+    plant = hand(Evidence.STATE)
+    plant.tell("rm_sis_a", state=STILL)
+    contest(plant)
+    plant.uncontested("rm_sis_a", STILL, MOVING, said)
+    assert obstacle(plant).reason is reason
+    plant.tell("rm_sis_a", state=STILL)
+    plant.operate(Verb.HOME, "rm_sis_a", by_hand=True)  # it may have moved, too
+    assert obstacle(plant) is None
+
+
+def test_a_robot_for_which_somebody_said_that_it_stands_is_ready(hand: Any) -> None:
+    plant = hand(Evidence.STATE)
+    contest(plant)
+    plant.uncontested("rm_sis_a", STILL)
+    assert obstacle(plant) is None
+
+
+def test_a_robot_for_which_somebody_said_that_it_moves_is_moved_by_nobody_until_a_person_says_where_it_is(
+    hand: Any,
+) -> None:
+    plant = hand(Evidence.STATE)
+    plant.tell("rm_sis_a", state=STILL)
+    contest(plant)
+    plant.uncontested("rm_sis_a", STILL, MOVING)
+    assert obstacle(plant).reason is Reason.NOT_HOMED
+    plant.operate(Verb.HOME, "rm_sis_a", by_hand=True)
+    assert obstacle(plant) is None
+
+
 def test_a_robot_that_was_under_way_is_moved_by_nobody_until_a_person_has_put_it_home(hand: Any) -> None:
     plant = hand(Evidence.STATE)
     plant.submit("sis_a 0B 7")

@@ -133,7 +133,9 @@ STRATEGIES = {
     LateDeparture: st.builds(LateDeparture, at=NUMBERS, id=TEXTS, late_s=NUMBERS),
     ClockSet: st.builds(ClockSet, at=NUMBERS, seconds=NUMBERS),
     FaultByHand: st.builds(FaultByHand, at=NUMBERS, robot=TEXTS, sentence=SENTENCES, is_over=st.booleans()),
-    Uncontested: st.builds(Uncontested, at=NUMBERS, robot=TEXTS),
+    Uncontested: st.builds(
+        Uncontested, at=NUMBERS, robot=TEXTS, said=st.lists(st.sampled_from(MotionState)).map(tuple)
+    ),
     Interference: st.builds(Interference, at=NUMBERS, robot=TEXTS, sentence=SENTENCES),
     Shutdown: st.builds(Shutdown, at=NUMBERS, drops_waiting=st.booleans()),
     Revision: st.builds(

@@ -7,8 +7,9 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from std_msgs.msg import UInt8
 
-from arboleda.model.messages import Uncontested
+from arboleda.model.messages import MotionState, Uncontested
 from arboleda.wire.speaker import HOLD_S
 from arboleda_ros import speakers
 
@@ -162,6 +163,21 @@ def test_the_plant_is_told_that_reports_count_again_though_the_robot_says_nothin
     bench.hear("later")
     assert len(bench.events) == told
     assert not bench.timer.runs
+
+
+def test_what_was_said_while_several_published_is_told_once_only_one_is_left(bench: Bench) -> None:
+    bench.come("/other")
+    for state in (0, 2, 2, 77, 255):
+        bench.hear(UInt8(data=state))
+    bench.leave("/other")
+    bench.wait(HOLD_S + bench.timer.period_s)
+    assert bench.heard == []
+    assert bench.events[-1].said == (MotionState.STOPPED, MotionState.FAULT)
+    bench.come("/other")
+    bench.matched()
+    bench.leave("/other")
+    bench.wait(HOLD_S + bench.timer.period_s)
+    assert bench.events[-1] == Uncontested(at=bench.events[-1].at, robot="ra1")
 
 
 def test_of_a_publisher_that_came_and_went_nothing_is_left_either(bench: Bench) -> None:

@@ -362,7 +362,7 @@ class Plant:
             self.dispatcher.interfere(event.robot, event.sentence, event.at, obeyed=True)
 
     def _on_uncontested(self, event: Uncontested) -> None:
-        self.dispatcher.believe_again(event.robot)
+        self.dispatcher.believe_again(event.robot, event.said)
 
     def _on_fault_by_hand(self, event: FaultByHand) -> None:
         self._news.changes += 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from operator import attrgetter, methodcaller
 from typing import NamedTuple
@@ -17,6 +17,15 @@ from .lateness import LATE_S, Pauses
 from .stillness import Stillness
 
 RATE_S = 2.0  # the rate of reports is counted over at least this long
+GRAVITY = (
+    None,
+    MotionState.STOPPED,
+    MotionState.MOVING,
+    MotionState.STOP_LATCHED,
+    MotionState.NOT_HOMED,
+    MotionState.FAULT,
+    MotionState.NO_LINK,
+)  # each state asks for more care than those before it
 MERGED = ("epoch", "boot_id", "state", "q", "node", "homed", "effector", "piece", "receipt")
 _merged = attrgetter(*MERGED)
 
@@ -200,18 +209,20 @@ class Belief:
         self.stale_at = None
         self.online = False
 
-    def find_again(self) -> MotionState | None:
-        """Take it for linked again although it says nothing; returns the state that it said before.
+    def find_again(self, said: Sequence[MotionState]) -> bool:
+        """Take it for linked again although it says nothing; returns True where it may have moved.
 
-        It may have come to a stop meanwhile. One that can fall silent has to be heard first. One that said
-        itself that it has no link has none.
+        Of what it said before and what was `said` for it since then counts what asks for most care. If it was
+        moving, it may have come to a stop meanwhile. One that can fall silent has to be heard first. One that
+        said itself that it has no link has none.
         """
         before = self.said_before_loss
-        self.state = None if before is MotionState.MOVING else before
+        gravest = max((before, *said), key=GRAVITY.index)
+        self.state = None if gravest is MotionState.MOVING else gravest
         self._last = self.lost = None
         is_lost = before is MotionState.NO_LINK
         self.online = not is_lost and (self.online or not (self.supervised or self.drawn))
-        return before
+        return MotionState.MOVING in (before, *said)
 
     def _hear(self, report: Report) -> None:
         """Take over when and where it was heard; reports are numbered, as two may come at one time."""

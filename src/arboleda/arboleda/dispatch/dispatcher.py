@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -231,16 +231,17 @@ class Dispatcher:
             self.ledger.version += 1
             self.ledger.changed |= self._cells_of[report.robot]
 
-    def believe_again(self, robot: str) -> None:
+    def believe_again(self, robot: str, said: Sequence[MotionState]) -> None:
         """Go by what a robot said before its reports did not count, as it may say nothing until it works.
 
-        One that moved then stands nobody knows where, if the plant does not see it.
+        `said` is what was said for it meanwhile. One that may have moved stands nobody knows where, if the
+        plant does not see it.
         """
         belief = self.beliefs.get(robot)
         if belief is None or belief.state is not MotionState.NO_LINK:
             return
-        moved = belief.find_again() is MotionState.MOVING
-        if moved and belief.may_be_displaced and not belief.supervised:
+        may_have_moved = belief.find_again(said)
+        if may_have_moved and belief.may_be_displaced and not belief.supervised:
             self.whereabouts.displace(belief, displaced=True)
         if belief.online and robot in self.latches.stopped:
             self.outlet.stop(robot, StopMode.LATCH)

@@ -448,10 +448,14 @@ class Interference:
 
 @dataclass(frozen=True, kw_only=True)
 class Uncontested:
-    """The reports of a robot count again, after more than one node has published them."""
+    """The reports of a robot count again, after more than one node has published them.
+
+    `said` are the states that were published meanwhile: each may be the robot's word, or a stranger's.
+    """
 
     at: float
     robot: str
+    said: tuple[MotionState, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -292,6 +292,10 @@ def _course(data: Any) -> Course:
     return course
 
 
+def _states(data: Any) -> tuple[MotionState, ...]:
+    return tuple(map(MotionState, data))
+
+
 def _checks(data: Any) -> tuple[Check, ...]:
     return tuple(map(Check, data))
 
@@ -315,7 +319,7 @@ READERS: dict[type, dict[str, Reader]] = {
     Undelivered: {"sentence": sentence_from},
     LateDeparture: {},
     Interference: {"sentence": sentence_from},
-    Uncontested: {},
+    Uncontested: {"said": _states},
     FaultByHand: {"sentence": sentence_from},
     ClockSet: {},
     Shutdown: {},
