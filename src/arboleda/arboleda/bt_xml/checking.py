@@ -35,10 +35,14 @@ PARALLELS = ("Parallel", "ParallelAll")
 
 @dataclass(frozen=True, kw_only=True)
 class TreeCheck:
-    """Result of a check: the number of nodes, and leaves of unknown kinds with the first place of each."""
+    """Result of a check: the number of nodes, and leaves of unknown kinds with the first place of each.
+
+    `has_ring`: a tree contains itself.
+    """
 
     nodes: int
     unknown: Mapping[str, Place]
+    has_ring: bool = False
 
 
 def check(
@@ -46,23 +50,21 @@ def check(
     findings: Findings,
     allowed: Mapping[str, Kind] | None = None,
     *,
-    leaves_are_checked_later: bool = False,
+    others_are_checked_elsewhere: bool = False,
 ) -> TreeCheck:
-    """Check a forest and keep all findings. `known`: the only kinds of a user's own nodes that there are.
+    """Check a forest and keep all findings. `allowed`: the only kinds of a user's own nodes that there are.
 
-    None: there may be any kinds; those that the files declare count, unless they are checked later, in a
-    cell.
+    None: there may be any kinds; those that the files declare count. Nodes of other kinds are passed over
+    where they are checked elsewhere.
     """
-    checker = _Checker(
-        forest, findings, {} if leaves_are_checked_later else allowed, leaves_are_checked_later
-    )
+    checker = _Checker(forest, findings, allowed, others_are_checked_elsewhere)
     for tree in forest.trees.values():
         for node in tree.root.iterate():
             checker.look_at(node)
         for node in node_results.unreached(tree.root):
             sentence = f"{_named(node)} can never be reached, by what stands before it"
             findings.warning(node.place, sentence, kind="never-reached")
-    _check_loops(forest, findings)
+    has_ring = _check_loops(forest, findings)
     ends.check(forest, findings)
     target_groups.check(forest, findings)
     listed_values.check(forest, findings)
@@ -74,7 +76,7 @@ def check(
             findings.mistake(clash.other.place, str(clash))
         else:
             findings.warning(clash.other.place, str(clash), kind="types-of-a-variable")
-    return TreeCheck(nodes=checker.number, unknown=checker.unknown)
+    return TreeCheck(nodes=checker.number, unknown=checker.unknown, has_ring=has_ring)
 
 
 def _named(node: Node) -> str:
@@ -293,10 +295,10 @@ def _what(port: Port) -> str:
     return f": {described[0]}, or a variable" if described else ""
 
 
-def _check_loops(forest: Forest, findings: Findings) -> None:
-    """Find trees that contain themselves."""
+def _check_loops(forest: Forest, findings: Findings) -> bool:
+    """Keep a finding for trees that contain themselves; False if there are none."""
     uses = {name: dict(_subtrees(forest, name)) for name in forest.trees}
-    for _ in range(MOST_LOOPS):
+    for number in range(MOST_LOOPS):
         try:
             TopologicalSorter({name: list(used) for name, used in uses.items()}).prepare()
         except CycleError as error:
@@ -304,7 +306,8 @@ def _check_loops(forest: Forest, findings: Findings) -> None:
             ring = " > ".join(loop)
             findings.mistake(uses[loop[-2]].pop(loop[-1]), f"the tree {loop[-1]} contains itself: {ring}")
         else:
-            return
+            return number > 0
+    return True
 
 
 def _subtrees(forest: Forest, name: str) -> Iterator[tuple[str, Place]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 
@@ -59,7 +59,7 @@ def check(forest: Forest, findings: Findings) -> None:
 
 
 def check_in_cell(
-    name: str, ends: tuple[End, ...], values: Mapping[str, object], cell: Cell, findings: Findings
+    name: str, ends: Iterable[End], values: Mapping[str, object], cell: Cell, findings: Findings
 ) -> None:
     """Keep a finding for each part of a recipe's end that no device and no place of a cell can report."""
     for end in ends:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from types import MappingProxyType
 
 from py_trees.behaviour import Behaviour
 
@@ -32,7 +33,8 @@ class TreeRecipe(Recipe):
     """Recipe of a file of trees; `file` is its name for people, `place` that of its main tree.
 
     `own` are the nodes in Python that the recipe may use. `groups` has by parameter the group of targets that
-    its values come from. `check_devices` raises NoDeviceError if a cell has no device for a node.
+    its values come from. `check` raises NoDeviceError or TreeMistakes with all that is wrong in a cell,
+    whichever values its parameters have.
     """
 
     file: str
@@ -40,15 +42,21 @@ class TreeRecipe(Recipe):
     content: bytes = field(compare=False)
     groups: Mapping[str, str] = field(compare=False)
     own: Mapping[str, WrittenNode] = field(compare=False)
-    check_devices: Callable[[Cell], None] = field(compare=False)
+    check: Callable[[Cell], None] = field(compare=False)
 
 
 def tree_recipe(
-    name: str, file: str, content: bytes, forest: Forest, own: Mapping[str, WrittenNode]
+    name: str,
+    file: str,
+    content: bytes,
+    forest: Forest,
+    own: Mapping[str, WrittenNode],
+    mistakes: Sequence[str] = (),
 ) -> TreeRecipe:
-    """The recipe of the main tree of a forest that can be run; each build checks it in the cell.
+    """The recipe of the main tree of a forest; each build checks it in the cell.
 
-    `own` are the nodes in Python; more of them may be added until the first build.
+    `own` are the nodes in Python; more of them may be added until the first build. With `mistakes`, those of
+    the file, it cannot be built, only checked.
     """
     main = forest.main
     assert main is not None
@@ -58,12 +66,18 @@ def tree_recipe(
     def kinds(cell: Cell) -> Mapping[str, Kind]:
         return leaves.of_cell(cell, own.values())
 
-    def check_devices(cell: Cell) -> None:
-        runnable.check_devices(forest, cell.name, kinds(cell))
+    ports = parameters.of_tree(forest, main)
+
+    def check(cell: Cell, values: Mapping[str, object] = MappingProxyType({})) -> None:
+        findings = Findings()
+        unknown = {port.name for port in ports} - values.keys()
+        ends.check_in_cell(name, [each for each in end if each.what not in unknown], values, cell, findings)
+        runnable.check_in_cell(forest, cell.name, kinds(cell), findings)
+        if mistakes:
+            raise TreeMistakes(mistakes)
 
     def build(order: Order, context: Context) -> Behaviour:
-        runnable.check_in_cell(forest, context.cell.name, kinds(context.cell))
-        _check_end(name, end, order, context.cell)
+        check(context.cell, order.values)
         return _built(name, forest, main, order, Devices(context, [], own))
 
     ending, groups = {each.what for each in end}, target_groups.of_tree(forest, main)
@@ -78,7 +92,7 @@ def tree_recipe(
             listed=listed.get(port.name),
             names_place=port.name in ending,
         )
-        for port in parameters.of_tree(forest, main)
+        for port in ports
     )
     return TreeRecipe(
         name=name,
@@ -91,7 +105,7 @@ def tree_recipe(
         content=content,
         groups=groups,
         own=own,
-        check_devices=check_devices,
+        check=check,
     )
 
 
@@ -99,13 +113,6 @@ def own_nodes(recipes: Iterable[Recipe]) -> dict[str, WrittenNode]:
     """The nodes in Python that the trees among these recipes may use, by name."""
     trees = [each for each in recipes if isinstance(each, TreeRecipe)]
     return {name: own for tree in trees for name, own in tree.own.items()}
-
-
-def _check_end(name: str, end: tuple[ends.End, ...], order: Order, cell: Cell) -> None:
-    findings = Findings()
-    ends.check_in_cell(name, end, order.values, cell, findings)
-    if findings.mistakes:
-        raise TreeMistakes(findings.mistakes)
 
 
 def _about(forest: Forest, main: str) -> str:
@@ -120,6 +127,8 @@ def _built(name: str, forest: Forest, main: str, order: Order, devices: Devices)
     rescues = {"TryCatch": control(partial(Rescue, failures=context.failures, causes=causes))}
     builder = Builder(forest, devices.make, context.time, devices.kinds, controls=rescues)
     tree = builder.tree(main, scope)
+    if builder.errors:
+        raise TreeMistakes([f"{each.place}: {name} cannot be built: {each}" for each in builder.errors])
     changed = {(id(place), key) for place, key in builder.written}
     for place, key, node in devices.fixed:
         if (id(place), key) in changed:

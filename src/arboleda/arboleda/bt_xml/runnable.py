@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
 from functools import cache
@@ -59,31 +59,30 @@ def check(forest: Forest, findings: Findings) -> None:
         )
 
 
-def check_in_cell(forest: Forest, cell: str, kinds: Mapping[str, Kind]) -> None:
-    """Raises NoDeviceError if a cell with leaves of these kinds has no device for a node.
+def check_in_cell(forest: Forest, cell: str, kinds: Mapping[str, Kind], findings: Findings) -> None:
+    """Raises TreeMistakes with all faults in a cell with leaves of these kinds, and those in the findings.
 
-    Raises TreeMistakes with all other faults.
+    Raises NoDeviceError with all of them if the cell has no device for a node.
     """
-    check_devices(forest, cell, kinds)
-    findings = Findings()
-    checking.check(forest, findings, kinds)
+    checking.check(forest, findings, kinds, others_are_checked_elsewhere=True)
     parameters.check(forest, forest.main or "", kinds, findings)
 
     def kind(node: Node) -> Kind | None:
         if node.is_subtree:
             return forest.models.get(node.subtree)
-        return nodes.built_in(node.kind) or kinds[node.kind]
+        return nodes.built_in(node.kind) or kinds.get(node.kind)
 
     for place, name in variables.unwritten(forest, kind):
         findings.mistake(place, f"the variable {quoted(name)} is read, and nothing gives it a value")
+    _check_devices(forest, cell, kinds, findings.mistakes)
     if findings.mistakes:
         raise TreeMistakes(findings.mistakes)
 
 
-def check_devices(forest: Forest, cell: str, kinds: Mapping[str, Kind]) -> None:
+def _check_devices(forest: Forest, cell: str, kinds: Mapping[str, Kind], mistakes: Sequence[str]) -> None:
     """Raises NoDeviceError if a cell with leaves of these kinds has no device for a node.
 
-    The error has one place for each kind of such nodes.
+    The error has one place for each kind of such nodes, and the mistakes of other nodes.
     """
     absent: dict[str, NoDeviceError] = {}
     for tree in forest.trees.values():
@@ -92,7 +91,7 @@ def check_devices(forest: Forest, cell: str, kinds: Mapping[str, Kind]) -> None:
                 absent.setdefault(node.kind, NoDeviceError(_nobody(node, cell, kinds), node.place))
     if absent:
         first, *others = absent.values()
-        raise NoDeviceError(str(first), first.place, others)
+        raise NoDeviceError(str(first), first.place, others, mistakes)
 
 
 def _nobody(node: Node, cell: str, kinds: Mapping[str, Kind]) -> str:

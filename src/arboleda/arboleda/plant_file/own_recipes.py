@@ -16,7 +16,8 @@ from types import ModuleType
 from typing import Any
 
 from arboleda.bt_xml import checking, reading, runnable
-from arboleda.bt_xml.findings import Findings
+from arboleda.bt_xml.findings import Findings, Mark
+from arboleda.bt_xml.findings import Place as TreePlace
 from arboleda.bt_xml.nodes import OTHER_SPELLINGS, Category, built_in
 from arboleda.bt_xml.recipe import tree_recipe
 from arboleda.drivers.port import spec_of
@@ -159,22 +160,26 @@ def _trees(document: Document, place: Place, word: str, used: PythonUses) -> Non
         return
     document.files[Path(shown_path).absolute()] = content
     forest = reading.read(shown_path, content, findings, fetch)
-    checking.check(forest, findings, leaves_are_checked_later=True)
-    name = Path(word).stem
-    problems = list(findings.mistakes)
-    if not problems and forest.main not in forest.trees:
-        problems.append(f'{shown_path}:1:1: which tree? <root main_tree_to_execute="...">')
-    elif not problems and forest.main is not None:
-        forest = runnable.part_of(forest, forest.main)
-        runnable.check(forest, findings)
-        problems += findings.mistakes
-    if not problems:
-        recipe = tree_recipe(name, shown_path, content, forest, used.nodes)
-        problem = _objection("recipe", recipe, used.recipes, TAKEN, used)
-        problems += [] if problem is None else [used.spot(recipe).problem(problem)]
-        used.recipes.setdefault(name, recipe)
-    for problem in problems:
-        used.keep(document, problem)
+    checked = checking.check(forest, findings, {}, others_are_checked_elsewhere=True)
+    is_open = forest.main is None and len(forest.trees) > 1
+    if forest.main not in forest.trees and (is_open or not findings.mistakes):
+        findings.mistake(TreePlace(shown_path, Mark(1, 1)), 'which tree? <root main_tree_to_execute="...">')
+    if forest.main not in forest.trees or forest.main is None or checked.has_ring:
+        document.keep_those_of(ConfigError(_lines(findings)))
+        return
+    forest = runnable.part_of(forest, forest.main)
+    runnable.check(forest, findings)
+    mistakes = _lines(findings)
+    document.keep_those_of(ConfigError(mistakes))
+    used.in_trees.update(mistakes)
+    recipe = tree_recipe(Path(word).stem, shown_path, content, forest, used.nodes, mistakes)
+    if problem := _objection("recipe", recipe, used.recipes, TAKEN, used):
+        document.keep_those_of(ConfigError((used.spot(recipe).problem(problem),)))
+    used.recipes.setdefault(recipe.name, recipe)
+
+
+def _lines(findings: Findings) -> tuple[str, ...]:
+    return tuple(plain(each, LONGEST) for each in findings.mistakes)
 
 
 def _module(document: Document, place: Place, word: str, used: PythonUses, watch: Watch) -> ModuleType | None:

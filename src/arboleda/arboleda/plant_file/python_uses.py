@@ -58,6 +58,7 @@ class PythonUses:
     watch: Watch = unwatched
     lost: LostSteps | None = None  # steps that statements make, where recipes are only tried
     is_whole: bool = True  # False: something could not be imported, so a name may be missing
+    in_trees: set[str] = field(default_factory=set)  # mistakes of trees that cells can be checked with
     may_import: bool = True  # False: a trial has refused the files, so they are not run here
     installed: tuple[str, ...] = ()  # kinds that packages register
     broken: set[str] = field(default_factory=set)  # names of kinds that cannot be used; problems are kept

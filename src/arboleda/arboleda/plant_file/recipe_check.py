@@ -65,7 +65,7 @@ class RecipeTrial:
     misfits: dict[str, list[str]] = field(default_factory=dict)  # by recipe: problems in cells without it
     missed: dict[str, dict[str, str]] = field(default_factory=dict)  # by cell and recipe: why it is missed
     named: dict[str, dict[str, bool]] = field(default_factory=dict)  # by recipe and sentence: always lost
-    is_sound: bool = True  # False: there is a problem already, in the plant file or in a file that it names
+    is_sound: bool = True  # False: there is a problem already from which others may follow
 
     def run(self, cells: Sequence[Cell]) -> dict[str, list[str]]:
         """The names of the recipes that each cell offers, in their order.
@@ -73,7 +73,8 @@ class RecipeTrial:
         Where there is a problem already, a cell or a recipe may be missing because it could not be read. Then
         a cell without recipes, and a recipe without cells, are no problem.
         """
-        self.is_sound = not any(self.document.problems)
+        here, elsewhere = self.document.problems
+        self.is_sound = not here and self.used.in_trees.issuperset(elsewhere)
         for cell in cells:
             named = self._named(cell)
             names = list(self.used.recipes) if named is None else named
@@ -140,13 +141,15 @@ class RecipeTrial:
         A problem that may follow from another one is not told.
         """
         spot = self.used.spot(recipe)
-        if not named and (empty := _without_value(cell, recipe)):
-            self._miss(cell, recipe, empty, [spot.problem(empty)])
-            return False
-        if not self.is_sound and _without_value(cell, recipe):
-            return True
-        if unfit := _unspellable(cell, recipe):
-            self._keep([spot.problem(unfit)])
+        empty = _without_value(cell, recipe)
+        if unfit := empty or _unspellable(cell, recipe):
+            absent, found = self._whatever_values(cell, recipe)
+            if absent is None and (self.is_sound or not empty):
+                found.append(spot.problem(unfit))
+            if empty and not named:
+                self._miss(cell, recipe, absent or empty, found)
+                return False
+            self._keep(found)
             return True
         plant = Plant(PlantModel(name="trial", cells=(replace(cell, recipes=(recipe,)),)), epoch=0, now=0.0)
         context = plant.cells[cell.name].context
@@ -156,13 +159,9 @@ class RecipeTrial:
             try:
                 tree_problems = self._look(recipe, order, context)
             except RoleError as error:
-                if isinstance(error, NoDeviceError) and not self.used.is_whole:
-                    return True
-                others = error.others if isinstance(error, NoDeviceError) else ()
-                tree_problems = [
-                    self.used.where(each, spot).problem(f"{recipe.name}: {each}") for each in (error, *others)
-                ]
-                if number == 0 and not named:
+                tree_problems = self._absent(recipe, error)
+                may_be_there = isinstance(error, NoDeviceError) and not self.used.is_whole
+                if number == 0 and not named and not may_be_there:
                     self._miss(cell, recipe, str(error), tree_problems)
                     return False
             problems |= dict.fromkeys(tree_problems)
@@ -185,9 +184,35 @@ class RecipeTrial:
                 self.used.where(error, spot).problem(f"{recipe.name} cannot be built: {error_text(error)}")
             ]
         self._note_named(recipe)
-        objection = _objection(tree)
-        problems = [] if objection is None else [objection.at(spot).problem(f"{recipe.name} {objection.why}")]
+        problems = [each.at(spot).problem(f"{recipe.name} {each.why}") for each in _objections(tree)]
         return [*problems, *self._lost(recipe)]
+
+    def _whatever_values(self, cell: Cell, recipe: Recipe) -> tuple[str | None, list[str]]:
+        """All that is wrong with a tree of a file, whichever values its parameters have.
+
+        First the sentence that the cell has no device for it, if so.
+        """
+        if isinstance(recipe, TreeRecipe):
+            try:
+                recipe.check(cell)
+            except NoDeviceError as error:
+                return str(error), self._absent(recipe, error)
+            except TreeMistakes as error:
+                return None, [plain(line, LONGEST) for line in error.lines]
+        return None, []
+
+    def _absent(self, recipe: Recipe, error: RoleError) -> list[str]:
+        """The problems of a recipe for which a cell lacks something.
+
+        Where a file could not be imported, it may have the nodes that no device makes.
+        """
+        nodes: Sequence[RoleError] = (error,)
+        mistakes: Sequence[str] = ()
+        if isinstance(error, NoDeviceError):
+            nodes, mistakes = (error, *error.others) if self.used.is_whole else (), error.mistakes
+        spot = self.used.spot(recipe)
+        absent = [self.used.where(each, spot).problem(f"{recipe.name}: {each}") for each in nodes]
+        return [*absent, *(plain(line, LONGEST) for line in mistakes)]
 
     def _lost(self, recipe: Recipe) -> Iterator[str]:
         """Problems of steps without a name that the recipe makes and does nowhere."""
@@ -231,19 +256,19 @@ class _Objection:
         return SourceSpot(file=self.place.file, line=self.place.mark.line, column=self.place.mark.column)
 
 
-def _objection(tree: Behaviour) -> _Objection | None:
-    """The objection to a tree that could be built but would never end, or always fail."""
-    for device, place in _at_once(tree):
+def _objections(tree: Behaviour) -> Iterator[_Objection]:
+    """The objections to a tree that could be built but would never end, or always fail."""
+    for device, place in dict.fromkeys(_at_once(tree)):
         instead = "work(...)" if place is None else "a Sequence"
         why = f"has {device} do two things at once, in a parallel; it does one after the other: {instead}"
-        return _Objection(why=why, place=place)
+        yield _Objection(why=why, place=place)
     for node in nodes_of(tree):
         for kind in type(node).__mro__:  # `isinstance` would ask each of their abstract classes
             if kind in NOT_WOKEN:
                 instead = NOT_WOKEN[kind]
                 why = f"has a py_trees {kind.__name__} ({node.name}), which nothing wakes; take {instead}"
-                return _Objection(why=why)
-    return None
+                yield _Objection(why=why)
+                break
 
 
 def _at_once(tree: Behaviour) -> Iterator[tuple[str, XmlPlace | None]]:
@@ -307,17 +332,9 @@ def _sampled(words: Sequence[Sequence[str]], number: int) -> list[str]:
 
 
 def _without_value(cell: Cell, recipe: Recipe) -> str | None:
-    """The sentence that a parameter has no possible value in a cell; None where each has one.
-
-    The cell lacks targets, or the device that lists the values.
-    """
+    """The sentence that a parameter has no possible value in a cell; None where each has one."""
     for each in recipe.parameters:
         if not each.words(cell):
-            if isinstance(recipe, TreeRecipe):
-                try:
-                    recipe.check_devices(cell)
-                except RoleError as error:
-                    return str(error)
             return f"{each.name} of {recipe.name} has no value to choose{_how_to_choose(cell, recipe, each)}"
     return None
 
@@ -331,8 +348,6 @@ def _how_to_choose(cell: Cell, recipe: Recipe, parameter: Parameter) -> str:
 
 def _unspellable(cell: Cell, recipe: Recipe) -> str | None:
     """The reason why no task text can name some value of a parameter; None where each can be named."""
-    if empty := _without_value(cell, recipe):
-        return empty
     for each in recipe.parameters:
         words = each.words(cell)
         for word in words:

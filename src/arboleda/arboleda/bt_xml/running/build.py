@@ -35,6 +35,7 @@ class Builder:
     kinds: Mapping[str, Kind] = field(default_factory=dict)  # of the leaves
     controls: Mapping[str, Make] = field(default_factory=dict)  # by kind: used in place of MAKERS
     written: list[tuple[Scope, str]] = field(default_factory=list)  # every variable that may get a value
+    errors: list[TreeError] = field(default_factory=list)  # of leaves that could not be made
 
     def tree(self, name: str, scope: Scope) -> Node:
         """The nodes of a tree."""
@@ -57,7 +58,11 @@ class Builder:
         if make is not None:
             texts = {name: attribute.value for name, attribute in node.ports.items()}
             return make(_said(node) or node.kind, below, NodePorts(node.kind, texts))
-        leaf = self.leaf(node, below, scope)
+        try:
+            leaf = self.leaf(node, below, scope)
+        except TreeError as error:
+            self.errors.append(error)
+            return leaves.ConstantLeaf(node.kind, FAILURE)
         if leaf is None:
             raise TreeError(f"Arboleda does not run {node.kind}", node.place)
         return leaf

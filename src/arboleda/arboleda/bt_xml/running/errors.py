@@ -17,12 +17,22 @@ class TreeError(RecipeError):
 
 
 class NoDeviceError(RoleError):
-    """Error: no device of the cell makes a node; `others` are the errors of other nodes of the tree."""
+    """Error: no device of the cell makes a node; `others` are the errors of other such nodes of the tree.
 
-    def __init__(self, sentence: str, place: Place, others: Sequence[NoDeviceError] = ()) -> None:
+    `mistakes` are all other faults of the tree: lines, each with its place.
+    """
+
+    def __init__(
+        self,
+        sentence: str,
+        place: Place,
+        others: Sequence[NoDeviceError] = (),
+        mistakes: Sequence[str] = (),
+    ) -> None:
         super().__init__(sentence)
         self.place = place
         self.others = tuple(others)
+        self.mistakes = tuple(mistakes)
 
 
 class TreeMistakes(RecipeError):
