@@ -56,7 +56,8 @@ def refusal(folder: Path, end: str) -> tuple[str, ...]:
 
 def test_values_are_numbers_words_and_yes_or_no() -> None:
     forest, findings, _ = looked_at(model("nest: 1; lid: open; on: true; dose: 0.5; code: '7';"))
-    found = {end.what: end.value for end in ends.of_tree(forest, "Main")}
+    (stated,) = ends.of_tree(forest, "Main")
+    found = {end.what: end.value for end in stated}
     assert found == {"nest": 1, "lid": "open", "on": True, "dose": 0.5, "code": "7"}
     assert type(found["nest"]) is int
     assert (findings.mistakes, findings.warnings) == ((), ())
@@ -72,6 +73,13 @@ def test_what_cannot_be_read_is_a_mistake_with_its_place(end: str) -> None:
 def test_what_is_said_twice_is_a_mistake() -> None:
     (line,) = mistakes(model("nest: 1", 'ends_with="nest: 0"'))
     assert "ends_with of Main has 'nest' twice" in line
+
+
+def test_the_ends_of_several_ways_have_a_line_between_them() -> None:
+    forest, findings, _ = looked_at(model("lid: open; nest: 1 | lid: closed; nest: 0"))
+    ways = [{end.what: end.value for end in way} for way in ends.of_tree(forest, "Main")]
+    assert ways == [{"lid": "open", "nest": 1}, {"lid": "closed", "nest": 0}]
+    assert findings.mistakes == ()
 
 
 def test_other_metadata_mean_nothing_but_what_is_nearly_this() -> None:

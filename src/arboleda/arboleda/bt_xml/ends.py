@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from itertools import chain, product
 
 from arboleda.kinds.declared import UseError
 from arboleda.model.facts import Value
@@ -21,7 +22,9 @@ from .values import number, objection
 
 KEY = "ends_with"
 KEYS = (KEY, target_groups.KEY, listed_values.KEY)  # of all metadata with a meaning
-HOW = "a place or a fact with its value, `nest: 1; reader.lid: open`"
+HOW = (
+    "a place or a fact with its value, `nest: 1; reader.lid: open`, and `|` between the ends of several ways"
+)
 PAIR = re.compile(r"\s*([^\s:][^:]*?)\s*:\s*('[^']*'|[^\s':][^':]*?)\s*")
 BOOLS = {"true": True, "false": False}
 
@@ -35,9 +38,13 @@ class End:
     place: Place
 
 
-def of_tree(forest: Forest, tree: str) -> tuple[End, ...]:
-    """The end that a tree states; a part that cannot be read is left out, `check` reports it."""
-    return tuple(end for each in forest.metadata_of(tree, KEY) for end in _read(each) if isinstance(end, End))
+def of_tree(forest: Forest, tree: str) -> tuple[tuple[End, ...], ...]:
+    """The ends of which a tree states that one is so; a part that cannot be read is left out, `check` reports
+    it.
+    """
+    ways = product(*map(_read, forest.metadata_of(tree, KEY)))
+    read = (tuple(end for end in chain(*way) if isinstance(end, End)) for way in ways)
+    return tuple(way for way in read if way)
 
 
 def check(forest: Forest, findings: Findings) -> None:
@@ -48,14 +55,12 @@ def check(forest: Forest, findings: Findings) -> None:
             if each.key not in KEYS and near:
                 sentence = f"nobody here knows {quoted(each.key)} of {tree}; did you mean {near[0]}?"
                 findings.warning(each.place, sentence, kind="key-of-metadata")
-        stated: set[str] = set()
-        for end in (end for each in forest.metadata_of(tree, KEY) for end in _read(each)):
+        for end in (end for each in forest.metadata_of(tree, KEY) for end in chain(*_read(each))):
             if isinstance(end, _Unread):
                 findings.mistake(end.place, f"{KEY} of {tree}: {quoted(end.text)} is not read; write {HOW}")
-            elif end.what in stated:
-                findings.mistake(end.place, f"{KEY} of {tree} has {quoted(end.what)} twice")
-            else:
-                stated.add(end.what)
+        twice = {end: None for way in of_tree(forest, tree) for end in _twice(way)}
+        for end in twice:
+            findings.mistake(end.place, f"{KEY} of {tree} has {quoted(end.what)} twice")
 
 
 def check_in_cell(
@@ -64,7 +69,7 @@ def check_in_cell(
     """Keep a finding for each part of a recipe's end that no device and no place of a cell can report."""
     for end in ends:
         try:
-            check_end(name, {str(values.get(end.what, end.what)): end.value}, cell)
+            check_end(name, [(str(values.get(end.what, end.what)), end.value)], cell)
         except (RecipeError, UseError) as error:
             findings.mistake(end.place, str(error))
 
@@ -75,13 +80,27 @@ class _Unread:
     place: Place
 
 
-def _read(metadata: Metadata) -> Iterator[End | _Unread]:
-    for text in metadata.text.split(";"):
+def _twice(way: Sequence[End]) -> Iterator[End]:
+    """The parts of an end whose place or fact stands there before."""
+    stated: set[str] = set()
+    for end in way:
+        if end.what in stated:
+            yield end
+        stated.add(end.what)
+
+
+def _read(metadata: Metadata) -> list[list[End | _Unread]]:
+    """The parts of each end, of which one is so."""
+    return [[*_parts(text, metadata.place)] for text in metadata.text.split("|")]
+
+
+def _parts(way: str, place: Place) -> Iterator[End | _Unread]:
+    for text in way.split(";"):
         pair = PAIR.fullmatch(text)
         if pair is not None:
-            yield End(what=pair[1], value=_value(pair[2]), place=metadata.place)
+            yield End(what=pair[1], value=_value(pair[2]), place=place)
         elif text.strip():
-            yield _Unread(text.strip(), metadata.place)
+            yield _Unread(text.strip(), place)
 
 
 def _value(text: str) -> Value:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import chain
 from types import MappingProxyType
 
 from py_trees.behaviour import Behaviour
@@ -61,7 +62,8 @@ def tree_recipe(
     main = forest.main
     assert main is not None
 
-    end = ends.of_tree(forest, main)
+    stated = ends.of_tree(forest, main)
+    end = tuple(chain.from_iterable(stated))
 
     def kinds(cell: Cell) -> Mapping[str, Kind]:
         return leaves.of_cell(cell, own.values())
@@ -99,7 +101,7 @@ def tree_recipe(
         build=build,
         parameters=parameter_list,
         about=_about(forest, main),
-        ends_with=tuple((each.what, each.value) for each in end),
+        ends_with=tuple(tuple((each.what, each.value) for each in way) for way in stated),
         file=file,
         place=forest.trees[main].place,
         content=content,

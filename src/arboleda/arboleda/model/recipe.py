@@ -17,6 +17,8 @@ Build = Callable[[Order, Any], Behaviour]
 """Makes the tree of an order, in the `Context` of its cell (`trees/context.py`)."""
 Builders = Mapping[str, Build]
 """Builders by the names of their recipes."""
+End = tuple[tuple[str, Value], ...]
+"""What is so once a task is done: a place, a fact or a question to a device, each with its value."""
 FOR_PEOPLE = "for_people"
 """Key in the metadata of a field that only says where something was read, as a path."""
 Cell = Any
@@ -36,6 +38,19 @@ def matching(word: str, names: Iterable[str]) -> str | None:
 def spelling(word: str) -> str:
     """The letters of a word, for which neither case nor the way in which Unicode writes an accent counts."""
     return normalize("NFC", normalize("NFC", word).casefold())
+
+
+def in_common(ends: Sequence[Mapping[str, Value]]) -> dict[str, Value]:
+    """The values that all these ends have, of which there is at least one."""
+    first, *others = ends
+    return {what: value for what, value in first.items() if all(each.get(what) == value for each in others)}
+
+
+def nearest(
+    ends: Sequence[Mapping[str, Value]], differs: Callable[[str, Value], bool]
+) -> Mapping[str, Value]:
+    """The end of these that is meant; what stands first in one decides, as the answer to a question."""
+    return min(ends, key=lambda end: [differs(*each) for each in end.items()])
 
 
 def same_word(cell: Cell, word: str) -> object:
@@ -95,7 +110,8 @@ class Recipe:
     cell works. `alone_called`: that role in sentences, where they exist in several languages. `part_from`:
     the group of targets at whose first one the part of a task waits; None where a robot brings it.
     `ends_with`: what is so once a task is done: the number of parts at a place, which a parameter may name,
-    or the value of a fact, as ("reader.lid", "open"). `source`: the hash of all files that it was written in,
+    the value of a fact, as ("reader.lid", "open"), or what a device answered last, as ("camera.look", "bad").
+    Of several such ends one is so. `source`: the hash of all files that it was written in,
     by which a task that is kept finds the recipe changed; "" where nobody knows them.
     """
 
@@ -107,7 +123,7 @@ class Recipe:
     alone: str | None = None
     alone_called: Phrase | None = None
     part_from: str | None = None
-    ends_with: tuple[tuple[str, Value], ...] = ()
+    ends_with: tuple[End, ...] = ()
     source: str = field(default="", compare=False)
 
     @property
@@ -116,8 +132,13 @@ class Recipe:
         return False
 
     def end_of(self, values: Mapping[str, object]) -> dict[str, Value]:
-        """The state once a task with these values is done, by place or "role.fact"."""
-        return {str(values.get(what, what)): value for what, value in self.ends_with}
+        """The state once a task with these values is done, whichever way it goes, by place or "role.fact"."""
+        return in_common(self.ends_of(values))
+
+    def ends_of(self, values: Mapping[str, object]) -> tuple[dict[str, Value], ...]:
+        """The states of which one is so once a task with these values is done; at least one."""
+        ends = self.ends_with or ((),)
+        return tuple({str(values.get(what, what)): value for what, value in end} for end in ends)
 
     def form(self) -> str:
         """The form in which a task of it is written."""

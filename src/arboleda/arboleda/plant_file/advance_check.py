@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from py_trees.behaviour import Behaviour
@@ -25,7 +25,7 @@ from .foresight import OVER, Foresight, Scene
 from .node_rules import RULES as NODE_RULES
 from .notation import Notation
 from .recipe_check import orders
-from .recipe_ends import certain_ends, of_ends
+from .recipe_ends import certain_ends, met, never_met, of_ends
 from .scene_variables import first_values
 from .step_rules import RULES as STEP_RULES
 from .target_pose import START
@@ -66,8 +66,8 @@ class CellCheck:
     def warnings(self) -> Iterable[str]:
         written = [each for each in self.cell.recipes if _is_own(each)]
         for recipe in written:
-            for order in orders(self.cell, recipe):
-                self._check(recipe, order)
+            numbers = [self._check(recipe, order) for order in orders(self.cell, recipe)]
+            self._say(recipe, never_met(recipe.ends_with, set().union(*numbers)))
         for recipe in written:
             self._say(recipe, self._elsewhere(recipe))
         return self.sentences
@@ -75,17 +75,12 @@ class CellCheck:
     def ends(self) -> Iterator[str]:
         for recipe in (each for each in self.cell.recipes if _place(each) is not None):
             ends: list[Scene] = []
-            wanted: list[dict[str, Value]] = []
+            stated: list[Sequence[Mapping[str, Value]]] = []
             for order in orders(self.cell, recipe):
                 ends += self._followed(recipe.build(order, self.context), self._notation(recipe))[1]
-                wanted.append(recipe.end_of(order.values))
-            same = {
-                what: value
-                for what, value in wanted[0].items()
-                if all(value == each.get(what) for each in wanted)
-            }
-            sure = ", ".join(certain_ends(self.cell, same, ends) if ends else ()) or "nothing that is certain"
-            yield f"{self.cell.name}: {recipe.name} ends with {sure}"
+                stated.append(recipe.ends_of(order.values))
+            sure = ", ".join(certain_ends(self.cell, stated, ends) if ends else ())
+            yield f"{self.cell.name}: {recipe.name} ends with {sure or 'nothing that is certain'}"
 
     def _followed(self, tree: Behaviour, notation: Notation) -> tuple[Walkthrough, tuple[Scene, ...]]:
         """The walkthrough of a recipe's tree, and the scenes at the ends of all paths."""
@@ -102,7 +97,8 @@ class CellCheck:
             for robot, back in poses.items()
         }
 
-    def _check(self, recipe: Recipe, order: Order) -> None:
+    def _check(self, recipe: Recipe, order: Order) -> set[int]:
+        """The numbers of the ends that the recipe states with which a task may end."""
         tree = recipe.build(order, self.context)
         for place, sentence in _endless(tree):
             self._say(recipe, [sentence], place)
@@ -110,11 +106,12 @@ class CellCheck:
         walk, ends = self._followed(tree, notation)
         for place, sentence in walk.findings:
             self._say(recipe, [sentence], place)
-        self._say(recipe, of_ends(notation, recipe.end_of(order.values), ends))
+        self._say(recipe, of_ends(notation, recipe.ends_of(order.values), ends))
         for space in (each for each in self.cell.spaces if each.robot.joints):
             over = {end.get(space.robot.name, OVER) for end in ends}
             if len(over) == 1 and None not in over:
                 self.waits.setdefault(space.robot.name, {}).update({recipe.name: str(over.pop())})
+        return met(self.cell, recipe.ends_of(order.values), ends)
 
     def _elsewhere(self, recipe: Recipe) -> Iterator[str]:
         """A sentence for each arm that this recipe leaves elsewhere, while another recipe leaves it at home.

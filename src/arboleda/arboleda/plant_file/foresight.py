@@ -14,6 +14,7 @@ from .declared_kinds import verbs_of
 from .notation import Notation, before
 
 HELD, TAKEN, AT, OVER, HAD = "=held", "=taken", "=at", "=over", "=had"
+ANSWER = "=answer"  # the answer to a question; after the name of a verb, the last answer to it
 CHANGE, LEAST, MOST = "=change", "=least", "=most"
 """Keys beside facts. A hand holds a part (HELD), which it took at a target (TAKEN). A robot is at a target
 (AT), or over it (OVER). The task has taken a shared device (HAD). Since the task began, the number of parts
@@ -86,7 +87,8 @@ class Foresight:
 
     def touched(self, command: Command) -> set[SceneKey]:
         """The facts and places that a command may change."""
-        keys = {(command.robot, what) for what in (HELD, TAKEN, AT, OVER, *dict(command.sets))}
+        answer = command.word + ANSWER
+        keys = {(command.robot, what) for what in (HELD, TAKEN, AT, OVER, answer, *dict(command.sets))}
         if command.makes_part or (isinstance(command, Switch) and command.grips is not None):
             keys |= {(target, what) for target in self.places for what in OF_PLACES}
         return keys

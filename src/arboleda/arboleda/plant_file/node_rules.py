@@ -22,7 +22,7 @@ from arboleda.recipes.handles import question_of
 from .foresight import Scene
 from .scene_variables import after_script, key_of, ports_in, run, scope_in
 from .step_rules import at_once, repeated, tried
-from .walkthrough import Outcome, Rule, Walkthrough, few
+from .walkthrough import Outcome, Rule, Walkthrough, few, last_answer
 
 MANY = 1_000_000  # rounds of a loop without an end
 
@@ -171,7 +171,8 @@ def _answered(node: DeviceStep, step: Behaviour, scenes: Sequence[Scene]) -> lis
     key = key_of(node.scope.place(node.out))
     if not question.answers:
         return [scene.without({key}) for scene in scenes]
-    return [scene.put({key: as_variable(answer)}) for scene in scenes for answer in question.answers]
+    given = [{key: as_variable(each), **last_answer(question, each)} for each in question.answers]
+    return [scene.put(each) for scene in scenes for each in given]
 
 
 def _facts(walk: Walkthrough, node: FactStep, scenes: Sequence[Scene]) -> Outcome:

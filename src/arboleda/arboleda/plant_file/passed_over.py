@@ -43,7 +43,7 @@ def _of_recipe(cell: Cell, recipe: TreeRecipe, context: Context) -> Iterator[tup
         tree = _Tree(tree=recipe.build(order, context).children[0])
         if not any(isinstance(node, ResultDecorator | Parallel) for node in tree.nodes):
             return
-        yield from tree.sentences(cell, set(recipe.end_of(order.values)))
+        yield from tree.sentences(cell, {what for end in recipe.ends_of(order.values) for what in end})
 
 
 @dataclass(frozen=True)

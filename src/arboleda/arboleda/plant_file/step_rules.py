@@ -25,15 +25,24 @@ from arboleda.engine import (
     steps,
     title_of,
 )
-from arboleda.model.facts import Value
+from arboleda.model.facts import Value, shown
 from arboleda.recipes.authoring import FAIL, IS, NO_OTHER
 from arboleda.recipes.decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
-from arboleda.recipes.handles import FactCheck, FactWait
+from arboleda.recipes.handles import FactCheck, FactWait, Question
 from arboleda.recipes.place_questions import PlaceQuestion
 
 from .foresight import AT, HAD, OVER, Scene, SceneKey, common
 from .parallel_scenes import Branches
-from .walkthrough import MOST_ROUNDS, Outcome, Rule, Walkthrough, answer_key, few
+from .walkthrough import (
+    MOST_ROUNDS,
+    Outcome,
+    Rule,
+    Walkthrough,
+    answer_key,
+    few,
+    last_answer,
+    last_answer_key,
+)
 
 MOST_MERGED = 64  # scenes of a parallel that are put together one by one
 
@@ -44,7 +53,7 @@ def _leaf(walk: Walkthrough, node: Leaf, scenes: Sequence[Scene]) -> Outcome:
 
 def _act(walk: Walkthrough, node: Act, scenes: Sequence[Scene]) -> Outcome:
     walk.check(node, scenes)
-    command, answer = node.make(id=""), {answer_key(node)}
+    command, answer = node.make(id=""), {answer_key(node), last_answer_key(node)}
     done = tuple(walk.foresight.after(command, scene).without(answer) for scene in scenes)
     return Outcome(done=done, failed=walk.blurred(node, scenes))
 
@@ -147,15 +156,22 @@ def _gone_home(walk: Walkthrough, node: composites.Selector, robot: str, scenes:
 
 
 def _chosen(
-    walk: Walkthrough, node: composites.Selector, question: Behaviour, scenes: Sequence[Scene]
+    walk: Walkthrough, node: composites.Selector, question: Question, scenes: Sequence[Scene]
 ) -> Outcome:
     """The outcome of a choice by an answer: each branch begins in the scenes with its answer."""
     outcome, key = Outcome(), answer_key(question)
     for number, child in enumerate(node.children):
-        begin = [scene.put({key: number}) for scene in scenes if scene.get(*key) in (None, number)]
+        known = {key: number, **_last_answer(question, child)}
+        begin = [scene.put(known) for scene in scenes if scene.get(*key) in (None, number)]
         after = walk.follow(child, begin)
         outcome = outcome.plus(done=after.passed, failed=after.failed)
     return outcome
+
+
+def _last_answer(question: Question, branch: Behaviour) -> dict[SceneKey, Value]:
+    """The last answer of a device where this branch is chosen by it; empty where nobody knows it."""
+    answers = (each for each in question.answers if branch.name == shown(each))
+    return next((last_answer(question, each) for each in answers), {})
 
 
 def _parallel(walk: Walkthrough, node: composites.Parallel, scenes: Sequence[Scene]) -> Outcome:

@@ -12,14 +12,15 @@ from py_trees.behaviour import Behaviour
 from arboleda.bt_xml.running.node import Node
 from arboleda.engine import Act
 from arboleda.model.by_class import nearest
+from arboleda.model.facts import Value
+from arboleda.recipes.handles import Ask
 from arboleda.recipes.place_questions import PlaceQuestion
 
-from .foresight import Foresight, Scene, SceneKey, common, still_holding
+from .foresight import ANSWER, Foresight, Scene, SceneKey, common, still_holding
 from .scene_variables import key_of
 
 MOST_SCENES = 256  # that are followed at once
 MOST_ROUNDS = 25  # of a repeat
-ANSWER = "=answer"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,6 +147,17 @@ class Walkthrough:
 def answer_key(act: Behaviour) -> SceneKey:
     """The key of the answer to a question."""
     return act.id.hex, ANSWER
+
+
+def last_answer_key(act: Act) -> SceneKey:
+    """The key of the last answer to a question that a device is asked."""
+    command = act.make(id="")
+    return command.robot, command.word + ANSWER
+
+
+def last_answer(question: Behaviour, answer: Value) -> dict[SceneKey, Value]:
+    """The last answer of a device or a person; empty where the plant's own books answer."""
+    return {last_answer_key(question): answer} if isinstance(question, Ask) else {}
 
 
 def few(scenes: Iterable[Scene]) -> tuple[Scene, ...]:

@@ -11,10 +11,11 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial, reduce, wraps
 from importlib import import_module
+from itertools import chain as all_of
 from typing import Any
 
 from py_trees import common, composites
@@ -24,7 +25,7 @@ from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.outside import among, quoted
 from arboleda.model.plant_model import Cell, Robot
-from arboleda.model.recipe import FOR_PEOPLE, Recipe
+from arboleda.model.recipe import FOR_PEOPLE, End, Recipe
 from arboleda.model.sentence import Phrase, Sentence, as_sentence
 from arboleda.model.task import Order
 
@@ -83,7 +84,7 @@ def recipe(
     alone: str | None = None,
     alone_called: Phrase | None = None,
     part_from: str | None = None,
-    ends_with: Mapping[str, Value] | None = None,
+    ends_with: Mapping[str, Value] | Sequence[Mapping[str, Value]] | None = None,
 ) -> Callable[[Callable[..., Step]], WrittenRecipe]:
     """Makes a recipe of a function of a Kit and of parameters that are annotated with their values.
 
@@ -92,8 +93,9 @@ def recipe(
     `alone` is the role of the only robot that works in the recipe: tasks may name the robot in place of the
     cell. `alone_called` is that role in sentences. `part_from` is a group of targets: the part of a task
     waits at the first of them, where no robot brings parts. `ends_with` are facts and numbers of parts once a
-    task is done,
-    `{"nest": 1, "reader.lid": "open"}`; a parameter may name the place.
+    task is done, `{"nest": 1, "reader.lid": "open"}`; a parameter may name the place. A list of them has the
+    ends of several ways, `[{"camera.look": "good", "press": 1}, {"camera.look": "bad", "reject": 1}]`, where
+    `camera.look` is the last answer.
     """
 
     def made(function: Callable[..., Step]) -> WrittenRecipe:
@@ -105,12 +107,13 @@ def recipe(
             forms = f"{missing}: Choice[1, 2] or {missing}=Choice(1, 2)"
             raise RecipeError(f"{name}: {missing} needs what it can be, e.g. {forms}")
 
-        end = tuple((ends_with or {}).items())
+        ends = _ends(name, ends_with or ())
+        end = tuple(all_of.from_iterable(ends))
 
         @wraps(function)
         def build(order: Order, context: Context) -> Step:
             built = _build(name, title, function, order, context)  # first: a cell may lack its devices
-            check_end(name, {str(order.values.get(what, what)): value for what, value in end}, context.cell)
+            check_end(name, [(str(order.values.get(what, what)), value) for what, value in end], context.cell)
             return built
 
         parameter_list = tuple(each for each in read.values() if each is not None)
@@ -124,7 +127,7 @@ def recipe(
             alone=alone,
             alone_called=alone_called,
             part_from=part_from,
-            ends_with=end,
+            ends_with=ends,
             function=function,
         )
 
@@ -151,20 +154,33 @@ def _build(
     return steps.task(called, flat([held(context, step)]), context, notes_origins=True)
 
 
-def check_end(name: str, end: Mapping[str, Value], cell: Cell) -> None:
+def _ends(name: str, ends_with: Mapping[str, Value] | Sequence[Mapping[str, Value]]) -> tuple[End, ...]:
+    ends = [ends_with] if isinstance(ends_with, Mapping) else ends_with
+    if not is_list(ends) or not all(isinstance(end, Mapping) for end in ends):
+        forms = '{"nest": 1}, or of several ways [{"nest": 1}, {"bin": 1}]'
+        raise RecipeError(f"{name}: ends_with is {quoted(str(ends_with))}; write {forms}")
+    return tuple(tuple(end.items()) for end in ends)
+
+
+def check_end(name: str, end: Iterable[tuple[str, Value]], cell: Cell) -> None:
     """RecipeError where no device and no place of a cell can report an end that a recipe states."""
     places = {place.target: place for place in cell.counted}
     members: Sequence[tuple[str, Any]] = [each for each in cell.members if each[1].verb_names]
     facts = {f"{role}.{fact}": (device, fact) for role, device in members for fact in device.fact_names}
-    for what, value in end.items():
-        if what not in places and what not in facts:
-            raise RecipeError(f"{name} ends with {quoted(what)}; {among(what, (*places, *facts))}")
+    verbs = {f"{role}.{verb.name}": verb for role, device in members for verb in device.kind.verbs.values()}
+    answers = {question: verb.answers for question, verb in verbs.items() if verb.answers}
+    for what, value in end:
+        if what not in places and what not in facts and what not in answers:
+            raise RecipeError(f"{name} ends with {quoted(what)}; {among(what, (*places, *facts, *answers))}")
         if what in places and not (type(value) is int and 0 <= value <= places[what].holds):
             most = places[what].holds
             raise RecipeError(f"{name} ends with {quoted(value)} at {what}, which holds 0 to {most}")
         if what in facts:
             device, fact = facts[what]
             device.kind.check_fact(fact, value)
+        elif what in answers and value not in answers[what]:
+            known = ", ".join(map(shown, answers[what]))
+            raise RecipeError(f"{name} ends with {quoted(value)} of {what}, which answers {known}")
 
 
 def _reason(word: Reason | str) -> Reason:

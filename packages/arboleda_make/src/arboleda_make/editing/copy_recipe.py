@@ -222,7 +222,8 @@ def _tag(node: Drawn) -> Tag:
 
 def _metadata(cell: Cell, recipe: WrittenRecipe) -> Iterator[tuple[str, str]]:
     """Metadata of the model: the end, and the values of parameters."""
-    yield "ends_with", "; ".join(f"{what}: {_ending(value)}" for what, value in recipe.ends_with)
+    ends = ("; ".join(f"{what}: {_ending(value)}" for what, value in end) for end in recipe.ends_with)
+    yield "ends_with", " | ".join(ends)
     groups: dict[str, str] = {}
     lists: dict[str, str] = {}
     for parameter in recipe.parameters:

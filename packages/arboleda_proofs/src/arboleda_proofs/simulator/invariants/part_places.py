@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from arboleda.model import text
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Fact
 from arboleda.model.plant_model import Cell
+from arboleda.model.recipe import nearest
 
 from ..truth.part_places import kept_parts
+from ..truth.shared_devices import told
 from .invariant import Look, Trigger, invariant
 
 
@@ -60,7 +62,7 @@ def done_tasks_leave_nothing_behind(look: Look) -> Iterator[str]:
         model = look.world.model.cell(cell)
         if not _is_known(look, cell) or task not in look.world.plant.intake.tasks:
             continue
-        wanted = _wanted(look, model, task)
+        wanted = _wanted(look, model, task, began)
         for name in model.holders if _is_calm(look) else _hands(look, model):
             robot = look.truth.robot(name)
             if name in wanted or _closed_late(look, model, name, began):
@@ -78,7 +80,7 @@ def _was_commanded(look: Look, robot: str, cell: str, *, since: float) -> bool:
     return last is not None and last.cell == cell and last.sent_at >= since
 
 
-def _left_in_devices(look: Look, cell: Cell, task: str, wanted: dict[str, Value]) -> Iterator[str]:
+def _left_in_devices(look: Look, cell: Cell, task: str, wanted: Mapping[str, Value]) -> Iterator[str]:
     for place in cell.places:
         places = look.truth.places.cells[cell.name]
         now, before = places.at_end[place.target], places.at_begin[place.target]
@@ -94,7 +96,7 @@ def recipes_end_as_they_say(look: Look) -> Iterator[str]:
         model = look.world.model.cell(cell)
         if not _is_known(look, cell) or task not in look.world.plant.intake.tasks:
             continue
-        for what, value in _wanted(look, model, task).items():
+        for what, value in _wanted(look, model, task, began).items():
             found = _found(look, model, what, began)
             if found is not None and found != value:
                 yield f"{task} is called done, and {what} is {shown(found)}, not {shown(value)}"
@@ -124,14 +126,19 @@ def _closed_late(look: Look, cell: Cell, hand: str, began: float) -> bool:
     return is_late and not _was_commanded(look, hand, cell.name, since=began)
 
 
-def _wanted(look: Look, cell: Cell, task: str) -> dict[str, Value]:
+def _wanted(look: Look, cell: Cell, task: str, began: float) -> Mapping[str, Value]:
+    """The end of a task that its recipe states; of several the one that is meant by what is found."""
     order = text.parse(look.world.plant.intake.tasks[task].order.text, look.world.model)
-    return cell.recipe(order.recipe).end_of(order.values)
+
+    def differs(what: str, value: Value) -> bool:
+        return _found(look, cell, what, began) not in (None, value)
+
+    return nearest(cell.recipe(order.recipe).ends_of(order.values), differs)
 
 
 def _found(look: Look, cell: Cell, what: str, began: float) -> Value | None:
-    """The true value of a fact, as `reader.lid`, or the true number of parts at a place, as the task left it;
-    None of a shared device that the task never had.
+    """The true value of a fact, as `reader.lid`, the last answer of a device, as `camera.look`, or the true
+    number of parts at a place, as the task left it; None of a shared device that the task never had.
     """
     role, dot, fact = what.partition(".")
     if not dot:
@@ -139,7 +146,7 @@ def _found(look: Look, cell: Cell, what: str, began: float) -> Value | None:
     device = cell.roles[role].name
     if device in cell.shared:
         return look.truth.shared.as_left_by(cell, device, since=began).get(fact)
-    return look.truth.robot(device).body.true_facts[fact]  # type: ignore[no-any-return]
+    return told(look.truth.robot(device).body).get(fact)
 
 
 PLACES = (
