@@ -13,6 +13,8 @@ from arboleda.plant_file.loader import load
 from arboleda.trees.handling import Handling
 from arboleda_proofs.campaigns.plants import Plant
 from arboleda_proofs.campaigns.proof.calm import calm_runs
+from arboleda_proofs.campaigns.proof.forks import run_one
+from arboleda_proofs.campaigns.proof.outcome import End
 from arboleda_proofs.campaigns.proof.proof import Proof
 from arboleda_proofs.campaigns.proof.scenario import scenarios
 from arboleda_proofs.simulator import people
@@ -213,6 +215,17 @@ def opening(world: World) -> float:
     world.request_task("a carry")
     assert world.advance(20.0, lambda: bool(opened))
     return opened[0]
+
+
+@pytest.mark.parametrize(("kind", "place"), [("operator_unload", "bin"), ("operator_load", "in")])
+def test_what_a_person_brings_or_takes_out_is_nothing_that_nobody_notices(
+    tmp_path: Path, kind: str, place: str
+) -> None:
+    model = Plant(declared=written(tmp_path, ONE)).model
+    (calm,) = calm_runs(model, scenarios(model))
+    on_its_way_home = calm.run.mended_at - 0.1
+    outcome = run_one(model, calm, Fault(kind=kind, at=on_its_way_home, target="a", word=place)).outcome
+    assert (outcome.end, outcome.untrue) == (End.DONE, ())
 
 
 @pytest.mark.long

@@ -59,10 +59,11 @@ def differences(expected: EndState, found: EndState, reported: EndState) -> tupl
 
 
 def _parts(watched: JudgedWorld, cell: Cell) -> Iterator[tuple[str, object]]:
+    """The numbers of parts, but for those that a person brought or took out: the plant was told of that."""
     truth = watched.truth
     places = truth.places.cells.get(cell.name)
     if places is not None and not places.is_doubtful:
-        yield from ((f"parts at {target}", parts) for target, parts in places.at_end.items())
+        yield from ((f"parts at {target}", parts) for target, parts in places.as_left.items())
     for robot in cell.robots:
         if robot.name in truth.grips.effectors:
             yield f"parts put down by {robot.name}", truth.grips.effectors[robot.name].put_down
