@@ -196,6 +196,28 @@ def test_a_recipe_is_made_tried_proved_mended_and_put_to_work(
     assert me.presses <= 40
 
 
+@pytest.mark.parametrize("act", ["discard", "keep"])
+def test_the_keyboard_stays_beside_a_button_that_takes_no_press_any_more(
+    browser: Any, address: str, act: str
+) -> None:
+    me = Person(browser, address, **LAPTOP)
+    page = me.page
+    me.panel("cells")
+    me.write(".make-target-name", "tray")
+    page.select_option(".make-target-like", "feed")
+    me.press("[data-new-target=cell]")
+    button = f"[data-make={act}]"
+    page.wait_for_selector(f"{button}:enabled")
+    page.focus(button)
+    page.keyboard.press("Enter")
+    page.wait_for_selector("dialog button.primary", timeout=LONG_MS)
+    page.focus("dialog button.primary")
+    page.keyboard.press("Enter")
+    page.wait_for_selector(f"{button}:disabled", timeout=LONG_MS)
+    assert page.evaluate("document.activeElement.matches('.make-bar fieldset button:enabled')")
+    me.go()
+
+
 def test_a_tryout_is_looked_at_as_a_record_and_the_way_leads_back(browser: Any, address: str) -> None:
     me = Person(browser, address, **LAPTOP)
     me.panel("try")

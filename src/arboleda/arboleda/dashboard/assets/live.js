@@ -69,13 +69,14 @@ export function keepingFocus(change) {
 }
 
 // The way back to what has the focus now. Where that was pressed and has gone, the keyboard is at what is offered now
-// in its row or its list, else at its card, or in the header at what opens the menu.
+// in its row or its list, else at its card, or in the header at what opens the menu. Where it takes no press any more,
+// the keyboard is at what is offered beside it.
 export function wayBack() {
   const focused = document.activeElement;
-  const [row, list, around] = ["[data-row]", "[data-rows]", "article, .top"].map((each) => focused?.closest(each));
-  const offered = () => [row, list].map((each) => each?.isConnected && each.querySelector("button:enabled")).find(Boolean);
+  const [row, list, around, group] = ["[data-row]", "[data-rows]", "article, .top", "fieldset"].map((each) => focused?.closest(each));
+  const offered = () => [row, list, group].map((each) => each?.isConnected && each.querySelector("button:enabled")).find(Boolean);
   return () => {
-    const next = focused?.isConnected && !focused.disabled ? focused : list && (offered() || around?.querySelector("[data-choose], [data-menu]"));
+    const next = focused?.isConnected && !focused.matches(":disabled") ? focused : (list || group) && (offered() || around?.querySelector("[data-choose], [data-menu]"));
     next?.focus({ preventScroll: true });
   };
 }

@@ -6,6 +6,7 @@ import * as proposals from "./make_proposals.js";
 import * as proof from "./make_prove.js";
 import * as tryout from "./make_try.js";
 import { ask, box, draft, editor, element, fill, inWords, isMine, isReading, knownName, look, name, onDraft, remember, remembered, say, spoken, step, take, there } from "./make_state.js";
+import { keepingFocus } from "../live.js";
 import * as question from "../question.js";
 import { all, words } from "../shell.js";
 
@@ -85,9 +86,11 @@ function drawn() {
     taking.textContent = isReading() ? words.make_take_over : words.make_take;
     taking.hidden = isMine();
   }
-  button("undo").disabled = !state.undo;
-  button("redo").disabled = !state.redo;
-  button("keep").disabled = button("discard").disabled = !state.changes.length;
+  keepingFocus(() => {
+    button("undo").disabled = !state.undo;
+    button("redo").disabled = !state.redo;
+    button("keep").disabled = button("discard").disabled = !state.changes.length;
+  });
   if (state.changes.length) tell("changes");
   else lines("changes", [words.make_no_change]);
   for (const name of ["set_aside", "restart", "waiting"]) tell(name), (box(`${name}-box`).hidden = !state[name].length);
