@@ -14,6 +14,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from std_msgs.msg import String, UInt32
 
+from arboleda.adapters.rate_limit import RateLimit
 from arboleda.model.commands import Command
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Heartbeat, Report
@@ -27,6 +28,7 @@ from arboleda_ros.port import Port
 from arboleda_ros.robot_publisher import RobotPublisher
 from arboleda_ros.senders import Senders
 
+FAR_AHEAD = "plant %s beats, which is far ahead of the clock here (%s); set both clocks if one is wrong"
 NEWS_S = 10.0  # time for which `/diagnostics` warns of somebody else's command
 
 
@@ -40,6 +42,7 @@ class BridgePort(Port):
         self._on_event = on_event
         self._mqtt: DiagnosticStatus | None = None
         self._senders = Senders(node, clock)
+        self._far_plants = RateLimit()
         self._rejected: Counter[str] = Counter()
         self._last = ""
         self._last_at = -NEWS_S
@@ -137,6 +140,7 @@ class BridgePort(Port):
 
     def _on_heartbeat(self, message: UInt32) -> None:
         unix_s = int(time.time())
-        if (objection := epochs.objection(message.data, unix_s)) is not None:
-            raise PayloadError(objection)
-        self._on_event(FromPlant(at=self._clock(), message=Heartbeat(epoch=message.data), unix_s=unix_s))
+        at = self._clock()
+        if epochs.objection(message.data, unix_s) is not None and self._far_plants.is_due(message.data, at):
+            self.topics.log.warning(FAR_AHEAD, message.data, unix_s)
+        self._on_event(FromPlant(at=at, message=Heartbeat(epoch=message.data), unix_s=unix_s))

@@ -59,6 +59,41 @@ def test_a_plant_whose_clock_is_a_little_ahead_is_obeyed(bench, reports, epoch, 
     assert {report.plant for report in reports(bench.tell())} == {epoch}
 
 
+NOW, TEN_YEARS_ON = 1_800_000_000, 2_116_000_000
+
+
+def beats(bench, seconds: float, epoch: int = TEN_YEARS_ON) -> None:
+    """A plant of this number beats once a second; the clock of the bridge says NOW."""
+    for _ in range(int(seconds)):
+        bench.step(FromPlant(at=bench.now, message=Heartbeat(epoch=epoch), unix_s=NOW))
+        bench.now += 1.0
+
+
+def test_a_plant_that_has_a_number_of_a_wrong_clock_is_obeyed_once_it_goes_on_beating(bench, reports) -> None:
+    bench.connect()
+    beats(bench, 3)
+    assert {report.plant for report in reports(bench.tell())} == {None}
+    beats(bench, 1)
+    assert {report.plant for report in reports(bench.tell())} == {TEN_YEARS_ON}
+    beats(bench, 1, TEN_YEARS_ON + 1)
+    assert {report.plant for report in reports(bench.tell())} == {TEN_YEARS_ON + 1}, "its next start"
+
+
+def test_stray_beats_far_ahead_are_refused_where_they_do_not_go_on(bench, reports) -> None:
+    bench.connect()
+    for _ in range(4):
+        beats(bench, 1)
+        bench.wait(60.0)
+    assert {report.plant for report in reports(bench.tell())} == {None}
+
+
+def test_where_a_plant_is_heard_none_that_is_far_ahead_is_obeyed(bench, reports) -> None:
+    bench.connect()
+    beats(bench, 1, NOW)
+    beats(bench, 20)
+    assert {report.plant for report in reports(bench.tell())} == {NOW}
+
+
 def test_homing_is_a_motion(linked, sent) -> None:
     assert sent(linked.order(Home(id="7-1", robot="ra1")))[0] == BEAT[0]
     assert sent(linked.heartbeat()) == BEAT

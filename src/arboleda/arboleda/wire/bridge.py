@@ -95,6 +95,7 @@ class Bridge:
         self._stale_after_s = stale_after_s
         self._started_at = now  # inf once the start was reported
         self._plant_epoch = 0
+        self._far_ahead = epochs.FarAhead()
         self._plant_beats = False
         self._plant_beat_at = -math.inf
         self._refuses_others = model.foreign_commands is ForeignCommands.REFUSE
@@ -143,9 +144,7 @@ class Bridge:
         if isinstance(event, Leaving):
             return [message for board in self._boards.values() for message in board.halt(event.at)]
         if isinstance(event.message, Heartbeat):
-            if (objection := epochs.objection(event.message.epoch, event.unix_s)) is not None:
-                return self._stray(objection)
-            return self._relay(event.at, event.message)
+            return self._relay(event, event.message)
         return self._command(event, event.message)
 
     def _deliver(self, delivery: Delivery) -> list[Message]:
@@ -260,7 +259,11 @@ class Bridge:
         late = self.now - at > self._stale_after_s
         return "no_link" if late and not isinstance(command, Stop) else None
 
-    def _relay(self, at: float, heartbeat: Heartbeat) -> list[Message]:
+    def _relay(self, event: FromPlant, heartbeat: Heartbeat) -> list[Message]:
+        at, heard = event.at, self._plant_epoch
+        objection = self._far_ahead.objection(heartbeat.epoch, event.unix_s, heard=heard, at=at)
+        if objection is not None:
+            return self._stray(objection)
         if heartbeat.epoch < self._plant_epoch:
             return []
         self._plant_epoch = heartbeat.epoch

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 AHEAD_S = 366 * 86_400  # clocks of two machines differ by no more where both have ever learned the time
+BELIEVED_S = 3.0  # after it a plant that goes on beating is taken for one, whatever the clock here shows
+GAP_S = 2.0  # between beats of a plant that goes on
 HORIZON = 4_102_444_800  # the year 2100: no plant of this protocol starts later, whatever a clock shows
 
 
@@ -20,3 +24,31 @@ def objection(epoch: int, unix_s: int | None) -> str | None:
         return None
     here = "" if unix_s is None else f"; the clock here says {unix_s}, set both clocks if that is wrong"
     return f"a heartbeat of plant {epoch} is refused: no plant has started so far in the future{here}"
+
+
+class FarAhead:
+    """A plant whose number is far ahead of the clock here, as after its first start by a wrong clock.
+
+    Its later starts have numbers above, also by a right clock, so that it would be refused for ever. It is
+    believed once it has gone on beating for BELIEVED_S, where no other plant was heard: a single stray beat
+    must not have boards refuse their plant.
+    """
+
+    def __init__(self) -> None:
+        self._epoch = 0
+        self._since = self._last = -math.inf
+
+    def objection(self, epoch: int, unix_s: int | None, *, heard: int, at: float) -> str | None:
+        """The reason not to believe a beat that came at `at`; None to believe it.
+
+        `heard` is the newest number that was believed, 0 before any.
+        """
+        why = objection(epoch, unix_s)
+        if why is None or objection(epoch, None) is not None:
+            return why
+        if heard:
+            return None if can_follow(epoch, heard) else why
+        if epoch != self._epoch or at - self._last > GAP_S:
+            self._epoch, self._since = epoch, at
+        self._last = at
+        return None if at - self._since >= BELIEVED_S else why
