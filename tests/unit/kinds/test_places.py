@@ -378,6 +378,17 @@ def test_a_person_who_sees_to_a_place_that_cells_share_has_seen_to_it_for_all_of
     assert not bench.plant.advice("left")
 
 
+def test_a_place_is_loaded_with_no_more_than_each_cell_that_shares_it_has_room_for(tmp_path: Path) -> None:
+    (tmp_path / "recipes.py").write_text(HANDED_OVER, "utf-8")
+    (tmp_path / "plant.yaml").write_text(SUPPLIED_ON_THE_RIGHT, "utf-8")  # 9 on the left, 1 on the right
+    bench = Bench(load(tmp_path / "plant.yaml"))
+    bench.wait(1.0)
+    too_many = bench.operate(Verb.LOAD, "left", place="bin", parts=2)
+    assert too_many == "bin of left holds 1 to 1 parts, not 2"
+    assert bench.operate(Verb.LOAD, "left", place="bin") is None
+    assert [cell.context.places.parts("bin") for cell in bench.plant.cells.values()] == [1, 1]
+
+
 FULL = 'take("rack_1"), put("nest"), take("rack_2"), put("nest")'
 SEE = "see that lab nest is empty and say so (unload lab nest)"
 PUT = "put a part at lab nest and say so (load lab nest)"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from .plant_model import Cell
 
@@ -34,3 +34,10 @@ def same_places(cell: Cell, target: str, other: Cell) -> list[str]:
             if here is not None and each in counted and motion.stands_at(here.q, pose.q):
                 names.append(each)
     return names
+
+
+def room_at(cell: Cell, target: str, cells: Collection[Cell]) -> int:
+    """The number of parts that a place of a cell holds; the least that any of `cells` says of that place."""
+    names = {(other.name, same) for other in cells for same in same_places(cell, target, other)}
+    names.add((cell.name, target))
+    return min(each.holds for other in cells for each in other.counted if (other.name, each.target) in names)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.model.common_places import with_common_places
+from arboleda.model.common_places import room_at, with_common_places
 from arboleda.model.messages import OperatorRequest
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase, Sentence, Value
@@ -52,7 +52,7 @@ class PartCounts:
         """Plan to fill one place of a cell: with so many parts, else as full as it gets."""
         place, parts = str(request.argument("place") or "").lower(), request.argument("parts")
         cell = _with_place(self._with_places(scope), whole(scope), place)
-        most = next(each.holds for each in cell.cell.counted if each.target == place)
+        most = room_at(cell.cell, place, [each.cell for each in self._scopes.cells.values()])
         number = most if parts is None else parts
         if isinstance(number, str) or not 1 <= number <= most:
             amount = quoted(number) if isinstance(number, str) else number

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from arboleda.model.common_places import room_at
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, Verb
 from arboleda.model.plant_model import Cell, Link, Place, PlantModel
 
@@ -46,11 +47,13 @@ class Scopes:
             if not places or (message.verb is Verb.UNLOAD and robots.isdisjoint(cell.holders)):
                 continue
             full, parts = message.verb is Verb.LOAD, arguments.get("parts")
-            numbers = {each.target: each.holds if parts is None else int(parts) for each in places}
-            found[cell.name] = numbers if full else dict.fromkeys(numbers, 0)
+            found[cell.name] = {each.target: self._said(cell, each, parts) if full else 0 for each in places}
             if "place" in arguments:
                 break
         return found
+
+    def _said(self, cell: Cell, place: Place, parts: int | str | None) -> int:
+        return room_at(cell, place.target, self._model.cells) if parts is None else int(parts)
 
     def __contains__(self, word: str) -> bool:
         return word.strip().lower() in self._robots
