@@ -38,6 +38,12 @@ CORE_BUGS = (
         "",
     ),
     bug(
+        "core/plant.py",
+        "A cell that is held counts as at work, for those who wait behind it.",
+        "        return executes or bool(self.dispatcher.ledger.of_robot(holder))\n",
+        "        return True\n",
+    ),
+    bug(
         CELL,
         "A cancelled task counts as failed.",
         "self._finish(task, TaskState.CANCELLED if cancelled else TaskState.FAILED)",

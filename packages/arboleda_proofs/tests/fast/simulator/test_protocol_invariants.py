@@ -949,6 +949,29 @@ def test_zone_requests_end__of_a_recovery_unless_a_machine_has_the_zone_and_its_
     assert watch.found == {} and watch.record.waiting.users == []
 
 
+def behind_a_held_cell(folder: Path) -> Watch:
+    """A recovery that waits for a zone, which a machine has whose cell a person has held."""
+    (folder / "recipes.py").write_text(MACHINE_RECIPES)
+    (folder / "plant.yaml").write_text(MACHINE_IN_A_ZONE)
+    watch = Watch(load(folder / "plant.yaml"))
+    watch.task("left shut", wait_s=2)
+    watch.task("right tour", wait_s=8)
+    assert watch.world.plant.cells["right"].run.recovering
+    watch.world.request_verb(Verb.HOLD, "left")
+    watch.wait(8)
+    return watch
+
+
+def test_zone_requests_end__of_a_recovery_behind_a_held_cell(tmp_path):
+    watch = behind_a_held_cell(tmp_path)
+    assert watch.found == {} and not watch.world.plant.cells["right"].run.recovering
+
+
+def test_zone_requests_end__where_the_plant_takes_a_held_cell_for_one_at_work(tmp_path, monkeypatch, bites):
+    monkeypatch.setattr(plant.Plant, "at_work", lambda self, holder: True)
+    bites(behind_a_held_cell(tmp_path))
+
+
 def test_zone_requests_end__in_the_cells_own_time(monkeypatch):
     watch = Watch(zoned())
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from arboleda.engine import Plant
 from arboleda.kinds.joints import MoveJoints
+from arboleda.model.cell_states import CellState
 
 from .cells import KnownCell
 from .commands import Commands, SentCommand
@@ -30,7 +31,7 @@ class Waiting:
             users = [user for cell in self._cells.values() for user in cell.zone_users.values()]
             self.users = [user for user in users if user.robot in robots]
         for user in self.users if seconds <= plant.away_after_s else ():
-            state, behind_work = self._cells[user.cell].state, self._is_behind_work(user, plant)
+            state, behind_work = self._cells[user.cell].state, self._is_behind_work(user, plant, commands)
             user.wait(seconds, state=state, behind_work=behind_work)
         self._look_at_recoveries(plant, commands.new)
 
@@ -47,9 +48,21 @@ class Waiting:
                     user.watch_recovery(moves[cell.name])
                 user.holds = user.robot in holders
 
-    def _is_behind_work(self, user: ZoneUser, plant: Plant) -> bool:
+    def _is_behind_work(self, user: ZoneUser, plant: Plant, commands: Commands) -> bool:
         """True if all that have, or get earlier, the zones that this robot wants are at work."""
         zones, wanted = plant.zones, dict(self._requests)[user.robot]
         holders = [zones.holders[zone] for zone in wanted if zone in zones.holders]
         before = {*holders, *zones.queue.ahead_of(user.robot)}
-        return all(map(plant.at_work, before)) and not any(map(zones.is_quarantined, wanted))
+        told = {sent.robot for sent in commands.open.values()}
+        at_work = (self._is_at_work(zones.holder(each) or each, told) for each in before)
+        return all(at_work) and not any(map(zones.is_quarantined, wanted))
+
+    def _is_at_work(self, holder: str, told: Collection[str]) -> bool:
+        """True where a cell executes, or a cell of a robot does, or that robot is `told` something.
+
+        The plant says so by itself, and may be wrong.
+        """
+        if holder in self._cells:
+            return self._cells[holder].run.state is CellState.EXECUTE
+        executing = (each.cell for each in self._cells.values() if each.run.state is CellState.EXECUTE)
+        return holder in told or any(each.name == holder for cell in executing for each in cell.robots)
