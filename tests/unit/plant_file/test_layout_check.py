@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
 from arboleda.plant_file import layout_check, loader
+from arboleda.plant_file.layout_mends import moved_grid
 from arboleda_proofs.testing import shipped
 
 ROOT = Path(__file__).parents[3]
@@ -51,52 +53,55 @@ WRONG = {  # text in the file, put in its place, what is said
     "beside its node": (
         "[0.2, 1.566]",
         "[0.2, 1.52]",
-        "a: pick-up is 46 mm beside a part on ma at node 7, where path 0B ends",
+        "a: pick-up is 46 mm beside a part on ma at node 7, where path 0B ends"
+        "; write origin_m: [0.199, 1.566] of its grid",
     ),
     "above the part": (
         "[35, 10, 145.5, -65.5, -90, 0]",
         "[35, 4.2, 144.33, -58.53, -90, 0]",
-        "b: pick-up is 41 mm above the top of a part on mb at node 7, where path 0B ends",
+        "b: pick-up is 41 mm above the top of a part on mb at node 7, where path 0B ends"
+        "; teach it 41 mm lower",
     ),
     "into the part": (
         "pickup: {deg: [45, 10], mm: 0}",
         "pickup: {deg: [45, 10], mm: 80}",
-        "a: pick-up is 78 mm below the top of a part on ma at node 7, where path 0B ends",
+        "a: pick-up is 78 mm below the top of a part on ma at node 7, where path 0B ends; write mm: 2",
     ),
     "out of reach": (
         "[0.2, 1.566]",
         "[0.2, 2.566]",
-        "a: node 7 is out of reach, 2.17 m away; ra reaches 1.17 m (path 0B)",
+        "a: node 7 is out of reach, 2.17 m away; ra reaches 1.17 m (path 0B)"
+        "; write origin_m: [0.199, 1.566] of its grid",
     ),
     "stations in each other": (
         "1: {deg: [5, 10]",
         "1: {deg: [1, 10]",
-        "a: station 0 and 1 are 20 mm apart; a part is 24 mm wide and 40 mm high",
+        "a: station 0 and 1 are 20 mm apart; a part is 24 mm wide and 40 mm high; put them 24 mm apart",
     ),
     "below the floor": (
         "0, -132.69, 42.69",
         "-60, -90, 60",
-        "b: at station 0, the part in the tool is 160 mm below the floor",
+        "b: at station 0, the part in the tool is 160 mm below the floor; teach it 160 mm higher",
     ),
     "bases": (
         "base: {origin_m: [0.75, -1.2], yaw_deg: 32.71}",
         "base: {origin_m: [0.2, 0], yaw_deg: 32.71}",
-        "the base of ra and the base of rb overlap",
+        "the base of ra and the base of rb overlap; move one of them by 45 mm",
     ),
     "a base on a grid": (
         "grid: {origin_m: [0.55, -2.104]}",
         "grid: {origin_m: [0.55, -1.4]}",
-        "the base of rb and the grid of mb overlap",
+        "the base of rb and the grid of mb overlap; move one of them by 345 mm",
     ),
     "grids": (
         "grid: {origin_m: [0.55, -2.104]}",
         "grid: {origin_m: [0.1, 1.4]}",
-        "the grid of ma and the grid of mb overlap",
+        "the grid of ma and the grid of mb overlap; move one of them by 200 mm",
     ),
     "a station on a grid": (
         "grid: {origin_m: [0.55, -2.104]}",
         "grid: {origin_m: [0.75, 0.6]}",
-        "a: station 0 stands on the grid of mb",
+        "a: station 0 stands on the grid of mb; move one of them by 136 mm",
     ),
 }
 
@@ -107,6 +112,30 @@ def test_what_could_not_stand_there_is_a_warning(warned: Warned, old: str, new: 
     good = GOOD + OTHER
     assert old in good and warned(good) == ()
     assert said in warned(good.replace(old, new))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "before", "after"),
+    [
+        ("[0.2, 1.566]", "[0.2, 1.52]", r"origin_m: \[0.2, 1.52\]", r"(origin_m: \[.*?\])"),
+        ("[0.2, 1.566]", "[0.2, 2.566]", r"origin_m: \[0.2, 2.566\]", r"(origin_m: \[.*?\])"),
+        ("[45, 10], mm: 0", "[45, 10], mm: 80", "mm: 80", r"(mm: \d+)"),
+    ],
+    ids=["beside", "out of reach", "into the part"],
+)
+def test_what_a_warning_tells_to_write_is_right(
+    warned: Warned, old: str, new: str, before: str, after: str
+) -> None:
+    wrong = GOOD.replace(old, new)
+    (told,) = [each for each in warned(wrong) if "; write " in each]
+    to_write = re.search(after, told.partition("; write ")[2])
+    assert to_write is not None
+    assert warned(re.sub(before, to_write[1], wrong)) == ()
+
+
+def test_pick_ups_of_a_grid_that_are_off_by_different_lengths_are_to_be_taught() -> None:
+    grid = next(robot for robot in shipped().robots.values() if robot.floor_grid)
+    assert moved_grid(grid, [(0.0, 0.1), (0.0, -0.1)], 0.01) == "; teach the pick-ups of these paths anew"
 
 
 @pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: file.name)

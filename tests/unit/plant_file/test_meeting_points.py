@@ -110,8 +110,8 @@ def test_a_mobile_robot_at_a_place_that_a_zone_guards_is_told(tmp_path: Path) ->
 def test_two_targets_at_one_place_are_told(tmp_path: Path) -> None:
     more = "      again: {left: {deg: [100, 10], mm: 80}}\n      there: {cart: {node: 3}}\n"
     assert warned(tmp_path, PLANT + more + ZONE) == [
-        "bay: far and again of left are one place",
-        "bay: far and there of cart are one place",
+        "bay: far and again of left are one place; move one of them, or delete it",
+        "bay: far and there of cart are one place; move one of them, or delete it",
     ]
 
 
@@ -138,4 +138,6 @@ def test_a_station_where_parts_are_picked_up_is_told_and_two_exits_may_be_met_at
     tmp_path: Path,
 ) -> None:
     told = [each for each in warned(tmp_path, RACK) if "one place" in each]
-    assert told == [f"lab: {pickup} and station_0 of arm are one place" for pickup in ("pickup", "pickup_1")]
+    mend = "; move one of them, or delete it"
+    alike = [f"{pickup} and station_0 of arm are one place" for pickup in ("pickup", "pickup_1")]
+    assert told == [f"lab: {each}{mend}" for each in alike]

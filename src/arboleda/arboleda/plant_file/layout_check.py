@@ -20,14 +20,15 @@ from arboleda.kinds.mobile import Mobile
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import Cell, PlantModel, Pose
 
+from . import layout_mends
 from .arrays import Array
+from .layout_mends import Outline, edges
 from .urdf import drawn_arm, robot_urdf
 
 BESIDE_M = 0.010  # a pick-up may be so far beside the part that it takes
 ABOVE_M = 0.010  # and so far above it, which a suction cup bridges
 ROUNDING_M = 0.001
 EVEN_M = 0.001  # a target of an array may be so far beside an even grid
-Outline = Sequence[Sequence[float]]  # counterclockwise corners of a convex shape on the floor
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
@@ -140,6 +141,8 @@ def _pickups(stand: Stand) -> Iterator[str]:
     """The pick-ups that are not where the mobile robot brings the part."""
     cell, pickups = stand.cell, stand.pickups
     ends = {(path.nodes[-1], pickups[path.code].name): path for path in reversed(cell.giver.paths)}
+    off = [_between(stand.node(node), stand.tool(pickups[path.code])) for (node, _), path in ends.items()]
+    moved = layout_mends.moved_grid(stand.mobile, off, BESIDE_M) if off else ""
     for (node, _), path in ends.items():
         pickup, (x, y, top) = pickups[path.code], stand.node(node)
         tool = kinematics.at(stand.tool(pickup))
@@ -148,12 +151,16 @@ def _pickups(stand: Stand) -> Iterator[str]:
         away = math.dist((x, y), (stand.arm.base.x, stand.arm.base.y))
         if away > stand.reach_m + BESIDE_M:
             reach = f"{stand.arm.name} reaches {stand.reach_m:.2f} m"
-            yield f"{cell.name}: node {node} is out of reach, {away:.2f} m away; {reach} (path {path.code})"
+            sentence = (
+                f"{cell.name}: node {node} is out of reach, {away:.2f} m away; {reach} (path {path.code})"
+            )
+            yield sentence + moved
         elif beside > BESIDE_M:
-            yield f"{cell.name}: {pickup.name} is {_mm(beside)} beside {part}"
+            yield f"{cell.name}: {pickup.name} is {_mm(beside)} beside {part}{moved}"
         elif not -ROUNDING_M <= over <= ABOVE_M:
             side = "above" if over > 0 else "below"
-            yield f"{cell.name}: {pickup.name} is {_mm(abs(over))} {side} the top of {part}"
+            mend = layout_mends.raised(stand.arm, stand.body, pickup, -over)
+            yield f"{cell.name}: {pickup.name} is {_mm(abs(over))} {side} the top of {part}{mend}"
 
 
 def _stations(stand: Stand) -> Iterator[str]:
@@ -164,7 +171,8 @@ def _stations(stand: Stand) -> Iterator[str]:
         apart, over = math.dist(a[:2], b[:2]), abs(a[2] - b[2])
         if apart < 2 * PART_RADIUS_M and over < PART_HEIGHT_M - ROUNDING_M:
             number = other.removeprefix("station ")
-            yield f"{stand.cell.name}: {one} and {number} are {_mm(math.dist(a, b))} apart; {size}"
+            mend = f"; put them {_mm(2 * PART_RADIUS_M)} apart"
+            yield f"{stand.cell.name}: {one} and {number} are {_mm(math.dist(a, b))} apart; {size}{mend}"
 
 
 def _below(stand: Stand) -> Iterator[str]:
@@ -177,7 +185,8 @@ def _below(stand: Stand) -> Iterator[str]:
         low = min(z for _, _, z in points)
         if low < -ROUNDING_M:
             what = "the tool" if low == points[0][2] else "the part in the tool"
-            yield f"{stand.cell.name}: at {pose.name}, {what} is {_mm(-low)} below the floor"
+            mend = layout_mends.raised(stand.arm, stand.body, pose, -low)
+            yield f"{stand.cell.name}: at {pose.name}, {what} is {_mm(-low)} below the floor{mend}"
 
 
 def _crowded(stands: Sequence[Stand]) -> Iterator[str]:
@@ -186,14 +195,21 @@ def _crowded(stands: Sequence[Stand]) -> Iterator[str]:
     floor += [(f"the grid of {stand.mobile.name}", stand.grid) for stand in stands]
     for (one, a), (other, b) in combinations(floor, 2):
         if _overlap(a, b):
-            yield f"{one} and {other} overlap"
+            yield f"{one} and {other} overlap{layout_mends.apart(a, b)}"
     for stand in stands:
         for pose in stand.cell.stations:
             x, y, _ = stand.part(pose)
             spot = hull([(x, y)], PART_RADIUS_M)
             for what, outline in floor:
                 if _overlap(spot, outline):
-                    yield f"{stand.cell.name}: {pose.name} stands on {what}"
+                    mend = layout_mends.apart(spot, outline)
+                    yield f"{stand.cell.name}: {pose.name} stands on {what}{mend}"
+
+
+def _between(node: Point, tool: Matrix) -> tuple[float, float]:
+    """How far a tool is beside a node, in plan, m."""
+    x, y, _ = kinematics.at(tool)
+    return x - node[0], y - node[1]
 
 
 def _body(plant: PlantModel, name: str) -> Body:
@@ -253,11 +269,7 @@ def _overlap(a: Outline, b: Outline) -> bool:
 
     A shape that is too thin for an outline takes no floor.
     """
-    return bool(a and b) and not any(_parts(edge, a, b) for outline in (a, b) for edge in _edges(outline))
-
-
-def _edges(outline: Outline) -> Iterator[tuple[Sequence[float], Sequence[float]]]:
-    return zip(outline, [*outline[1:], outline[0]], strict=True)
+    return bool(a and b) and not any(_parts(edge, a, b) for outline in (a, b) for edge in edges(outline))
 
 
 def _parts(edge: tuple[Sequence[float], Sequence[float]], a: Outline, b: Outline) -> bool:
