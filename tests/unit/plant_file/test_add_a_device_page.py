@@ -14,8 +14,8 @@ from arboleda.cli.main import cli
 from arboleda.kinds.declared import Device
 from arboleda.kinds.shipped import SHIPPED
 from arboleda.model.errors import ConfigError
+from arboleda.model.orders import MOST
 from arboleda.plant_file import loader
-from arboleda.plant_file.recipe_check import MOST
 from arboleda.recipes.authoring import Kit
 
 ROOT = Path(__file__).parents[3]

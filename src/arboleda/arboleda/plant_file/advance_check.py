@@ -15,6 +15,7 @@ from arboleda.bt_xml.running.node import Result
 from arboleda.bt_xml.running.scripts import ScriptError
 from arboleda.engine import Context, Plant
 from arboleda.model.facts import Value
+from arboleda.model.orders import orders
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.model.task import Order
@@ -24,7 +25,6 @@ from arboleda.recipes.decorators import Again, AtMost
 from .foresight import OVER, Foresight, Scene
 from .node_rules import RULES as NODE_RULES
 from .notation import Notation
-from .recipe_check import orders
 from .recipe_ends import certain_ends, met, never_met, of_ends
 from .scene_variables import first_values
 from .step_rules import RULES as STEP_RULES

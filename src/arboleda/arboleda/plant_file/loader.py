@@ -12,6 +12,7 @@ from typing import NamedTuple
 from arboleda.drivers.port import DriverSpec
 from arboleda.model.assistants import Assistants
 from arboleda.model.errors import ConfigError
+from arboleda.model.orders import MOST, combinations
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import Cell, ForeignCommands, MqttVersion, PlantModel, Robot
 from arboleda.model.recipe import Recipe
@@ -24,7 +25,7 @@ from .devices import CELLS, Kinds, device_cell, is_of_devices, shared_devices
 from .document import Document, Place
 from .name_check import check_names
 from .python_uses import PythonUses, Watch
-from .recipe_check import MOST, RecipeTrial, combinations
+from .recipe_check import RecipeTrial
 from .recipe_trial import TrialResult, brought
 from .shapes import FileShape
 from .shared import check_homes

@@ -14,10 +14,10 @@ from arboleda.bt_xml.running.decorators import ALL_DONE, ResultDecorator
 from arboleda.bt_xml.running.node import FAILURE, Node
 from arboleda.engine import Act, Context, Plant
 from arboleda.model.commands import Command, Switch, Work
+from arboleda.model.orders import orders
 from arboleda.model.plant_model import Cell, PlantModel
 
 from .asking import facts_asked, facts_that_tell, question_about
-from .recipe_check import orders
 from .walkthrough import in_order
 from .what_follows import Course, needs_all
 

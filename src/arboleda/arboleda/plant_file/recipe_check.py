@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations as pairs
@@ -17,6 +16,7 @@ from arboleda.bt_xml.running.node import Node
 from arboleda.engine import Act, Context, Plant
 from arboleda.model.commands import Work
 from arboleda.model.errors import ConfigError
+from arboleda.model.orders import orders
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Parameter, Recipe, spelling
@@ -30,7 +30,6 @@ from .lost_steps import Made
 from .own_recipes import SECTION
 from .python_uses import LONGEST, PythonUses, SourceSpot, Watch, error_text
 
-MOST = 200  # combinations of parameters that are tried
 HOW_TO_CHOOSE = "; give it to a node that lists its values, or its port a type: int, double, bool"
 WAIT = "cell.wait(seconds)"
 DO_IT = "let it stand in what the recipe returns, as in work(...)"
@@ -287,48 +286,6 @@ def _at_work(branch: Behaviour) -> set[str]:
     """The devices that a part of a tree has do work."""
     commands = [node.make(id="") for node in nodes_of(branch) if isinstance(node, Act)]
     return {command.robot for command in commands if isinstance(command, Work)}
-
-
-def combinations(cell: Cell, recipe: Recipe) -> int:
-    """The number of different tasks that a recipe has in a cell."""
-    return math.prod(len(each.words(cell)) for each in recipe.parameters)
-
-
-def orders(cell: Cell, recipe: Recipe) -> Iterator[Order]:
-    """Every task of a recipe; of more than MOST, so many of them, with each value if possible."""
-    words = [each.words(cell) for each in recipe.parameters]
-    total = combinations(cell, recipe)
-    for number in range(min(total, MOST)):
-        chosen = _sampled(words, number) if total > MOST else _nth(words, number)
-        rows = list(zip(recipe.parameters, chosen, strict=True))
-        yield Order(
-            text=" ".join([cell.name, recipe.name, *chosen]),
-            cell=cell.name,
-            recipe=recipe.name,
-            values={each.name: each.value(cell, word) for each, word in rows},
-        )
-
-
-def _nth(words: Sequence[Sequence[str]], number: int) -> list[str]:
-    """The combination of that number; different numbers have different combinations."""
-    chosen = []
-    for each in words:
-        number, index = divmod(number, len(each))
-        chosen.append(each[index])
-    return chosen
-
-
-def _sampled(words: Sequence[Sequence[str]], number: int) -> list[str]:
-    """The combination of that number among MOST: each parameter goes through all its values.
-
-    The values of one parameter are shifted against those of the next, so that all pairs come together.
-    """
-    chosen = []
-    for column, each in enumerate(words):
-        many = len(each)
-        index = number * many // MOST if many > MOST else (number + column * (number // many)) % many
-        chosen.append(each[index])
-    return chosen
 
 
 def _without_value(cell: Cell, recipe: Recipe) -> str | None:

@@ -17,12 +17,12 @@ from arboleda.engine import Act, Plant
 from arboleda.kinds.declared import Effect
 from arboleda.model.commands import Motion, Switch
 from arboleda.model.facts import Value
+from arboleda.model.orders import orders
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.recipes.authoring import WrittenRecipe
 
 from .declared_kinds import verbs_of
 from .document import Place, dotted
-from .recipe_check import orders
 from .walkthrough import in_order
 from .yaml_flow import flow
 from .yaml_marks import parse
