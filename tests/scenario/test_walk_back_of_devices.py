@@ -26,6 +26,7 @@ from ..unit.kinds.lab import model as bench
 from ..unit.kinds.tending import plant
 from ..unit.kinds.test_examples import EXAMPLES
 from ..unit.kinds.test_interlocks import with_mill
+from ..unit.kinds.test_numbers_as_answers import BY_WEIGHT, line
 from ..unit.kinds.test_people import attended
 from .restarts import ENDED, restart
 
@@ -241,6 +242,19 @@ def test_a_time_out_counts_from_the_word_to_go_on() -> None:
     resumed(rig, "tending")
     assert rig.wait(30.0, until=lambda: state(rig) is not TaskState.RUNNING)
     assert state(rig) is TaskState.DONE
+
+
+def test_a_task_goes_on_with_the_range_of_the_number_that_was_answered() -> None:
+    rig = Rig(line(BY_WEIGHT))
+    rig.boards["scale"].body.answer = lambda goal: 120.5  # type: ignore[union-attr]
+    rig.wait(0.5)
+    rig.submit("line sort #one")
+    assert rig.wait(30.0, until=lambda: "gate right" in sent(rig))
+    restart(rig, after_s=1.0)
+    resumed(rig, "line")
+    assert rig.wait(30.0, until=lambda: state(rig) is TaskState.DONE)
+    assert sent(rig).count("scale weigh") == 1
+    assert {"gate left", "gate middle"}.isdisjoint(sent(rig))
 
 
 def test_work_that_a_machine_finishes_by_itself_is_not_begun_again() -> None:

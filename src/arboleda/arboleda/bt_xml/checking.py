@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from graphlib import CycleError, TopologicalSorter
 
+from arboleda.kinds.ranges import comparison
 from arboleda.model.outside import among, quoted
 
 from . import (
@@ -246,7 +247,7 @@ class _Checker:
             return
         value = values.read(port.name, attribute.value)
         place = node.place_of(attribute)
-        if isinstance(value, Variable):
+        if isinstance(value, Variable) or (port.can_compare and comparison(value)):
             return
         if port.direction is PortDirection.OUT:
             how = f'version 4 wants {port.name}="{{...}}"'

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from arboleda.kinds.declared import Device, DeviceVerb, Effect, FactType
 from arboleda.kinds.person import PATIENCE_S, Person
+from arboleda.kinds.ranges import NUMBERS
 from arboleda.model.errors import ConfigError
 from arboleda.model.facts import shown
 from arboleda.model.plant_model import Cell, Robot
@@ -138,14 +139,24 @@ def _of_robot(cell: Cell, role: str, robot: Robot) -> Iterator[Kind]:
 def _of_verb(role: str, verb: DeviceVerb) -> Kind:
     ports = [_port(name, type, is_needed=True) for name, type in verb.parameters]
     if verb.effect is Effect.QUERY:
-        answers = ", ".join(map(shown, verb.answers))
-        ports.append(Port(name=ANSWER, type="string", direction=PortDirection.OUT, about=f"one of {answers}"))
+        ports.append(_answer(verb))
     return _kind(Category.ACTION, f"{role}_{verb.name}", *ports)
 
 
+def _answer(verb: DeviceVerb) -> Port:
+    """The port for the variable that gets the answer."""
+    about = verb.answer_type.allowed()
+    if verb.number is None:
+        return Port(name=ANSWER, type="string", direction=PortDirection.OUT, about=f"one of {about}")
+    return Port(name=ANSWER, type=TYPES[verb.number.type], direction=PortDirection.OUT, about=about)
+
+
 def _of_facts(role: str, facts: Mapping[str, FactType]) -> Iterator[Kind]:
-    ports = [_port(name, type, is_needed=False) for name, type in facts.items()]
-    outputs = [replace(each, direction=PortDirection.OUT) for each in ports]
+    ports = [
+        replace(_port(name, type, is_needed=False), can_compare=type.type in NUMBERS)
+        for name, type in facts.items()
+    ]
+    outputs = [replace(each, direction=PortDirection.OUT, can_compare=False) for each in ports]
     for kind in (
         _kind(Category.CONDITION, f"{role}_says", *ports),
         _kind(Category.ACTION, f"{role}_{TELLS}", *outputs),

@@ -36,6 +36,7 @@ class Port:
     """Value that a node takes or gives; `is_needed`: the node cannot work without the value.
 
     `words` are all possible values, if they are known. `limits` are those of a number, None where none are.
+    `can_compare`: instead of a number it may have a comparison, as "> 120".
     """
 
     name: str
@@ -45,6 +46,7 @@ class Port:
     is_needed: bool = False
     words: tuple[str, ...] = ()
     limits: tuple[float, float] | None = None
+    can_compare: bool = False
     about: str = ""
 
 

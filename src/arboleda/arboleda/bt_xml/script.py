@@ -134,6 +134,14 @@ def writes(statements: Sequence[Expression]) -> set[str]:
     return {each.name for each in parts if isinstance(each, Assignment)}
 
 
+def compared(statements: Sequence[Expression]) -> Iterator[Expression]:
+    """All that a script compares."""
+    for statement in statements:
+        for each in _parts(statement):
+            if isinstance(each, Comparison):
+                yield from each.operands
+
+
 def _names(expression: Expression) -> Iterator[Name]:
     for each in _parts(expression):
         if isinstance(each, Name):

@@ -122,6 +122,7 @@ class DeviceVerb:
     makes_part: bool = field(default=False, metadata={FOR_PEOPLE: True})  # at a place of the device
     holds: bool = False  # the fact that it sets tells whether the device holds a part
     answers: tuple[Value, ...] = ()  # to a query; the first is what a virtual device answers
+    number: FactType | None = field(default=None, metadata={FOR_PEOPLE: True})  # an answer, without a list
     sets_by: Computed | None = None  # the facts by its values, in place of `sets`
     takes_s_by: Computed | None = None  # its time by its values; `takes_s` is then the longest one tried
     virtual: Computed | None = None  # further facts of a virtual device, or its answer, by facts and values
@@ -142,6 +143,13 @@ class DeviceVerb:
         names = [name for name, _ in self.parameters]
         for values in product(*(type.samples for _, type in self.parameters)):
             yield tuple(zip(names, values, strict=True))
+
+    @property
+    def answer_type(self) -> FactType:
+        """The type of a query's answers."""
+        if self.number is not None:
+            return self.number
+        return FactType(type=type(self.answers[0]), words=self.answers, first=self.answers[0])
 
     @property
     def sets_facts(self) -> bool:
@@ -224,15 +232,15 @@ class DeviceKind:
 
     def answer_of(self, call: VerbCall, facts: Facts) -> Value:
         """The answer of a virtual device to a query; raises UseError if the query has no such answer."""
-        answers = call.definition.answers
+        type = call.definition.answer_type
         if call.definition.virtual is None:
-            return answers[0]
+            return type.first
         what = f"virtual of {call.verb}"
         found = _computed(what, call.definition.virtual, dict(facts), **dict(call.values))
-        if found not in answers:
-            allowed = ", ".join(map(shown, answers))
-            raise UseError(f"{what} answers {quoted(found)}; its answers are {allowed}")
-        return answers[answers.index(found)]
+        answer = type.read(found)
+        if answer is None:
+            raise UseError(f"{what} answers {quoted(found)}; its answers are {type.allowed()}")
+        return answer
 
     def _check_facts(self, what: str, facts: Facts) -> None:
         for name, value in facts:

@@ -42,6 +42,9 @@ class Number:
         return FactType(type=of, first=of(self.lower), lower=self.lower, upper=self.upper)
 
 
+Answers = Sequence[Value] | Number | type[float] | type[int]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Verb:
     """Verb of a kind: one action of its devices. `motion`, `process`, `switch` and `query` make one.
@@ -62,7 +65,7 @@ class Verb:
     - `works_on_part`: there has to be a part at a place of the device for the verb to begin.
     - `makes_part`: the verb makes a part, which lies at a place of the device from its beginning on.
     - `holds_part`: the one bool among `sets` tells whether the device holds a part.
-    - `answers`: all answers to a query, words or numbers.
+    - `answers`: all answers to a query, words or numbers; float, int or `Number(lower, upper)` for a number.
 
     The functions depend on nothing but their arguments. `Kind` raises KindError for a verb that does not fit.
     """
@@ -77,7 +80,7 @@ class Verb:
     works_on_part: bool = False
     makes_part: bool = False
     holds_part: bool = False
-    answers: Sequence[Value] = ()
+    answers: Answers = ()
     virtual: Computed | None = None
 
 
@@ -167,7 +170,7 @@ def switch(
 
 def query(
     *,
-    answers: Sequence[Value],
+    answers: Answers,
     parameters: Mapping[str, object] | None = None,
     needs: Mapping[str, Value] | None = None,
     takes_s: Seconds = 0.0,
@@ -177,8 +180,9 @@ def query(
 ) -> Verb:
     """Returns a verb that asks the device a question, such as a camera's verdict on a part.
 
-    `answers`: all possible answers, at least one; all words, or all numbers. A virtual device gives the first
-    one, or that which `virtual` returns. The other parameters are those of `Verb`.
+    `answers`: all possible answers, at least one; all words, or all numbers. Or float, int or
+    `Number(lower, upper)` for any such number. A virtual device gives the first one, or that which `virtual`
+    returns. The other parameters are those of `Verb`.
     """
     return Verb(
         effect=Effect.QUERY,

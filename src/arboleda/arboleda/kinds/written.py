@@ -50,6 +50,7 @@ def verb_of(name: str, verb: Verb, facts: Mapping[str, FactType]) -> DeviceVerb:
         raise KindError(f"{name}: takes_s is computed, so it needs at_most_s, how long it is waited for")
     at_most_s = rules.patience_s(takes_s) if verb.at_most_s is None else verb.at_most_s
     needs = verb.needs or {}
+    answers = _answers(f"{name}.answers", verb.answers) if verb.effect is Effect.QUERY else None
     made = DeviceVerb(
         name=name,
         effect=verb.effect,
@@ -64,7 +65,8 @@ def verb_of(name: str, verb: Verb, facts: Mapping[str, FactType]) -> DeviceVerb:
         works_on_part=verb.works_on_part,
         makes_part=verb.makes_part,
         holds=verb.holds_part,
-        answers=_listed(f"{name}.answers", verb.answers).words if verb.effect is Effect.QUERY else (),
+        answers=() if answers is None else answers.words,
+        number=None if answers is None or answers.words else answers,
         sets_by=verb.sets if callable(verb.sets) else None,
         takes_s_by=verb.takes_s if callable(verb.takes_s) else None,
         virtual=verb.virtual,
@@ -127,6 +129,12 @@ def _listed(place: str, values: object) -> FactType:
         return rules.listed(values)
     except rules.ListError as error:
         raise KindError(f"{place} {error}") from None
+
+
+def _answers(place: str, given: object) -> FactType:
+    if isinstance(given, Number) or given in (int, float):
+        return type_of(place, given)
+    return _listed(place, given)
 
 
 def _seconds(place: str, value: object, *, at_least: float) -> float:

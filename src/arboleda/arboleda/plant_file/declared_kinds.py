@@ -21,7 +21,8 @@ from .shipped_kinds import RESERVED
 T = TypeVar("T")
 Types = Mapping[str, "FactType | None"]
 SECTION: Place = ("kinds",)
-PLAIN = {"int": rules.INT, "number": rules.NUMBER, "text": rules.TEXT, "bool": rules.BOOL}
+NUMBERS = {"int": rules.INT, "number": rules.NUMBER}
+PLAIN = {**NUMBERS, "text": rules.TEXT, "bool": rules.BOOL}
 WITH_LIMITS = "; a number with limits is of a kind in Python: Number(1, 60)"
 OF_STEPS = tuple(
     name for name, _ in inspect.getmembers(DeviceHandle, inspect.isfunction) if not name.startswith("_")
@@ -94,7 +95,8 @@ def _verb(document: Document, place: Place, facts: Types) -> DeviceVerb | None:
         works_on_part=document.has((*place, "works_on")),
         makes_part=document.has((*place, "makes")),
         holds=document.has((*place, "holds")),
-        answers=answers or (),
+        answers=answers[0] if answers else (),
+        number=answers[1] if answers else None,
     )
     fits = [check(document, place, verb) for check in CHECKS]
     return verb if named and answers is not None and all(fits) else None
@@ -144,20 +146,28 @@ def _check_holds(document: Document, place: Place, verb: DeviceVerb) -> bool:
 CHECKS = (_check_time, _check_stop, _check_makes, _check_holds, _check_query)
 
 
-def _answers(document: Document, place: Place, effect: Effect) -> tuple[Value, ...] | None:
+def _answers(
+    document: Document, place: Place, effect: Effect
+) -> tuple[tuple[Value, ...], FactType | None] | None:
+    """The answers that are listed, and the type of an answer that is a number; None if they are wrong."""
     here = (*place, "answers")
     if effect is not Effect.QUERY:
         if document.has(here):
             document.problem(here, f"only a query has answers, and this is a {effect.value}")
             return None
-        return ()
+        return (), None
     if not document.has(here):
         document.problem(place, 'a query needs "answers", a list of what it may answer, e.g. [good, bad]')
         return None
-    type = _listed(document, here) if isinstance(document.value(here), list) else None
-    if type is None and not isinstance(document.value(here), list):
-        document.problem(here, f"must be a list of words or numbers, is {shown(document.value(here))}")
-    return None if type is None else type.words
+    given = document.value(here)
+    if isinstance(given, list):
+        type = _listed(document, here)
+        return None if type is None else (type.words, None)
+    if given in ("int", "number"):
+        return (), NUMBERS[given]
+    rule = "must be a list of words or numbers, or int or number for any number"
+    document.problem(here, f"{rule}; is {shown(given)}")
+    return None
 
 
 def _types(document: Document, place: Place, what: str, taken: Sequence[str]) -> Types:

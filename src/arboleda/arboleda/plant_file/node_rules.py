@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from py_trees.behaviour import Behaviour
 
+from arboleda.bt_xml import telling
 from arboleda.bt_xml.running import controls, decorators, leaves, watching
 from arboleda.bt_xml.running.device_steps import DeviceStep, FactStep, QuestionStep, as_variable
 from arboleda.bt_xml.running.memory import Scope
@@ -17,7 +18,7 @@ from arboleda.bt_xml.running.root import Main
 from arboleda.bt_xml.running.scripts import Script, ScriptError, is_true
 from arboleda.model.by_class import nearest
 from arboleda.model.errors import ArboledaError
-from arboleda.recipes.handles import question_of
+from arboleda.recipes.handles import Ask, question_of
 
 from .foresight import Scene
 from .scene_variables import after_script, key_of, ports_in, run, scope_in
@@ -169,9 +170,12 @@ def _answered(node: DeviceStep, step: Behaviour, scenes: Sequence[Scene]) -> lis
     if not isinstance(node, QuestionStep) or question is None:
         return list(scenes)
     key = key_of(node.scope.place(node.out))
-    if not question.answers:
+    answers = question.answers
+    if isinstance(question, Ask) and question.number is not None:
+        answers = telling.numbers_for(question.number, node)
+    if not answers:
         return [scene.without({key}) for scene in scenes]
-    given = [{key: as_variable(each), **last_answer(question, each)} for each in question.answers]
+    given = [{key: as_variable(each), **last_answer(question, each)} for each in answers]
     return [scene.put(each) for scene in scenes for each in given]
 
 

@@ -25,6 +25,7 @@ from arboleda.engine import (
     steps,
     title_of,
 )
+from arboleda.kinds.ranges import Range, Wanted, is_so
 from arboleda.model.facts import Value, shown
 from arboleda.recipes.authoring import FAIL, IS, NO_OTHER
 from arboleda.recipes.decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
@@ -93,7 +94,11 @@ def _take_devices(walk: Walkthrough, node: TakeDevices, scenes: Sequence[Scene])
 def _fact_check(walk: Walkthrough, node: FactCheck, scenes: Sequence[Scene]) -> Outcome:
     """The outcome of a check of facts: a certain other value fails it."""
     facts = _facts(node)
-    possible = [each for each in scenes if all(each.get(*key) in (None, facts[key]) for key in facts)]
+    possible = [
+        each
+        for each in scenes
+        if all(each.get(*key) is None or is_so(facts[key], each.get(*key)) for key in facts)
+    ]
     return _fact_outcome(walk, facts, possible, scenes)
 
 
@@ -107,16 +112,17 @@ def _place_question(walk: Walkthrough, node: PlaceQuestion, scenes: Sequence[Sce
     return Outcome(done=tuple(scene.without({answer_key(node)}) for scene in scenes))
 
 
-def _facts(node: FactCheck | FactWait) -> dict[SceneKey, Value]:
+def _facts(node: FactCheck | FactWait) -> dict[SceneKey, Wanted]:
     return {(node.device, fact): value for fact, value in node.facts.items()}
 
 
 def _fact_outcome(
-    walk: Walkthrough, facts: Mapping[SceneKey, Value], possible: Sequence[Scene], scenes: Sequence[Scene]
+    walk: Walkthrough, facts: Mapping[SceneKey, Wanted], possible: Sequence[Scene], scenes: Sequence[Scene]
 ) -> Outcome:
-    unlike = [scene for scene in scenes if any(scene.get(*key) != facts[key] for key in facts)]
+    unlike = [scene for scene in scenes if any(not is_so(facts[key], scene.get(*key)) for key in facts)]
+    sure = {key: value for key, value in facts.items() if not isinstance(value, Range)}
     walk.doubts += any(scene.get(*key) is None for scene in unlike for key in facts)
-    return Outcome(done=tuple(scene.put(facts) for scene in possible), failed=tuple(unlike))
+    return Outcome(done=tuple(scene.put(sure) for scene in possible), failed=tuple(unlike))
 
 
 def _sequence(walk: Walkthrough, node: composites.Sequence, scenes: Sequence[Scene]) -> Outcome:

@@ -21,6 +21,7 @@ from typing import Any
 from py_trees import common, composites
 
 from arboleda.engine import Context, Dwell, Require, Unless, steps, titled
+from arboleda.kinds.ranges import Wanted
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.outside import among, quoted
@@ -344,31 +345,35 @@ class Kit(Offers):
         )
 
     def choose(self, question_step: Step, ways: Mapping[Value, Step | Sequence[Step]]) -> Step:
-        """A branch for each answer to a step that asks a device or a person; another answer is a failure."""
+        """A branch for each answer to a step that asks a device or a person; another answer is a failure.
+
+        Where the answer is a number, each branch has a comparison: `"> 120"`, `">= 100 and <= 120"`;
+        `"otherwise"` has all other numbers.
+        """
         question = question_of(question_step)
         if question is None:
             raise RecipeError(
                 f"choose looks at the answer of a device's step; {named(question_step)} has none"
             )
-        question.check(ways)
+        wanted = question.ways(ways)
 
-        def answers(value: Value) -> bool:
-            return question.answer == value
+        def answers(value: Wanted) -> bool:
+            return question.is_answered(value)
 
         def other() -> Failure | None:
             """The cause of a chosen branch that failed; else a failure for an answer without a branch."""
             answer = question.answer
-            if answer in ways:
+            if any(map(question.is_answered, wanted)):
                 return self._context.failures.first
-            expected = tuple(map(shown, ways))
+            expected = tuple(map(value_text, wanted))
             sentence = OTHER_ANSWER(robot=question.name, answer=value_text(answer), known=expected)
             return Failure(reason=Reason.REJECTED, sentence=sentence)
 
-        def branch(value: Value, way: Step | Sequence[Step]) -> Step:
-            chosen = Unless(IS(answer=shown(value)), partial(answers, value))
-            return steps.framed(steps.sequence(shown(value), chosen, *flat([way], "choose")))
+        def branch(value: Wanted, way: Step | Sequence[Step]) -> Step:
+            chosen = Unless(IS(answer=value_text(value)), partial(answers, value))
+            return steps.framed(steps.sequence(value_text(value), chosen, *flat([way], "choose")))
 
-        branches = [branch(value, way) for value, way in ways.items()]
+        branches = [branch(value, way) for value, way in wanted.items()]
         other_way = Require(NO_OTHER(), self._context.failures, other)
         node = steps.framed(steps.selector(CHOOSE(), *branches, other_way))
         node.asked = question  # type: ignore[attr-defined]

@@ -12,8 +12,9 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.engine import Act, Await, Context, Leaf, Require, paths, steps, titled
-from arboleda.kinds.declared import Device, QueryCall, UseError
+from arboleda.kinds.declared import Device, FactType, QueryCall, UseError
 from arboleda.kinds.person import PATIENCE_S, AskPerson, Person
+from arboleda.kinds.ranges import Range, Wanted, fact_wanted, is_so
 from arboleda.model import zone_plan
 from arboleda.model.by_class import nearest
 from arboleda.model.facts import Value, shown
@@ -23,11 +24,13 @@ from arboleda.model.plant_model import PieceCheck, Pose, Robot
 from arboleda.model.recipe import spelling
 from arboleda.model.sentence import Phrase, Sentence
 
+from . import number_ways
 from .errors import Offers, RecipeError
 from .sharing import check_holds_none
 
 Step = Behaviour
 StepOf = TypeVar("StepOf", bound=Behaviour)
+Way = TypeVar("Way")
 LONGEST_QUESTION, LONGEST_ANSWER = 300, 60
 TWICE = (
     "{step} stands at two places; a step has one place: call what makes it again for the other, or repeat it"
@@ -48,14 +51,31 @@ class Question(Leaf):
     """A step that ends with one of these `answers`, by which a recipe may choose a branch."""
 
     answers: tuple[Value, ...] = ()
+    number: FactType | None = None  # the type of an answer that is a number
+    ranges: tuple[Range, ...] = ()  # of numbers, by which recipes choose
 
     @property
     def answer(self) -> Value | None:
         """The answer; None where there is none yet."""
         raise NotImplementedError
 
-    def check(self, branches: Mapping[Value, object]) -> None:
-        """RecipeError unless there is a branch for each answer, and for nothing else."""
+    def is_answered(self, wanted: Wanted) -> bool:
+        """True if the answer is this value, or a number of this range that its device may answer."""
+        if isinstance(wanted, Range):
+            return self.number is not None and self.number.takes(self.answer) and wanted.has(self.answer)
+        return self.answer == wanted
+
+    def ways(self, branches: Mapping[Value, Way]) -> dict[Wanted, Way]:
+        """The branches by answers or ranges; RecipeError unless each answer has one, and nothing else."""
+        wanted: Iterable[Wanted] = branches
+        if self.number is None:
+            self._check(branches)
+        else:
+            wanted = ranges = tuple(number_ways.read(self.name, self.number, branches))
+            self.ranges = (*self.ranges, *ranges)
+        return dict(zip(wanted, branches.values(), strict=True))
+
+    def _check(self, branches: Mapping[Value, object]) -> None:
         allowed = ", ".join(map(shown, self.answers))
         for answer in branches:
             if answer not in self.answers:
@@ -95,14 +115,14 @@ class FactCheck(Require):
     """Check that a device reports these `facts`."""
 
     device = ""
-    facts: Mapping[str, Value] = {}
+    facts: Mapping[str, Wanted] = {}
 
 
 class FactWait(Await):
     """Wait until a device reports these `facts`."""
 
     device = ""
-    facts: Mapping[str, Value] = {}
+    facts: Mapping[str, Wanted] = {}
 
 
 class AskInZones(composites.Sequence):
@@ -131,24 +151,24 @@ class Handle(Offers):
 
     def says(self, **facts: Value) -> Step:
         """A check: the device reports these facts, else the task fails."""
-        self._check(facts)
-        step = FactCheck(SAYS(), self._context.failures, partial(self._objection, facts))
-        step.device, step.facts = self._device.name, facts
+        wanted = self._wanted(facts)
+        step = FactCheck(SAYS(), self._context.failures, partial(self._objection, wanted))
+        step.device, step.facts = self._device.name, wanted
         return step
 
     def becomes(self, *, at_most_s: float, **facts: Value) -> Step:
         """Wait until the device reports these facts, at most `at_most_s` s."""
-        self._check(facts)
+        wanted = self._wanted(facts)
 
         def late() -> Failure:
-            name = self._unsaid(facts)[0]
+            name = self._unsaid(wanted)[0]
             sentence = NOT_YET(
-                robot=self._device.name, value=shown(facts[name]), fact=name, seconds=at_most_s
+                robot=self._device.name, value=value_text(wanted[name]), fact=name, seconds=at_most_s
             )
             return Failure(reason=Reason.DEADLINE, sentence=sentence)
 
-        step = FactWait(BECOMES(), self._context, lambda: not self._unsaid(facts), at_most_s, late)
-        step.device, step.facts = self._device.name, facts
+        step = FactWait(BECOMES(), self._context, lambda: not self._unsaid(wanted), at_most_s, late)
+        step.device, step.facts = self._device.name, wanted
         return step
 
     def _of(self, step: StepOf) -> StepOf:
@@ -159,19 +179,20 @@ class Handle(Offers):
                     node.uses = self._device.name
         return step
 
-    def _check(self, facts: Mapping[str, Value]) -> None:
-        """UseError for a fact that the device never reports."""
+    def _wanted(self, facts: Mapping[str, Value]) -> Mapping[str, Wanted]:
+        """The facts with what they have to be; UseError for a fact that the device never reports."""
+        return facts
 
-    def _unsaid(self, facts: Mapping[str, Value]) -> list[str]:
+    def _unsaid(self, facts: Mapping[str, Wanted]) -> list[str]:
         """The names of the facts that the device does not report."""
-        return [name for name, value in facts.items() if self._reported(name) != value]
+        return [name for name, wanted in facts.items() if not is_so(wanted, self._reported(name))]
 
     def _reported(self, fact: str) -> Value | None:
         return self._context.robots.fact(self._device.name, fact)
 
-    def _objection(self, facts: Mapping[str, Value]) -> Failure | None:
+    def _objection(self, facts: Mapping[str, Wanted]) -> Failure | None:
         for name in self._unsaid(facts):
-            reported, value = value_text(self._reported(name)), shown(facts[name])
+            reported, value = value_text(self._reported(name)), value_text(facts[name])
             sentence = NOT_SO(robot=self._device.name, told=reported, fact=name, value=value)
             return Failure(reason=Reason.PRECONDITION, sentence=sentence)
         return None
@@ -182,9 +203,8 @@ class DeviceHandle(Handle):
 
     _device: Device
 
-    def _check(self, facts: Mapping[str, Value]) -> None:
-        for name, value in facts.items():
-            self._device.kind.check_fact(name, value)
+    def _wanted(self, facts: Mapping[str, Value]) -> Mapping[str, Wanted]:
+        return {name: fact_wanted(self._device.kind, name, value) for name, value in facts.items()}
 
     def __getattr__(self, verb: str) -> Callable[..., Step]:
         kind = self._device.kind
@@ -209,6 +229,8 @@ class DeviceHandle(Handle):
                 return steps.sequence(act.title, *zones, act) if zones else act
             question = Ask(f"{name} {words}", self._context, make, DOING(order=words))
             question.answers, question.by, question.asked = order.definition.answers, name, words
+            if order.definition.number is not None:
+                question.number = order.definition.number
             self._of(question)
             return titled(AskInZones(question, zones), question.title) if zones else question
 
@@ -356,7 +378,9 @@ def named(step: object) -> str:
     return step.name if isinstance(step, Behaviour) else quoted(step)
 
 
-def value_text(value: Value | None) -> str:
+def value_text(value: Wanted | None) -> str:
+    if isinstance(value, Range):
+        return value.text
     return "nothing" if value is None else shown(value)
 
 

@@ -106,7 +106,7 @@ class Header:
     def _verb(self, verb: Verb) -> str:
         declared = verb.declared
         parameters = [f"{{{_text(name)}, {self._value(type)}}}" for name, type in declared.parameters]
-        answer_type = TYPES[type(declared.answers[0])] if declared.answers else "kText"
+        answer_type = TYPES[declared.answer_type.type] if declared.effect is Effect.QUERY else "kText"
         fields = (
             _text(declared.name),
             f"Effect::{EFFECTS[declared.effect]}",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations
 
-from arboleda.kinds.declared import Device, DeviceVerb, FactType
+from arboleda.kinds.declared import Device, DeviceVerb, Effect, FactType
 from arboleda.model.outside import among
 from arboleda.model.plant_model import Robot
 from arboleda_drivers.plc import checks
@@ -64,7 +64,7 @@ def _written(place: Place, write: Write, verb: DeviceVerb) -> Iterator[Problem]:
 def _answers(place: Place, answer: Register | None, verb: DeviceVerb) -> Iterator[Problem]:
     hint = "say where the PLC shows its answer, answer: {input: 20}"
     yield from checks.answer(place, verb, hint, mapped=answer is not None)
-    if answer is not None and verb.answers:
+    if answer is not None and verb.effect is Effect.QUERY:
         yield from _fits((*place, "answer"), answer, checks.answers(verb))
 
 

@@ -90,7 +90,7 @@ class ModbusDevice:
             there = sequence.write
             puts.append(WriteRequest(table="holding", address=there.address, values=there.raw(number)))
             if command.definition.effect is Effect.QUERY and verb.answer is not None:
-                self._query = (number, verb.answer, type(command.definition.answers[0]))
+                self._query = (number, verb.answer, command.definition.answer_type.type)
         return joined(puts)
 
     def report(self, at: float, raw: Raw) -> Report:

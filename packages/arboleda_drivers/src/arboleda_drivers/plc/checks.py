@@ -55,8 +55,7 @@ def answer(place: Place, verb: DeviceVerb, hint: str, *, mapped: bool) -> Iterat
 
 def answers(verb: DeviceVerb) -> FactType:
     """The type of a query's answers."""
-    first = verb.answers[0]
-    return FactType(type=type(first), words=verb.answers, first=first)
+    return verb.answer_type
 
 
 def proof(device: Device, who: str, *, sequence: bool) -> Iterator[Problem]:
@@ -130,5 +129,5 @@ def plain(place: Place, given: PlcArgument, what: str) -> Iterator[Problem]:
 def shown_answer(place: Place, shown: PlcVariable | None, verb: DeviceVerb, hint: str) -> Iterator[Problem]:
     """Problems of the variable that shows the answer to a query."""
     yield from answer(place, verb, hint, mapped=shown is not None)
-    if shown is not None and verb.answers:
+    if shown is not None and verb.effect is Effect.QUERY:
         yield from words((*place, "answer"), shown.words, answers(verb))

@@ -175,7 +175,7 @@ def _verb(place: Place, verb: Verb, known: DeviceVerb) -> Iterator[Problem]:
             yield (*place, "calls", at), f"{what}; {among(name, parameters)}"
     hint = "say what the last call's result means, answer: {words: {...}}"
     yield from checks.answer(place, known, hint, mapped=verb.answer is not None)
-    if verb.answer is not None and known.effect is Effect.QUERY and known.answers:
+    if verb.answer is not None and known.effect is Effect.QUERY:
         yield from _reading((*place, "answer"), verb.answer, checks.answers(known))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.kinds.declared import Device
+from arboleda.kinds.declared import Device, Effect
 from arboleda.model.plant_model import Robot
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Problem
@@ -46,7 +46,7 @@ def _verbs(keys: S7Keys, device: Device) -> Iterator[Problem]:
         for at, write in enumerate(verb.write):
             yield from checks.argument((*place, "write", at), write, known[name], key="at", names=NAMES)
         yield from checks.shown_answer(place, verb.answer, known[name], ANSWER)
-        if verb.answer is not None and known[name].answers and not verb.answer.words:
+        if verb.answer is not None and known[name].effect is Effect.QUERY and not verb.answer.words:
             of = checks.answers(known[name])
             yield from _type((*place, "answer", "at"), verb.answer, of.type, of.allowed())
         if not verb.write:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from arboleda.kinds.declared import VerbCall
+from arboleda.kinds.declared import FactType, VerbCall
 from arboleda.model.commands import Command, Query
 from arboleda.model.facts import Value, shown
 from arboleda.model.outside import plain
@@ -42,5 +42,16 @@ class Answers:
 
 def _answer(command: Query, result: str | None) -> Value:
     """The answer of the kind that these words mean, else the words."""
-    known = command.definition.answers if isinstance(command, VerbCall) else ()
-    return next((each for each in known if shown(each) == result), result or "")
+    if not isinstance(command, VerbCall):
+        return result or ""
+    if command.definition.number is not None:
+        return _number(result or "", command.definition.number)
+    return next((each for each in command.definition.answers if shown(each) == result), result or "")
+
+
+def _number(text: str, type: FactType) -> Value:
+    """The number that a text means, else the text."""
+    try:
+        return type.type(text)
+    except ValueError:
+        return text

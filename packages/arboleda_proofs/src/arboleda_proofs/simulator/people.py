@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Callable, Hashable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import count
 
+from arboleda.bt_xml import telling
 from arboleda.model import text as task_text
 from arboleda.model.advice import Advice, Hand
 from arboleda.model.commands import Question
@@ -204,13 +205,20 @@ def any_text(cell: Cell, dice: Dice) -> str:
 
 def answer_anything(world: World, seed: int) -> None:
     """Have devices that are queried give any of their answers: a camera sees bad parts, too."""
-    for name, board in world.boards.items():
-        if isinstance(board.body, MachineBody):
-            board.body.answer = partial(_any_answer, board.body, Dice(seed, "answers", name))
+    numbers = telling.numbers(world.model)
+    for robot in world.model.robots.values():
+        board = world.boards.get(robot.mqtt)
+        if board is not None and isinstance(board.body, MachineBody):
+            dice = Dice(seed, "answers", robot.mqtt)
+            own = {verb: those for (device, verb), those in numbers.items() if device == robot.name}
+            board.body.answer = partial(_any_answer, board.body, own, dice)
 
 
-def _any_answer(body: MachineBody, dice: Dice, goal: OrderGoal) -> Value:
-    return dice.pick(body.kind.verbs[goal.verb].answers)
+def _any_answer(
+    body: MachineBody, numbers: Mapping[str, Sequence[Value]], dice: Dice, goal: OrderGoal
+) -> Value:
+    verb = body.kind.verbs[goal.verb]
+    return dice.pick(verb.answers or numbers.get(goal.verb) or verb.answer_type.samples)
 
 
 class FixedAnswers:
@@ -256,7 +264,8 @@ def _next(
 
 
 def _word_or_first(body: MachineBody, word: Value, goal: OrderGoal) -> Value:
-    return word if word in body.kind.verbs[goal.verb].answers else body.first_answer(goal)
+    answer = body.kind.verbs[goal.verb].answer_type.read(word)
+    return body.first_answer(goal) if answer is None else answer
 
 
 class Attendant:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from arboleda.kinds.declared import DeviceVerb, Effect
-from arboleda.model.facts import Value, shown
+from arboleda.model.facts import Value
 from arboleda.sim.machine import MachineBody
 from arboleda_proofs.simulator.people import answer_in_turn
 from arboleda_proofs.simulator.world import World
@@ -20,10 +20,11 @@ def prepare(world: World, device: str, verb: str, answers: tuple[Value, ...]) ->
     queries = [each.name for each in _verbs(body) if each.effect is Effect.QUERY]
     if not isinstance(body, MachineBody) or not queries:
         raise Misuse(f"{device} is asked nothing; a person answers by sim.operate('answer', ...)")
-    allowed = body.kind.verbs[known(f"a verb by which {device} is asked", verb, queries)].answers
+    asked = known(f"a verb by which {device} is asked", verb, queries)
+    allowed = body.kind.verbs[asked].answer_type
     for answer in answers:
-        if answer not in allowed:
-            words = ", ".join(map(shown, allowed))
+        if allowed.read(answer) is None:
+            words = allowed.allowed()
             raise Misuse(f"{device} {verb} never answers {answer!r}; its answers are {words}")
     answer_in_turn(body, verb, answers)
 

@@ -11,6 +11,7 @@ from py_trees.behaviour import Behaviour
 from arboleda.bt_xml import values
 from arboleda.bt_xml.nodes import Port
 from arboleda.engine import Act, Await, Failures, Require
+from arboleda.kinds.ranges import comparison
 from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Failure
@@ -46,6 +47,8 @@ MADE_OF: Mapping[type[Behaviour], tuple[str, ...]] = {
 def value_of(kind: str, port: Port, text: str) -> Value:
     """The value that a text means for a port of a device; ScriptError if the port takes no such value."""
     quote = quoted(text)
+    if port.can_compare and comparison(text) is not None:
+        return text
     if values.objection(port.type, text) is not None:
         raise ScriptError(WANTED(port=port.name, node=kind, wanted=TYPES[port.type](), value=quote))
     if port.words and text not in port.words:

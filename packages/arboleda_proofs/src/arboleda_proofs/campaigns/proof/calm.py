@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
+from arboleda.bt_xml import telling
 from arboleda.engine import Entry
 from arboleda.kinds.declared import QueryCall
 from arboleda.model.commands import Command, Question
@@ -66,6 +67,7 @@ class _Marks:
         self._fuse = Fuse(FAR, Side.AFTER, lambda: None)
         self._counted = FAR
         self._ended = False
+        self._numbers = telling.numbers(stage.world.model)
         stage.world.plant_process.fuses.append(self._fuse)
         stage.world.watchers.append(self._look)
 
@@ -101,7 +103,8 @@ class _Marks:
         if isinstance(command, Question):
             self.questions[command.robot] = tuple(command.answers)
         elif isinstance(command, QueryCall):
-            self.questions[command.robot] = command.definition.answers
+            listed = command.definition.answers
+            self.questions[command.robot] = listed or self._numbers[command.robot, command.verb]
 
 
 def calm_run(model: PlantModel, scenario: Scenario, tick: Tick = lambda: None) -> Calm:
