@@ -445,7 +445,7 @@ def failed_with_a_part_in_the_oven(folder: Path, plant: str = PLANT) -> Lab:
     return lab
 
 
-ASKED = "Is a part still in inside? The last task put it there, and failed"
+ASKED = "Is a part still in inside? The last task failed, and may have left one there"
 OUTPUT = PLANT.replace("{of: oven}", "{of: oven, output: true}")
 
 

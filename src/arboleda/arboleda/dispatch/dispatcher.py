@@ -316,6 +316,9 @@ class Dispatcher:
         held = belief.held_in(belief)
         if held is not None and belief.online:  # a word from before its link was lost may be too old
             self.effectors.settle(belief.robot.name, Grip.ON if held else Grip.OFF)
+            if held and belief.piece is not None and belief.state is MotionState.MOVING:
+                timing = self.limits.timings[self.model.cell_of[name].name]
+                self.effectors.feel(belief, debounce_s=timing.piece_debounce_s)
 
     def expire(self, limit: float, now: float, guard: Guard = unguarded) -> None:
         """Book the settling times, deadlines and silences that are due up to and including `limit`."""

@@ -32,13 +32,15 @@ class HandlingStep(Enum):
     TOLD_TO_MAKE = "told to make"  # a device, at a place of its own
     NOT_MADE = "not made"  # it refused to, or was never told
     HELD = "held"
+    MISSED = "missed"  # it closed on nothing, as its sensor says on the way
+    LOST = "lost"  # its sensor has seen it on the way, and does not any more
     TOLD_TO_LET_GO = "told to let go"
     EMPTY = "empty"
     TAKEN_OUT = "taken out"  # by a person
 
 
 class Effectors:
-    """Books of all effectors of a plant. `version` grows whenever a grip changes.
+    """Books of all effectors of a plant. `version` grows whenever a grip changes, or what is in it.
 
     `unopened` are robots whose last command to let go failed. `opened` has a sentence for each robot whose
     effector let go unbidden since its last command. `cut_off` are robots that may still switch on a command
@@ -59,6 +61,7 @@ class Effectors:
         self.watchers: dict[str, list[Callable[[str, HandlingStep], None]]] = {
             name: [] for name in model.robots
         }
+        self._felt: dict[str, bool] = {}  # by arm: what its sensor said last on the way of a closed effector
         self._emptied = {name for name in holders if memory.value(Fact.EMPTIED, name) is not None}
         self._memory = memory
         self._ledger = ledger
@@ -72,6 +75,7 @@ class Effectors:
     def command(self, command: Switch) -> None:
         """Book a command to an effector that leaves now."""
         self.opened.pop(command.robot, None)
+        self._felt.pop(command.robot, None)
         self._set_emptied(command.robot, emptied=False)
         if not command.grips:
             self.grips.open(command.robot, command.id)
@@ -141,6 +145,22 @@ class Effectors:
             return
         if grip is not Grip.ON or robot not in self.grips.opening:
             self.set(robot, grip)
+
+    def feel(self, belief: Belief, *, debounce_s: float) -> None:
+        """Believe the sensor of an arm that moves with its effector closed.
+
+        On its way it sees nothing but what is in the hand; at a place it may see what lies there.
+        """
+        arm, sees, felt = belief.robot.name, belief.piece, self._felt.get(belief.robot.name)
+        is_settled = sees or (belief.heard_at or 0.0) - belief.piece_since >= debounce_s
+        if sees is None or sees is felt or not is_settled or self.grips[arm] is not Grip.ON:
+            return
+        self._felt[arm] = sees
+        if sees and felt is None:
+            return  # as it was told
+        self.version += 1
+        missed = HandlingStep.LOST if felt else HandlingStep.MISSED
+        self._tell(arm, HandlingStep.HELD if sees else missed)
 
     def settle_opening(self, before: Before, belief: Belief, report: Report) -> None:
         """Forget commands to let go that a tool lost in a reboot, refused, or failed to do."""

@@ -11,7 +11,8 @@ class AskedPlaces:
     """Places of a cell of which a person has to say whether a part is still there.
 
     A task that fails may leave a place full that the next task fills. People may have taken that part out
-    without a word, so whether it is still there is a question, which keeps the next task from beginning.
+    without a word, or a hand may have found none there, so whether it is still there is a question, which
+    keeps the next task from beginning.
     `parts` are the books, which go on changing; `changed` has them kept.
     """
 
@@ -54,6 +55,12 @@ class AskedPlaces:
     def answer(self, parts: Mapping[str, int]) -> None:
         """Take a person's word on how many parts are at places; an output in question has to be emptied."""
         self._known |= {target: n for target, n in parts.items() if not self.is_output(target)}
+
+    def doubt(self, target: str) -> None:
+        """Take in that a hand that was to take a part from a place has none: there may be none either."""
+        place = self._places.get(target)
+        if place is not None and not place.supply:
+            self._known[target] = min(self._known_at(target), place.holds - 1)
 
     def moved_by_others(self, target: str, parts: int) -> None:
         """Count what another cell put at a place of both, or took there: the last task has no part in it."""

@@ -27,7 +27,7 @@ FULL = Phrase(
 HOLDS_ONE = Phrase("place.holds_one", "{robot} holds a part already, taken at {place}")
 STILL_HELD = Phrase("place.still_held", "{robot} stays at {place}: {device} still holds the part there")
 NO_PART = Phrase("place.no_part", "{robot} has no part to work on: none is known to be at {places}")
-ASKED = Phrase("place.asked", "Is a part still in {place}? The last task put it there, and failed")
+ASKED = Phrase("place.asked", "Is a part still in {place}? The last task failed, and may have left one there")
 
 
 def trouble_in(sentence: Sentence) -> Sentence | None:
@@ -35,6 +35,7 @@ def trouble_in(sentence: Sentence) -> Sentence | None:
     return next((each for each in sentence.parts() if each.key in (EMPTY.key, FULL.key)), None)
 
 
+SENSED_EMPTY = frozenset({HandlingStep.MISSED, HandlingStep.LOST})
 OF_PLACE, OF_HAND, IN_QUESTION, KNOWN, SURE, LETTING_GO = "=", ":", "?", "~", "+", "-"
 
 
@@ -209,7 +210,7 @@ class Places:
     def _to_let_go(self, hand: str) -> Sentence | None:
         space = self._hands.get(hand)
         here = self._target(space) if space is not None else None
-        if here not in self._places or not self._dispatcher.effectors.grips.holding(hand):
+        if here not in self._places or hand not in self._held:
             return None
         if self.is_free(here):
             return None
@@ -239,9 +240,7 @@ class Places:
         targets = self._of_device.get(device)
         if not targets or any(map(self.parts, targets)):
             return None
-        holding = [
-            each for hand, each in self._hands.items() if self._dispatcher.effectors.grips.holding(hand)
-        ]
+        holding = [each for hand, each in self._hands.items() if hand in self._held]
         if any(self._target(space) in targets for space in (*holding, *self._carts)):
             return None
         return NO_PART(robot=device, places=tuple(targets))
@@ -281,6 +280,10 @@ class Places:
             return
         held = self._held.get(hand) or HeldPart()
         here = held.target
+        if handling in SENSED_EMPTY and (self._cell.piece_check is False or held.target in self._rack):
+            return  # nobody looks at the sensor here; of what is in a rack the recipes see to that
+        if handling is HandlingStep.MISSED:
+            held, handling = replace(held, is_sure=False, lets_go=False), HandlingStep.EMPTY
         if handling in (HandlingStep.TOLD_TO_TAKE, HandlingStep.TOLD_TO_LET_GO):
             self._left_there.pop(hand, None)
         if handling is HandlingStep.TOLD_TO_TAKE:
@@ -296,7 +299,7 @@ class Places:
             self._held[hand] = replace(held, is_sure=True)
         elif handling is HandlingStep.TOLD_TO_LET_GO and hand in self._held:
             self._held[hand] = replace(held, lets_go=True, put_at=self._target(self._hands[hand]))
-        elif handling in (HandlingStep.EMPTY, HandlingStep.TAKEN_OUT):
+        elif handling in (HandlingStep.EMPTY, HandlingStep.TAKEN_OUT, HandlingStep.LOST):
             self._held.pop(hand, None)
             if handling is HandlingStep.EMPTY:
                 here = self._put_down_at(hand, held) if held.lets_go else None
@@ -304,6 +307,7 @@ class Places:
                 self._move(back, +1, hand)
                 if back is not None and not held.is_sure:
                     self._left_there[hand] = back
+                    self.asked.doubt(back)
         if self._places or not self._noted.isdisjoint((held.target, here)):
             self._keep()
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 from arboleda.model.commands import Command, Motion, Switch
-from arboleda.model.messages import Report
+from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import Cell
 from arboleda.wire.payloads import EffectorGoal
 
@@ -63,6 +63,7 @@ class Effector:
 
     `empty_handed` is None where it brought the part to where it was told to let go of that. `put_down` counts
     the parts that it let go of where they can be. `unseen_at`: when nobody could know last where its arm is.
+    `felt` is what its board said last of its part on the way, since it closed; None where it said nothing.
     """
 
     def __init__(self, arm: ArmTruth) -> None:
@@ -72,6 +73,8 @@ class Effector:
         self.empty_handed: EmptyHanded | None = None
         self.put_down = 0
         self.unseen_at = -math.inf
+        self.felt: bool | None = None
+        self._moves = self._is_said_on = False
         self._is_empty = self._is_robbed = self._carries = False
         self._nothing_since: float | None = None  # for how long its board has said that no part is there
 
@@ -79,6 +82,7 @@ class Effector:
         """Take in that the plant tells it to grip, or to let go."""
         if grips:
             self.gripped, self.let_go, self.empty_handed = told, None, None
+            self.felt = None
             self._is_empty = self._is_robbed = self._carries = False
             return
         if self._carries and self.let_go is None and (self._is_empty or self._is_robbed):
@@ -98,6 +102,15 @@ class Effector:
         is_settled = not is_there and now - since >= debounce_s
         if is_settled and self.arm.on and not self.arm.holding and self.let_go is None:
             self._is_empty = True
+        if self._moves and self._is_said_on and self.let_go is None and (is_there or is_settled):
+            self.felt = is_there
+
+    def hear(self, report: Report) -> None:
+        """Take in what the plant hears of the arm."""
+        if report.state is not None:
+            self._moves = report.state is MotionState.MOVING
+        if report.effector is not None:
+            self._is_said_on = report.effector
 
     def look(self) -> None:
         """Take in what somebody did to it in this step."""
@@ -148,6 +161,8 @@ class GripsTruth:
         """Take in what the plant hears of parts."""
         debounce_s = self._world.model.timing.piece_debounce_s
         for report in reports:
+            if report.robot in self.effectors:
+                self.effectors[report.robot].hear(report)
             if report.piece is not None and report.robot in self.effectors:
                 self.effectors[report.robot].feel(report.at, is_there=report.piece, debounce_s=debounce_s)
 

@@ -20,7 +20,7 @@ from arboleda.model.recipe import Recipe
 
 from ..recorded.scopes import Scopes
 from ..world import World
-from .grips import part_poses
+from .grips import Effector, part_poses
 from .mobile import MobileTruth
 from .robot import RobotTruth
 
@@ -65,6 +65,8 @@ class CellPlaces:
         self._giver: Robot | None = None  # that brings what its task takes
         self.came: set[Position] = set()  # where the giver has stood since that task began
         self._held = {hand: _holds(robots[hand]) for hand in self._hands if hand in robots}
+        # effectors that have closed beside the part, by the places there, or have lost it
+        self.empty_handed: dict[str, list[str] | None] = {}
 
     def begin(self, task: str, recipe: Recipe, booked: Mapping[str, int], in_grip: Iterable[str]) -> None:
         """A task begins: people have filled the supplies and emptied the outputs, but for one that a failed
@@ -104,7 +106,13 @@ class CellPlaces:
         return {target: parts - self._brought[target] for target, parts in self.parts.items()}
 
     def follow(
-        self, hand: RobotTruth, carrier: RobotTruth | None, *, is_of_others: bool, is_late: bool
+        self,
+        hand: RobotTruth,
+        carrier: RobotTruth | None,
+        effector: Effector | None,
+        *,
+        is_of_others: bool,
+        is_late: bool,
     ) -> str | None:
         """Take in what a hand did in this step, also for another cell; the sentence about what cannot be.
 
@@ -114,9 +122,11 @@ class CellPlaces:
         name = hand.robot.name
         before, now = self._held[name], _holds(hand)
         self._held[name] = now
+        found = [] if carrier is None else self._found(self._hands[name], carrier)
+        if effector is not None and self.cell.piece_check is not False and self._has_none(effector, found):
+            return None
         if now == before:
             return None
-        found = [] if carrier is None else self._found(self._hands[name], carrier)
         closes_late = now and carrier is not None and self._is_on_its_way(name, carrier)
         if is_late or (closes_late and not is_of_others):
             self.is_doubtful |= bool(found) or not is_of_others
@@ -136,6 +146,28 @@ class CellPlaces:
         else:
             self._note_as_left(place.target)
         return sentence
+
+    def _has_none(self, effector: Effector, found: list[str]) -> bool:
+        """True where an effector takes or puts nothing, as it has closed beside the part or has lost it.
+
+        Nobody could know that unless its board said so on the way. Of a station nobody asks its sensor.
+        """
+        arm, name = effector.arm, effector.arm.robot.name
+        if arm.on and not arm.was_on and not arm.holding:
+            if self._rack.isdisjoint(found):
+                self.empty_handed[name] = found
+            return name in self.empty_handed
+        if arm.on and arm.was_on and arm.was_holding and not arm.holding:
+            self.empty_handed[name] = None
+            self.is_doubtful |= bool(self._rack) or effector.felt is not True
+        if arm.on or name not in self.empty_handed:
+            return False
+        self.is_doubtful |= self.empty_handed.pop(name) != found and effector.felt is not False
+        return True
+
+    def close(self, hand: str, carrier: RobotTruth | None) -> None:
+        """Take in that a hand is told to close: a part may be at the places where it is, or none any more."""
+        self._touched.update(() if carrier is None else self._found(self._hands[hand], carrier))
 
     def _note_as_left(self, target: str) -> None:
         self._touched.add(target)
@@ -272,6 +304,7 @@ class PlacesTruth:
         self,
         world: World,
         robots: Mapping[str, RobotTruth],
+        effectors: Mapping[str, Effector],
         *,
         mistaken: Callable[[RobotTruth], bool],
         released: Callable[[str], bool],
@@ -282,6 +315,7 @@ class PlacesTruth:
         self._world = world
         self._scopes = Scopes(world.model)
         self._robots = robots
+        self._effectors = effectors
         self._mistaken = mistaken
         self._released = released
         self._before: dict[str, Grip] = {}  # by the books, before this step
@@ -324,7 +358,8 @@ class PlacesTruth:
                 carrier = self._robots.get(places.carrier(name))
                 is_of_others = self._is_of_others(name, places.cell)
                 is_late = self._is_late(robot, places.carrier(name))
-                found = places.follow(robot, carrier, is_of_others=is_of_others, is_late=is_late)
+                effector = self._effectors.get(name)
+                found = places.follow(robot, carrier, effector, is_of_others=is_of_others, is_late=is_late)
                 if found is not None and not places.is_doubtful and not self._released(name):
                     self.wrong.append(found)
 
@@ -332,6 +367,9 @@ class PlacesTruth:
         """Take in that the plant tells a hand to close or to open, or a device to make a part."""
         if isinstance(command, Switch) and command.grips is not None:
             self._told_at[command.robot, command.grips] = self._world.now
+            for places in self._cells_of.get(command.robot, ()) if command.grips else ():
+                if places.has(command.robot):
+                    places.close(command.robot, self._robots.get(places.carrier(command.robot)))
         for places in self.cells.values() if command.makes_part else ():
             found = places.make(command.robot)
             if found is not None and not places.is_doubtful:
@@ -372,10 +410,11 @@ class PlacesTruth:
 
     def restart(self, words: Iterable[object], kept: Mapping[str, str]) -> None:
         """Begin with a new plant: what a person said in the step in which the old one died is so if it was
-        kept, though nobody was answered. Nobody knows of the order to make a part whether it had left.
+        kept, though nobody was answered. Nobody knows of the order to make a part whether it had left, nor
+        what the sensor of a hand had said.
         """
         for places in self.cells.values():
-            places.is_doubtful |= places.makes_parts
+            places.is_doubtful |= places.makes_parts or bool(places.empty_handed)
         for word in words:
             if isinstance(word, OperatorRequest) and word.verb in (Verb.LOAD, Verb.UNLOAD):
                 named = with_common_places(self._scopes.parts(word), self._world.model.cells)

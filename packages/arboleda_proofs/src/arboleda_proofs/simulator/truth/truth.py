@@ -36,7 +36,10 @@ class Truth(RobotsTruth):
     def __init__(self, world: World) -> None:
         super().__init__(world)
         self.grips = GripsTruth(world, self.robots, self.unseen)
-        self.places = PlacesTruth(world, self.robots, mistaken=self.mistaken, released=self.released)
+        effectors = self.grips.effectors
+        self.places = PlacesTruth(
+            world, self.robots, effectors, mistaken=self.mistaken, released=self.released
+        )
         self.shared = SharedDevicesTruth(world, self.robots)
         self.begun_tasks: list[tuple[str, str]] = []
         self.done_tasks: list[tuple[str, str, float]] = []

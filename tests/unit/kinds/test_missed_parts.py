@@ -1,0 +1,137 @@
+"""What an arm says on its way of a part that it has not, in the books of parts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.model.verbs import Verb
+from arboleda.plant_file.loader import load
+
+from .lab import Bench
+
+PLANT = """
+name: lab
+uses: [recipes.py]
+cells:
+  lab:
+    devices: {mover: {kind: arm, model: scara}}
+    targets:
+      home: {mover: {deg: [0, 0], mm: 0}}
+      nest: {mover: {deg: [-60, 10], mm: 80}}
+      vise: {mover: {deg: [-30, 10], mm: 80}}
+      bin: {mover: {deg: [30, 40], mm: 80}}
+    places: {nest: {}, vise: {}, bin: {holds: 2, output: true}}
+"""
+RECIPE = """
+from arboleda.recipes import Pick, Place, recipe, work
+
+@recipe("try")
+def attempt(cell):
+    mover = cell.device("mover")
+    {before}
+    return work({body})
+"""
+CHECKED = 'mover.tour(Pick("nest"), Place("vise"), "home")'
+UNCHECKED = 'mover.visit("nest", mover.grip()), mover.visit("vise", mover.let_go()), mover.home()'
+FAILS = 'mover.visit("nest", mover.grip()), mover.home(), cell.fail("not today")'
+TO_THE_BIN = 'mover.brings_back_to("bin")'
+THERE = {"nest": 1, "vise": 0, "bin": 0}
+NOWHERE = {"nest": 0, "vise": 0, "bin": 0}
+Happens = Callable[[Bench], None]
+
+
+def written(folder: Path, body: str, before: str = "", plant: str = PLANT) -> Path:
+    (folder / "recipes.py").write_text(RECIPE.format(body=body, before=before), "utf-8")
+    (folder / "plant.yaml").write_text(plant, "utf-8")
+    return folder / "plant.yaml"
+
+
+def lab(file: Path) -> Bench:
+    """The lab with a part in its nest, and a task."""
+    bench = Bench(load(file))
+    bench.wait(1.0)
+    assert bench.operate(Verb.LOAD, "lab", place="nest") is None
+    bench.submit("lab try")
+    return bench
+
+
+def ended(bench: Bench) -> TaskChanged:
+    """The end of the task; the hand is empty by then, and so it is in the books."""
+    end = bench.outcome(300.0)
+    assert bench.wait(60.0, lambda: bench.plant.cells["lab"].task is None)
+    assert bench.plant.cells["lab"].context.places.carriers == {}
+    return end
+
+
+def counts(bench: Bench) -> dict[str, int]:
+    return bench.plant.cells["lab"].context.places.counts
+
+
+def asked(bench: Bench) -> tuple[str, ...]:
+    return bench.plant.cells["lab"].context.places.asked.targets
+
+
+def closes_beside(bench: Bench) -> None:
+    bench.machines["mover"].grips = False
+
+
+def loses_it(bench: Bench) -> None:
+    """The part falls once the arm has carried it for a moment."""
+    body = bench.machines["mover"]
+    assert bench.wait(60.0, lambda: body.holding and body.moving)
+    bench.wait(0.3)
+    body.lose_piece()
+
+
+@pytest.mark.parametrize("before", ["", TO_THE_BIN], ids=["back", "to_the_bin"])
+@pytest.mark.parametrize("body", [CHECKED, FAILS], ids=["checked", "unchecked"])
+def test_a_part_that_a_hand_missed_is_a_question_where_it_was(tmp_path: Path, body: str, before: str) -> None:
+    bench = lab(written(tmp_path, body, before))
+    closes_beside(bench)
+    assert ended(bench).state is TaskState.FAILED
+    assert (counts(bench), asked(bench)) == (THERE, ("nest",))
+    assert bench.operate(Verb.UNLOAD, "lab", place="nest") is None
+    assert (counts(bench), asked(bench)) == (NOWHERE, ())
+
+
+@pytest.mark.parametrize(("happens", "left"), [(closes_beside, THERE), (loses_it, NOWHERE)])
+def test_a_task_that_looks_at_no_sensor_puts_nothing_where_its_hand_had_none(
+    tmp_path: Path, happens: Happens, left: dict[str, int]
+) -> None:
+    bench = lab(written(tmp_path, UNCHECKED))
+    happens(bench)
+    assert ended(bench).state is TaskState.DONE
+    assert counts(bench) == left
+
+
+def test_a_hand_that_says_on_its_way_that_it_is_empty_holds_no_part_in_the_books(tmp_path: Path) -> None:
+    bench = lab(written(tmp_path, UNCHECKED))
+    closes_beside(bench)
+    body = bench.machines["mover"]
+    assert bench.wait(60.0, lambda: body.effector and body.moving)
+    assert bench.plant.cells["lab"].context.places.carriers == {"mover": True}
+    assert bench.wait(1.0, lambda: not bench.plant.cells["lab"].context.places.carriers)
+    assert body.effector and body.moving and counts(bench) == THERE
+
+
+def test_a_sensor_that_is_late_has_the_hand_take_the_part_after_all(tmp_path: Path) -> None:
+    bench = lab(written(tmp_path, UNCHECKED))
+    body = bench.machines["mover"]
+    assert bench.wait(60.0, lambda: body.holding and body.moving)
+    body.holding = False
+    assert bench.wait(1.0, lambda: not bench.plant.cells["lab"].context.places.carriers)
+    body.holding = True
+    assert ended(bench).state is TaskState.DONE
+    assert counts(bench) == {"nest": 0, "vise": 1, "bin": 0}
+
+
+def test_where_nothing_is_checked_the_books_follow_the_effector(tmp_path: Path) -> None:
+    plant = PLANT.replace("    places:", "    piece_check: false\n    places:")
+    bench = lab(written(tmp_path, UNCHECKED, plant=plant))
+    closes_beside(bench)
+    assert ended(bench).state is TaskState.DONE
+    assert counts(bench) == {"nest": 0, "vise": 1, "bin": 0}
