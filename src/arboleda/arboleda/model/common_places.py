@@ -2,9 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
 
-from .plant_model import Cell
+from .plant_model import Cell, Place
+
+
+def with_common_outputs(cells: Sequence[Cell]) -> list[Cell]:
+    """The cells, where an output that is an ordinary place of another cell is one, too: what is put there
+    waits for that cell, and people do not empty it for each task.
+    """
+    return [
+        replace(cell, places=tuple(_as_others_say(place, cell, cells) for place in cell.places))
+        if cell.shared_movers and any(place.output for place in cell.places)
+        else cell
+        for cell in cells
+    ]
+
+
+def _as_others_say(place: Place, cell: Cell, cells: Sequence[Cell]) -> Place:
+    others = [
+        each
+        for other in cells
+        if place.output
+        for each in other.places
+        if each.target in same_places(cell, place.target, other)
+    ]
+    waits = any(not each.by_people for each in others) and not any(each.supply for each in others)
+    return replace(place, output=False) if waits else place
 
 
 def with_common_places(

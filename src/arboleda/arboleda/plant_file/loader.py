@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from arboleda.drivers.port import DriverSpec
 from arboleda.model.assistants import Assistants
+from arboleda.model.common_places import with_common_outputs
 from arboleda.model.errors import ConfigError
 from arboleda.model.orders import MOST, combinations
 from arboleda.model.plant_files import PlantFiles
@@ -215,7 +216,8 @@ def _plant(document: Document, used: PythonUses, recipes: Offers) -> PlantModel 
     regions = zones(document, whole)
     sections.check_ports(document, shape)
     check_homes(document, whole)
-    zoned = {cell.name: with_zones(document, cell, regions) for cell in whole}
+    in_zones = [with_zones(document, cell, regions) for cell in whole]
+    zoned = {cell.name: cell for cell in with_common_outputs(in_zones)}
     offers = recipes(list(zoned.values()))
     if timing is None:
         return None

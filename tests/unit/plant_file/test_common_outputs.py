@@ -1,0 +1,112 @@
+"""A place that is an output in one cell and an ordinary one in another, which takes what the first puts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.model.plant_model import PlantModel
+from arboleda.plant_file import advance_check, place_check
+from arboleda.plant_file.loader import load
+from arboleda_proofs.simulator.invariants.part_places import PLACES
+from arboleda_proofs.simulator.run import Simulation
+from arboleda_proofs.simulator.scripted_people import script_from
+
+PLANT = """
+name: rack
+uses: [recipes.py]
+shared:
+  arm: {kind: arm, model: scara}
+  jaw: {kind: gripper, tool_of: arm}
+cells:
+  press:
+    devices: {former: {kind: sensor}, arm: {shared: arm}, jaw: {shared: jaw}}
+    zone_wait_s: 600
+    targets:
+      home: {arm: {deg: [0, 0], mm: 0}}
+      in: {arm: {deg: [60, 20], mm: 50}}
+      rack: {arm: {deg: [-60, 20], mm: 50}}
+    places: {in: {supply: true}, rack: {holds: 2, output: true}}
+  wash:
+    devices: {washer: {kind: sensor}, arm: {shared: arm}, jaw: {shared: jaw}}
+    zone_wait_s: 600
+    targets:
+      home: {arm: {deg: [0, 0], mm: 0}}
+      rack: {arm: {deg: [-60, 20], mm: 50}}
+      bin: {arm: {deg: [-90, 20], mm: 50}}
+    places: {rack: {holds: 2}, bin: {holds: 50, output: true}}
+"""
+RECIPES = """
+from arboleda.recipes import recipe, work
+
+def carried(cell, start, end):
+    arm, jaw = cell.devices("arm", "jaw")
+    take = arm.visit(start, jaw.close(width_mm=30, force_n=20))
+    return work(take, arm.visit(end, jaw.open()), arm.home())
+
+@recipe("make")
+def make(cell):
+    return work(cell.device("former").read(), carried(cell, "in", "rack"))
+
+@recipe("clean")
+def clean(cell):
+    return work(cell.device("washer").read(), carried(cell, "rack", "bin"))
+"""
+
+
+def rack(folder: Path, plant: str = PLANT) -> PlantModel:
+    (folder / "recipes.py").write_text(RECIPES, "utf-8")
+    (folder / "plant.yaml").write_text(plant, "utf-8")
+    return load(folder / "plant.yaml")
+
+
+def after(plant: PlantModel, *tasks: str) -> tuple[list[int], dict[str, int]]:
+    """The parts in the rack by the books of both cells, and how many tasks ended so; nothing is broken."""
+    people = [{"at": 2.0 + 10 * number, "task": task} for number, task in enumerate(tasks)]
+    script = script_from(plant, {"people": people, "seconds": 60})
+    simulation = Simulation(plant, 1, lambda minute: (), script=script, invariants=PLACES)
+    result = simulation.run()
+    assert result.broken is None, result.broken
+    cells = simulation.world.plant.cells
+    return [cells[name].context.places.counts["rack"] for name in ("press", "wash")], dict(result.outcomes)
+
+
+@pytest.mark.parametrize(
+    ("tasks", "parts", "outcomes"),
+    [
+        (["press make", "press make"], 2, {"done": 2}),
+        (["press make", "press make", "wash clean", "press make"], 2, {"done": 4}),
+        (["press make", "press make", "wash clean", "wash clean"], 0, {"done": 4}),
+    ],
+)
+def test_what_one_cell_puts_the_other_takes(
+    tmp_path: Path, tasks: list[str], parts: int, outcomes: dict[str, int]
+) -> None:
+    assert after(rack(tmp_path), *tasks) == ([parts, parts], outcomes)
+
+
+def test_nothing_is_put_beyond_the_room_there(tmp_path: Path) -> None:
+    outcomes = after(rack(tmp_path), *["press make"] * 3)[1]
+    assert outcomes == {"done": 2, "precondition": 1}
+
+
+def test_check_has_nothing_against_it(tmp_path: Path) -> None:
+    plant = rack(tmp_path)
+    assert (place_check.warnings(plant), advance_check.warnings(plant)) == ((), ())
+
+
+@pytest.mark.parametrize(
+    ("here", "there"),
+    [
+        ("bin: {holds: 50, output: true}", "bin: {holds: 50, output: true}"),  # a place of this cell alone
+        ("rack: {holds: 2}", "rack: {holds: 2, output: true}"),
+        ("rack: {holds: 2}", "rack: {holds: 2, supply: true}"),
+    ],
+    ids=["of one cell", "an output in both", "a supply of the other"],
+)
+def test_other_outputs_are_emptied_by_people(tmp_path: Path, here: str, there: str) -> None:
+    plant = PLANT.replace(f"{here},", f"{there},").replace(f"{here}}}", f"{there}}}")
+    press, wash = rack(tmp_path, plant).cells
+    cell, target = (wash, "bin") if here.startswith("bin") else (press, "rack")
+    assert next(place.output for place in cell.places if place.target == target)
