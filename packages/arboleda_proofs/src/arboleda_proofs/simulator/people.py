@@ -9,6 +9,7 @@ from functools import partial
 from itertools import count
 
 from arboleda.bt_xml import telling
+from arboleda.engine import title_of
 from arboleda.model import text as task_text
 from arboleda.model.advice import Advice, Hand
 from arboleda.model.commands import Question
@@ -17,17 +18,20 @@ from arboleda.model.facts import Value
 from arboleda.model.messages import TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Cell, Link
 from arboleda.model.recipe import Recipe
+from arboleda.recipes.place_questions import GETS_PART, GETS_ROOM
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import OrderGoal
 
 from .chance import Dice
 from .cycles import has_told
-from .hands import do
+from .hands import HANDS, do
+from .recorded.zone_users import running
 from .task_words import task_words
 from .world import World
 
 WAITING = 2  # tasks that the customers of a cell keep in its queue
 REMEMBERED = 24  # of their tasks
+SEEN_TO = {GETS_PART.key: HANDS[Hand.PUT_IN], GETS_ROOM.key: HANDS[Hand.TAKE_OUT]}
 BY_THEMSELVES = (Hand.BRING_BACK, Hand.REPAIR)
 THINKS_S = 1.5  # somebody who is asked
 ROUND_S = (2.0, 6.0)  # how long the attendant takes to come by again
@@ -271,9 +275,10 @@ def _word_or_first(body: MachineBody, word: Value, goal: OrderGoal) -> Value:
 class Attendant:
     """Attendant: comes by every few seconds and does the first thing that is advised, cell by cell.
 
-    It neither brings back what is lost nor repairs what is broken: that ends with its fault. What several
-    cells advise in one round, as to clear a device that they share, it does once. `acts` has how many acts it
-    did that a cell advised, by cell; between two rounds there are `round_s`.
+    It also sees to supplies and outputs for which a task waits, as people do who keep these. It neither
+    brings back what is lost nor repairs what is broken: that ends with its fault. What several cells advise
+    in one round, as to clear a device that they share, it does once. `acts` has how many acts it did that a
+    cell advised, by cell; between two rounds there are `round_s`.
     """
 
     def __init__(self, world: World, seed: int, *, round_s: tuple[float, float] = ROUND_S) -> None:
@@ -293,7 +298,17 @@ class Attendant:
         done: set[Hashable] = set()
         for cell in self._world.plant.cells:
             self._see_to(cell, self._world.plant.advice(cell), done)
+            self._keep_places(cell)
         self._next_round()
+
+    def _keep_places(self, cell: str) -> None:
+        """Fill a supply, or empty an output, for which a task waits, as nobody else does before its end."""
+        run = self._world.plant.cells[cell]
+        kept = {place.target for place in run.cell.places if place.by_people}
+        for leaf in running(run.tree):
+            title = title_of(leaf)
+            if title.key in SEEN_TO and title.values["place"] in kept:
+                SEEN_TO[title.key](self._world, f"{cell} {title.values['place']}")
 
     def _answer(self) -> None:
         """Have people who are asked something give one of the answers."""
