@@ -144,6 +144,21 @@ def test_a_clock_that_is_far_too_late_is_refused(tmp_path):
     assert not (tmp_path / "epoch").exists()
 
 
+def test_an_epoch_that_was_cut_off_or_changed_is_refused(tmp_path):
+    file = tmp_path / "epoch"
+    with StateDir(tmp_path) as owner:
+        assert owner.next_epoch(NOW) == NOW
+        kept = file.read_bytes()
+        cut = [kept[:length] for length in range(len(kept))]
+        flips = [bytes([*kept[:at], kept[at] ^ 1, *kept[at + 1 :]]) for at in range(len(kept))]
+        for damaged in (*cut, *flips):
+            file.write_bytes(damaged)
+            with pytest.raises(StartError, match="does not say the number of the last start"):
+                owner.next_epoch(NOW + 60)
+        file.write_bytes(kept)
+        assert owner.next_epoch(NOW + 60) == NOW + 60
+
+
 def test_an_epoch_that_is_a_pipe_is_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / "epoch")
     with StateDir(tmp_path) as owner, pytest.raises(StartError, match="does not say the number"):

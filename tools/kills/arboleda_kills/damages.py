@@ -1,15 +1,18 @@
-"""Damage to each file of the memory that a kill has left: a start is refused, or knows what was told."""
+"""Damage to each file of the state that a kill has left: a start is refused, or knows what was told."""
 
 from __future__ import annotations
 
 import random
 import shutil
 import tempfile
+import time
 from collections.abc import Mapping
 from pathlib import Path
 
 from arboleda.model.errors import StartError
-from arboleda.runtime.state import STORE
+from arboleda.model.recording import Limits
+from arboleda.recorder.files import FOLDER, parts_in, prune
+from arboleda.runtime.state import EPOCH, LOCK, STORE, StateDir
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskQuery
 
@@ -39,17 +42,47 @@ def unnoticed(
 
     `accepted` has the ids of all tasks that people know of, `ends` the state in which they know some ended.
     """
-    names = sorted(file.name for file in state.glob(f"{Path(STORE).stem}.[st]*"))
+    memory = sorted(file.name for file in state.glob(f"{Path(STORE).stem}.[st]*"))
+    others = [name for name in (EPOCH, LOCK) if (state / name).exists()]
+    others += [f"{FOLDER}/{part.path.name}" for part in parts_in(state / FOLDER)[-1:]]
     silent = []
-    for name in names:
+    for name in (*memory, *others):
         for way in WAYS:
             with tempfile.TemporaryDirectory() as place:
-                for each in names:
-                    shutil.copy(state / each, place)
+                for each in memory if name in memory else others:
+                    Path(place, each).parent.mkdir(exist_ok=True)
+                    shutil.copy(state / each, Path(place, each))
                 way(Path(place, name), dice)
-                if lost := _lost(Path(place, STORE), accepted, ends):
-                    silent.append(f"{way.__name__} {name}: a start does not know {', '.join(sorted(lost))}")
-    return len(names) * len(WAYS), silent
+                if name in memory:
+                    found = _unknown(Path(place, STORE), accepted, ends)
+                else:
+                    found = _out_of_order(Path(place), _number_of_start(state))
+                silent += [f"{way.__name__} {name}: {each}" for each in found]
+    return len((*memory, *others)) * len(WAYS), silent
+
+
+def _number_of_start(state: Path) -> int:
+    """The number of the last start; 0 if there was none."""
+    return int((state / EPOCH).read_text().split()[-1]) if (state / EPOCH).exists() else 0
+
+
+def _out_of_order(state: Path, epoch: int) -> list[str]:
+    """The trouble of a start after the start `epoch`; nothing if it is refused, or has a higher number and
+    goes on with the record."""
+    parts = parts_in(state / FOLDER)
+    try:
+        with StateDir(state) as owner:
+            number = owner.next_epoch(int(time.time()))
+    except StartError:
+        return []
+    prune(state / FOLDER, Limits(), 0.0)
+    higher = [] if number > epoch else [f"a start is number {number} after number {epoch}"]
+    return higher + ["a start deletes the record"] * (parts_in(state / FOLDER) != parts)
+
+
+def _unknown(memory: Path, accepted: Mapping[str, str], ends: Mapping[str, str]) -> list[str]:
+    lost = sorted(_lost(memory, accepted, ends))
+    return [f"a start does not know {', '.join(lost)}"] if lost else []
 
 
 def _lost(memory: Path, accepted: Mapping[str, str], ends: Mapping[str, str]) -> set[str]:

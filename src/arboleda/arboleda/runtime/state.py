@@ -7,6 +7,7 @@ import json
 import os
 import re
 import time
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, replace
@@ -25,7 +26,7 @@ STORE = "plant.sqlite"
 LOCK = "plant.lock"
 FACTS = "plant.json"
 EPOCH = "epoch"
-EPOCH_SAID, EPOCH_BYTES = re.compile(rb"[0-9]{1,10}\s*"), 64
+EPOCH_SAID, EPOCH_BYTES = re.compile(rb"(?:sum=([0-9a-f]{8}) )?([0-9]{1,10})\s*"), 64
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 LOCK_TRIES, LOCK_PAUSE_S = 5, 0.05  # a `status` looks at the lock for a moment; that is no owner
 
@@ -130,7 +131,7 @@ class StateDir:
                 " is wrong, delete it and restart the boards that were told that number."
             )
         with self._explained():
-            replace_file(self.path / EPOCH, str(epoch))
+            replace_file(self.path / EPOCH, _with_sum(epoch))
         return epoch
 
     def _last_epoch(self) -> int:
@@ -139,12 +140,13 @@ class StateDir:
             content = read_bytes(file, EPOCH_BYTES) if os.path.lexists(file) else b"0"
         except ConfigError:
             content = b""
-        if not EPOCH_SAID.fullmatch(content):
+        said = EPOCH_SAID.fullmatch(content)
+        if said is None or (said[1] and content.decode() != _with_sum(int(said[2]))):
             raise StartError(
                 f"{file} does not say the number of the last start: delete it if this machine's clock is "
                 "right, or write a number into it that is higher than any before; robots obey no lower one."
             )
-        return int(content)
+        return int(said[2])
 
     def announce(
         self, port: int, *, host: str = "127.0.0.1", guarded: bool = False, certificate: str = ""
@@ -191,6 +193,14 @@ class StateDir:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def _with_sum(epoch: int) -> str:
+    """A number of a start with its checksum before it, so that one that was cut off or changed is not read.
+
+    People write the number alone, as earlier versions did.
+    """
+    return f"sum={zlib.crc32(b'%d' % epoch):08x} {epoch}"
 
 
 def replace_file(file: Path, content: str) -> None:
