@@ -5,12 +5,14 @@ from __future__ import annotations
 import pytest
 import typer.testing
 
-from arboleda.cli.language import VARIABLES, language, say_error, say_row
+from arboleda.cli.language import VARIABLES, language, say_error, say_in, say_row
 from arboleda.cli.main import cli
 from arboleda.cli.screen import says
 from arboleda.client.errors import Conflict
-from arboleda.model.errors import ArboledaError
+from arboleda.model import text
+from arboleda.model.errors import ArboledaError, TextError
 from arboleda_proofs.running.fault_desk import AN_INSTANT
+from arboleda_proofs.testing import shipped
 
 
 @pytest.fixture
@@ -71,3 +73,10 @@ def test_a_task_is_told_in_it(spanish: None) -> None:
 def test_facts_that_every_arm_has_are_named_in_it(spanish: None) -> None:
     robot = {"q": None, "node": None, "facts": {"effector": False, "piece": True, "door": "open"}}
     assert says(robot) == "efector apagado, pieza sí, door open"
+
+
+def test_the_form_of_a_task_is_said_in_this_language() -> None:
+    with pytest.raises(TextError) as refused:
+        text.parse("", shipped())
+    form = "<una celda> <un camino> <una estación>, p. ej. sis_a 0A 8, o <un brazo o una celda> palletizing"
+    assert say_in("es", refused.value.sentence) == f"la tarea está vacía; escriba {form}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from pathlib import Path
 
@@ -129,3 +130,20 @@ def _status(*words: str) -> int:
         with pytest.raises(SystemExit) as ended:
             main()
     return int(ended.value.code or 0)
+
+
+def comments(folder: Path) -> list[str]:
+    """The comments and docstrings of the files of a plant."""
+    text = "\n".join(file.read_text("utf-8") for file in sorted(folder.iterdir()))
+    return re.findall(r'# .*|""".*?"""', text)
+
+
+def test_a_new_plant_has_its_comments_in_the_language_of_the_terminal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    new(tmp_path / "english")
+    monkeypatch.setenv("ARBOLEDA_LANG", "es")
+    new(tmp_path / "spanish")
+    english, spanish = comments(tmp_path / "english"), comments(tmp_path / "spanish")
+    assert len(english) == len(spanish) == 5 and not {*english} & {*spanish}
+    loader.load(tmp_path / "spanish" / "plant.yaml")

@@ -18,7 +18,7 @@ from arboleda.plant_file.examples import texts as texts_of
 from arboleda.plant_file.shapes import PLANT_NAME_RULE, is_plant_name
 from arboleda.runtime import invocation
 
-from .language import allowed, say
+from .language import allowed, help_words, say
 
 # by what they are called here; pytest must not take the tests of the new plant for tests of Arboleda
 WRITTEN = {"plant.yaml": "plant.yaml", "recipes.py": "recipes.py", "tests_of_plant.py": "test_plant.py"}
@@ -94,7 +94,14 @@ def write(folder: Path) -> list[Path]:
         raise ConfigError((say(BAD_NAME(name=quoted(name), rule=NAME_RULE())),))
     starter = files("arboleda").joinpath("starter")
     texts = {called: starter.joinpath(source).read_text("utf-8") for source, called in WRITTEN.items()}
-    return write_files(folder, {called: text.replace(NAMED, name) for called, text in texts.items()})
+    return write_files(folder, {called: _told(text).replace(NAMED, name) for called, text in texts.items()})
+
+
+def _told(text: str) -> str:
+    """A file of a new plant with its comments in this language."""
+    for english, other in help_words("starter").items():
+        text = text.replace(english, other)
+    return text
 
 
 def write_files(folder: Path, texts: Mapping[str, str]) -> list[Path]:

@@ -10,7 +10,7 @@ from unicodedata import normalize
 from py_trees.behaviour import Behaviour
 
 from .facts import Value, shown
-from .sentence import Phrase
+from .sentence import Phrase, Sentence
 from .task import Order
 
 Build = Callable[[Order, Any], Behaviour]
@@ -19,6 +19,10 @@ Builders = Mapping[str, Build]
 """Builders by the names of their recipes."""
 End = tuple[tuple[str, Value], ...]
 """What is so once a task is done: a place, a fact or a question to a device, each with its value."""
+CELL = Phrase("text.cell", "cell")
+VALUE_FORM = Phrase("text.value_form", "<{name}>")
+ALONE_FORM = Phrase("text.alone_form", "<{robot} or cell>")
+NEXT_WORD = Phrase("text.next_word", "{before} {then}")
 FOR_PEOPLE = "for_people"
 """Key in the metadata of a field that only says where something was read, as a path."""
 Cell = Any
@@ -140,8 +144,14 @@ class Recipe:
         ends = self.ends_with or ((),)
         return tuple({str(values.get(what, what)): value for what, value in end} for end in ends)
 
-    def form(self) -> str:
+    def form(self) -> Sentence:
         """The form in which a task of it is written."""
-        cell = "<cell>" if self.alone is None else f"<{self.alone} or cell>"
-        words = [*([] if self.is_default else [self.name]), *(f"<{each.name}>" for each in self.parameters)]
-        return " ".join([cell, *words])
+        form = VALUE_FORM(name=CELL())
+        if self.alone is not None:
+            form = ALONE_FORM(robot=self.alone_called() if self.alone_called else self.alone)
+        if not self.is_default:
+            form = NEXT_WORD(before=form, then=self.name)
+        for each in self.parameters:
+            name = each.called() if each.called else each.name
+            form = NEXT_WORD(before=form, then=VALUE_FORM(name=name))
+        return form

@@ -11,7 +11,7 @@ from arboleda.model.errors import TextError
 from arboleda.model.facts import Value, shown
 from arboleda.model.outside import LINE, quoted
 from arboleda.model.plant_model import Cell, Link, PlantModel
-from arboleda.model.recipe import Parameter, Recipe, matching
+from arboleda.model.recipe import CELL, Parameter, Recipe, matching
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.task import Order
 
@@ -56,7 +56,6 @@ OUTSIDE_WHOLE = Phrase(
 NO_PARAMETER = Phrase("text.no_parameter", "{recipe} of {cell} takes no values, and {word} was given")
 NO_VALUE = Phrase("text.no_value", "{recipe} of {cell} needs a value for {names}")
 PARAMETER = Phrase("text.parameter", "parameter")
-CELL = Phrase("text.cell", "cell")
 CELL_OR_ROBOT = Phrase("text.cell_or_robot", "cell or {robot}")
 RECIPE = Phrase("text.recipe", "recipe")
 THIS_PLANT = Phrase("text.this_plant", "this plant")

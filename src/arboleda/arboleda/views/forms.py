@@ -27,7 +27,7 @@ def _recipe(cell: Cell, recipe: Recipe) -> Row:
         "name": recipe.name,
         "about": recipe.about,
         "default": recipe.is_default,
-        "form": recipe.form(),
+        "form": str(recipe.form()),
         "example": example(cell, recipe).text,
         "parameters": [_parameter(cell, each) for each in recipe.parameters],
     }
