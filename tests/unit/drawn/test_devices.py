@@ -135,6 +135,7 @@ def test_kinds_have_every_effect_and_type_of_fact(drawn: list[DrawnDevices]) -> 
     types = [type for kind in kinds for type in kind.get("facts", {}).values()]
     assert {type for type in types if isinstance(type, str)} == {"bool", "int", "number", "text"}
     assert {"needs", "on_stop", "holds", "with", "answers"} <= {key for verb in verbs for key in verb}
+    assert any(verb.get("needs") == {} for verb in verbs) and any("needs" not in verb for verb in verbs)
     assert any("takes_s" not in verb for verb in verbs) and any(verb.get("takes_s", 0) > 20 for verb in verbs)
 
 

@@ -46,6 +46,7 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
         section["timing"] = timing
     written = tuple(kind for kind in drawer.kinds.values() if kind.is_written)
     declared = {name: kind.section for name, kind in drawer.kinds.items() if not kind.is_written}
+    _say_needs(Dice(seed, "said needs", attempt), declared)
     if declared:
         section["kinds"] = declared
     if drawer.shared:
@@ -90,6 +91,13 @@ def _be_odd(dice: Dice, section: Section) -> None:
         for device in cell["devices"].values() if on_one_base else ():
             if device.get("kind") == "arm":
                 device["base"] = {"origin_m": [0.0, 0]}
+
+
+def _say_needs(dice: Dice, kinds: Section) -> None:
+    """Have some of the verbs that need nothing say so."""
+    for verb in (verb for kind in kinds.values() for verb in kind["verbs"].values()):
+        if "needs" not in verb and dice.chance(0.5):
+            verb["needs"] = {}
 
 
 def _timing(dice: Dice) -> Section:
