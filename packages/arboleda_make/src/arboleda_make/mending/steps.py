@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.kinds.declared import Slot
+from arboleda.kinds.declared import Effect, Slot
 from arboleda.model.facts import Value, shown
 from arboleda.model.plant_model import Cell, Robot
 
@@ -62,7 +62,7 @@ def _of_robot(role: str, robot: Robot, clues: Clues, named: int) -> Iterator[Kno
 
 
 def _of_verbs(role: str, device: Any, clues: Clues, text: str, named: int) -> Iterator[KnownStep]:
-    for verb in [each for each in device.kind.verbs.values() if not each.answers]:
+    for verb in [each for each in device.kind.verbs.values() if each.effect is not Effect.QUERY]:
         for values in _values(verb):
             sets = dict(verb.sets_with(values)) if _is_certain(verb, values) else {}
             facts = clues.count(sets) + clues.count({str(word) for word in sets.values()})

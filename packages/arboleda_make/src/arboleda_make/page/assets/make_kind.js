@@ -65,7 +65,7 @@ export function written(old) {
   return { ...old, facts: Object.fromEntries(facts), verbs: Object.fromEntries(verbs) };
 }
 
-const READ = { effect: (text) => text, with: (text) => mapped(parameters(text), typed), sets: (text) => pairs(text), needs: (text) => pairs(text), takes_s: Number, answers: (text) => list(text) };
+const READ = { effect: (text) => text, with: (text) => mapped(parameters(text), typed), sets: (text) => pairs(text), needs: (text) => pairs(text), takes_s: Number, answers: (text) => (["number", "int"].includes(text.trim()) ? text.trim() : list(text)) };
 
 function verbOf(row, old) {
   const verb = { ...old };
