@@ -10,6 +10,7 @@ from arboleda.bt_xml import telling
 from arboleda.engine import Entry
 from arboleda.kinds.declared import QueryCall
 from arboleda.model.commands import Command, Question
+from arboleda.model.common_places import room_at, same_places
 from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, TaskChanged
 from arboleda.model.plant_model import PlantModel
@@ -34,7 +35,8 @@ class Calm:
 
     `finding` is what went wrong although nothing had: a command that was refused, a task that failed and was
     not to. `again` is what came of the same task a second time, empty where that was done.
-    `questions` are those who were asked something, with the answers that they did not give.
+    `questions` are those who were asked something, with the answers that they did not give. `lacks` is the
+    place at which the task was to take a part and had none.
     """
 
     scenario: Scenario
@@ -48,6 +50,7 @@ class Calm:
     sights: Sights
     finding: str = ""
     again: str = ""
+    lacks: str | None = None
 
     @property
     def is_sound(self) -> bool:
@@ -131,6 +134,7 @@ def calm_run(model: PlantModel, scenario: Scenario, tick: Tick = lambda: None) -
         lasts_s=rows[-1].at - ASKED_AT_S,
         questions=tuple(questions.items()),
         sights=watch.sights,
+        lacks=stage.lacks,
     )
     return replace(calm, again=stage.again(calm.lasts_s)) if run.outcome.end is End.DONE else calm
 
@@ -141,12 +145,18 @@ def calm_play(stage: Stage) -> Run:
 
 
 def calm_runs(model: PlantModel, scenarios: Iterable[Scenario], tick: Tick = lambda: None) -> Iterator[Calm]:
-    """The calm runs of scenarios, and of each answer in them after which something else is done."""
+    """The calm runs of scenarios, and of each answer in them after which something else is done.
+
+    A part that a task lacks where other cells put some is brought first.
+    """
     for first in scenarios:
         known: set[Hashable] = set()
         waiting, tried = deque([first]), {first.answers}
         while waiting and len(known) < MOST_SCENARIOS:
             calm = calm_run(model, waiting.popleft(), tick)
+            if calm.lacks is not None and _others_bring(model, calm.scenario, calm.lacks):
+                waiting.appendleft(calm.scenario.with_part(calm.lacks))
+                continue
             ending = calm.commands, calm.run.outcome.end
             if ending in known:
                 continue
@@ -156,6 +166,13 @@ def calm_runs(model: PlantModel, scenarios: Iterable[Scenario], tick: Tick = lam
                 others = [calm.scenario.with_answer(who, word) for word in words]
                 waiting += [each for each in others if each.answers not in tried]
                 tried |= {each.answers for each in others}
+
+
+def _others_bring(model: PlantModel, scenario: Scenario, place: str) -> bool:
+    """True for a place that has room beside what is brought, and is one of another cell, too."""
+    cell = model.cell(scenario.cell)
+    room = room_at(cell, place, model.cells) - scenario.brought.count(place)
+    return room > 0 and any(same_places(cell, place, other) for other in model.cells)
 
 
 def run_findings(calm: Calm) -> Iterator[PlantFinding]:

@@ -78,6 +78,7 @@ def _scenario(calm: Calm) -> dict[str, Any]:
         "recipe": scenario.recipe,
         "task": scenario.task,
         "answers": dict(scenario.answers),
+        "brought": list(scenario.brought),
         "stands_for": scenario.alike,
         "without_faults": plain(calm.run.outcome),
         "finding": calm.finding,
@@ -111,6 +112,7 @@ def _case(case: Case) -> dict[str, Any]:
     return {
         "task": case.scenario.task,
         "answers": dict(case.scenario.answers),
+        "brought": list(case.scenario.brought),
         "instant": case.instant.name,
         "fault": asdict(case.fault),
         "outcome": plain(case.outcome),
@@ -124,6 +126,7 @@ def _breach(breach: Breach, plant: Path | None) -> dict[str, Any]:
         "seen": sentence,
         "task": breach.scenario.task,
         "answers": dict(breach.scenario.answers),
+        "brought": list(breach.scenario.brought),
         "instant": breach.instant.name,
         "fault": asdict(lasting(breach.fault, breach.run)),
         "then": None if breach.then is None else asdict(breach.then),

@@ -74,6 +74,7 @@ def _test(breach: Breach, plant: Path | None) -> list[str]:
         f"    sim.plant({'' if plant is None else repr(plant.name)})",
         f"    sim.answer_always({answers})",
         f"    sim.run({ASKED_AT_S})",
+        *_brought(breach.scenario),
         f"    task = sim.submit({breach.scenario.task!r})",
         f"    sim.faults([{', '.join(map(_written, breach.faults))}])",
         f"    sim.run({rest!r})",
@@ -81,6 +82,12 @@ def _test(breach: Breach, plant: Path | None) -> list[str]:
         "    sim.rest()",
         "",
     ]
+
+
+def _brought(scenario: Scenario) -> Iterator[str]:
+    """The lines with which people bring what the task needs."""
+    for place in scenario.brought:
+        yield f'    sim.operate("load", {scenario.cell!r}, place={place!r})'
 
 
 def _ends(breach: Breach) -> Iterator[str]:

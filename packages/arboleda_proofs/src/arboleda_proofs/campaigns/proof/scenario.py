@@ -23,19 +23,28 @@ MOST_CLASSES = 32  # of one recipe
 
 @dataclass(frozen=True, kw_only=True)
 class Scenario:
-    """Scenario: a task that stands for `alike` ones, and what those answer who do not give their first."""
+    """Scenario: a task that stands for `alike` ones, and what those answer who do not give their first.
+
+    `brought`: the places of the cell to which people bring a part before they ask for it.
+    """
 
     cell: str
     recipe: str
     task: str
     answers: tuple[tuple[str, Value], ...] = ()
     alike: int = 1
+    brought: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
-        """The task as it is typed, with the answers."""
-        answers = ", ".join(f"{who} says {shown(word)}" for who, word in self.answers)
-        return f"{self.task} ({answers})" if answers else self.task
+        """The task as it is typed, with what is brought and with the answers."""
+        words = [f"a part is brought to {place}" for place in self.brought]
+        words += [f"{who} says {shown(word)}" for who, word in self.answers]
+        return f"{self.task} ({', '.join(words)})" if words else self.task
+
+    def with_part(self, place: str) -> Scenario:
+        """The same task where people bring a part to a place before."""
+        return replace(self, brought=(*self.brought, place))
 
     def with_answer(self, who: str, word: Value) -> Scenario:
         """The same task where somebody answers otherwise."""

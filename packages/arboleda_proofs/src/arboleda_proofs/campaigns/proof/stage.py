@@ -9,11 +9,14 @@ from dataclasses import replace
 from hashlib import blake2b
 
 from arboleda.engine import CellRun, Entry, Plant
+from arboleda.engine.inspection import EMPTY
+from arboleda.model.advice import Hand
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.model.task import Order
 from arboleda_proofs.simulator.faults import Fault
+from arboleda_proofs.simulator.hands import HANDS
 from arboleda_proofs.simulator.invariants.part_places import recipes_end_as_they_say
 from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda_proofs.simulator.people import STANDS_BY_S, Attendant, FixedAnswers
@@ -57,7 +60,8 @@ class Stage:
     `go_to` comes close to such a time, from which forks of this process `play` on.
 
     `state` is what was so when the task was done, `stated` what its recipe says of that; `commands` are those
-    that its cell has given by then. `new_questions` are those of the last step to persons.
+    that its cell has given by then. `lacks` is the place at which it was to take a part and had none.
+    `new_questions` are those of the last step to persons.
     `on_its_way` is called after each step until the task has ended. `waits`: it goes on for its whole time
     also where it is known that nothing happens any more.
     """
@@ -90,7 +94,8 @@ class Stage:
         self.began, self._lost_from = False, 0.0
         self._asked_at = 0.0  # by the time awake; 0: not yet
         self._turn = 0  # of what is to begin
-        self._task, self._request = scenario.task, REQUEST
+        self.lacks: str | None = None
+        self._scenario, self._request = scenario, REQUEST
         self._attendant: Attendant | None = None
         self._acts: int | None = None  # of the attendant, when the cell was ready first
         self._order: Order | None = None  # what the plant made of it
@@ -147,17 +152,23 @@ class Stage:
         """Have the task asked for once all are connected, and go on up to the last step before `at` s."""
         if not self._asked_at:
             self.world.advance(ASKED_AT_S)
-            self.world.request_task(self._task, self._request)
-            self.world.settle()
+            self._ask()
             self._asked_at, self._turn = self.world.awake_s, next(self.world.turns)
         self.world.advance(math.inf, lambda: self.world.next_deadline >= self.watched.start + at)
+
+    def _ask(self) -> None:
+        """Ask for the task, once people have brought what it needs."""
+        for place in self._scenario.brought:
+            HANDS[Hand.PUT_IN](self.world, f"{self.cell.name} {place}")
+            self.world.settle()
+        self.world.request_task(self._scenario.task, self._request)
+        self.world.settle()
 
     def again(self, lasts_s: float) -> str:
         """Failure of the same task once more, after a calm run of `lasts_s`: empty where it is done."""
         self.last_change, self._request = None, AGAIN
         try:
-            self.world.request_task(self._task, self._request)
-            self.world.settle()
+            self._ask()
             self.world.advance(lasts_s + PATIENCE_S, lambda: self.ended or self._is_stuck)
         except BrokenInvariant as broken:
             return f"breaks {broken}"
@@ -241,7 +252,9 @@ class Stage:
     def _false_end(self) -> tuple[str, str] | None:
         """The breach of a task that is done, and not as its recipe says; none where a board has lied."""
         false = () if self.world.deceptions else differences(self.stated, self.state, self.reported)
-        return (ENDS_AS_SAID, f"{self._task} is called done, but {'; '.join(false)}") if false else None
+        return (
+            (ENDS_AS_SAID, f"{self._scenario.task} is called done, but {'; '.join(false)}") if false else None
+        )
 
     def _end_and_cause(self) -> tuple[End, str]:
         change, run = self.last_change, self.run
@@ -305,6 +318,9 @@ class Stage:
         self.last_change = change
         task = self.world.plant.intake.tasks.get(change.task)
         self._order = self._order or (task.order if task is not None else None)
+        trouble = self.run.place_trouble
+        if change.state is TaskState.FAILED and trouble is not None and trouble.key == EMPTY.key:
+            self.lacks = str(trouble.values["place"])
         if change.state is TaskState.DONE and (order := self._order) is not None:
             self.state = end_state(self.watched, self.cell)
             self.reported = facts_by_report(self.watched, self.cell)
