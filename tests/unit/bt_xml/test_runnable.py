@@ -91,15 +91,18 @@ def test_what_cannot_be_run_is_refused_with_its_place(
 
 def test_a_tree_that_grows_with_its_subtrees_is_refused_at_once(tmp_path: Path) -> None:
     copytree(EXAMPLE, tmp_path, dirs_exist_ok=True)
-    trees = [f'<SubTree ID="T{n + 1}"/><SubTree ID="T{n + 1}"/>' for n in range(60)] + ["<mill_open/>"]
+    trees = [f'<SubTree ID="T{n + 1}" p="{{p}}"/>' * 2 for n in range(60)] + ['<mill_run program="{p}"/>']
+    model = '<TreeNodesModel><SubTree ID="T0"><input_port name="p"/></SubTree></TreeNodesModel>'
     written = "".join(
         f'<BehaviorTree ID="T{n}"><Sequence>{each}</Sequence></BehaviorTree>' for n, each in enumerate(trees)
     )
     head = '<root BTCPP_format="4" main_tree_to_execute="T0">'
-    (tmp_path / "tend.xml").write_text(f"{head}{written}</root>", "utf-8")
-    told = refusal(tmp_path)
-    assert "a recipe has at most 2000" in told
-    assert "a recipe has at most 100" in told
+    (tmp_path / "tend.xml").write_text(f"{head}{written}{model}</root>", "utf-8")
+    told = refusal(tmp_path).splitlines()
+    assert [each.rpartition("; ")[2] for each in told] == [
+        "a recipe has at most 100",
+        "a recipe has at most 2000",
+    ]
 
 
 def test_a_tree_that_is_not_used_may_be_of_any_kind(tmp_path: Path) -> None:

@@ -40,8 +40,11 @@ def part_of(forest: Forest, main: str) -> Forest:
     return replace(forest, trees=trees, main=main)
 
 
-def check(forest: Forest, findings: Findings) -> None:
-    """Keep a finding for each part of the trees that no cell can run. No tree may contain itself."""
+def check(forest: Forest, findings: Findings) -> bool:
+    """Keep a finding for each part of the trees that no cell can run. No tree may contain itself.
+
+    False if the whole tree is too large to look through, each subtree wherever it stands.
+    """
     for tree in forest.trees.values():
         for node in tree.root.iterate():
             _check_node(forest, node, findings)
@@ -57,6 +60,7 @@ def check(forest: Forest, findings: Findings) -> None:
         findings.mistake(
             main.place, f"the whole tree has {levels} levels; a recipe has at most {MOST_LEVELS}"
         )
+    return many <= MOST_NODES and levels <= MOST_LEVELS
 
 
 def check_in_cell(forest: Forest, cell: str, kinds: Mapping[str, Kind], findings: Findings) -> None:

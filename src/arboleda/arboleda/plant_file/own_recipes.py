@@ -168,9 +168,11 @@ def _trees(document: Document, place: Place, word: str, used: PythonUses) -> Non
         document.keep_those_of(ConfigError(_lines(findings)))
         return
     forest = runnable.part_of(forest, forest.main)
-    runnable.check(forest, findings)
+    can_be_searched = runnable.check(forest, findings)
     mistakes = _lines(findings)
     document.keep_those_of(ConfigError(mistakes))
+    if not can_be_searched:
+        return
     used.in_trees.update(mistakes)
     recipe = tree_recipe(Path(word).stem, shown_path, content, forest, used.nodes, mistakes)
     if problem := _objection("recipe", recipe, used.recipes, TAKEN, used):
