@@ -62,10 +62,11 @@ def test_a_plant_whose_clock_is_a_little_ahead_is_obeyed(bench, reports, epoch, 
 NOW, TEN_YEARS_ON = 1_800_000_000, 2_116_000_000
 
 
-def beats(bench, seconds: float, epoch: int = TEN_YEARS_ON) -> None:
-    """A plant of this number beats once a second; the clock of the bridge says NOW."""
-    for _ in range(int(seconds)):
-        bench.step(FromPlant(at=bench.now, message=Heartbeat(epoch=epoch), unix_s=NOW))
+def beats(bench, seconds: int, *epochs: int) -> None:
+    """Plants of these numbers beat once a second, at once; the clock of the bridge says NOW."""
+    for _ in range(seconds):
+        for epoch in epochs or (TEN_YEARS_ON,):
+            bench.step(FromPlant(at=bench.now, message=Heartbeat(epoch=epoch), unix_s=NOW))
         bench.now += 1.0
 
 
@@ -85,6 +86,12 @@ def test_stray_beats_far_ahead_are_refused_where_they_do_not_go_on(bench, report
         beats(bench, 1)
         bench.wait(60.0)
     assert {report.plant for report in reports(bench.tell())} == {None}
+
+
+def test_of_two_plants_far_ahead_that_beat_at_once_the_newer_is_obeyed(bench, reports) -> None:
+    bench.connect()
+    beats(bench, 4, TEN_YEARS_ON - 9, TEN_YEARS_ON)
+    assert {report.plant for report in reports(bench.tell())} == {TEN_YEARS_ON}
 
 
 def test_where_a_plant_is_heard_none_that_is_far_ahead_is_obeyed(bench, reports) -> None:

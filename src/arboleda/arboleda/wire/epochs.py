@@ -31,7 +31,7 @@ class FarAhead:
 
     Its later starts have numbers above, also by a right clock, so that it would be refused for ever. It is
     believed once it has gone on beating for BELIEVED_S, where no other plant was heard: a single stray beat
-    must not have boards refuse their plant.
+    must not have boards refuse their plant. Where several such plants beat, the newest is meant.
     """
 
     def __init__(self) -> None:
@@ -48,7 +48,14 @@ class FarAhead:
             return why
         if heard:
             return None if can_follow(epoch, heard) else why
-        if epoch != self._epoch or at - self._last > GAP_S:
+        return None if self._goes_on(epoch, at) else why
+
+    def _goes_on(self, epoch: int, at: float) -> bool:
+        """True once this plant has beaten for BELIEVED_S, and no newer one beats."""
+        is_going_on = at - self._last <= GAP_S
+        if is_going_on and epoch < self._epoch:
+            return False
+        if not is_going_on or epoch > self._epoch:
             self._epoch, self._since = epoch, at
         self._last = at
-        return None if at - self._since >= BELIEVED_S else why
+        return at - self._since >= BELIEVED_S
