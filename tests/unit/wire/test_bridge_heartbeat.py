@@ -76,8 +76,16 @@ def test_a_plant_that_has_a_number_of_a_wrong_clock_is_obeyed_once_it_goes_on_be
     assert {report.plant for report in reports(bench.tell())} == {None}
     beats(bench, 1)
     assert {report.plant for report in reports(bench.tell())} == {TEN_YEARS_ON}
-    beats(bench, 1, TEN_YEARS_ON + 1)
+    beats(bench, 4, TEN_YEARS_ON + 1)
     assert {report.plant for report in reports(bench.tell())} == {TEN_YEARS_ON + 1}, "its next start"
+
+
+def test_stray_beats_above_a_plant_that_is_far_ahead_are_refused(bench, reports) -> None:
+    bench.connect()
+    beats(bench, 4)
+    for days in (300, 600):
+        beats(bench, 1, TEN_YEARS_ON + days * 86_400, TEN_YEARS_ON)
+    assert {report.plant for report in reports(bench.tell())} == {TEN_YEARS_ON}
 
 
 def test_stray_beats_far_ahead_are_refused_where_they_do_not_go_on(bench, reports) -> None:

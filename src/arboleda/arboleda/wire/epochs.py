@@ -30,8 +30,9 @@ class FarAhead:
     """A plant whose number is far ahead of the clock here, as after its first start by a wrong clock.
 
     Its later starts have numbers above, also by a right clock, so that it would be refused for ever. It is
-    believed once it has gone on beating for BELIEVED_S, where no other plant was heard: a single stray beat
-    must not have boards refuse their plant. Where several such plants beat, the newest is meant.
+    believed once it has gone on beating for BELIEVED_S, where no plant was heard whose number fits the clock:
+    a single stray beat must not have boards refuse their plant. So is each later start of it. Where several
+    such plants beat, the newest is meant.
     """
 
     def __init__(self) -> None:
@@ -44,10 +45,10 @@ class FarAhead:
         `heard` is the newest number that was believed, 0 before any.
         """
         why = objection(epoch, unix_s)
-        if why is None or objection(epoch, None) is not None:
+        if why is None or epoch <= heard:
+            return None
+        if not can_follow(epoch, heard or None) or (heard and objection(heard, unix_s) is None):
             return why
-        if heard:
-            return None if can_follow(epoch, heard) else why
         return None if self._goes_on(epoch, at) else why
 
     def _goes_on(self, epoch: int, at: float) -> bool:
