@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -28,7 +29,11 @@ from arboleda_ros.port import Port
 from arboleda_ros.robot_publisher import RobotPublisher
 from arboleda_ros.senders import Senders
 
-FAR_AHEAD = "plant %s beats, which is far ahead of the clock here (%s); set both clocks if one is wrong"
+FAR_AHEAD = (
+    "plant %s is far ahead of the clock here (%s): it is obeyed once it has beaten for "
+    f"{epochs.BELIEVED_S:g} s, unless this bridge has heard a plant that it cannot follow; "
+    "set both clocks if one is wrong, and start the bridge anew if this plant stays refused"
+)
 NEWS_S = 10.0  # time for which `/diagnostics` warns of somebody else's command
 
 
@@ -42,7 +47,7 @@ class BridgePort(Port):
         self._on_event = on_event
         self._mqtt: DiagnosticStatus | None = None
         self._senders = Senders(node, clock)
-        self._far_plants = RateLimit()
+        self._far_plants = RateLimit(every_s=math.inf)
         self._rejected: Counter[str] = Counter()
         self._last = ""
         self._last_at = -NEWS_S
@@ -139,8 +144,9 @@ class BridgePort(Port):
             raise
 
     def _on_heartbeat(self, message: UInt32) -> None:
-        unix_s = int(time.time())
-        at = self._clock()
-        if epochs.objection(message.data, unix_s) is not None and self._far_plants.is_due(message.data, at):
-            self.topics.log.warning(FAR_AHEAD, message.data, unix_s)
-        self._on_event(FromPlant(at=at, message=Heartbeat(epoch=message.data), unix_s=unix_s))
+        epoch, at, unix_s = message.data, self._clock(), int(time.time())
+        if (never := epochs.objection(epoch, None)) is not None:
+            raise PayloadError(never)
+        if epochs.objection(epoch, unix_s) is not None and self._far_plants.is_due(epoch, at):
+            self.topics.log.warning(FAR_AHEAD, epoch, unix_s)
+        self._on_event(FromPlant(at=at, message=Heartbeat(epoch=epoch), unix_s=unix_s))

@@ -16,7 +16,9 @@ from std_msgs.msg import UInt32
 
 from arboleda.model.errors import PayloadError
 from arboleda.model.plant_model import PlantModel
+from arboleda.wire import epochs
 from arboleda_ros import qos
+from arboleda_ros.bridge import BridgePort
 from arboleda_ros.orchestrator import OrchestratorPort
 from arboleda_ros.port import Port
 
@@ -62,6 +64,23 @@ def test_a_handler_that_raises_is_logged_and_the_next_message_is_handled(
     assert (health.failures, health.refused) == (1, 1)
     assert "the handler of /beat failed" in caplog.text
     assert "refused a message on /beat: 99 means nothing" in caplog.text
+
+
+def test_a_bridge_counts_a_plant_that_can_never_be_and_says_once_that_one_is_far_ahead(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("time.time", lambda: 1_800_000_000.0)
+    now, heard, middleware = [0.0], [], node()
+    port = BridgePort(middleware, PlantModel(name="bare", cells=()), heard.append, lambda: now[0])
+    hear = middleware.create_subscription.call_args.args[2]
+    for now[0] in (0.0, 1.0, 60.0):
+        for number in (2_116_000_000, 2_117_000_000, epochs.HORIZON + 1):
+            hear(UInt32(data=number))
+    assert [event.message.epoch for event in heard] == [2_116_000_000, 2_117_000_000] * 3
+    assert port.health().refused == 3
+    assert f"a heartbeat of plant {epochs.HORIZON + 1} is refused" in caplog.text
+    for number in (2_116_000_000, 2_117_000_000):
+        assert caplog.text.count(f"plant {number} is far ahead of the clock here (1800000000)") == 1
 
 
 def test_types_of_others_that_are_not_installed_are_one_line(

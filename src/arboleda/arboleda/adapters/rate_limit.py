@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable
 
 EVERY_S = 5.0
@@ -9,14 +10,15 @@ REMEMBERED = 200  # limit of remembered words, so that a stranger cannot fill th
 
 
 class RateLimit:
-    """Filter that lets the same words through once in EVERY_S."""
+    """Filter that lets the same words through once in `every_s`; inf for once and never again."""
 
-    def __init__(self) -> None:
+    def __init__(self, every_s: float = EVERY_S) -> None:
+        self._every_s = every_s
         self._last: dict[Hashable, float] = {}
 
     def is_due(self, words: Hashable, now: float) -> bool:
-        """True if these words may be logged at `now` (s): they were not let through in the EVERY_S before."""
-        if now - self._last.get(words, -EVERY_S) < EVERY_S:
+        """True if these words may be logged at `now` (s): they were not let through in the time before."""
+        if now - self._last.get(words, -math.inf) < self._every_s:
             return False
         if len(self._last) >= REMEMBERED:
             self._last.clear()
