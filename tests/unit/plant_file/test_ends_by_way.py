@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -31,6 +32,9 @@ cells:
       reject: {arm: {deg: [-90, 20], mm: 50}}
     places: {in: {supply: true}, press: {holds: 50, output: true}, reject: {holds: 50, output: true}}
 """
+LENT = PLANT.replace("camera: {kind: camera}", "camera: {shared: camera}").replace(
+    "cells:", "shared: {camera: {kind: camera}}\ncells:"
+)
 RECIPES = """
 from arboleda.recipes import recipe, work
 
@@ -40,6 +44,19 @@ def sort(cell):
     seen, take = camera.look(), arm.visit("in", jaw.close(width_mm=30, force_n=20))
     ways = {"good": arm.visit("GOOD", jaw.open()), "bad": arm.visit("BAD", jaw.open())}
     return work(seen, take, cell.choose(seen, ways), arm.home())
+"""
+MAY_ASK = """
+from arboleda.recipes import Choice, recipe, work
+
+@recipe("sort", ends_with=ENDS)
+def sort(cell, how=Choice("look", "blind")):
+    arm, jaw, camera = cell.devices("arm", "jaw", "camera")
+    take, put = arm.visit("in", jaw.close(width_mm=30, force_n=20)), arm.visit("press", jaw.open())
+    if how == "blind":
+        return work(cell.using("camera", take, put), arm.home())
+    seen = camera.look()
+    ways = {"good": put, "bad": arm.visit("reject", jaw.open())}
+    return work(take, seen, cell.choose(seen, ways), arm.home())
 """
 TREE = """
 <root BTCPP_format="4" main_tree_to_execute="Sort">
@@ -63,11 +80,13 @@ EITHER = '[{"press": 1}, {"reject": 1}]'
 RIGHT, SWAPPED, ONE_PLACE = ("press", "reject"), ("reject", "press"), ("press", "press")
 
 
-def sorting(folder: Path, ends: str, ways: tuple[str, str] = RIGHT, *, recipe: str = RECIPES) -> PlantModel:
-    name = "recipes.py" if recipe is RECIPES else "sort.xml"
+def sorting(
+    folder: Path, ends: str, ways: tuple[str, str] = RIGHT, *, recipe: str = RECIPES, plant: str = PLANT
+) -> PlantModel:
+    name = "sort.xml" if recipe is TREE else "recipes.py"
     text = recipe.replace("ENDS", ends).replace("GOOD", ways[0]).replace("BAD", ways[1])
     (folder / name).write_text(text, "utf-8")
-    (folder / "plant.yaml").write_text(PLANT.replace("USES", name), "utf-8")
+    (folder / "plant.yaml").write_text(plant.replace("USES", name), "utf-8")
     return load(folder / "plant.yaml")
 
 
@@ -83,9 +102,10 @@ def as_xml(ends: str) -> str:
     }[ends]
 
 
-def judged(plant: PlantModel, answer: str) -> str | None:
-    """The rule that a task breaks whose camera gives this answer."""
-    script = script_from(plant, {"people": [{"at": 2.0, "task": "a sort"}], "seconds": 25})
+def judged(plant: PlantModel, answer: str, tasks: Sequence[str] = ("a sort",)) -> str | None:
+    """The rule that one of these tasks breaks, where the camera gives this answer."""
+    people = [{"at": 2.0 + 30 * number, "task": task} for number, task in enumerate(tasks)]
+    script = script_from(plant, {"people": people, "seconds": 30 * len(tasks)})
     simulation = Simulation(plant, 1, lambda minute: (), script=script, invariants=PLACES)
     FixedAnswers(simulation.world, {"camera": answer})
     result = simulation.run()
@@ -143,3 +163,9 @@ def test_the_simulator_judges_the_end_of_the_way_that_was_gone(tmp_path: Path, a
     place = {"good": "press", "bad": "reject"}[answer]
     sentence = f"t-1000-1 is called done, and {place} is 0, not 1"
     assert judged(sorting(tmp_path, BY_ANSWER, SWAPPED), answer) == sentence
+
+
+@pytest.mark.parametrize("plant", [PLANT, LENT], ids=["its own", "shared"])
+def test_an_answer_to_an_earlier_task_does_not_say_which_end_is_meant(tmp_path: Path, plant: str) -> None:
+    model = sorting(tmp_path, BY_ANSWER, recipe=MAY_ASK, plant=plant)
+    assert judged(model, "bad", ["a sort look", "a sort blind"]) is None

@@ -96,7 +96,7 @@ def recipe(
     waits at the first of them, where no robot brings parts. `ends_with` are facts and numbers of parts once a
     task is done, `{"nest": 1, "reader.lid": "open"}`; a parameter may name the place. A list of them has the
     ends of several ways, `[{"camera.look": "good", "press": 1}, {"camera.look": "bad", "reject": 1}]`, where
-    `camera.look` is the last answer.
+    `camera.look` is the last answer in this task.
     """
 
     def made(function: Callable[..., Step]) -> WrittenRecipe:

@@ -66,7 +66,6 @@ class MachineBody:
         self.does: Callable[[OrderGoal], bool] = _always
         self.lasts: Callable[[OrderGoal], float] = _as_long_as_it_should
         self.ends: list[End] = []
-        self.answers: dict[str, Value] = {}  # the last one to each query
         self._deeds: list[RunningOrder] = []
         self.next_change_us: int | None = None
 
@@ -223,10 +222,7 @@ class MachineBody:
     def _become(self, deed: RunningOrder, now_us: int) -> None:
         """Apply the end of an order to the facts; raises UseError if a function gives no valid value."""
         if deed.verb.effect is Effect.QUERY:
-            answer = self.answer(deed.goal)
-            if not deed.is_repeat:
-                self.answers[deed.verb.name] = answer
-            self.ends.append(End(deed.goal, answer=answer))
+            self.ends.append(End(deed.goal, answer=self.answer(deed.goal)))
             self._say_again(deed, now_us)
         elif self.does(deed.goal):
             sets = dict(deed.command.sets)

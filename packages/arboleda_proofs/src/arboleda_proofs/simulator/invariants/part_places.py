@@ -12,7 +12,6 @@ from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import nearest
 
 from ..truth.part_places import kept_parts
-from ..truth.shared_devices import told
 from .invariant import Look, Trigger, invariant
 
 
@@ -137,16 +136,19 @@ def _wanted(look: Look, cell: Cell, task: str, began: float) -> Mapping[str, Val
 
 
 def _found(look: Look, cell: Cell, what: str, began: float) -> Value | None:
-    """The true value of a fact, as `reader.lid`, the last answer of a device, as `camera.look`, or the true
-    number of parts at a place, as the task left it; None of a shared device that the task never had.
+    """The true value of a fact, as `reader.lid`, the last answer of a device to this task, as `camera.look`,
+    or the true number of parts at a place, as the task left it; None of a shared device that the task never
+    had, and where it did not ask.
     """
     role, dot, fact = what.partition(".")
     if not dot:
         return look.truth.places.cells[cell.name].as_left.get(what)
-    device = cell.roles[role].name
-    if device in cell.shared:
-        return look.truth.shared.as_left_by(cell, device, since=began).get(fact)
-    return told(look.truth.robot(device).body).get(fact)
+    device = cell.roles[role]
+    if fact not in device.fact_names:
+        return look.truth.last_answers.since(began, cell.name).get(f"{device.name}.{fact}")
+    if device.name in cell.shared:
+        return look.truth.shared.as_left_by(cell, device.name, since=began).get(fact)
+    return look.truth.robot(device.name).body.true_facts[fact]  # type: ignore[no-any-return]
 
 
 PLACES = (

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Cell
-from arboleda.sim.body import Body
-from arboleda.sim.machine import MachineBody
 
 from ..world import World
 from .robot import RobotTruth
@@ -16,14 +14,14 @@ from .robot import RobotTruth
 
 @dataclass(frozen=True, kw_only=True)
 class GivenBack:
-    """Facts and last answers of a device at the time, in s, at which a cell gave it back."""
+    """Facts of a device at the time, in s, at which a cell gave it back."""
 
     at: float
     facts: Mapping[str, Value]
 
 
 class SharedDevicesTruth:
-    """True facts and last answers of shared devices as the last task of each cell left them."""
+    """True facts of shared devices as the last task of each cell left them."""
 
     def __init__(self, world: World, robots: Mapping[str, RobotTruth]) -> None:
         self._world = world
@@ -41,8 +39,8 @@ class SharedDevicesTruth:
         self._holders = now
 
     def as_left_by(self, cell: Cell, device: str, *, since: float) -> Mapping[str, Value]:
-        """The facts and last answers of a device as a cell's task that began at `since`, in s, left it; none
-        where that task did not have it: a cell leaves a device that it never takes as other cells do.
+        """The facts of a device as a cell's task that began at `since`, in s, left it; none where that task
+        did not have it: a cell leaves a device that it never takes as other cells do.
         """
         own = self._given_back.get((device, cell.name))
         if self._holders.get(device) == cell.name:
@@ -50,10 +48,4 @@ class SharedDevicesTruth:
         return own.facts if own is not None and own.at >= since else {}
 
     def _facts_of(self, device: str) -> dict[str, Value]:
-        return told(self._robots[device].body)
-
-
-def told(body: Body) -> dict[str, Value]:
-    """The true facts of a body, and what a machine answered last, by the names of its queries."""
-    answers = body.answers if isinstance(body, MachineBody) else {}
-    return {**answers, **body.true_facts}
+        return dict(self._robots[device].body.true_facts)

@@ -17,6 +17,7 @@ from ..commands import goal as goal_of
 from ..world import World
 from .ended_commands import EndedCommand
 from .grips import GripsTruth
+from .last_answers import LastAnswers
 from .part_places import PlacesTruth
 from .refused_commands import RefusedCommands
 from .robots import RobotsTruth
@@ -41,6 +42,7 @@ class Truth(RobotsTruth):
             world, self.robots, effectors, mistaken=self.mistaken, released=self.released
         )
         self.shared = SharedDevicesTruth(world, self.robots)
+        self.last_answers = LastAnswers()
         self.begun_tasks: list[tuple[str, str]] = []
         self.done_tasks: list[tuple[str, str, float]] = []
         self.unchecked: dict[str, tuple[Check, ...]] = {}  # of those, what nobody confirmed
@@ -152,7 +154,9 @@ class Truth(RobotsTruth):
     def _end(self, booked: EndedCommand) -> None:
         command = booked.command
         self.places.end(booked.entry)
-        if not isinstance(command, Query):
+        if isinstance(command, Query):
+            self.last_answers.take(booked)
+        else:
             self._last[command.robot] = booked
 
     def _follow_questions(self, events: list[object], out: list[object]) -> None:
