@@ -41,6 +41,6 @@ def _again(proof: Proof, case: Case, count: int) -> Breach:
         run=run,
         count=count,
         result=result,
-        stated=stage.stated,
+        stated={what: value for what, value in stage.stated.items() if what in stage.state},
         moment=witness.moment,
     )

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from arboleda.model.facts import Value, shown
 from arboleda.model.plant_model import Cell
+from arboleda.model.recipe import nearest
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 from arboleda_proofs.simulator.truth.arm import ArmTruth
 
@@ -30,10 +31,16 @@ def end_state(watched: JudgedWorld, cell: Cell) -> dict[str, object]:
     return found | dict(_parts(watched, cell))
 
 
-def stated(cell: Cell, recipe: str, values: Mapping[str, object]) -> dict[str, Value]:
-    """The facts that a recipe says it ends with, by the same names; its parts an invariant judges."""
-    ends = cell.recipe(recipe).end_of(values).items()
-    parts = [(*what.partition("."), value) for what, value in ends]
+def stated(cell: Cell, recipe: str, values: Mapping[str, object], found: EndState) -> Mapping[str, Value]:
+    """The facts and answers that a recipe says it ends with, by the same names; of several ends that one
+    that is meant by what is `found`. Its parts an invariant judges.
+    """
+    ends = [_by_device(cell, end) for end in cell.recipe(recipe).ends_of(values)]
+    return nearest(ends, lambda what, value: what in found and not _alike(value, found[what]))
+
+
+def _by_device(cell: Cell, end: Mapping[str, Value]) -> dict[str, Value]:
+    parts = [(*what.partition("."), value) for what, value in end.items()]
     return {f"{cell.roles[role].name}.{fact}": value for role, dot, fact, value in parts if dot}
 
 

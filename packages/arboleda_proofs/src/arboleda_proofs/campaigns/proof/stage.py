@@ -59,9 +59,9 @@ class Stage:
     """Stage: a task in its plant; `play` has something begin at its time, and returns what came of it.
     `go_to` comes close to such a time, from which forks of this process `play` on.
 
-    `state` is what was so when the task was done, `stated` what its recipe says of that; `commands` are those
-    that its cell has given by then. `lacks` is the place at which it was to take a part and had none.
-    `new_questions` are those of the last step to persons.
+    `state` is what was so when the task was done, `answers` what devices had answered, `stated` what its
+    recipe says of both; `commands` are those that its cell has given by then. `lacks` is the place at which
+    it was to take a part and had none. `new_questions` are those of the last step to persons.
     `on_its_way` is called after each step until the task has ended. `waits`: it goes on for its whole time
     also where it is known that nothing happens any more.
     """
@@ -80,6 +80,7 @@ class Stage:
         self._standstill = None if waits else Standstill(self.watched)
         self.cell = model.cell(scenario.cell)
         self.state: EndState = {}
+        self.answers: EndState = {}
         self.stated: EndState = {}
         self.reported: EndState = {}  # of that, by then, by the plant
         self.commands: list[str] = []
@@ -251,7 +252,8 @@ class Stage:
 
     def _false_end(self) -> tuple[str, str] | None:
         """The breach of a task that is done, and not as its recipe says; none where a board has lied."""
-        false = () if self.world.deceptions else differences(self.stated, self.state, self.reported)
+        found = {**self.state, **self.answers}
+        false = () if self.world.deceptions else differences(self.stated, found, self.reported)
         return (
             (ENDS_AS_SAID, f"{self._scenario.task} is called done, but {'; '.join(false)}") if false else None
         )
@@ -324,7 +326,9 @@ class Stage:
         if change.state is TaskState.DONE and (order := self._order) is not None:
             self.state = end_state(self.watched, self.cell)
             self.reported = facts_by_report(self.watched, self.cell)
-            self.stated = stated(self.cell, order.recipe, order.values)
+            self.answers = self.watched.truth.last_answers.since(-math.inf, self.cell.name)
+            found = {**self.state, **self.answers}
+            self.stated = stated(self.cell, order.recipe, order.values, found)
 
 
 def _broken(outcome: Outcome, broken: BrokenInvariant) -> Outcome:
