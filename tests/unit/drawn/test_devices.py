@@ -17,9 +17,11 @@ from arboleda.bt_xml.running.node import Node, Result
 from arboleda.dispatch.obstacles import Obstacles
 from arboleda.plant_file import loader, meeting_points
 from arboleda.recipes.place_questions import PlaceHandle
+from arboleda.trees.part_places import Places
 from arboleda_drawn import devices
 from arboleda_drawn.devices import DrawnDevices, Form, steps
 from arboleda_drawn.devices.kinds import NEEDY, SPARE, Span
+from arboleda_drawn.devices.printers import BED, ROLE
 from arboleda_drawn.plants import DrawnPlants, keep, loaded, of_devices
 from arboleda_proofs.campaigns.plants import Plant
 from arboleda_proofs.campaigns.setting import Setting
@@ -259,6 +261,26 @@ def test_check_says_where_arms_on_one_base_can_meet(drawn: list[DrawnDevices]) -
     assert any(" can meet at " in each for each in meeting_points.warnings(loaded(plant).model))
 
 
+def test_a_printer_makes_a_part_that_a_hand_takes_away_and_check_takes_the_plant(
+    drawn: list[DrawnDevices],
+) -> None:
+    printing = [each for each in drawn if BED in each.section["cells"]["cell"].get("places", {})]
+    assert {Form.PYTHON, Form.XML} <= {each.form for each in printing}
+    assert {True, False} == {each.kinds is None for each in printing}
+    assert all(_takes_away(each) for each in printing if ROLE in _roles(each))
+    assert all(loaded(each) for each in printing[:4])
+
+
+def _roles(plant: DrawnDevices) -> set[str]:
+    return {getattr(each, "role", "") for recipe in plant.recipes for each in steps.walk(recipe.step)}
+
+
+def _takes_away(plant: DrawnDevices) -> bool:
+    recipes = [list(steps.walk(recipe.step)) for recipe in plant.recipes]
+    made = [each for each in recipes if any(getattr(step, "role", "") == ROLE for step in each)]
+    return all(any(isinstance(s, steps.Visit) and s.target == BED for s in each) for each in made)
+
+
 BUGS = {
     "a command passes over a need of late work": (
         26,
@@ -275,6 +297,10 @@ BUGS = {
     "a task ends with a shared device as that is at last": (
         16,
         edit(SharedDevicesTruth.as_left_by, "return own.facts", "return self._facts_of(device)"),
+    ),
+    "a device makes a second part where one lies": (
+        22,
+        edit(Places._to_work, "if not full or len(full)", "if full or len(full)"),
     ),
     "a wait for a part is over at once": (
         49,

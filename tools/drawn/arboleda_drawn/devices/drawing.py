@@ -14,6 +14,7 @@ from .cells import CELL, CellDrawer
 from .drawn import DrawnDevices, Form, can_be_xml
 from .late_work import LateWork
 from .layout import Section
+from .printers import Printer
 from .recipes import Beside, RecipeDrawer
 from .shared_ends import SharedEnds
 from .trials import Trials
@@ -38,14 +39,17 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
     spare = Dice(seed, "spare verbs", attempt)
     drawer = CellDrawer(dice, spare, alike=alike, has_shared_hand=has_shared_hand, are_written=are_written)
     layout = drawer.draw()
+    printer = Printer(Dice(seed, "printer", attempt), layout, are_written=are_written)
+    printer.join(drawer.section)
     section: Section = {"name": f"drawn_{seed}"}
     if dice.chance(0.3):
         section["mqtt_version"] = dice.pick(("3.1.1", "5"))
     timing = _timing(dice)
     if timing:
         section["timing"] = timing
-    written = tuple(kind for kind in drawer.kinds.values() if kind.is_written)
-    declared = {name: kind.section for name, kind in drawer.kinds.items() if not kind.is_written}
+    kinds = [*drawer.kinds.values(), *([printer.kind] if printer.kind else [])]
+    written = tuple(kind for kind in kinds if kind.is_written)
+    declared = {kind.name: kind.section for kind in kinds if not kind.is_written}
     _say_needs(Dice(seed, "said needs", attempt), declared)
     if declared:
         section["kinds"] = declared
@@ -63,6 +67,7 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
         late=LateWork(Dice(seed, "late work", attempt), layout),
         places=None if layout.parts is None else AskedPlaces(asked, layout, layout.parts),
         ends=SharedEnds(Dice(seed, "ends", attempt), layout),
+        printer=printer,
     )
     recipes = RecipeDrawer(dice, layout, beside, as_xml=as_xml)
     drawn = tuple(recipes.draw(number) for number in range(1, 1 + dice.pick(RECIPES)))

@@ -67,6 +67,7 @@ class Verb:
     finishes: bool = False
     holds: bool = False
     works_on: bool = False
+    makes: bool = False
     answers: tuple[Value, ...] = ()
 
 
@@ -134,6 +135,8 @@ def _section(verb: Verb) -> Section:
         section["holds"] = "part"
     if verb.works_on:
         section["works_on"] = "part"
+    if verb.makes:
+        section["makes"] = "part"
     if verb.answers:
         section["answers"] = list(verb.answers)
     return section

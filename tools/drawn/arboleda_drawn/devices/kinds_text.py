@@ -81,6 +81,7 @@ def _words(verb: Verb) -> tuple[tuple[str, bool], ...]:
         ("finishes=True", verb.finishes),
         ("holds_part=True", verb.holds),
         ("works_on_part=True", verb.works_on),
+        ("makes_part=True", verb.makes),
     )
 
 

@@ -13,6 +13,7 @@ from .durations import usual_s
 from .hands import Hand
 from .late_work import LateWork
 from .layout import Layout
+from .printers import Printer
 from .shared_ends import SharedEnds
 from .steps import (
     Choice,
@@ -43,6 +44,7 @@ class Beside:
     late: LateWork
     places: AskedPlaces | None  # None without parts
     ends: SharedEnds
+    printer: Printer
 
 
 class RecipeDrawer:
@@ -69,6 +71,8 @@ class RecipeDrawer:
         if not carries and (moved := self._beside.trials.of_parts()):
             tried, carries = [*tried, *moved], True
         tried += self._beside.late.draw()
+        if printed := self._beside.printer.draw():
+            tried, carries = [*tried, *printed], True
         if tried:
             made = replace(made, step=Work(steps=(made.step, *tried)))
         self._drawn.append(made)
