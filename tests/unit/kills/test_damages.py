@@ -14,6 +14,7 @@ from arboleda.recorder.files import FOLDER
 from arboleda.recorder.writing import Writing
 from arboleda.runtime.state import StateDir
 from arboleda.store.sqlite import Store
+from arboleda_kills import damages
 from arboleda_kills.damages import WAYS, unnoticed
 from arboleda_proofs.testing import shipped
 
@@ -35,8 +36,9 @@ def killed(tmp_path: Path) -> Path:
     with StateDir(tmp_path / "killed") as owner:
         owner.next_epoch(int(time.time()) - 60)
     writing = Writing(tmp_path / "killed" / FOLDER, beginning_of(shipped("sis_a")), Limits(), least_free=0)
-    writing.open()
-    writing.drop()
+    for _ in range(2):
+        writing.open()
+        writing.drop()
     return tmp_path / "killed"
 
 
@@ -55,6 +57,13 @@ def test_a_start_whose_number_is_not_higher_is_named(killed: Path) -> None:
     (killed / "epoch").write_text("9999999")  # without the checksum
     found = [unnoticed(killed, {}, {}, random.Random(seed))[1] for seed in range(20)]
     assert any("cut epoch: a start is number" in each for silent in found for each in silent)
+
+
+def test_a_start_that_deletes_a_record_is_named(killed: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(damages, "NOTHING_IS_OLD_S", 1e9)
+    _, silent = unnoticed(killed, {}, {}, random.Random(1))
+    assert "cut epoch: a start deletes the record" not in silent, "that start is refused"
+    assert "remove epoch: a start deletes the record" in silent
 
 
 def test_a_start_that_would_know_less_is_named(killed: Path) -> None:

@@ -159,6 +159,15 @@ def test_an_epoch_that_was_cut_off_or_changed_is_refused(tmp_path):
         assert owner.next_epoch(NOW + 60) == NOW + 60
 
 
+def test_an_epoch_that_an_editor_saved_is_read(tmp_path):
+    with StateDir(tmp_path) as owner:
+        last = owner.next_epoch(1_800_000_000)
+    saved = tmp_path / "epoch"
+    saved.write_text(saved.read_text() + "\n")
+    with StateDir(tmp_path) as owner:
+        assert owner.next_epoch(1_800_000_000) == last + 1
+
+
 def test_an_epoch_that_is_a_pipe_is_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / "epoch")
     with StateDir(tmp_path) as owner, pytest.raises(StartError, match="does not say the number"):

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from arboleda.model.errors import StartError
-from arboleda.model.recording import Limits
+from arboleda.model.recording import DAY_S, Limits
 from arboleda.recorder.files import FOLDER, parts_in, prune
 from arboleda.runtime.state import EPOCH, LOCK, STORE, StateDir
 from arboleda.store.sqlite import Store
@@ -33,6 +33,7 @@ def remove(file: Path, _: random.Random) -> None:
 
 
 WAYS = (flip, cut, remove)
+NOTHING_IS_OLD_S = Limits().days * DAY_S - 3600.0  # a plant that has run so long deletes no record of its own
 
 
 def unnoticed(
@@ -44,9 +45,11 @@ def unnoticed(
     """
     memory = sorted(file.name for file in state.glob(f"{Path(STORE).stem}.[st]*"))
     others = [name for name in (EPOCH, LOCK) if (state / name).exists()]
-    others += [f"{FOLDER}/{part.path.name}" for part in parts_in(state / FOLDER)[-1:]]
+    records = [f"{FOLDER}/{part.path.name}" for part in parts_in(state / FOLDER)]
+    others += records
+    damaged = [name for name in (*memory, *others) if name not in records[:-1]]
     silent = []
-    for name in (*memory, *others):
+    for name in damaged:
         for way in WAYS:
             with tempfile.TemporaryDirectory() as place:
                 for each in memory if name in memory else others:
@@ -58,7 +61,7 @@ def unnoticed(
                 else:
                     found = _out_of_order(Path(place), _number_of_start(state))
                 silent += [f"{way.__name__} {name}: {each}" for each in found]
-    return len((*memory, *others)) * len(WAYS), silent
+    return len(damaged) * len(WAYS), silent
 
 
 def _number_of_start(state: Path) -> int:
@@ -75,7 +78,7 @@ def _out_of_order(state: Path, epoch: int) -> list[str]:
             number = owner.next_epoch(int(time.time()))
     except StartError:
         return []
-    prune(state / FOLDER, Limits(), 0.0)
+    prune(state / FOLDER, Limits(), NOTHING_IS_OLD_S)
     higher = [] if number > epoch else [f"a start is number {number} after number {epoch}"]
     return higher + ["a start deletes the record"] * (parts_in(state / FOLDER) != parts)
 

@@ -5,15 +5,18 @@ from __future__ import annotations
 import math
 import os
 import re
+import struct
+import zlib
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
+import zstandard
 from mcap.exceptions import McapError
 from mcap.records import Metadata
-from mcap.stream_reader import StreamReader
+from mcap.stream_reader import CRCValidationError, StreamReader
 from mcap.writer import CompressionType, Writer
 
 from arboleda import __version__
@@ -36,6 +39,15 @@ LIBRARY = f"arboleda {__version__}"
 CHUNK_BYTES = 1024 * 1024  # more than comes between two flushes: the larger, the smaller they become
 PARTS = 10  # into which the megabytes are divided, so that old ones go bit by bit
 PART_BYTES = (200_000, 50_000_000)  # a file has at least and at most
+TORN = (  # errors of a file that is not as it was written
+    McapError,
+    CRCValidationError,
+    zstandard.ZstdError,
+    zlib.error,
+    struct.error,
+    OverflowError,  # of a length that no file has
+    UnicodeDecodeError,
+)
 
 
 @dataclass(frozen=True, kw_only=True, order=True)
@@ -104,7 +116,7 @@ def _began_ran_s(part: Part) -> float:
 
     inf of one that cannot be read.
     """
-    with suppress(OSError, McapError, UnicodeDecodeError, ValueError), part.path.open("rb") as opened:
+    with suppress(OSError, ValueError, *TORN), part.path.open("rb") as opened:
         for record in islice(StreamReader(opened).records, 2):  # its header comes first
             if isinstance(record, Metadata) and record.name == METADATA:
                 return float(record.metadata.get(RAN, 0.0))

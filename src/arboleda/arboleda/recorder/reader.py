@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-import zlib
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing, suppress
 from dataclasses import dataclass, field
@@ -13,7 +12,6 @@ from typing import IO
 
 import zstandard
 from mcap.data_stream import ReadDataStream
-from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import (
     Attachment,
@@ -26,13 +24,13 @@ from mcap.records import (
     Metadata,
     Schema,
 )
-from mcap.stream_reader import CRCValidationError, breakup_chunk
+from mcap.stream_reader import breakup_chunk
 from mcap.writer import MCAP0_MAGIC as MAGIC
 
 from arboleda.model.outside import quoted
 
 from .errors import NoRecord
-from .files import BEGINNING, METADATA, OF_PLANT, Part, part_at, parts_in
+from .files import BEGINNING, METADATA, OF_PLANT, TORN, Part, part_at, parts_in
 from .preamble import FORMAT, Beginning, beginning_from
 from .steps import TOPIC, RecordedStep, from_json
 
@@ -48,15 +46,6 @@ READ: dict[int, Callable[[ReadDataStream], McapRecord]] = {
     Opcode.CHUNK: Chunk.read,
     Opcode.FOOTER: Footer.read,
 }
-TORN = (
-    McapError,
-    CRCValidationError,
-    zstandard.ZstdError,
-    zlib.error,
-    struct.error,
-    OverflowError,  # of a length that no file has
-    UnicodeDecodeError,
-)
 Raw = tuple[int, bytes]  # nanoseconds of Unix time, and a message
 
 

@@ -141,7 +141,7 @@ class StateDir:
         except ConfigError:
             content = b""
         said = EPOCH_SAID.fullmatch(content)
-        if said is None or (said[1] and content.decode() != _with_sum(int(said[2]))):
+        if said is None or (said[1] and content.decode().strip() != _with_sum(int(said[2]))):
             raise StartError(
                 f"{file} does not say the number of the last start: delete it if this machine's clock is "
                 "right, or write a number into it that is higher than any before; robots obey no lower one."
