@@ -271,6 +271,34 @@ def do_1(cell):
         """,
         beside={"recipes.py": SET_AND_BAKE},
     ),
+    "a task failed that had not touched the output of which a person meanwhile said that it is full": Found(
+        faults=(
+            Fault(kind="bridge_stall", at=12.0, seconds=3.0, target="bridge"),
+            Fault(kind="operator_load", at=14.0, target="cell", word="bin"),
+        ),
+        file="""
+            name: drawn_22
+            uses: [recipes.py]
+            kinds: {oven: {verbs: {bake: {effect: process, takes_s: 6}}}}
+            cells:
+              cell:
+                devices: {loader: {kind: arm, model: scara}, oven: {kind: oven}}
+                targets:
+                  home: {loader: {deg: [0, 0], mm: 0}}
+                  bin: {loader: {deg: [40, 40], mm: 40}}
+                places: {bin: {holds: 20, output: true}}
+        """,
+        beside={
+            "recipes.py": """
+from arboleda.recipes import recipe, work
+
+
+@recipe("do_1")
+def do_1(cell):
+    return work(cell.device("oven").bake())
+"""
+        },
+    ),
 }
 
 

@@ -47,7 +47,7 @@ class CellPlaces:
         self.at_begin = self.at_end = self.as_left = dict(self.parts)
         self._left: dict[str, int] = {}  # by this task, since it began
         self._put: set[str] = set()  # the stations at which it has put a part, over all starts
-        self._touched: set[str] = set()  # the places at which it has put or taken a part, over all starts
+        self._touched: set[str] = set()  # the places that it may have left full, over all starts
         self._moved_by_others: set[str] = set()
         self._brought: Counter[str] = Counter()  # by people since it began, less what they took out
         self._began_with = dict(self.parts)
@@ -236,13 +236,16 @@ class CellPlaces:
     def set(self, parts: Mapping[str, int]) -> None:
         """Have a person see to it that so many parts are at places.
 
-        A task that is at work meanwhile has not done that, and began with so many more or less.
+        A task that is at work meanwhile has not done that, and began with so many more or less. Where it fails,
+        the plant may ask about an output at which they say that parts are.
         """
         for target, now in parts.items():
             brought = now - self.parts[target]
             self._began_with[target] += brought
             self._brought[target] += brought
             self.parts[target] = now
+            if brought > 0 and self._places[target].output:
+                self._touched.add(target)
 
     def capacity(self, target: str) -> int:
         """The most parts that a place can have."""
