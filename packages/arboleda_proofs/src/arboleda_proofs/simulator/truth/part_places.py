@@ -236,8 +236,8 @@ class CellPlaces:
     def set(self, parts: Mapping[str, int]) -> None:
         """Have a person see to it that so many parts are at places.
 
-        A task that is at work meanwhile has not done that, and began with so many more or less. Where it fails,
-        the plant may ask about an output at which they say that parts are.
+        A task that is at work meanwhile has not done that, and began with so many more or less. Where it
+        fails, the plant may ask about an output at which they say that parts are.
         """
         for target, now in parts.items():
             brought = now - self.parts[target]
