@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file.loader import load
 
@@ -72,6 +74,27 @@ def test_a_parameter_is_not_missed_where_an_unknown_node_may_list_its_values(tmp
     model = "<SubTree ID='Go'><input_port name='dose'/></SubTree>"
     (problem,) = said(tmp_path, "<press_psh kn='{dose}'/>", model=model)
     assert problem == "2:1: go: no device of a makes a node press_psh"
+
+
+@pytest.mark.parametrize(
+    ("line", "mistakes"),
+    [
+        (
+            "<press_push knn='{dose}'/>",
+            ["2:1: press_push needs kn: a whole number, or a variable", "2:13: press_push has no port 'knn'"],
+        ),
+        ("<SubTree ID='Gone' kn='{dose}'/>", ["2:10: the tree 'Gone' is in none of these files"]),
+        ("<SubTree ID='Gone' _autoremap='true'/>", ["2:10: the tree 'Gone' is in none of these files"]),
+    ],
+)
+def test_a_parameter_is_not_missed_where_it_stands_at_a_mistake(
+    tmp_path: Path, line: str, mistakes: list[str]
+) -> None:
+    model = "<SubTree ID='Go'><input_port name='dose'/></SubTree>"
+    assert said(tmp_path, line, model=model) == mistakes
+    model = "<SubTree ID='Go'><input_port name='dose'/><input_port name='size'/></SubTree>"
+    size = [] if "_autoremap" in line else ["1:1: size of go has no value to choose"]
+    assert said(tmp_path, line, model=model) == [*mistakes, *size], "another one is"
 
 
 def test_all_leaves_that_cannot_be_made_are_told_at_once(tmp_path: Path) -> None:

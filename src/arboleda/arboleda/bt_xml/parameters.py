@@ -94,6 +94,13 @@ def parameter(
     )
 
 
+def handed_on(forest: Forest, main: str) -> frozenset[str]:
+    """The parameters of a tree that a node or a subtree in it is given, whatever that makes of it."""
+    nodes_there = list(forest.trees[main].root.iterate())
+    names = [port.name for port in of_tree(forest, main)]
+    return frozenset(name for name in names if any(any(_ports_with(node, name)) for node in nodes_there))
+
+
 def check(forest: Forest, main: str, kinds: Mapping[str, Kind], findings: Findings) -> None:
     """Keep a finding for each parameter of the tree that is given to a port of another type."""
     for port in of_tree(forest, main):

@@ -34,14 +34,15 @@ class TreeRecipe(Recipe):
     """Recipe of a file of trees; `file` is its name for people, `place` that of its main tree.
 
     `own` are the nodes in Python that the recipe may use. `groups` has by parameter the group of targets that
-    its values come from. `check` raises NoDeviceError or TreeMistakes with all that is wrong in a cell,
-    whichever values its parameters have.
+    its values come from, `handed_on` are the parameters that a node in the tree is given. `check` raises
+    NoDeviceError or TreeMistakes with all that is wrong in a cell, whichever values its parameters have.
     """
 
     file: str
     place: Place
     content: bytes = field(compare=False)
     groups: Mapping[str, str] = field(compare=False)
+    handed_on: frozenset[str] = field(compare=False)
     own: Mapping[str, WrittenNode] = field(compare=False)
     check: Callable[[Cell], None] = field(compare=False)
 
@@ -106,6 +107,7 @@ def tree_recipe(
         place=forest.trees[main].place,
         content=content,
         groups=groups,
+        handed_on=parameters.handed_on(forest, main),
         own=own,
         check=check,
     )

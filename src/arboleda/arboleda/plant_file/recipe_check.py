@@ -143,7 +143,9 @@ class RecipeTrial:
         empty = _without_value(cell, recipe)
         if unfit := empty or _unspellable(cell, recipe):
             absent, found = self._whatever_values(cell, recipe)
-            if absent is None and (self.is_sound or not empty):
+            if empty and found:
+                unfit = _without_value(cell, recipe, but=_handed_on(recipe))
+            if unfit and absent is None and (self.is_sound or not empty):
                 found.append(spot.problem(unfit))
             if empty and not named:
                 self._miss(cell, recipe, absent or empty, found)
@@ -288,10 +290,15 @@ def _at_work(branch: Behaviour) -> set[str]:
     return {command.robot for command in commands if isinstance(command, Work)}
 
 
-def _without_value(cell: Cell, recipe: Recipe) -> str | None:
+def _handed_on(recipe: Recipe) -> Collection[str]:
+    """The parameters that lack a value, perhaps, only because they are given to a node with a mistake."""
+    return recipe.handed_on if isinstance(recipe, TreeRecipe) else ()
+
+
+def _without_value(cell: Cell, recipe: Recipe, but: Collection[str] = ()) -> str | None:
     """The sentence that a parameter has no possible value in a cell; None where each has one."""
     for each in recipe.parameters:
-        if not each.words(cell):
+        if each.name not in but and not each.words(cell):
             return f"{each.name} of {recipe.name} has no value to choose{_how_to_choose(cell, recipe, each)}"
     return None
 
