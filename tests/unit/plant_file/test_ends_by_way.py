@@ -58,6 +58,28 @@ def sort(cell, how=Choice("look", "blind")):
     ways = {"good": put, "bad": arm.visit("reject", jaw.open())}
     return work(take, seen, cell.choose(seen, ways), arm.home())
 """
+ASKS_TWICE = """
+from arboleda.recipes import recipe, work
+
+@recipe("sort", ends_with=ENDS)
+def sort(cell):
+    arm, jaw, camera = cell.devices("arm", "jaw", "camera")
+    before, take = camera.look(), arm.visit("in", jaw.close(width_mm=30, force_n=20))
+    after = camera.look()
+    ways = {"good": arm.visit("GOOD", jaw.open()), "bad": arm.visit("BAD", jaw.open())}
+    homes = {"good": arm.home(), "bad": arm.home()}
+    return work(before, take, after, cell.choose(after, ways), cell.choose(before, homes))
+"""
+SELDOM = """
+from arboleda.recipes import Choice, recipe, work
+
+@recipe("sort", ends_with=ENDS)
+def sort(cell, one=Choice(*WORDS), other=Choice(*WORDS)):
+    arm, jaw = cell.devices("arm", "jaw")
+    place = "reject" if (one, other) == ("a", WORDS[-1]) else "press"
+    return work(arm.visit("in", jaw.close(width_mm=30, force_n=20)), arm.visit(place, jaw.open()), arm.home())
+"""
+FEW, MANY = "abc", "abcdefghijklmno"  # values of each of two parameters
 TREE = """
 <root BTCPP_format="4" main_tree_to_execute="Sort">
 <BehaviorTree ID="Sort"><Sequence>
@@ -132,8 +154,26 @@ def test_check_finds_the_parts_of_two_answers_swapped(tmp_path: Path, recipe: st
     ]
 
 
+def test_only_the_last_question_to_a_device_has_its_last_answer(tmp_path: Path) -> None:
+    assert warned(sorting(tmp_path, BY_ANSWER, recipe=ASKS_TWICE)) == []
+    swapped = warned(sorting(tmp_path, BY_ANSWER, SWAPPED, recipe=ASKS_TWICE))
+    assert "ends with press 0, and says that it ends with 1" in swapped
+
+
 def test_check_finds_an_end_that_no_way_has(tmp_path: Path) -> None:
     plant = sorting(tmp_path, EITHER, ONE_PLACE)
+    assert warned(plant) == ["says that it may end with reject 1, and never ends so"]
+
+
+@pytest.mark.parametrize("words", [FEW, MANY])
+def test_nothing_is_said_against_an_end_that_one_task_of_all_has(tmp_path: Path, words: str) -> None:
+    recipe = SELDOM.replace("WORDS", repr(words))
+    assert warned(sorting(tmp_path, EITHER, recipe=recipe)) == []
+
+
+def test_an_end_that_was_not_met_is_named_where_all_tasks_were_tried(tmp_path: Path) -> None:
+    recipe = SELDOM.replace("WORDS", repr(FEW)).replace('"reject" if', '"press" if')
+    plant = sorting(tmp_path, EITHER, recipe=recipe)
     assert warned(plant) == ["says that it may end with reject 1, and never ends so"]
 
 

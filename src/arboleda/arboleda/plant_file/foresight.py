@@ -15,6 +15,7 @@ from .notation import Notation, before
 
 HELD, TAKEN, AT, OVER, HAD = "=held", "=taken", "=at", "=over", "=had"
 ANSWER = "=answer"  # the answer to a question; after the name of a verb, the last answer to it
+ASKER = "=asker"  # after the name of a verb, the step that asked it last
 CHANGE, LEAST, MOST = "=change", "=least", "=most"
 """Keys beside facts. A hand holds a part (HELD), which it took at a target (TAKEN). A robot is at a target
 (AT), or over it (OVER). The task has taken a shared device (HAD). Since the task began, the number of parts
@@ -31,6 +32,9 @@ class Scene:
 
     def get(self, name: str, what: str) -> Value | None:
         return self.values.get((name, what))
+
+    def has(self, values: Mapping[SceneKey, Value]) -> bool:
+        return values.items() <= self.values.items()
 
     def put(self, changes: Mapping[SceneKey, Value]) -> Scene:
         return Scene(values={**self.values, **changes})
@@ -87,8 +91,8 @@ class Foresight:
 
     def touched(self, command: Command) -> set[SceneKey]:
         """The facts and places that a command may change."""
-        answer = command.word + ANSWER
-        keys = {(command.robot, what) for what in (HELD, TAKEN, AT, OVER, answer, *dict(command.sets))}
+        asked = command.word + ANSWER, command.word + ASKER
+        keys = {(command.robot, what) for what in (HELD, TAKEN, AT, OVER, *asked, *dict(command.sets))}
         if command.makes_part or (isinstance(command, Switch) and command.grips is not None):
             keys |= {(target, what) for target in self.places for what in OF_PLACES}
         return keys

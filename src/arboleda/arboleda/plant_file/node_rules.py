@@ -23,7 +23,7 @@ from arboleda.recipes.handles import Ask, question_of
 from .foresight import Scene
 from .scene_variables import after_script, key_of, ports_in, run, scope_in
 from .step_rules import at_once, repeated, tried
-from .walkthrough import Outcome, Rule, Walkthrough, few, last_answer
+from .walkthrough import Outcome, Rule, Walkthrough, asked_by, few, last_answer
 
 MANY = 1_000_000  # rounds of a loop without an end
 
@@ -176,7 +176,8 @@ def _answered(node: DeviceStep, step: Behaviour, scenes: Sequence[Scene]) -> lis
     if not answers:
         return [scene.without({key}) for scene in scenes]
     given = [{key: as_variable(each), **last_answer(question, each)} for each in answers]
-    return [scene.put(each) for scene in scenes for each in given]
+    asked = set(asked_by(question))  # no later step has to know that: the answer is known here
+    return [scene.without(asked).put(each) for scene in scenes for each in given]
 
 
 def _facts(walk: Walkthrough, node: FactStep, scenes: Sequence[Scene]) -> Outcome:

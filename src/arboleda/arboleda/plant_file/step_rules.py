@@ -40,6 +40,7 @@ from .walkthrough import (
     Rule,
     Walkthrough,
     answer_key,
+    asked_by,
     few,
     last_answer,
     last_answer_key,
@@ -55,7 +56,8 @@ def _leaf(walk: Walkthrough, node: Leaf, scenes: Sequence[Scene]) -> Outcome:
 def _act(walk: Walkthrough, node: Act, scenes: Sequence[Scene]) -> Outcome:
     walk.check(node, scenes)
     command, answer = node.make(id=""), {answer_key(node), last_answer_key(node)}
-    done = tuple(walk.foresight.after(command, scene).without(answer) for scene in scenes)
+    after = (walk.foresight.after(command, scene) for scene in scenes)
+    done = tuple(scene.without(answer).put(asked_by(node)) for scene in after)
     return Outcome(done=done, failed=walk.blurred(node, scenes))
 
 
@@ -164,11 +166,16 @@ def _gone_home(walk: Walkthrough, node: composites.Selector, robot: str, scenes:
 def _chosen(
     walk: Walkthrough, node: composites.Selector, question: Question, scenes: Sequence[Scene]
 ) -> Outcome:
-    """The outcome of a choice by an answer: each branch begins in the scenes with its answer."""
+    """The outcome of a choice by an answer: each branch begins in the scenes with its answer.
+
+    It is the last answer of the device where no other step has asked that since.
+    """
     outcome, key = Outcome(), answer_key(question)
+    asked = asked_by(question)
     for number, child in enumerate(node.children):
-        known = {key: number, **_last_answer(question, child)}
-        begin = [scene.put(known) for scene in scenes if scene.get(*key) in (None, number)]
+        last = _last_answer(question, child)
+        here = [scene for scene in scenes if scene.get(*key) in (None, number)]
+        begin = [scene.put({key: number, **(last if scene.has(asked) else {})}) for scene in here]
         after = walk.follow(child, begin)
         outcome = outcome.plus(done=after.passed, failed=after.failed)
     return outcome

@@ -16,7 +16,7 @@ from arboleda.model.facts import Value
 from arboleda.recipes.handles import Ask
 from arboleda.recipes.place_questions import PlaceQuestion
 
-from .foresight import ANSWER, Foresight, Scene, SceneKey, common, still_holding
+from .foresight import ANSWER, ASKER, Foresight, Scene, SceneKey, common, still_holding
 from .scene_variables import key_of
 
 MOST_SCENES = 256  # that are followed at once
@@ -153,6 +153,14 @@ def last_answer_key(act: Act) -> SceneKey:
     """The key of the last answer to a question that a device is asked."""
     command = act.make(id="")
     return command.robot, command.word + ANSWER
+
+
+def asked_by(step: Behaviour) -> dict[SceneKey, Value]:
+    """The step that has asked a device last, once this one is done; empty for a step that asks nobody."""
+    if not isinstance(step, Ask):
+        return {}
+    command = step.make(id="")
+    return {(command.robot, command.word + ASKER): step.id.hex}
 
 
 def last_answer(question: Behaviour, answer: Value) -> dict[SceneKey, Value]:
