@@ -15,7 +15,7 @@ from arboleda.bt_xml.running.node import Result
 from arboleda.bt_xml.running.scripts import ScriptError
 from arboleda.engine import Context, Plant
 from arboleda.model.facts import Value
-from arboleda.model.orders import orders
+from arboleda.model.orders import MOST, combinations, orders
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.model.task import Order
@@ -67,7 +67,8 @@ class CellCheck:
         written = [each for each in self.cell.recipes if _is_own(each)]
         for recipe in written:
             numbers = [self._check(recipe, order) for order in orders(self.cell, recipe)]
-            self._say(recipe, never_met(recipe.ends_with, set().union(*numbers)))
+            if combinations(self.cell, recipe) <= MOST:
+                self._say(recipe, never_met(recipe.ends_with, set().union(*numbers)))
         for recipe in written:
             self._say(recipe, self._elsewhere(recipe))
         return self.sentences
