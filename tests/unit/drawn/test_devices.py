@@ -19,7 +19,7 @@ from arboleda.plant_file import loader, meeting_points
 from arboleda.recipes.place_questions import PlaceHandle
 from arboleda.trees.part_places import Places
 from arboleda_drawn import devices
-from arboleda_drawn.devices import DrawnDevices, Form, steps
+from arboleda_drawn.devices import DrawnDevices, Form, scales, steps
 from arboleda_drawn.devices.kinds import NEEDY, SPARE, Span
 from arboleda_drawn.devices.printers import BED, ROLE
 from arboleda_drawn.plants import DrawnPlants, keep, loaded, of_devices
@@ -279,6 +279,29 @@ def _takes_away(plant: DrawnDevices) -> bool:
     recipes = [list(steps.walk(recipe.step)) for recipe in plant.recipes]
     made = [each for each in recipes if any(getattr(step, "role", "") == ROLE for step in each)]
     return all(any(isinstance(s, steps.Visit) and s.target == BED for s in each) for each in made)
+
+
+def test_recipes_go_on_by_a_number_in_both_forms_and_compare_one_and_check_takes_the_plants(
+    drawn: list[DrawnDevices],
+) -> None:
+    asking = [each for each in drawn if scales.ROLE in _roles(each)]
+    assert {Form.PYTHON, Form.XML} == {each.form for each in asking}
+    texts = "".join(text for each in asking for text in each.beside.values())
+    assert "'otherwise': " in texts and ".says(celsius='<" in texts and 'celsius="&gt;' in texts
+    answers = [verb.numbers for each in asking for kind in each.kinds or () for verb in kind.verbs]
+    assert any(isinstance(each, Span) for each in answers)
+    assert all(loaded(each) for each in asking[1:5])
+
+
+def test_each_number_has_one_of_the_drawn_ways(drawn: list[DrawnDevices]) -> None:
+    found = [each for plant in drawn for recipe in plant.recipes for each in steps.walk(recipe.step)]
+    chosen = [each for each in found if isinstance(each, steps.Choose) and each.answer == scales.ANSWER]
+    assert chosen
+    for each in chosen:
+        ranges = [way for way, _ in each.ways if isinstance(way, steps.Range)]
+        for number in (-50, -3, 0.75, 2, 7, 20, 80.1, 200):
+            assert sum(way.has(number) for way in ranges if way.comparisons) <= 1
+            assert any(way.has(number) for way in ranges)
 
 
 BUGS = {

@@ -16,6 +16,7 @@ from .late_work import LateWork
 from .layout import Section
 from .printers import Printer
 from .recipes import Beside, RecipeDrawer
+from .scales import Scale
 from .shared_ends import SharedEnds
 from .trials import Trials
 
@@ -41,13 +42,15 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
     layout = drawer.draw()
     printer = Printer(Dice(seed, "printer", attempt), layout, are_written=are_written)
     printer.join(drawer.section)
+    scale = Scale(Dice(seed, "numbers", attempt), are_written=are_written)
+    scale.join(drawer.section)
     section: Section = {"name": f"drawn_{seed}"}
     if dice.chance(0.3):
         section["mqtt_version"] = dice.pick(("3.1.1", "5"))
     timing = _timing(dice)
     if timing:
         section["timing"] = timing
-    kinds = [*drawer.kinds.values(), *([printer.kind] if printer.kind else [])]
+    kinds = [*drawer.kinds.values(), *(each.kind for each in (printer, scale) if each.kind is not None)]
     written = tuple(kind for kind in kinds if kind.is_written)
     declared = {kind.name: kind.section for kind in kinds if not kind.is_written}
     _say_needs(Dice(seed, "said needs", attempt), declared)
@@ -68,6 +71,7 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
         places=None if layout.parts is None else AskedPlaces(asked, layout, layout.parts),
         ends=SharedEnds(Dice(seed, "ends", attempt), layout),
         printer=printer,
+        scale=scale,
     )
     recipes = RecipeDrawer(dice, layout, beside, as_xml=as_xml)
     drawn = tuple(recipes.draw(number) for number in range(1, 1 + dice.pick(RECIPES)))

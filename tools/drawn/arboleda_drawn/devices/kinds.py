@@ -69,6 +69,7 @@ class Verb:
     works_on: bool = False
     makes: bool = False
     answers: tuple[Value, ...] = ()
+    numbers: Type | None = None  # that it answers, in the place of words
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,6 +140,8 @@ def _section(verb: Verb) -> Section:
         section["makes"] = "part"
     if verb.answers:
         section["answers"] = list(verb.answers)
+    elif verb.numbers is not None:
+        section["answers"] = verb.numbers
     return section
 
 

@@ -71,6 +71,8 @@ def _verb(kind: Kind, verb: Verb) -> str:
     words += [word for word, is_so in _words(verb) if is_so]
     if verb.answers:
         words.append(f"answers={list(verb.answers)!r}")
+    elif verb.numbers is not None:
+        words.append(f"answers={_type(verb.numbers)}")
     if _counts(kind, verb):
         words.append(f"virtual=lambda facts{given}: {{'count': facts['count'] + 1}}")
     return f"{verb.effect}({', '.join(words)})"

@@ -121,8 +121,8 @@ class Meaning:
         return not failing
 
     def _choose(self, step: steps.Choose, scope: Scope) -> bool:
-        ways = {plain(value): way for value, way in step.ways}
-        return self._does(ways[scope.answers[step.answer]], scope)
+        answer = scope.answers[step.answer]
+        return self._does(next(way for value, way in step.ways if _is_of(value, answer)), scope)
 
     def _retry(self, step: steps.Retry, scope: Scope) -> bool:
         for number in range(step.times + 1):
@@ -178,6 +178,11 @@ class Meaning:
 
     def _run(self, step: steps.Run, scope: Scope) -> bool:
         return self.run(step.recipe, {name: scope.value(value) for name, value in step.values})
+
+
+def _is_of(value: Value | steps.Range, answer: Value) -> bool:
+    """True if a way is that of an answer; the range of all other numbers comes last."""
+    return value.has(float(answer)) if isinstance(value, steps.Range) else plain(value) == answer
 
 
 def _order(step: steps.Tell, scope: Scope) -> Told:

@@ -18,6 +18,7 @@ from .steps import (
     Parallel,
     Param,
     Parameter,
+    Range,
     Recipe,
     Recover,
     Repeat,
@@ -124,8 +125,8 @@ def _parts(step: Step) -> tuple[str, list[Step | str], str] | None:
     return None
 
 
-def _way(value: Value, way: Step) -> str:
-    return f"{value!r}: {'[]' if way == Work() else _text(way, 3)}"
+def _way(value: Value | Range, way: Step) -> str:
+    return f"{_value(value)}: {'[]' if way == Work() else _text(way, 3)}"
 
 
 def _call(step: Step) -> str:
@@ -147,11 +148,13 @@ def _call(step: Step) -> str:
     return f"cell.wait({step.seconds if isinstance(step, Wait) else 0})"
 
 
-def _given(values: Sequence[tuple[str, Value | Param | tuple[str, ...]]]) -> str:
+def _given(values: Sequence[tuple[str, Value | Param | Range | tuple[str, ...]]]) -> str:
     return ", ".join(f"{name}={_value(value)}" for name, value in values)
 
 
-def _value(value: Value | Param | tuple[str, ...]) -> str:
+def _value(value: Value | Param | Range | tuple[str, ...]) -> str:
     if isinstance(value, Param):
         return value.name
+    if isinstance(value, Range):
+        return repr(str(value))
     return repr(list(value) if isinstance(value, tuple) else value)

@@ -14,6 +14,7 @@ from .hands import Hand
 from .late_work import LateWork
 from .layout import Layout
 from .printers import Printer
+from .scales import Scale
 from .shared_ends import SharedEnds
 from .steps import (
     Choice,
@@ -45,6 +46,7 @@ class Beside:
     places: AskedPlaces | None  # None without parts
     ends: SharedEnds
     printer: Printer
+    scale: Scale
 
 
 class RecipeDrawer:
@@ -73,6 +75,7 @@ class RecipeDrawer:
         tried += self._beside.late.draw()
         if printed := self._beside.printer.draw():
             tried, carries = [*tried, *printed], True
+        tried += self._beside.scale.draw()
         if tried:
             made = replace(made, step=Work(steps=(made.step, *tried)))
         self._drawn.append(made)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields
+from operator import ge, gt, le, lt
 
 Value = bool | int | float | str
 
@@ -15,7 +16,21 @@ class Param:
     name: str
 
 
-Given = tuple[tuple[str, Value | Param], ...]
+@dataclass(frozen=True, kw_only=True)
+class Range:
+    """Range of numbers: those that meet all comparisons, as `>=` 20 and `<` 80; without any: all others."""
+
+    comparisons: tuple[tuple[str, float], ...]
+
+    def has(self, number: float) -> bool:
+        return all(MEETS[sign](number, limit) for sign, limit in self.comparisons)
+
+    def __str__(self) -> str:
+        return " and ".join(f"{sign} {limit}" for sign, limit in self.comparisons) or "otherwise"
+
+
+MEETS: Mapping[str, Callable[[float, float], bool]] = {"<": lt, "<=": le, ">": gt, ">=": ge}
+Given = tuple[tuple[str, Value | Param | Range], ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,7 +64,7 @@ class Says:
 
     role: str
     fact: str
-    value: Value
+    value: Value | Range
     also: tuple[tuple[str, Value], ...] = ()
 
 
@@ -59,7 +74,7 @@ class Becomes:
 
     role: str
     fact: str
-    value: Value
+    value: Value | Range
     at_most_s: float
     also: tuple[tuple[str, Value], ...] = ()
 
@@ -158,10 +173,10 @@ class Parallel:
 
 @dataclass(frozen=True, kw_only=True)
 class Choose:
-    """A way for each answer that stands in the variable `answer`."""
+    """A way for each answer that stands in the variable `answer`, or for each range of numbers."""
 
     answer: str
-    ways: tuple[tuple[Value, Step], ...]
+    ways: tuple[tuple[Value | Range, Step], ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -313,7 +328,7 @@ class Call:
 
     role: str
     verb: str
-    given: tuple[tuple[str, Value | Param | tuple[str, ...]], ...] = ()
+    given: tuple[tuple[str, Value | Param | Range | tuple[str, ...]], ...] = ()
     unnamed: int = 0
 
 

@@ -20,6 +20,7 @@ from .steps import (
     Invert,
     Parallel,
     Param,
+    Range,
     Recipe,
     Recover,
     Repeat,
@@ -27,12 +28,11 @@ from .steps import (
     Step,
     Tell,
     Timeout,
-    Value,
     Wait,
     Work,
     walk,
 )
-from .xml_text import Writer, msec_of, text_of
+from .xml_text import Writer, fits, literal, msec_of
 
 Way = Callable[[Element], None]
 PLAINLY = 0.4  # how often a step that could be written in another way is not
@@ -199,14 +199,14 @@ class SpellingWriter(Writer):
     def _tell(self, step: Tell) -> Sequence[Way]:
         """The verb with a variable for what it works by, to which a script has given that value."""
         value = dict(step.values).get(PROGRAM)
-        if isinstance(value, Param | float | None) or step.refused or step.answer:
+        if isinstance(value, Param | Range | float | None) or step.refused or step.answer:
             return ()
         name = self._name()
         rest = tuple(each for each in step.values if each[0] != PROGRAM)
         tell = replace(step, values=(*rest, (PROGRAM, Param(name=name))))
 
         def write(parent: Element) -> None:
-            made = self._node(parent, "Sequence", self._of("Script", code=f"{name} := {_literal(value)}"))
+            made = self._node(parent, "Sequence", self._of("Script", code=f"{name} := {literal(value)}"))
             Writer.add(self, made, tell)
 
         return (write,)
@@ -266,7 +266,7 @@ class SpellingWriter(Writer):
         """A node for each answer, each within the other."""
         rest: Way = self._of("AlwaysFailure")
         for value, way in reversed(step.ways):
-            condition = self._of("ScriptCondition", code=f"{step.answer} == {_literal(value)}")
+            condition = self._of("ScriptCondition", code=fits(step, value))
             rest = self._of(name, condition, way, rest)
         return rest
 
@@ -274,11 +274,11 @@ class SpellingWriter(Writer):
         """Each way with a condition: those of other answers are skipped."""
         found = []
         for value, way in step.ways:
-            fits = f"{step.answer} == {_literal(value)}"
+            code = fits(step, value)
             if self._dice.chance(0.5):
-                found.append(self._of("Precondition", way, **{"if": fits, "else": "SKIPPED"}))
+                found.append(self._of("Precondition", way, **{"if": code, "else": "SKIPPED"}))
             else:
-                found.append(self._of("Sequence", way, _skipIf=f"!({fits})"))
+                found.append(self._of("Sequence", way, _skipIf=f"!({code})"))
         return found
 
     def _retry(self, step: Retry) -> Sequence[Way]:
@@ -372,8 +372,3 @@ def _variables(step: Step) -> list[str]:
         found |= {answer: None} if answer else {}
         found |= {value.name: None for value in given if isinstance(value, Param)}
     return list(found)
-
-
-def _literal(value: Value) -> str:
-    """A value in a script."""
-    return f"'{value}'" if isinstance(value, str) else text_of(value)

@@ -13,6 +13,7 @@ from .steps import (
     Invert,
     Parallel,
     Param,
+    Range,
     Recipe,
     Recover,
     Repeat,
@@ -37,12 +38,24 @@ class Writer:
 
     def add(self, parent: Element, step: Step) -> None:
         """Write a step below a node."""
+        if isinstance(step, Choose) and any(isinstance(value, Range) for value, _ in step.ways):
+            self._by_number(parent, step)
+            return
         name, given, inner = _node(step)
         made = SubElement(parent, name, given)
         for each in inner:
             self.add(made, each)
         if isinstance(step, Choose) and len(step.ways) > 1:
             SubElement(made, "AlwaysFailure")
+
+    def _by_number(self, parent: Element, step: Choose) -> None:
+        """A node for each range but the last one, each within the other."""
+        *ways, (_, last) = step.ways
+        for value, way in ways:
+            parent = SubElement(parent, "IfThenElse")
+            SubElement(parent, "ScriptCondition", {"code": fits(step, value)})
+            self.add(parent, way)
+        self.add(parent, last)
 
 
 def xml_of(recipe: Recipe, others: Mapping[str, Recipe], writer: Writer) -> str:
@@ -129,7 +142,21 @@ def _node(step: Step) -> tuple[str, dict[str, str], Sequence[Step]]:
     )
 
 
-def text_of(value: Value | Param | tuple[str, ...]) -> str:
+def fits(step: Choose, value: Value | Range) -> str:
+    """The script that says whether the answer is of this way."""
+    if not isinstance(value, Range):
+        return f"{step.answer} == {literal(value)}"
+    if not value.comparisons:
+        return " && ".join(f"!({fits(step, each)})" for each, _ in step.ways if each != value)
+    return " && ".join(f"{step.answer} {sign} {limit}" for sign, limit in value.comparisons)
+
+
+def literal(value: Value) -> str:
+    """A value in a script."""
+    return f"'{value}'" if isinstance(value, str) else text_of(value)
+
+
+def text_of(value: Value | Param | Range | tuple[str, ...]) -> str:
     """A value as an attribute of a node."""
     if isinstance(value, tuple):
         return ";".join(value)
