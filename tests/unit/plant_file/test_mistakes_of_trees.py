@@ -97,6 +97,30 @@ def test_a_parameter_is_not_missed_where_it_stands_at_a_mistake(
     assert said(tmp_path, line, model=model) == [*mistakes, *size], "another one is"
 
 
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("<Script code='kn := := 3'/>", "2:"),
+        ("<Scrpt code='kn := 3'/>", "2:1: go: no device of a makes a node Scrpt"),
+        ("<SetBlackbord output_key='kn' value='3'/>", "2:1: go: no device of a makes a node SetBlackbord"),
+        ("<SetBlackboard outputkey='kn' value='3'/>", "2:"),
+        ("<SubTree ID='Gone' _autoremap='true'/>", "2:10: the tree 'Gone' is in none of these files"),
+    ],
+)
+def test_a_variable_is_not_missed_where_a_mistake_may_hide_what_gives_it_a_value(
+    tmp_path: Path, line: str, told: str
+) -> None:
+    problems = said(tmp_path, line, "<press_push kn='{kn}'/>")
+    assert problems and all(each.startswith(told) for each in problems)
+
+
+def test_a_variable_that_nothing_gives_a_value_is_told_beside_other_mistakes(tmp_path: Path) -> None:
+    assert said(tmp_path, "<Scrpt code='sze := 3'/>", "<press_push kn='{kn}'/>") == [
+        "2:1: go: no device of a makes a node Scrpt",
+        "3:13: the variable 'kn' is read, and nothing gives it a value",
+    ]
+
+
 def test_all_leaves_that_cannot_be_made_are_told_at_once(tmp_path: Path) -> None:
     script = "<Script code=\" there := 'in' \"/>"
     why = "go cannot be built: target of mover_visit is '{there}', which is known only while the tree runs"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -12,6 +13,7 @@ from .forest import Forest, Node, Tree
 from .nodes import Category, Kind, PortDirection
 from .values import OUTER, Variable
 
+WORD = re.compile(r"@?[^\W\d]\w*")
 KindOf = Callable[[Node], "Kind | None"]
 
 
@@ -22,7 +24,7 @@ class _TreeVariables:
     read: dict[str, Place] = field(default_factory=dict)
     written: set[str] = field(default_factory=set)
     passed: list[tuple[str, str, str]] = field(default_factory=list)  # own name, tree, name there
-    is_open: bool = False  # shares all names with the tree around it, or with a subtree
+    is_open: bool = False  # shares all names with a tree around it or a subtree, or has a script with a fault
 
 
 def unwritten(forest: Forest, kind: KindOf) -> Iterator[tuple[Place, str]]:
@@ -53,8 +55,9 @@ def _inputs(forest: Forest, uses: Mapping[str, _TreeVariables]) -> dict[str, set
                 continue
             name = node.subtree
             inputs[name] |= set(node.ports)
-            if node.shares_names and name in uses:
-                uses[name].is_open = uses[tree.name].is_open = True
+            if node.shares_names:
+                uses[tree.name].is_open = True
+                uses.get(name, uses[tree.name]).is_open = True  # it may be in no file
     for name, model in forest.models.items():
         if model.category is Category.SUBTREE and model.ports is not None:
             inputs[name] |= set(model.ports)
@@ -108,6 +111,8 @@ def _add_ports(use: _TreeVariables, node: Node, kind: Kind | None) -> None:
             use.read.setdefault(value.name, place)
         elif port is not None and port.direction is PortDirection.OUT:
             use.written.add(value)
+        elif port is None and not node.is_subtree:
+            use.written.update(WORD.findall(value))  # so may a misspelt SetBlackboard or Script
 
 
 def _add_script(use: _TreeVariables, text: str, place: Place) -> None:
@@ -117,7 +122,9 @@ def _add_script(use: _TreeVariables, text: str, place: Place) -> None:
     try:
         statements = script.parse(text)
     except script.ScriptFault:
-        return  # reported elsewhere
+        use.is_open = True  # the fault is reported elsewhere
+        use.written.update(WORD.findall(text))
+        return
     for name in sorted(script.reads(statements)):
         use.read.setdefault(name, place)
     use.written |= script.writes(statements)
