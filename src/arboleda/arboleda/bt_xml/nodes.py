@@ -7,8 +7,10 @@ decorator ForEach of MoveIt Pro, as their headers and documentation give them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
+
+from arboleda.model.recipe import FOR_PEOPLE
 
 MANY = 1000  # children that a node has at most
 
@@ -46,7 +48,7 @@ class Port:
     is_needed: bool = False
     words: tuple[str, ...] = ()
     limits: tuple[float, float] | None = None
-    can_compare: bool = False
+    can_compare: bool = field(default=False, metadata={FOR_PEOPLE: True})  # its type says so, too
     about: str = ""
 
 

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import chain
-from types import MappingProxyType
 
 from py_trees.behaviour import Behaviour
 
@@ -71,17 +70,20 @@ def tree_recipe(
 
     ports = parameters.of_tree(forest, main)
 
-    def check(cell: Cell, values: Mapping[str, object] = MappingProxyType({})) -> None:
-        findings = Findings()
-        unknown = {port.name for port in ports} - values.keys()
-        ends.check_in_cell(name, [each for each in end if each.what not in unknown], values, cell, findings)
-        runnable.check_in_cell(forest, cell.name, kinds(cell), findings)
+    def check(cell: Cell) -> None:
+        known = [each for each in end if each.what not in {port.name for port in ports}]
+        _check(name, forest, known, {}, cell, kinds(cell))
         if mistakes:
             raise TreeMistakes(mistakes)
 
+    # The names and values that this function takes in are hashed: with others, no kept task could go on.
     def build(order: Order, context: Context) -> Behaviour:
-        check(context.cell, order.values)
+        _check(name, forest, end, order.values, context.cell, kinds(context.cell))
         return _built(name, forest, main, order, Devices(context, [], own))
+
+    def refuse(order: Order, context: Context) -> Behaviour:
+        _check(name, forest, end, order.values, context.cell, kinds(context.cell))
+        raise TreeMistakes(mistakes)
 
     ending, groups = {each.what for each in end}, target_groups.of_tree(forest, main)
     listed = listed_values.of_tree(forest, main)
@@ -99,7 +101,7 @@ def tree_recipe(
     )
     return TreeRecipe(
         name=name,
-        build=build,
+        build=refuse if mistakes else build,
         parameters=parameter_list,
         about=_about(forest, main),
         ends_with=tuple(tuple((each.what, each.value) for each in way) for way in stated),
@@ -117,6 +119,19 @@ def own_nodes(recipes: Iterable[Recipe]) -> dict[str, WrittenNode]:
     """The nodes in Python that the trees among these recipes may use, by name."""
     trees = [each for each in recipes if isinstance(each, TreeRecipe)]
     return {name: own for tree in trees for name, own in tree.own.items()}
+
+
+def _check(
+    name: str,
+    forest: Forest,
+    end: Sequence[ends.End],
+    values: Mapping[str, object],
+    cell: Cell,
+    kinds: Mapping[str, Kind],
+) -> None:
+    findings = Findings()
+    ends.check_in_cell(name, end, values, cell, findings)
+    runnable.check_in_cell(forest, cell.name, kinds, findings)
 
 
 def _about(forest: Forest, main: str) -> str:

@@ -158,17 +158,17 @@ class Handle(Offers):
 
     def becomes(self, *, at_most_s: float, **facts: Value) -> Step:
         """Wait until the device reports these facts, at most `at_most_s` s."""
-        wanted = self._wanted(facts)
+        facts_wanted = self._wanted(facts)
 
         def late() -> Failure:
-            name = self._unsaid(wanted)[0]
+            name = self._unsaid(facts_wanted)[0]
             sentence = NOT_YET(
-                robot=self._device.name, value=value_text(wanted[name]), fact=name, seconds=at_most_s
+                robot=self._device.name, value=value_text(facts_wanted[name]), fact=name, seconds=at_most_s
             )
             return Failure(reason=Reason.DEADLINE, sentence=sentence)
 
-        step = FactWait(BECOMES(), self._context, lambda: not self._unsaid(wanted), at_most_s, late)
-        step.device, step.facts = self._device.name, wanted
+        step = FactWait(BECOMES(), self._context, lambda: not self._unsaid(facts_wanted), at_most_s, late)
+        step.device, step.facts = self._device.name, facts_wanted
         return step
 
     def _of(self, step: StepOf) -> StepOf:
