@@ -18,7 +18,8 @@ from mcap.opcode import Opcode
 from mcap.records import Attachment, AttachmentIndex, Chunk, ChunkIndex, Footer, MessageIndex
 from mcap.writer import MCAP0_MAGIC as MAGIC
 
-from .reader import HEAD, LARGEST, TORN, unpacked_bytes
+from .files import TORN
+from .reader import HEAD, LARGEST, unpacked_bytes
 
 LoggedMessage = tuple[int, int, bytes]  # number of its channel, ns of Unix time, content
 TIMES = struct.Struct("<QQ")

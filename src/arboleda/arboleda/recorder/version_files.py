@@ -17,8 +17,8 @@ from mcap.writer import MCAP0_MAGIC as MAGIC
 from arboleda.model.plant_files import PlantFiles
 
 from .errors import NoRecord
-from .files import VERSION
-from .reader import HEAD, KNOWN, TORN
+from .files import TORN, VERSION
+from .reader import HEAD, KNOWN
 
 
 @dataclass(frozen=True, kw_only=True)

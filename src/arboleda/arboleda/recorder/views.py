@@ -17,9 +17,9 @@ import zstandard
 from .channels import CHANGES, EVENTS, VIEW
 from .chunks import ChunkFile, messages
 from .errors import NoRecord
-from .files import DIGEST, part_at, part_path
+from .files import DIGEST, TORN, part_at, part_path
 from .plain_data import value_from
-from .reader import LARGEST, TORN, Record, channels_of
+from .reader import LARGEST, Record, channels_of
 from .rows import Row, Rows, links_of, positions_of, snapshot_of
 
 WINDOWS = 8  # half minutes of a record that are kept in memory
