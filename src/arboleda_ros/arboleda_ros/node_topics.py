@@ -67,6 +67,7 @@ class NodeTopics:
         if speakers is None:
             return self.guarded(topic, handle), None
         on_match = self.guarded(topic, partial(speakers.matched, topic))
+        handle = self.guarded(topic, handle)  # a message may be held back, and come from a timer
         return self.guarded(topic, speakers.guarded(topic, handle)), on_match
 
     def listen_as_offered(

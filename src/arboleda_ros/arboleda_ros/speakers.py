@@ -17,6 +17,7 @@ from arboleda_ros import qos
 from arboleda_ros.exclusive_topics import UNNAMED, full_name
 
 LOG = logging.getLogger("arboleda.ros.speakers")
+Handle = Callable[[Any], None]
 Known = tuple[int, int, frozenset[tuple[int, ...]]]  # how many ever came, how many are there, and who
 NOBODY: Known = (0, 0, frozenset())
 STATES = frozenset(map(int, MotionState)) - {int(MotionState.NO_LINK)}  # of a robot that is linked
@@ -41,20 +42,21 @@ class Speakers:
         self._looked: dict[str, float] = {}  # by topic, where several publish
         self._known: dict[str, Known] = {}  # by topic
         self._said: set[MotionState] = set()  # while nobody is believed
+        self._held: list[tuple[Handle, Any]] = []  # messages of that time, until the plant is told
         self._is_doubted = False  # since the plant was told, until it is told that reports count again
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._timer = node.create_timer(_FRESH_S, self._follow, clock=steady)
         self._timer.cancel()  # it runs while nobody is believed
 
-    def guarded(self, topic: str, handle: Callable[[Any], None]) -> Callable[[Any], None]:
-        """A handler that calls `handle` only for messages that count."""
+    def guarded(self, topic: str, handle: Handle) -> Handle:
+        """A handler that calls `handle`, which raises nothing, only for messages that count."""
 
         def believe(message: Any) -> None:
             self._look_for_news(topic)
             if not self._speaker.believed(self._clock()) or not qos.TELLS_MATCHES:
                 self._look_again(topic)
                 if not self._speaker.believed(self._clock()):
-                    self._overhear(message)
+                    self._overhear(handle, message)
                     return
             self._believe()
             handle(message)
@@ -81,7 +83,8 @@ class Speakers:
         self._known[topic] = (event.total_count, event.current_count, there)
         stayed = max(len(there - before), event.current_count - matched)
         if event.total_count - came > stayed:
-            self._tell(self._speaker.came_and_went(self._clock(), self._absolute(topic)))
+            told = self._speaker.came_and_went(self._clock(), self._absolute(topic))
+            self._tell(told if not self._is_doubted else None)
 
     def _follow(self) -> None:
         """Look if nobody is contested any more, whether or not a message comes."""
@@ -91,18 +94,27 @@ class Speakers:
             self._timer.cancel()
             self._believe()
 
-    def _overhear(self, message: Any) -> None:
+    def _overhear(self, handle: Handle, message: Any) -> None:
         """Note a state that may be the robot's word. One that has no `status` may not say it again."""
+        if not self._is_doubted:
+            self._held.append((handle, message))
         if isinstance(message, UInt8) and message.data in STATES:
             self._said.add(MotionState(message.data))
 
     def _believe(self) -> None:
-        """Tell the plant once that what the robot reports counts again, and what was said meanwhile."""
+        """Tell the plant once that what the robot reports counts again, and what was said meanwhile.
+
+        Where the plant was told of no contest, only nodes of one name have published: what they said counts.
+        """
+        if not (self._is_doubted or self._held):
+            return
+        said, held = tuple(sorted(self._said)), self._held
+        self._said, self._held = set(), []
         if self._is_doubted:
-            said = tuple(sorted(self._said))
-            self._on_event(Uncontested(at=self._clock(), robot=self._robot, said=said))
             self._is_doubted = False
-            self._said.clear()
+            self._on_event(Uncontested(at=self._clock(), robot=self._robot, said=said))
+        for handle, message in held:
+            handle(message)
 
     def _look_again(self, topic: str) -> None:
         if self._clock() >= self._looked.get(topic, 0.0) + _FRESH_S:
@@ -126,6 +138,7 @@ class Speakers:
         if sentence is None:
             return
         now, self._is_doubted = self._clock(), True
+        self._held.clear()
         self._keep_looking()
         LOG.warning("%s", sentence)
         self._on_event(Report(at=now, robot=self._robot, state=MotionState.NO_LINK, lost=sentence))

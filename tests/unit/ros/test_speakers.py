@@ -180,6 +180,42 @@ def test_what_was_said_while_several_published_is_told_once_only_one_is_left(ben
     assert bench.events[-1] == Uncontested(at=bench.events[-1].at, robot="ra1")
 
 
+def test_what_a_driver_says_that_was_started_anew_counts_once_its_name_is_known(bench: Bench) -> None:
+    bench.come("/mqtt_bridge", shown=False)
+    for state in (1, 2):
+        bench.hear(UInt8(data=state))
+    assert bench.heard == []
+    bench.unshown = 0
+    bench.wait(HOLD_S + 2 * bench.timer.period_s)
+    assert [each.data for each in bench.heard] == [1, 2]
+    assert bench.events == []
+    bench.now += 7200.0
+    bench.come("/other")
+    bench.matched()
+    bench.leave("/other")
+    bench.wait(HOLD_S + bench.timer.period_s)
+    assert (len(bench.heard), bench.events[-1].said) == (2, ())
+
+
+@pytest.mark.parametrize("is_named", [True, False])
+def test_what_may_be_a_strangers_is_not_taken_for_the_robots_once_that_is_known(
+    bench: Bench, is_named: bool
+) -> None:
+    bench.come("/mqtt_bridge", shown=False)
+    bench.hear(UInt8(data=2))
+    bench.unshown = 0
+    if is_named:
+        bench.come("/other")
+        bench.matched()
+        bench.leave("/other")
+    else:
+        bench.ever += 1  # one came and went
+    bench.hear(UInt8(data=0))
+    bench.wait(HOLD_S + 2 * bench.timer.period_s)
+    assert bench.heard == []
+    assert bench.events[-1].said == (MotionState.STOPPED, MotionState.FAULT)
+
+
 def test_of_a_publisher_that_came_and_went_nothing_is_left_either(bench: Bench) -> None:
     bench.ever += 1
     bench.matched()

@@ -56,10 +56,10 @@ class Speaker:
         contest.reported = names
         return self._sentence(topic, names)
 
-    def came_and_went(self, at: float, topic: str) -> Sentence | None:
-        """The sentence on a node that published and is gone; None if a contest was reported."""
-        was_believed, self._until = self.believed(at), at + HOLD_S
-        return self._contested(topic, GONE()) if was_believed else None
+    def came_and_went(self, at: float, topic: str) -> Sentence:
+        """Take that a node published and is gone; the sentence on it."""
+        self._until = at + HOLD_S
+        return self._contested(topic, GONE())
 
     def _settled(self, at: float, topic: str, *, alone: bool) -> Sentence | None:
         contest = self._contests.pop(topic, None)
