@@ -151,11 +151,16 @@ class Advisor:
                 for other in others:
                     by_reason += _until_it_moves(self.ways_out(other, visited))
                 continue
-            if obstacle.reason is Reason.STOPPED:
+            is_hearsay = obstacle.reason in HEARSAY and robots.belief(robot.name).is_hearsay
+            if is_hearsay and not robot.homes and run.state not in AT_HAND:
+                continue  # the stop that is to be cleared ends it
+            if obstacle.reason is Reason.STOPPED or (is_hearsay and not robot.homes):
                 yield from _stopping(run, obstacle.sentence)
                 return
             if _is_cleared_by_homing(run, robot.name):
                 by_reason.append(Advice(do=Verb.HOME, scope=robot.name, why=obstacle.sentence))
+            elif is_hearsay:
+                by_reason += self._homing(run, robot.name, obstacle.sentence, visited)
             elif obstacle.reason in HANDS:
                 by_reason.append(Advice(do=HANDS[obstacle.reason], scope=robot.name, why=obstacle.sentence))
             elif obstacle.reason is Reason.NOT_HOMED:
@@ -401,6 +406,7 @@ STOPPING = (CellState.ABORTING, CellState.ABORTED, CellState.CLEARING, CellState
 AT_THE_DEVICE = (Reason.LINK_LOST, Reason.DEVICE_FAULT, Reason.NOT_HOMED)  # the device takes no command
 AT_HAND = (CellState.IDLE, CellState.HELD)  # a robot that is stopped then was stopped by somebody else
 HANDS: dict[Reason, Hand] = {Reason.LINK_LOST: Hand.BRING_BACK, Reason.DEVICE_FAULT: Hand.REPAIR}
+HEARSAY = (Reason.DEVICE_FAULT, Reason.NOT_HOMED)  # that others may have said, and a person can deny
 Lead = Callable[[Advisor, CellRun, "frozenset[str]"], Iterator[Advice]]
 LEADS: dict[CellState, Lead] = {
     CellState.IDLE: Advisor._idle,

@@ -71,6 +71,7 @@ class Belief:
     `supervised`: silence means a lost link; a robot at `state` only reports when it moves, so its does not.
     `stale_at` is when it will have been silent for too long; None for a robot that cannot fall silent.
     `barred`: it refused a command for a stop that it does not report, and has not restarted its bridge since.
+    `is_hearsay`: its state may be the word of a stranger, who spoke beside it; `own_word` is its own then.
     """
 
     def __init__(self, robot: Robot, stale_after_s: float, plant_epoch: int) -> None:
@@ -119,6 +120,8 @@ class Belief:
         self.facts: dict[str, Value] = {}
         self.lost: Sentence | None = None  # why there is no link
         self.said_before_loss: MotionState | None = None  # its state, as it was when its link was lost
+        self.is_hearsay = False
+        self.own_word: MotionState | None = None
         self.facts_no = 0  # the number of the last report that changed a fact
         self._last: Report | None = None  # the last report
 
@@ -178,6 +181,8 @@ class Belief:
         for name, value in zip(MERGED, _merged(report), strict=True):
             if value is not None:
                 setattr(self, name, value)
+        if report.state is not None and report.state is not MotionState.NO_LINK:
+            self.is_hearsay = False
         if report.receipt is not None:
             self.tokens = report.tokens  # None too: tokens belong to the numbers of one report
         if report.facts:
@@ -218,11 +223,21 @@ class Belief:
         """
         before = self.said_before_loss
         gravest = max((before, *said), key=GRAVITY.index)
+        if not self.is_hearsay:
+            self.own_word = before
+        self.is_hearsay = gravest is not self.own_word
         self.state = None if gravest is MotionState.MOVING else gravest
+        self.stillness.find_again(self.own_word)
         self._last = self.lost = None
         is_lost = before is MotionState.NO_LINK
         self.online = not is_lost and (self.online or not (self.supervised or self.drawn))
         return MotionState.MOVING in (before, *said)
+
+    def end_hearsay(self) -> None:
+        """Go by what it said itself, on the word of a person who has seen to it."""
+        if self.is_hearsay and self.state is not MotionState.NO_LINK:
+            self.state = None if self.own_word is MotionState.MOVING else self.own_word
+            self.is_hearsay = False
 
     def _hear(self, report: Report) -> None:
         """Take over when and where it was heard; reports are numbered, as two may come at one time."""
@@ -276,7 +291,8 @@ class Belief:
     @property
     def says_unhomed(self) -> bool:
         """True where the board itself reports that it is not homed."""
-        return self.homed is False or self.state is MotionState.NOT_HOMED
+        own_word = self.own_word if self.is_hearsay else self.state
+        return self.homed is False or own_word is MotionState.NOT_HOMED
 
     def obstacle(self, *, was: bool) -> Failure | None:
         """The reason why this robot takes no command, if there is one; `was`: in words that stay true."""
@@ -307,12 +323,6 @@ class Belief:
             return UNANSWERED
         return FENCED._replace(more={"obeyed": self.plant, "ours": self.plant_epoch})
 
-    def _unreached(self) -> RobotTrouble:
-        """The trouble of a robot that is not heard, with the reason where one was reported."""
-        if self.lost is not None:
-            return LOST._replace(more={"why": self.lost})
-        return OFFLINE if self.heard_at is not None else UNHEARD
-
     @property
     def is_cleared_by_homing(self) -> bool:
         """True where it is in a fault that its driver's homing leads out of, without a move."""
@@ -333,15 +343,24 @@ class Belief:
         if self.drawn:
             return DRAWN
         if not self.online:
-            return self._unreached()
+            return _unreached(self)
         if self.plant != self.plant_epoch and not self.answered:
             return self._unanswered()
         trouble = TROUBLES.get(self.state)
+        if trouble is FAULTY and self.is_hearsay:
+            return SAID_FAULTY
         if trouble is FAULTY and (word := self.fact(HEALTH)) not in (None, WELL):
             return FAULTY_BECAUSE._replace(more={"why": OWN(text=str(word))})
         if self.barred and trouble is None:
             return STOPPED
         return _unhomed(self) if self.unhomed and (trouble is None or trouble is MOVING) else trouble
+
+
+def _unreached(belief: Belief) -> RobotTrouble:
+    """The trouble of a robot that is not heard, with the reason where one was reported."""
+    if belief.lost is not None:
+        return LOST._replace(more={"why": belief.lost})
+    return OFFLINE if belief.heard_at is not None else UNHEARD
 
 
 def _unhomed(belief: Belief) -> RobotTrouble:
@@ -433,6 +452,14 @@ FAULTY_BECAUSE = RobotTrouble(
     Reason.DEVICE_FAULT,
     Phrase("robot.in_fault_because", "{robot} is in fault: {why}"),
     Phrase("robot.was_in_fault_because", "{robot} was in fault: {why}"),
+)
+SAID_FAULTY = RobotTrouble(
+    Reason.DEVICE_FAULT,
+    Phrase("robot.said_in_fault", "{robot} may be in fault: more than one node published when that was said"),
+    Phrase(
+        "robot.was_said_in_fault",
+        "{robot} might have been in fault: more than one node published when that was said",
+    ),
 )
 TROUBLES: dict[MotionState | None, RobotTrouble] = {
     MotionState.MOVING: MOVING,

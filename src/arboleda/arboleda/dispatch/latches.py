@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from arboleda.model.commands import StopMode
-from arboleda.model.messages import Fact
+from arboleda.model.messages import Fact, MotionState
 
 from .belief import Belief
 from .fact_memory import FactMemory, Memory
@@ -40,7 +40,10 @@ class Latches:
     def unlatch(self, robot: str) -> None:
         """Clear a robot's stop. That moves nothing, and the cell still needs its reset."""
         self.stopped.discard(robot)
-        self._beliefs[robot].barred = False
+        belief = self._beliefs[robot]
+        belief.barred = False
+        if belief.state is MotionState.STOP_LATCHED or not belief.robot.homes:
+            belief.end_hearsay()
         if not self._beliefs[robot].online:
             self.unheard.add(robot)
         self._memory.remember(Fact.LATCH, robot, CLEARED)

@@ -42,7 +42,9 @@ class Stillness:
 
     def hear(self, report: Report, number: int, position: Position | None, before: Position | None) -> None:
         """Take over a report by its number, its position, and the position of the report before."""
-        if report.state is not None:
+        if report.state is MotionState.NO_LINK:
+            self._says_still = False
+        elif report.state is not None:
             still = report.state in STILL
             self._still_from = self._state_no if still and self._says_still else 0
             self._says_still = still
@@ -95,6 +97,10 @@ class Stillness:
     def come_to_a_stop(self, at: float) -> None:
         """Note that it may have stopped just now, so that its place is told a little later."""
         self._sure_from = at + APART_S
+
+    def find_again(self, said: MotionState | None) -> None:
+        """Take what it `said` before its link was lost for its last state code, from when it came."""
+        self._says_still = said in STILL
 
     def doubt(self, until: float) -> None:
         """Take its reports of a place before that time for older than its last move."""

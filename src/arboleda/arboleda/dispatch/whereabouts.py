@@ -81,9 +81,10 @@ class Whereabouts:
     def put_at_reference(self, robot: str, home: Position | None = None) -> None:
         """Take a robot that cannot report it for put at its reference by a person.
 
-        One without a reference is put at its `home`.
+        One without a reference is put at its `home`. That person has seen if it is in fault, too.
         """
         belief = self._beliefs[robot]
+        belief.end_hearsay()
         self.displace(belief, displaced=False)
         self.reached.pop(robot, None)
         self._set_out.discard(robot)
