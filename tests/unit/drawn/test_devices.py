@@ -19,11 +19,11 @@ from arboleda.plant_file import loader, meeting_points
 from arboleda.recipes.place_questions import PlaceHandle
 from arboleda.trees.part_places import Places
 from arboleda_drawn import devices
-from arboleda_drawn.devices import DrawnDevices, Form, scales, steps
+from arboleda_drawn.devices import DrawnDevices, Form, scales, sorters, steps
 from arboleda_drawn.devices.kinds import NEEDY, SPARE, Span
 from arboleda_drawn.devices.printers import BED, ROLE
 from arboleda_drawn.plants import DrawnPlants, keep, loaded, of_devices
-from arboleda_proofs.campaigns.plants import Plant
+from arboleda_proofs.campaigns.plants import Plant, PlantRotation
 from arboleda_proofs.campaigns.setting import Setting
 from arboleda_proofs.simulator.invariants.part_places import done_tasks_leave_nothing_behind
 from arboleda_proofs.simulator.truth.shared_devices import SharedDevicesTruth
@@ -37,6 +37,7 @@ ONLY_IN_XML = (
     *("Script", "ScriptCondition", "SequenceWithMemory", "SubTree", "Switch3", "TryCatch", "WhileDoElse"),
 )
 FAILS_ON_PURPOSE = 78  # has a rescue that fails, and a grip that is refused
+ENDS_BY_ANSWER = 5  # says in its first recipe how each answer leaves its sorter
 SCRIPTS = ("_failureIf", "_onFailure", "_onSuccess", "_post", "_skipIf", "_successIf", "_while")
 
 
@@ -302,6 +303,28 @@ def test_each_number_has_one_of_the_drawn_ways(drawn: list[DrawnDevices]) -> Non
         for number in (-50, -3, 0.75, 2, 7, 20, 80.1, 200):
             assert sum(way.has(number) for way in ranges if way.comparisons) <= 1
             assert any(way.has(number) for way in ranges)
+
+
+def test_recipes_have_an_end_for_each_answer_in_both_forms_and_check_takes_the_plants(
+    drawn: list[DrawnDevices],
+) -> None:
+    ending = [each for each in drawn if any(recipe.ends_by_answer for recipe in each.recipes)]
+    texts = {form: "".join(t for p in ending if p.form is form for t in p.beside.values()) for form in Form}
+    assert "ends_with=[{'sorter.inspect': " in texts[Form.PYTHON]
+    assert 'ends_with="sorter.inspect: ' in texts[Form.XML] and " | sorter.inspect: " in texts[Form.XML]
+    assert all(loaded(each) for each in ending[:4])
+
+
+def test_an_end_for_an_answer_that_is_not_so_is_found() -> None:
+    plant = of_devices(ENDS_BY_ANSWER).drawn
+    assert plant is not None
+    first = plant.recipes[0]
+    (answer, (fact, side)), *others = first.ends_by_answer
+    wrong = next(each for each in sorters.SIDES[isinstance(side, int)] if each != side)
+    made = replace(first, ends_by_answer=((answer, (fact, wrong)), *others))
+    plants = PlantRotation(plants=(loaded(replace(plant, recipes=(made,))),))
+    result = Setting(plants=plants, cycles=12, level="none").run(1)
+    assert "recipes_end_as_they_say" in str(result.broken)
 
 
 BUGS = {

@@ -18,6 +18,7 @@ from .printers import Printer
 from .recipes import Beside, RecipeDrawer
 from .scales import Scale
 from .shared_ends import SharedEnds
+from .sorters import Sorter
 from .trials import Trials
 
 SECOND = 0.35  # how often a second cell is like the first one
@@ -44,13 +45,18 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
     printer.join(drawer.section)
     scale = Scale(Dice(seed, "numbers", attempt), are_written=are_written)
     scale.join(drawer.section)
+    sorter = Sorter(Dice(seed, "sorting", attempt), are_written=are_written)
+    sorter.join(drawer.section)
     section: Section = {"name": f"drawn_{seed}"}
     if dice.chance(0.3):
         section["mqtt_version"] = dice.pick(("3.1.1", "5"))
     timing = _timing(dice)
     if timing:
         section["timing"] = timing
-    kinds = [*drawer.kinds.values(), *(each.kind for each in (printer, scale) if each.kind is not None)]
+    kinds = [
+        *drawer.kinds.values(),
+        *(each.kind for each in (printer, scale, sorter) if each.kind is not None),
+    ]
     written = tuple(kind for kind in kinds if kind.is_written)
     declared = {kind.name: kind.section for kind in kinds if not kind.is_written}
     _say_needs(Dice(seed, "said needs", attempt), declared)
@@ -72,6 +78,7 @@ def draw(seed: int, attempt: int = 0) -> DrawnDevices:
         ends=SharedEnds(Dice(seed, "ends", attempt), layout),
         printer=printer,
         scale=scale,
+        sorter=sorter,
     )
     recipes = RecipeDrawer(dice, layout, beside, as_xml=as_xml)
     drawn = tuple(recipes.draw(number) for number in range(1, 1 + dice.pick(RECIPES)))

@@ -56,7 +56,8 @@ def _recipe(recipe: Recipe) -> str:
     roles = dict.fromkeys(str(each.role) for each in walk(recipe.step) if hasattr(each, "role"))
     lines = [f"    {role} = cell.device({role!r})" for role in roles]
     lines += [f"    {each.answer} = {_call(each)}" for each in calls if isinstance(each, Ask | Tell)]
-    ends = f", ends_with={dict(recipe.ends)!r}" if recipe.ends else ""
+    said = [dict(each) for each in recipe.all_ends]
+    ends = f", ends_with={said if len(said) > 1 else said[0]!r}" if said else ""
     head = f"@recipe({recipe.name!r}{ends})\ndef {recipe.name}({given}):\n"
     return head + "\n".join([*lines, f"    return {_text(_whole(recipe.step), 1)}"])
 

@@ -16,6 +16,7 @@ from .layout import Layout
 from .printers import Printer
 from .scales import Scale
 from .shared_ends import SharedEnds
+from .sorters import Sorter
 from .steps import (
     Choice,
     Home,
@@ -47,6 +48,7 @@ class Beside:
     ends: SharedEnds
     printer: Printer
     scale: Scale
+    sorter: Sorter
 
 
 class RecipeDrawer:
@@ -78,6 +80,7 @@ class RecipeDrawer:
         tried += self._beside.scale.draw()
         if tried:
             made = replace(made, step=Work(steps=(made.step, *tried)))
+        made = self._beside.sorter.after(made)
         self._drawn.append(made)
         self._usual_s[made.name] = took_s
         self._carrying |= {made.name} if carries else set()

@@ -8,6 +8,7 @@ from dataclasses import fields, replace
 from typing import Any
 
 from .drawn import DrawnDevices
+from .sorters import ROLE as SORTER
 from .steps import Choose, Param, Recipe, Run, Step, Tell, Value, Work, children, walk
 
 KEEP = frozenset({"name", "kind", "model", "effect", "home", "cells", "devices", "evidence_"})
@@ -18,7 +19,9 @@ def smaller(drawn: DrawnDevices) -> Iterator[DrawnDevices]:
     yield from _fewer_recipes(drawn)
     for number, recipe in enumerate(drawn.recipes):
         for step in _smaller_steps(recipe.step):
-            made = _trimmed(replace(recipe, step=step, ends=_ends_of(recipe, step)))
+            by_answer = recipe.ends_by_answer if _leaves_the_sorter(recipe, step) else ()
+            less = replace(recipe, step=step, ends=_ends_of(recipe, step), ends_by_answer=by_answer)
+            made = _trimmed(less)
             yield replace(drawn, recipes=(*drawn.recipes[:number], made, *drawn.recipes[number + 1 :]))
         for end in range(len(recipe.ends)):
             made = replace(recipe, ends=(*recipe.ends[:end], *recipe.ends[end + 1 :]))
@@ -76,6 +79,11 @@ def _ends_of(recipe: Recipe, step: Step) -> tuple[tuple[str, Value], ...]:
     """The ends of a recipe that are those of a smaller step, too: of devices that it tells what it told."""
     told, now = _told(recipe.step), _told(step)
     return tuple(each for each in recipe.ends if told.get(role := each[0].partition(".")[0]) == now.get(role))
+
+
+def _leaves_the_sorter(recipe: Recipe, step: Step) -> bool:
+    """True if a smaller step of a recipe tells the sorter what the recipe told it."""
+    return _told(recipe.step).get(SORTER) == _told(step).get(SORTER)
 
 
 def _told(step: Step) -> dict[str, list[Tell]]:

@@ -307,16 +307,28 @@ class OfPaths:
 
 
 Parameter = Choice | Limits | OfGroup | OfPaths
+Ends = tuple[tuple[str, Value], ...]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Recipe:
-    """Recipe by its name: its parameters, its step, and what it says is so at its end, as `lamp.lit`."""
+    """Recipe by its name: its parameters, its step, and what it says is so at its end, as `lamp.lit`.
+
+    `ends_by_answer`: one of these is so as well, that with the answer with which it begins.
+    """
 
     name: str
     parameters: tuple[Parameter, ...]
     step: Step
-    ends: tuple[tuple[str, Value], ...] = ()
+    ends: Ends = ()
+    ends_by_answer: tuple[Ends, ...] = ()
+
+    @property
+    def all_ends(self) -> tuple[Ends, ...]:
+        """The ends, each whole; empty where it says of none."""
+        return tuple((*each, *self.ends) for each in self.ends_by_answer) or (
+            (self.ends,) if self.ends else ()
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

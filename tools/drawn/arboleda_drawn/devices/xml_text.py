@@ -7,6 +7,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from .steps import (
     Choose,
+    Ends,
     Fail,
     Fallback,
     Gets,
@@ -69,11 +70,15 @@ def xml_of(recipe: Recipe, others: Mapping[str, Recipe], writer: Writer) -> str:
     model = SubElement(SubElement(root, "TreeNodesModel"), "SubTree", {"ID": main})
     for parameter in recipe.parameters:
         SubElement(model, "input_port", {"name": parameter.name})
-    if recipe.ends:
-        ends = "; ".join(f"{what}: {_end(value)}" for what, value in recipe.ends)
+    if recipe.all_ends:
+        ends = " | ".join(map(_whole_end, recipe.all_ends))
         SubElement(SubElement(model, "MetadataFields"), "Metadata", {"ends_with": ends})
     indent(root)
     return tostring(root, encoding="unicode") + "\n"
+
+
+def _whole_end(ends: Ends) -> str:
+    return "; ".join(f"{what}: {_end(value)}" for what, value in ends)
 
 
 def _end(value: Value) -> str:
