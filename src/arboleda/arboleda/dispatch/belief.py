@@ -97,6 +97,7 @@ class Belief:
         self.boot_id: int | None = None
         self.number: int | None = None  # of its board's last telemetry
         self.state: MotionState | None = None
+        self.moves_since = 0.0  # as far as it was heard; it may have stood while its link was lost
         self.q: tuple[float, ...] | None = None
         self.node: int | None = None
         self.position: Position | None = None
@@ -178,6 +179,9 @@ class Belief:
         is_told_why = self.lost is None and report.lost is not None
         if report.state is MotionState.NO_LINK and (self.state is not MotionState.NO_LINK or is_told_why):
             self.said_before_loss, self.is_unplaced = self.state, True
+        was_seen_moving = self.online and self.state is MotionState.MOVING
+        if report.state is MotionState.MOVING and not was_seen_moving:
+            self.moves_since = report.at
         for name, value in zip(MERGED, _merged(report), strict=True):
             if value is not None:
                 setattr(self, name, value)

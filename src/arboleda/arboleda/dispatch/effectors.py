@@ -62,6 +62,7 @@ class Effectors:
             name: [] for name in model.robots
         }
         self._felt: dict[str, bool] = {}  # by arm: what its sensor said last on the way of a closed effector
+        self._closed_at: dict[str, float] = {}  # by arm: when it was first heard to move closed
         self._emptied = {name for name in holders if memory.value(Fact.EMPTIED, name) is not None}
         self._memory = memory
         self._ledger = ledger
@@ -76,6 +77,7 @@ class Effectors:
         """Book a command to an effector that leaves now."""
         self.opened.pop(command.robot, None)
         self._felt.pop(command.robot, None)
+        self._closed_at.pop(command.robot, None)
         self._set_emptied(command.robot, emptied=False)
         if not command.grips:
             self.grips.open(command.robot, command.id)
@@ -149,16 +151,20 @@ class Effectors:
     def feel(self, belief: Belief, *, debounce_s: float) -> None:
         """Believe the sensor of an arm that moves with its effector closed.
 
-        On its way it sees nothing but what is in the hand; at a place it may see what lies there.
+        On its way it sees nothing but what is in the hand; at a place it may see what lies there. So a word
+        counts that it has said on this way, in this boot, and has stood by for the debounce.
         """
-        arm, sees, felt = belief.robot.name, belief.piece, self._felt.get(belief.robot.name)
-        is_settled = sees or (belief.heard_at or 0.0) - belief.piece_since >= debounce_s
-        if sees is None or sees is felt or not is_settled or self.grips[arm] is not Grip.ON:
+        robot, sees, felt = belief.robot, belief.piece, self._felt.get(belief.robot.name)
+        arm, heard_at = robot.name, belief.heard_at or 0.0
+        if sees is None or sees is felt or self.grips[arm] is not Grip.ON:
+            return
+        closed_at = self._closed_at.setdefault(arm, heard_at)
+        said_at = heard_at if robot.piece_on_change else belief.piece_at
+        since = max(belief.moves_since, belief.piece_since, closed_at)
+        if belief.piece_boot != belief.boot_id or said_at - since < debounce_s:
             return
         self._felt[arm] = sees
-        if sees and felt is None:
-            return  # as it was told
-        self.version += 1
+        self.version += not sees or felt is not None  # else it is as it was told
         missed = HandlingStep.LOST if felt else HandlingStep.MISSED
         self._tell(arm, HandlingStep.HELD if sees else missed)
 

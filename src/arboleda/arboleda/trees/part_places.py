@@ -35,8 +35,9 @@ def trouble_in(sentence: Sentence) -> Sentence | None:
     return next((each for each in sentence.parts() if each.key in (EMPTY.key, FULL.key)), None)
 
 
+OPENED = frozenset({HandlingStep.TOLD_TO_TAKE, HandlingStep.EMPTY, HandlingStep.TAKEN_OUT})
 SENSED_EMPTY = frozenset({HandlingStep.MISSED, HandlingStep.LOST})
-OF_PLACE, OF_HAND, IN_QUESTION, KNOWN, SURE, LETTING_GO = "=", ":", "?", "~", "+", "-"
+OF_PLACE, OF_HAND, IN_QUESTION, KNOWN, SURE, LETTING_GO, LOST = "=", ":", "?", "~", "+", "-", "!"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,6 +56,11 @@ class HeldPart:
         """The target at which the part lies once the hand is empty; None where it is lost."""
         if self.lets_go and (self.is_sure or self.target):
             return here
+        return self.missed_at
+
+    @property
+    def missed_at(self) -> str | None:
+        """The target at which its hand has closed beside it, where its sensor has never seen it."""
         return None if self.is_sure else self.target
 
     @property
@@ -105,6 +111,7 @@ class Places:
         self._left_there: dict[
             str, str
         ] = {}  # by hand: the target whose part it was told to take, and did not
+        self._lost: dict[str, HeldPart] = {}  # by closed hand: the part that it has not, by its sensor
         if self._parts:
             self._take_over(self._earlier_words())
             for device in {*self._hands, *self._of_device}:
@@ -122,7 +129,9 @@ class Places:
         self._parts |= {target: n for target, n in parts.items() if target in self._parts}
         self.asked.take_over(dict(_read(books, IN_QUESTION)), _numbers(books, KNOWN))
         grips, words = self._dispatcher.effectors.grips, dict(_read(books, OF_HAND))
-        for hand in self._hands:
+        lost = {hand: HeldPart.read(word[1:]) for hand, word in words.items() if word.startswith(LOST)}
+        self._lost = {hand: lost[hand] for hand in self._hands if hand in lost and grips.holding(hand)}
+        for hand in [each for each in self._hands if each not in lost]:
             taken = HeldPart(is_sure=True, lets_go=grips[hand] is Grip.SWITCHING)  # from no place
             held = HeldPart.read(words[hand]) if hand in words else taken
             # in a cell with places the books have each part in a hand, so a hand that they lack was empty
@@ -210,9 +219,10 @@ class Places:
     def _to_let_go(self, hand: str) -> Sentence | None:
         space = self._hands.get(hand)
         here = self._target(space) if space is not None else None
-        if here not in self._places or hand not in self._held:
+        if here not in self._places or not self._dispatcher.effectors.grips.holding(hand):
             return None
-        if self.is_free(here):
+        has_missed_it = hand in self._lost and self._lost[hand].missed_at == here
+        if has_missed_it or self.is_free(here):
             return None
         return FULL(robot=hand, place=here, parts=self.parts(here), cell=self._cell.name)
 
@@ -280,10 +290,18 @@ class Places:
             return
         held = self._held.get(hand) or HeldPart()
         here = held.target
-        if handling in SENSED_EMPTY and (self._cell.piece_check is False or held.target in self._rack):
+        is_believed = self._cell.piece_check is not False and held.target not in self._rack
+        if handling in SENSED_EMPTY and not (is_believed and hand in self._held):
             return  # nobody looks at the sensor here; of what is in a rack the recipes see to that
+        if handling is HandlingStep.HELD and held.is_sure:
+            return
+        if handling in OPENED:
+            self._lost.pop(hand, None)
         if handling is HandlingStep.MISSED:
             held, handling = replace(held, is_sure=False, lets_go=False), HandlingStep.EMPTY
+            self._lost[hand] = held
+        elif handling is HandlingStep.LOST:
+            self._lost[hand] = held
         if handling in (HandlingStep.TOLD_TO_TAKE, HandlingStep.TOLD_TO_LET_GO):
             self._left_there.pop(hand, None)
         if handling is HandlingStep.TOLD_TO_TAKE:
@@ -292,8 +310,11 @@ class Places:
             self._held[hand] = held
             self._move(here, -1, hand)
         elif handling is HandlingStep.HELD:
-            late = self._left_there.pop(hand, None)
-            if late is not None and self._target(self._hands[hand]) in (late, None):
+            late, lost = self._left_there.pop(hand, None), self._lost.pop(hand, None)
+            if lost is not None:
+                held = lost
+                self._move(lost.missed_at, -1, hand)
+            elif late is not None and self._target(self._hands[hand]) in (late, None):
                 held = HeldPart(target=late)  # it takes the part after all
                 self._move(late, -1, hand)
             self._held[hand] = replace(held, is_sure=True)
@@ -306,8 +327,9 @@ class Places:
                 back = held.back(here)
                 self._move(back, +1, hand)
                 if back is not None and not held.is_sure:
-                    self._left_there[hand] = back
                     self.asked.doubt(back)
+                    if hand not in self._lost:
+                        self._left_there[hand] = back
         if self._places or not self._noted.isdisjoint((held.target, here)):
             self._keep()
 
@@ -341,14 +363,19 @@ class Places:
 
     def _keep(self) -> None:
         """Have the books kept: `nest=1` for a place, `jaw:nest+` for a hand and where it took its part,
-        `nest?` for a place in question, `nest~1` for what was known to be there before its last task.
+        `nest?` for a place in question, `nest~1` for what was known to be there before its last task,
+        `jaw:!nest+` for a closed hand that has lost its part; one without `+` never had it.
 
         In a cell with a rack and no places, a part from elsewhere is not kept: the grip of its hand says
         enough.
         """
         words = [f"{target}{OF_PLACE}{number}" for target, number in sorted(self._parts.items()) if number]
-        held = sorted([each for each in self._held.items() if self._places or each[1].target in self._noted])
+        held, lost = (
+            sorted([each for each in hands.items() if self._places or each[1].target in self._noted])
+            for hands in (self._held, self._lost)
+        )
         words += [f"{hand}{OF_HAND}{part.written}" for hand, part in held]
+        words += [f"{hand}{OF_HAND}{LOST}{part.written}" for hand, part in lost]
         words += [f"{target}{IN_QUESTION}" for target in self.asked.targets]
         words += [f"{target}{KNOWN}{number}" for target, number in sorted(self.asked.known.items())]
         self._dispatcher.memory.remember(Fact.STORED, self._cell.name, None)

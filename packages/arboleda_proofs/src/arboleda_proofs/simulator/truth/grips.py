@@ -75,6 +75,9 @@ class Effector:
         self.unseen_at = -math.inf
         self.felt: bool | None = None
         self._moves = self._is_said_on = False
+        self._said: bool | None = None
+        self._said_since, self._on_way_since, self._felt_at = -math.inf, math.inf, -math.inf
+        self._heard_at = 0.0
         self._is_empty = self._is_robbed = self._carries = False
         self._nothing_since: float | None = None  # for how long its board has said that no part is there
 
@@ -102,15 +105,31 @@ class Effector:
         is_settled = not is_there and now - since >= debounce_s
         if is_settled and self.arm.on and not self.arm.holding and self.let_go is None:
             self._is_empty = True
-        if self._moves and self._is_said_on and self.let_go is None and (is_there or is_settled):
-            self.felt = is_there
+        if is_there is not self._said:
+            self._said, self._said_since = is_there, now
+        is_of_way = now - max(self._on_way_since, self._said_since) >= debounce_s
+        if is_of_way and self.let_go is None and is_there is not self.felt:
+            self.felt, self._felt_at = is_there, now
 
-    def hear(self, report: Report) -> None:
+    def restart(self) -> None:
+        """Begin with a new plant, which hears the arm anew. That a part was seen on the way it has not kept,
+        nor maybe what the old one heard last.
+        """
+        self._on_way_since = math.inf
+        if self.felt or self._felt_at >= self._heard_at:
+            self.felt = None
+
+    def hear(self, report: Report, *, stale_after_s: float) -> None:
         """Take in what the plant hears of the arm."""
+        was_lost, self._heard_at = report.at - self._heard_at >= stale_after_s, report.at
         if report.state is not None:
             self._moves = report.state is MotionState.MOVING
         if report.effector is not None:
             self._is_said_on = report.effector
+        if not (self._moves and self._is_said_on):
+            self._on_way_since = math.inf
+        elif was_lost or self._on_way_since == math.inf:
+            self._on_way_since = report.at
 
     def look(self) -> None:
         """Take in what somebody did to it in this step."""
@@ -157,12 +176,18 @@ class GripsTruth:
             if self._unseen(arm):
                 effector.unseen_at = self._world.now
 
+    def restart(self) -> None:
+        """Begin with a new plant."""
+        for effector in self.effectors.values():
+            effector.restart()
+
     def hear(self, reports: Iterable[Report]) -> None:
         """Take in what the plant hears of parts."""
-        debounce_s = self._world.model.timing.piece_debounce_s
+        timing = self._world.model.timing
+        debounce_s, stale_after_s = timing.piece_debounce_s, timing.stale_after_s
         for report in reports:
             if report.robot in self.effectors:
-                self.effectors[report.robot].hear(report)
+                self.effectors[report.robot].hear(report, stale_after_s=stale_after_s)
             if report.piece is not None and report.robot in self.effectors:
                 self.effectors[report.robot].feel(report.at, is_there=report.piece, debounce_s=debounce_s)
 

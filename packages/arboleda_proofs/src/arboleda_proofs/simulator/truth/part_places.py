@@ -413,11 +413,10 @@ class PlacesTruth:
 
     def restart(self, words: Iterable[object], kept: Mapping[str, str]) -> None:
         """Begin with a new plant: what a person said in the step in which the old one died is so if it was
-        kept, though nobody was answered. Nobody knows of the order to make a part whether it had left, nor
-        what the sensor of a hand had said.
+        kept, though nobody was answered. Nobody knows of the order to make a part whether it had left.
         """
         for places in self.cells.values():
-            places.is_doubtful |= places.makes_parts or bool(places.empty_handed)
+            places.is_doubtful |= places.makes_parts
         for word in words:
             if isinstance(word, OperatorRequest) and word.verb in (Verb.LOAD, Verb.UNLOAD):
                 named = with_common_places(self._scopes.parts(word), self._world.model.cells)

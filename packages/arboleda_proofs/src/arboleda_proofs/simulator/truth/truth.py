@@ -137,6 +137,7 @@ class Truth(RobotsTruth):
         super()._new_plant()
         kept = self.world.plant_process.found.facts.get(Fact.PARTS, {})
         self.places.restart(self.world.moment.last_words, kept)
+        self.grips.restart()
         self._last.clear()
         self._at_work = _tasks_at_work(self.world)
 
