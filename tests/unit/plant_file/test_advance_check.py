@@ -370,3 +370,48 @@ def test_a_warning_ends_with_what_to_write_in_python(tmp_path: Path, body: str, 
 def test_what_an_advice_says_can_be_written(tmp_path: Path) -> None:
     decorator = '"try", ends_with={"drawer": 1}'
     assert warned(tmp_path, f"{INTO}, loader.home()", decorator) == []
+
+
+NUMBERS = """
+name: lab
+uses: [recipes.py]
+kinds:
+  scale: {verbs: {weigh: {effect: query, answers: number}, look: {effect: query, answers: [good, bad]}}}
+  gate:
+    facts: {at: [middle, left, right], pinned: bool}
+    verbs:
+      turn: {effect: motion, with: {to: [middle, left, right]}, sets: {at: $to}}
+      pin: {effect: motion, needs: {at: left}, sets: {pinned: true}}
+cells:
+  line:
+    devices: {scale: {kind: scale}, gate: {kind: gate}}
+"""
+CHOICES = """
+from arboleda.recipes import recipe, work
+
+@recipe("try")
+def attempt(cell):
+    scale, gate = cell.devices("scale", "gate")
+    asked, left, right, pin = scale.%s(), gate.turn(to="left"), gate.turn(to="right"), gate.pin()
+    return work(asked, cell.choose(asked, %s), cell.choose(asked, %s))
+"""
+BY_120 = '{"> 120": left, "otherwise": right}'
+BY_150 = '{"> 150": [], "> 120 and <= 150": %s, "otherwise": %s}'
+
+
+@pytest.mark.parametrize(
+    ("verb", "first", "then", "is_sound"),
+    [
+        ("weigh", BY_120, BY_150 % ("pin", "[]"), True),
+        ("weigh", BY_120, BY_150 % ("[]", "pin"), False),
+        ("look", '{"good": left, "bad": right}', '{"bad": [], "good": pin}', True),
+        ("look", '{"good": left, "bad": right}', '{"bad": pin, "good": []}', False),
+    ],
+)
+def test_two_choices_by_one_question_go_by_the_same_answer(
+    tmp_path: Path, verb: str, first: str, then: str, *, is_sound: bool
+) -> None:
+    (tmp_path / "plant.yaml").write_text(NUMBERS, "utf-8")
+    (tmp_path / "recipes.py").write_text(CHOICES % (verb, first, then), "utf-8")
+    found = advance_check.warnings(load(tmp_path / "plant.yaml"))
+    assert ["which needs at of gate to be left" in each for each in found] == [True] * (not is_sound)

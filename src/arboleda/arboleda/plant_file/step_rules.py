@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import product
+from itertools import product, zip_longest
 from math import prod
 from typing import cast
 
@@ -25,7 +25,7 @@ from arboleda.engine import (
     steps,
     title_of,
 )
-from arboleda.kinds.ranges import Range, Wanted, is_so
+from arboleda.kinds.ranges import Range, Wanted, apart, is_so
 from arboleda.model.facts import Value, shown
 from arboleda.recipes.authoring import FAIL, IS, NO_OTHER
 from arboleda.recipes.decorators import Again, AtMost, Forgiven, Inverted, Rescue, Times
@@ -172,13 +172,25 @@ def _chosen(
     """
     outcome, key = Outcome(), answer_key(question)
     asked = asked_by(question)
-    for number, child in enumerate(node.children):
+    for child, answers in _ways(node, question):
         last = _last_answer(question, child)
-        here = [scene for scene in scenes if scene.get(*key) in (None, number)]
-        begin = [scene.put({key: number, **(last if scene.has(asked) else {})}) for scene in here]
+        here = [(scene, each) for each in answers for scene in scenes if scene.get(*key) in (None, each)]
+        begin = [scene.put({key: each, **(last if scene.has(asked) else {})}) for scene, each in here]
         after = walk.follow(child, begin)
         outcome = outcome.plus(done=after.passed, failed=after.failed)
     return outcome
+
+
+def _ways(node: composites.Selector, question: Question) -> Iterator[tuple[Behaviour, Sequence[Value]]]:
+    """Each branch of a choice with the answers that lead to it, as all choices by this question have them.
+
+    Of numbers there is one for each set of ranges that a number has in all these choices.
+    """
+    ranges: Sequence[Range] = getattr(node, "ranges", ())
+    numbers = () if question.number is None else apart(question.number, question.ranges)
+    apart_by = {tuple(each.has(number) for each in question.ranges): number for number in numbers}
+    for child, its in zip_longest(node.children, ranges):
+        yield child, (child.name,) if its is None else tuple(filter(its.has, apart_by.values()))
 
 
 def _last_answer(question: Question, branch: Behaviour) -> dict[SceneKey, Value]:

@@ -377,6 +377,8 @@ class Kit(Offers):
         other_way = Require(NO_OTHER(), self._context.failures, other)
         node = steps.framed(steps.selector(CHOOSE(), *branches, other_way))
         node.asked = question  # type: ignore[attr-defined]
+        if question.number is not None:
+            node.ranges = tuple(wanted)  # type: ignore[attr-defined]
         self._making.chosen.append((node, question))
         return node
 
