@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum
 
 import pytest
 
@@ -21,6 +22,10 @@ from arboleda.wire.payloads import OrderGoal
 @dataclass(frozen=True, kw_only=True)
 class Saw:
     mm_s: float = 20.0
+
+
+class Cooked(str, Enum):
+    DONE = "done"
 
 
 @kind("saw")
@@ -106,6 +111,18 @@ def test_a_virtual_device_does_what_its_kind_says() -> None:
     done(body, "measure")
     (end,) = body.take_ends()
     assert end.answer == "thick"
+
+
+@pytest.mark.parametrize(
+    ("answers", "found"), [([1, 2], 2.0), ([0, 1], True), (["raw", "done"], Cooked.DONE)]
+)
+def test_a_virtual_answer_that_is_equal_to_a_listed_one_is_that_one(
+    answers: list[Value], found: Value
+) -> None:
+    body = MachineBody(Kind(verbs={"look": query(answers=answers, virtual=lambda facts: found)}).declared)
+    done(body, "look")
+    (end,) = body.take_ends()
+    assert end.answer == answers[1] and type(end.answer) is type(answers[1])
 
 
 def test_a_virtual_device_whose_function_fails_gives_up() -> None:

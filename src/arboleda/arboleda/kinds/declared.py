@@ -237,6 +237,9 @@ class DeviceKind:
             return type.first
         what = f"virtual of {call.verb}"
         found = _computed(what, call.definition.virtual, dict(facts), **dict(call.values))
+        listed = call.definition.answers
+        if found in listed:  # also as an equal value of another type, as 2.0 for 2
+            return listed[listed.index(found)]
         answer = type.read(found)
         if answer is None:
             raise UseError(f"{what} answers {quoted(found)}; its answers are {type.allowed()}")
