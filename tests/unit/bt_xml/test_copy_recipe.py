@@ -38,6 +38,8 @@ kinds:
       pump: {effect: process, with: {ml: number}, takes_s: 1}
       look: {effect: query, answers: [a, b, c, d, e, f, g], takes_s: 1}
       see: {effect: query, answers: [a, b], takes_s: 1}
+      level: {effect: query, answers: ["> 5", otherwise], takes_s: 1}
+      weigh: {effect: query, answers: number, takes_s: 1}
 cells:
   lab:
     devices: {arm: {kind: arm, model: scara}, pump_1: {kind: pump}, pump_2: {kind: pump}}
@@ -120,6 +122,13 @@ def test_a_value_that_is_given_as_it_is_stays_a_parameter(lab: Lab) -> None:
     assert '<Metadata values="ml: 5, 10"/>' in desk.copied(model, "lab", "a", "b")
 
 
+def test_a_listed_answer_that_reads_like_a_range_is_a_case_of_a_switch(lab: Lab) -> None:
+    code = "def a(cell):\n    seen = cell.device('pump_1').level()\n"
+    code += "    ways = {'> 5': cell.wait(1), 'otherwise': cell.wait(2)}\n"
+    drawn = copied(lab(code + "    return work(seen, cell.choose(seen, ways))\n"))
+    assert 'case_1="&gt; 5" case_2="otherwise"' in drawn
+
+
 def test_where_a_parameter_chooses_the_device_a_switch_stands_around_that_step_alone(lab: Lab) -> None:
     code = "def a(cell, n=Choice(1, 2), to=Target('slots')):\n"
     code += "    return work(cell.device('arm').go(to), cell.device(f'pump_{n}').pump(ml=7))\n"
@@ -181,6 +190,11 @@ def test_the_steps_around_steps_have_their_nodes(lab: Lab) -> None:
             "def a(cell):\n    seen = cell.device('pump_1').look()\n"
             "    return work(seen, cell.choose(seen, dict.fromkeys('abcdefg', ())))\n",
             "choose of pump_1.look cannot be drawn: it has 7 ways, and a Switch at most 6",
+        ),
+        (
+            "def a(cell):\n    seen = cell.device('pump_1').weigh()\n"
+            "    return work(seen, cell.choose(seen, {'> 5': cell.wait(1), 'otherwise': cell.wait(2)}))\n",
+            "choose of pump_1.weigh cannot be drawn: its ways are ranges of a number",
         ),
         (
             "def a(cell):\n    return cell.wait(cell.wait(1).seconds)\n",

@@ -11,13 +11,11 @@ from arboleda.bt_xml import leaves, values
 from arboleda.bt_xml.nodes import Kind, PortDirection
 from arboleda.bt_xml.values import Variable
 from arboleda.engine import Context
-from arboleda.kinds.ranges import comparison
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Reason
 from arboleda.model.outside import quoted
 from arboleda.recipes.authoring import Kit, Making, work
 from arboleda.recipes.handles import Step, flat, question_of
-from arboleda.recipes.number_ways import OTHERWISE
 
 from .errors import EditError
 
@@ -86,7 +84,9 @@ class DrawingKit(Kit):
         real = question_step.real if isinstance(question_step, DrawnStep) else None
         super().choose(real or question_step, dict.fromkeys(ways, ()))  # which refuses wrong choices
         name = f"choose of {question_step.name}"
-        if any(isinstance(value, str) and (value == OTHERWISE or comparison(value)) for value in ways):
+        question = question_of(real or question_step)
+        has_ranges = question is not None and question.number is not None
+        if has_ranges and any(isinstance(value, str) for value in ways):
             raise refusal(name, "its ways are ranges of a number, and a Switch has single values")
         if len(ways) > MOST_WAYS:
             raise refusal(name, f"it has {len(ways)} ways, and a Switch at most {MOST_WAYS}")
