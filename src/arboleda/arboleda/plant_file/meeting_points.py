@@ -89,8 +89,8 @@ def _alike(cell: Cell, space: Workspace) -> Iterator[str]:
     for (one, here), (other, there) in combinations(targets, 2):
         is_same = space.robot.motion.stands_at(here.q, there.q) and here.above == there.above
         if is_same and space.home not in (here, there) and not met.issuperset((one, other)):
-            alike = f"{one} and {other} of {space.robot.name} are one place"
-            yield f"{cell.name}: {alike}; move one of them, or delete it"
+            alike = f"{cell.name}: {one} and {other} of {space.robot.name} are one place"
+            yield alike + "; move one of them, or delete it"
 
 
 def _meetings(plant: PlantModel) -> Iterator[str]:
