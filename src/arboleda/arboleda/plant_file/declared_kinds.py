@@ -165,8 +165,9 @@ def _answers(
         return None if type is None else (type.words, None)
     if given in ("int", "number"):
         return (), NUMBERS[given]
-    rule = "must be a list of words or numbers, or int or number for any number"
-    document.problem(here, f"{rule}; is {shown(given)}")
+    document.problem(
+        here, f"must be a list of words or numbers, or int or number for any number; is {shown(given)}"
+    )
     return None
 
 
