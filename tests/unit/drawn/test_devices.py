@@ -253,13 +253,13 @@ def test_a_switch_that_needs_what_is_not_so_stands_after_work_that_may_be_late(
     assert NEEDY in {each.verb for each in ends if isinstance(each, steps.Tell) and each.refused}
 
 
-def test_check_says_where_arms_on_one_base_can_meet(drawn: list[DrawnDevices]) -> None:
+def test_check_says_that_arms_on_one_base_stand_in_each_other(drawn: list[DrawnDevices]) -> None:
     def bases(plant: DrawnDevices) -> list[str]:
         cells = plant.section["cells"].values()
         return [str(row["base"]) for cell in cells for row in cell["devices"].values() if "base" in row]
 
     plant = next(each for each in drawn if len(bases(each)) > len(set(bases(each))))
-    assert any(" can meet at " in each for each in meeting_points.warnings(loaded(plant).model))
+    assert any(" stand in each other" in each for each in meeting_points.warnings(loaded(plant).model))
 
 
 def test_a_printer_makes_a_part_that_a_hand_takes_away_and_check_takes_the_plant(

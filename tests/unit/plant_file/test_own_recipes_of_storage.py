@@ -101,6 +101,7 @@ def test_they_are_offered_beside_storage_which_stays_what_a_task_means_that_name
 
 def test_a_part_is_carried_from_station_to_station() -> None:
     rig = Rig(own())
+    assert rig.operate(Verb.LOAD, "sis_a", place="station_1") is None
     assert do(rig, "sis_a sort station_1 station_5") is TaskState.DONE
     arm = own().cell("sis_a").roles["arm"]
     assert arm.motion.stands_at(arm_of(rig).true_place, own().cell("sis_a").reach[arm.name].targets["home"].q)
