@@ -52,8 +52,8 @@ KIND_BUGS = (
     bug(
         DECLARED,
         "A virtual device always gives the first answer.",
-        "        if call.definition.virtual is None:\n            return answers[0]\n",
-        "        return answers[0]\n",
+        "        if call.definition.virtual is None:\n            return type.first\n",
+        "        return type.first\n",
         argued="the judge asks the same function, and which answer a virtual device gives is its own affair",
     ),
     bug(

@@ -123,8 +123,8 @@ RECIPE_BUGS = (
     bug(
         HANDLES,
         "A wait for several facts ends with the first.",
-        "lambda: not self._unsaid(facts), at_most_s, late)",
-        "lambda: len(self._unsaid(facts)) < max(len(facts), 1), at_most_s, late)",
+        "lambda: not self._unsaid(facts_wanted), at_most_s, late)",
+        "lambda: len(self._unsaid(facts_wanted)) < max(len(facts_wanted), 1), at_most_s, late)",
     ),
     bug(
         HANDLES,
@@ -189,7 +189,7 @@ RECIPE_BUGS = (
     bug(
         AUTHORING,
         "A choice goes the first way, whatever is answered.",
-        "            return question.answer == value\n",
+        "            return question.is_answered(value)\n",
         "            return question.answer is not None\n",
     ),
     bug(
