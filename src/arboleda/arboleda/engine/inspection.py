@@ -8,7 +8,17 @@ from arboleda.core.plant import HEARTBEAT_S, SETTLES_IN
 from arboleda.core.reasons import HELD, HELD_STRANDED
 from arboleda.core.teaching import HOLD_S
 from arboleda.core.verbs.releasing import RELEASING
-from arboleda.dispatch.belief import FAULTY, FENCED, MOVING, OFFLINE, STOPPED, UNANSWERED, UNHEARD, UNHOMED
+from arboleda.dispatch.belief import (
+    BACK_AT_ZERO,
+    FAULTY,
+    FENCED,
+    MOVING,
+    OFFLINE,
+    STOPPED,
+    UNANSWERED,
+    UNHEARD,
+    UNHOMED,
+)
 from arboleda.dispatch.ledger import TABLE, Feed, Ledger
 from arboleda.dispatch.stillness import ReportMoment, Stillness
 from arboleda.resume.trail import Trail

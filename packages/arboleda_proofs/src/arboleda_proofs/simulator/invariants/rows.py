@@ -11,6 +11,7 @@ from py_trees.common import Status
 
 from arboleda.engine import OPEN, State
 from arboleda.engine.inspection import (
+    BACK_AT_ZERO,
     FAULTY,
     FENCED,
     HELD,
@@ -214,7 +215,8 @@ def obstacle(known: KnownRobot, now: float, plant: int) -> tuple[Phrase, ...] | 
     if known.barred and known.state is not MotionState.MOVING:
         return (STOPPED.phrase,)
     if known.unhomed:
-        return (UNHOMED.phrase,)
+        returns = known.displaced and known.robot.assume_homed  # perhaps at its reference after a silence
+        return (UNHOMED.phrase, BACK_AT_ZERO.phrase) if returns else (UNHOMED.phrase,)
     if not known.robot.says_homed:
         return None  # it may have lost its place as only its joints show
     return (MOVING.phrase,) if known.state is MotionState.MOVING else ()
