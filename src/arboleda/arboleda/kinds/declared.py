@@ -425,6 +425,11 @@ class Device(Robot):
         return None
 
 
+def makes_parts(robot: Robot) -> bool:
+    """True for a device with a verb that makes a part."""
+    return isinstance(robot, Device) and any(verb.makes_part for verb in robot.kind.verbs.values())
+
+
 def _computed(what: str, function: Computed, *facts: object, **values: Value) -> object:
     """The result of a kind's own function; an exception in it is raised as UseError with its text."""
     try:

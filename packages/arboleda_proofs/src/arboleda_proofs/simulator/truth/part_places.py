@@ -9,7 +9,7 @@ from typing import Any
 
 from arboleda.engine import Entry, State
 from arboleda.engine.inspection import EMPTY, trouble_in
-from arboleda.kinds.declared import Device
+from arboleda.kinds.declared import makes_parts
 from arboleda.model import text
 from arboleda.model.commands import Command, Position, Switch
 from arboleda.model.common_places import with_common_places
@@ -56,8 +56,7 @@ class CellPlaces:
         self.is_doubtful = self.end_is_doubtful = False
         self.by_people = {place.target for place in cell.counted if place.by_people}
         self._places = {place.target: place for place in cell.counted}
-        devices = [each for each in cell.robots if isinstance(each, Device)]
-        self.makes_parts = any(verb.makes_part for each in devices for verb in each.kind.verbs.values())
+        self.makes_parts = any(map(makes_parts, cell.robots))
         self._rack = frozenset(place.target for place in cell.rack)
         self._hands = {space.hand.name: space for space in cell.spaces if space.hand.held_fact}
         self._task = ""
