@@ -13,6 +13,7 @@ from arboleda_proofs.testing import Rig
 
 PATIENCE_S, LOOKS_S = 120.0, 0.5
 HEARD_S = 1.0  # after work of a hand
+TOLD = (Hand.TAKE_OUT, Hand.PUT_IN, Hand.LEAVE_IN)  # what is so once the plant is told
 Row = dict[str, Any]
 
 
@@ -40,7 +41,7 @@ def give(rig: Rig, next_one: Due) -> str:
     """Give the act that is due, which is not refused; returns it in words."""
     advice = next_one.advice
     assert advice is not None
-    for each in next_one.before:
+    for each in (each for each in next_one.before if Hand(each["do"]) not in TOLD):
         hands.HANDS[Hand(each["do"])](rig, each["scope"])
     if advice["by_hand"]:
         hands.BEFOREHAND[Verb(advice["do"])](rig.manual, advice["scope"])
