@@ -12,7 +12,7 @@ from py_trees.behaviour import Behaviour
 from arboleda.engine import Context, steps
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Cell
-from arboleda.model.recipe import Recipe
+from arboleda.model.recipe import Parameter, Recipe
 from arboleda.model.task import Order
 from arboleda.recipes.holding import held
 from arboleda.recipes.nodes import WrittenNode
@@ -68,10 +68,9 @@ def tree_recipe(
     def kinds(cell: Cell) -> Mapping[str, Kind]:
         return leaves.of_cell(cell, own.values())
 
-    ports = parameters.of_tree(forest, main)
-
     def check(cell: Cell) -> None:
-        known = [each for each in end if each.what not in {port.name for port in ports}]
+        unknown = {port.name for port in parameters.of_tree(forest, main)}
+        known = [each for each in end if each.what not in unknown]
         _check(name, forest, known, {}, cell, kinds(cell))
         if mistakes:
             raise TreeMistakes(mistakes)
@@ -85,9 +84,28 @@ def tree_recipe(
         _check(name, forest, end, order.values, context.cell, kinds(context.cell))
         raise TreeMistakes(mistakes)
 
+    return TreeRecipe(
+        name=name,
+        build=refuse if mistakes else build,
+        parameters=_parameters(forest, main, kinds, end),
+        about=_about(forest, main),
+        ends_with=tuple(tuple((each.what, each.value) for each in way) for way in stated),
+        file=file,
+        place=forest.trees[main].place,
+        content=content,
+        groups=target_groups.of_tree(forest, main),
+        handed_on=parameters.handed_on(forest, main),
+        own=own,
+        check=check,
+    )
+
+
+def _parameters(
+    forest: Forest, main: str, kinds: Callable[[Cell], Mapping[str, Kind]], end: Sequence[ends.End]
+) -> tuple[Parameter, ...]:
     ending, groups = {each.what for each in end}, target_groups.of_tree(forest, main)
     listed = listed_values.of_tree(forest, main)
-    parameter_list = tuple(
+    return tuple(
         parameters.parameter(
             forest,
             main,
@@ -97,21 +115,7 @@ def tree_recipe(
             listed=listed.get(port.name),
             names_place=port.name in ending,
         )
-        for port in ports
-    )
-    return TreeRecipe(
-        name=name,
-        build=refuse if mistakes else build,
-        parameters=parameter_list,
-        about=_about(forest, main),
-        ends_with=tuple(tuple((each.what, each.value) for each in way) for way in stated),
-        file=file,
-        place=forest.trees[main].place,
-        content=content,
-        groups=groups,
-        handed_on=parameters.handed_on(forest, main),
-        own=own,
-        check=check,
+        for port in parameters.of_tree(forest, main)
     )
 
 

@@ -41,7 +41,7 @@ class Range:
 
 
 Wanted = Value | Range
-"""What a fact or an answer has to be."""
+"""Value that a fact or an answer has to be, or range in which it has to lie."""
 
 
 def is_so(wanted: Wanted, told: Value | None) -> bool:
@@ -75,7 +75,7 @@ def comparison(text: str) -> Range | None:
 
 
 def fact_wanted(kind: DeviceKind, name: str, value: Value) -> Wanted:
-    """What a fact has to be: a value, or a comparison. UseError where no device of the kind reports that."""
+    """The value or the range that a fact has to have; UseError where no device of the kind reports that."""
     type = kind.facts.get(name)
     compared = comparison(value) if isinstance(value, str) else None
     if type is None or compared is None or type.takes(value):

@@ -207,7 +207,7 @@ def _crowded(stands: Sequence[Stand]) -> Iterator[str]:
 
 
 def _between(node: Point, tool: Matrix) -> tuple[float, float]:
-    """How far a tool is beside a node, in plan, m."""
+    """The distance of a tool from a node along each axis of the plan, m."""
     x, y, _ = kinematics.at(tool)
     return x - node[0], y - node[1]
 

@@ -43,7 +43,7 @@ def raised(arm: Arm, body: Body, pose: Pose, by_m: float) -> str:
 
 
 def apart(one: Outline, other: Outline) -> str:
-    """How far one of two shapes that share floor has to be moved, so that they share none."""
+    """The distance by which one of two shapes that share floor has to be moved, so that they share none."""
     least_m = min(_shared(edge, one, other) for outline in (one, other) for edge in edges(outline))
     return f"; move one of them by {math.ceil(least_m * 1000)} mm"
 

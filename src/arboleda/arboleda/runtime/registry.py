@@ -92,7 +92,7 @@ class Links:
         return state
 
     def _told(self, source: Source, taken: set[str]) -> Mapping[str, Any]:
-        """What a source tells; nothing where it is left out."""
+        """The news of a source; none where it is left out."""
         try:
             news = {**source()}
             is_ours = _top(_module_of(source)) == RUNNER

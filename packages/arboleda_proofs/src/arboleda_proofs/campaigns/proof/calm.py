@@ -147,14 +147,14 @@ def calm_play(stage: Stage) -> Run:
 def calm_runs(model: PlantModel, scenarios: Iterable[Scenario], tick: Tick = lambda: None) -> Iterator[Calm]:
     """The calm runs of scenarios, and of each answer in them after which something else is done.
 
-    A part that a task lacks where other cells put some is brought first.
+    A part that a task lacks at a place of several cells, where another may put one, is brought first.
     """
     for first in scenarios:
         known: set[Hashable] = set()
         waiting, tried = deque([first]), {first.answers}
         while waiting and len(known) < MOST_SCENARIOS:
             calm = calm_run(model, waiting.popleft(), tick)
-            if calm.lacks is not None and _others_bring(model, calm.scenario, calm.lacks):
+            if calm.lacks is not None and _others_may_bring(model, calm.scenario, calm.lacks):
                 waiting.appendleft(calm.scenario.with_part(calm.lacks))
                 continue
             ending = calm.commands, calm.run.outcome.end
@@ -168,7 +168,7 @@ def calm_runs(model: PlantModel, scenarios: Iterable[Scenario], tick: Tick = lam
                 tried |= {each.answers for each in others}
 
 
-def _others_bring(model: PlantModel, scenario: Scenario, place: str) -> bool:
+def _others_may_bring(model: PlantModel, scenario: Scenario, place: str) -> bool:
     """True for a place that has room beside what is brought, and is one of another cell, too."""
     cell = model.cell(scenario.cell)
     room = room_at(cell, place, model.cells) - scenario.brought.count(place)
