@@ -21,6 +21,7 @@ from arboleda.plant_file.findings import Source
 from arboleda.plant_file.user_file import check_writable
 
 from . import nodes
+from .commands import tell_left_out
 from .language import finding, say
 from .plant_options import IN_FOLDER, PLANT_VARIABLE, is_typed, plant_here
 from .working import working
@@ -90,6 +91,7 @@ def check(
     Trees are checked without a plant: leaves that nobody here knows are listed, not refused. With --plant
     they have to be nodes of its devices, which `arboleda nodes` lists.
     """
+    tell_left_out()
     if file is None:
         file, plant = plant_here(plant), None
     if file is None:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import typer
 
-from arboleda.host.packages import registered
+from arboleda.host.packages import left_out, registered
 from arboleda.host.pieces import Pieces, piece_of
 from arboleda.model.errors import ArboledaError
 from arboleda.model.packages import BOARDS, CLASS, DRIVERS, FLEET, MAKE, MISSING, PROOFS, PackageMissing
@@ -121,6 +121,7 @@ def commands() -> Mapping[str, Command]:
     all."""
     found: dict[str, Command] = {}
     pieces = Pieces(str, _tell)
+    tell_left_out()
     for each in registered(GROUP):
         with pieces.calling(piece_of(each, "the commands")):
             for name, command in each.load().items():
@@ -129,6 +130,12 @@ def commands() -> Mapping[str, Command]:
                 else:
                     found[name] = command
     return {**found, **OURS}
+
+
+def tell_left_out() -> None:
+    """Say which packages are left out whole."""
+    for line in left_out():
+        _tell(line)
 
 
 def _tell(line: str) -> None:

@@ -7,6 +7,7 @@ from contextlib import AbstractContextManager, nullcontext
 from importlib.metadata import EntryPoint
 from typing import NamedTuple
 
+from arboleda.host.packages import left_out
 from arboleda.host.pieces import Piece, Pieces, piece_of
 from arboleda.plant_file.python_uses import error_text
 
@@ -37,8 +38,8 @@ class PartList:
 
     @property
     def notes(self) -> list[str]:
-        """What is left out, and why."""
-        return self.pieces.notes
+        """What is left out, and why: whole packages first."""
+        return [*left_out(), *self.pieces.notes]
 
     def make(self, assembly: Assembly, own: Iterable[Factory]) -> None:
         """Make all parts, of the runner's `own` factories and of packages, in the order of their phases."""
