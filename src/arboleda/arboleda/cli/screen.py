@@ -24,6 +24,7 @@ from arboleda.model.messages import MotionState, TaskChanged, TaskState
 from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.views import view
+from arboleda.views.alarms import OF_PACKAGE
 
 from .language import say, word
 
@@ -183,7 +184,8 @@ def table(snapshot: dict[str, Any]) -> Group:
     questions = [_words(line, "cyan") for robot in snapshot["robots"] for line in _question(robot)]
     answers = [_words(line) for cell in snapshot["cells"] for line in _answers(cell)]
     troubles = [_words(line, "yellow") for line in _in_the_way(snapshot)]
-    return Group(drawn, *others, *zones, *questions, *answers, *troubles)
+    alarms = [_words(line, "yellow") for line in _alarms(snapshot)]
+    return Group(drawn, *others, *zones, *questions, *answers, *troubles, *alarms)
 
 
 def _table(headings: list[str], **settings: Any) -> Table:
@@ -358,6 +360,12 @@ def _in_the_way(snapshot: dict[str, Any]) -> list[Sentence | str]:
     latched = [each["name"] for each in snapshot["robots"] if each.get("latched")]
     stopped = [LATCHED(robots=tuple(latched))] if latched else []
     return [*held, *stopped, *_obstacles(snapshot)]
+
+
+def _alarms(snapshot: dict[str, Any]) -> list[Sentence]:
+    """The alarms of packages; a plant of an earlier version tells of none."""
+    alarms = snapshot.get("alarms", ())
+    return [OF_PACKAGE(package=each["package"], said=each["sentence"]) for each in alarms]
 
 
 def _why(cell: dict[str, Any]) -> Sentence | str | None:

@@ -15,7 +15,7 @@ from arboleda.host.pieces import Pieces
 from arboleda.store.task_rows import TaskQuery
 from arboleda.web.request import HISTORY, TASK
 
-from . import header, links, menu, missing_packages, settings, shell, tasks, timeline, trees
+from . import header, links, menu, missing_packages, settings, shell, tasks, timeline, told, trees
 from .added import AddedParts, LeftOut
 from .asset_files import own
 from .body import WITHIN, Parts, Places, body
@@ -92,6 +92,7 @@ def drawn(added: AddedParts, plant: PageApi, layout: Layout, wording: Words, rol
 
     def top(places: Places) -> None:
         header.build(layout, wording, places)
+        told.build()
         drawing.put(Place.TOP)
 
     def foot() -> None:

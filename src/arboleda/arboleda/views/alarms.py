@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum
 from functools import reduce
 from typing import Any
 
@@ -20,6 +21,7 @@ Alarm = dict[str, Any]
 TASK_FAILED, CELL_HELD, CELL_CLEARED = "task_failed", "cell_held", "cell_cleared"
 CELL_BLOCKED, PERSON_ASKED, PLANT_AWAY = "cell_blocked", "person_asked", "plant_away"
 MEMORY_SLOW, MEMORY_FAST = "memory_slow", "memory_fast"
+PACKAGE_ALARM, PACKAGE_CLEARED = "package_alarm", "package_cleared"
 BLOCKED_S = 10.0  # a cell is blocked for so long before its alarm: a board that boots is back by then
 NEEDS_SOMEBODY = frozenset({CellState.HELD, CellState.ABORTED, CellState.STOPPED})
 AT_WORK_AGAIN = frozenset({CellState.IDLE, CellState.EXECUTE})
@@ -30,6 +32,8 @@ AWAY_GOES_ON = Phrase(
 )
 AWAY_AT_REST = Phrase("alarm.away_at_rest", "{why}; no cell was at work, so that all go on")
 CLEARED = Phrase("alarm.cleared", "{cell} needs nobody any more: it is {state}")
+OF_PACKAGE = Phrase("alarm.of_package", "{package}: {said}")
+OVER = Phrase("alarm.over", "this is over: {said}")
 # The longest packet of the plant's own broker has 4096 bytes, and a letter has up to four.
 LONGEST, MOST = 300, 6
 
@@ -40,6 +44,33 @@ class Need:
 
     kind: str
     of: str
+
+
+class AlarmLevel(str, Enum):
+    """Weight of an alarm of a package: a warning is shown, an error is also heard on the page."""
+
+    WARNING = "warning"
+    ERROR = "error"
+
+
+@dataclass(frozen=True, kw_only=True)
+class PackageAlarm:
+    """Alarm of a package, which stands until the package ends it; `cell` is "" where it is about none."""
+
+    id: int
+    package: str
+    sentence: Sentence
+    cell: str = ""
+    level: AlarmLevel = AlarmLevel.WARNING
+
+    @property
+    def said(self) -> Sentence:
+        """The sentence, with the name of the package before it."""
+        return OF_PACKAGE(package=self.package, said=self.sentence)
+
+    def row(self) -> dict[str, Any]:
+        """The alarm as plain data."""
+        return {**vars(self), "level": self.level.value}
 
 
 def need_of(run: CellRun) -> Need | None:
@@ -87,6 +118,13 @@ def of_absence(plant: Plant, away_s: float) -> Alarm:
 def of_memory(plant: Plant, sentence: Sentence, *, is_slow: bool) -> Alarm:
     """The alarm for slow commits, or its end; it belongs to no cell."""
     return _alarm(plant, "", MEMORY_SLOW if is_slow else MEMORY_FAST, None, None, sentence)
+
+
+def of_package(plant: Plant, alarm: PackageAlarm, *, over: bool = False) -> Alarm:
+    """The alarm of a package, or its end."""
+    kind, sentence = (PACKAGE_CLEARED, OVER(said=alarm.said)) if over else (PACKAGE_ALARM, alarm.said)
+    told = {"package": alarm.package, "level": alarm.level.value}
+    return {**_alarm(plant, alarm.cell, kind, None, None, sentence), **told}
 
 
 def of_cell(plant: Plant, cell: str) -> Alarm:

@@ -23,7 +23,7 @@ PlantNews = tuple["str | None", str, str, str, Sentence]
 class Chronicle:
     """Events {number, at (unix s), cell, kind, subject, what, sentence}, the newest last.
 
-    `kind` is task, cell, robot, zone, operator, foreign or fault; `what` the word of the new state.
+    `kind` is task, cell, robot, zone, operator, foreign, fault or alarm; `what` the word of the new state.
     """
 
     def __init__(self, past_acts: Iterable[Row] = ()) -> None:
@@ -31,6 +31,7 @@ class Chronicle:
         self._count = 0
         self._known: dict[tuple[str, str], str] = {}
         self._last_act = self._last_interference = self._last_fault = 0
+        self._alarms: dict[int, Row] = {}  # of packages, that stand
         self._awaited: set[int] = set()  # the acts whose end is still to come
         for act in past_acts:
             self._did(act["at"], act)
@@ -47,6 +48,7 @@ class Chronicle:
                 if act["ended"] is not None:
                     self._ended(unix_s - (snapshot["at"] - act["ended_at"]), act)
         self._provoked(snapshot, unix_s)
+        self._raised(snapshot, unix_s)
         news = (*self._interference(snapshot), *_states(snapshot, self._known))
         for cell, kind, subject, what, sentence in news:
             if kind == "foreign" or self._known.get((kind, subject)) != what:
@@ -74,6 +76,15 @@ class Chronicle:
                 self._last_fault, robot = each["number"], each["robot"]
                 at = unix_s - (snapshot["at"] - each["at"])
                 self._add(at, cell_of.get(robot), "fault", robot or "plant", "provoked", each["sentence"])
+
+    def _raised(self, snapshot: Row, unix_s: float) -> None:
+        """Add the alarms of packages, and their ends."""
+        before, now = self._alarms, {each["id"]: each for each in snapshot.get("alarms", ())}
+        self._alarms = now
+        for id in sorted(before.keys() ^ now.keys()):
+            each, what = (now[id], "raised") if id in now else (before[id], "over")
+            sentence = as_sentence(each["sentence"])
+            self._add(unix_s, each["cell"] or None, "alarm", each["package"], what, sentence)
 
     def _interference(self, snapshot: Row) -> Iterator[PlantNews]:
         cell_of = _cells(snapshot)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from arboleda.model.cell_states import CellState
 from arboleda.model.facts import shown
 from arboleda.model.sentence import Sentence
 from arboleda.wire.status import ERROR, OK, STALE, WARN
+
+from .alarms import AlarmLevel, PackageAlarm
 
 Diagnostic = tuple[str, str, int, str, dict[str, str]]
 TIMES = frozenset({"age_s", "telemetry_hz"})  # a diagnosis changes with the robot, not with time
@@ -29,6 +31,12 @@ def record(trouble: str) -> Diagnostic:
 def memory(trouble: Sentence | None) -> Diagnostic:
     """The status of the plant's memory; `trouble` is a sentence if it is slow."""
     return ("arboleda: memory", "", WARN if trouble else OK, str(trouble or "commits are fast"), {})
+
+
+def packages(alarms: Sequence[PackageAlarm]) -> Diagnostic:
+    """The status of the packages of a plant: the alarms that they have raised."""
+    level = ERROR if any(each.level is AlarmLevel.ERROR for each in alarms) else WARN if alarms else OK
+    return ("arboleda: packages", "", level, "; ".join(str(each.said) for each in alarms) or "no alarm", {})
 
 
 def _robot_diagnostic(robot: dict[str, Any]) -> Diagnostic:

@@ -51,6 +51,7 @@ ROWS = {
     "zones": ("zone", "zone", ("state", "robot", "waiting")),
 }
 PLANT = ("plant", "epoch", "ending")
+TOLD = ("alarms",)  # in the row of the plant, where packages tell something
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,13 +76,18 @@ def in_one(events: Iterable[Event]) -> str:
 
 def changed(before: Snapshot, after: Snapshot) -> list[tuple[str, Row]]:
     """The (kind, row) of each new or changed row; ages and positions do not count."""
-    plant = {key: after[key] for key in PLANT}
-    found = [] if plant == {key: before[key] for key in PLANT} else [("plant", plant)]
+    plant = _plant(after)
+    found = [] if plant == _plant(before) else [("plant", plant)]
     for where, (kind, name, keys) in ROWS.items():
         known = {row[name]: _facts(row, (name, *keys)) for row in before[where]}
         now = [_facts(row, (name, *keys)) for row in after[where]]
         found += [(kind, row) for row in now if known.get(row[name]) != row]
     return found
+
+
+def _plant(snapshot: Snapshot) -> Row:
+    """The row of the plant itself."""
+    return {key: snapshot[key] for key in PLANT} | {key: snapshot[key] for key in TOLD if key in snapshot}
 
 
 def _facts(row: Row, keys: tuple[str, ...]) -> Row:

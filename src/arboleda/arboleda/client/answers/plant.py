@@ -133,6 +133,17 @@ class Robot:
 
 
 @dataclass(frozen=True, kw_only=True)
+class PackageAlarm:
+    """Alarm that a package has raised, and has not ended yet."""
+
+    id: int
+    package: str
+    cell: Annotated[str, "The cell that it is about; empty where it is about none."]
+    level: Annotated[str, "warning, or error where somebody is needed."]
+    sentence: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class Snapshot:
     """The plant as of its last step."""
 
@@ -148,3 +159,4 @@ class Snapshot:
         "Zones and devices that cells share, each with its state, who holds it and who waits.",
     ]
     acts: Annotated[list[Act], "What operators did last, oldest first."] = field(default_factory=list)
+    alarms: Annotated[list[PackageAlarm], "Alarms of packages."] = field(default_factory=list)

@@ -7,7 +7,7 @@ from typing import Any
 
 from arboleda.views.view import standing, waited_for
 
-from . import Face, cells, links, panel, part_places, questions, ready, stop, tasks, timeline
+from . import Face, cells, links, packages, panel, part_places, questions, ready, stop, tasks, timeline
 from .moment import Moment
 from .order import WELL, WORST, trouble_first
 
@@ -20,6 +20,7 @@ PARTS = (
     tasks.face,
     panel.face,
     links.face,
+    packages.face,
     timeline.face,
 )
 Row = dict[str, Any]
@@ -66,15 +67,18 @@ def _waits(moment: Moment, people: list[str]) -> str:
 
 
 def _needs(moment: Moment) -> list[str]:
-    """The names of the cells that wait for somebody, for the sound."""
-    bad = {cell["name"] for cell in moment.snapshot["cells"] if standing(cell) not in WELL}
+    """The names of the cells that wait for somebody, and the loud alarms of packages, for the sound."""
+    loud = {f"alarm/{each['id']}" for each in packages.loud(moment)}
+    bad = loud | {cell["name"] for cell in moment.snapshot["cells"] if standing(cell) not in WELL}
     return [" ".join(sorted(bad | waited_for(moment.snapshot).keys())), ""]
 
 
 def _title(moment: Moment) -> list[str]:
-    """The title of the browser's tab: the plant, and before it the cells that wait for somebody."""
+    """The title of the browser's tab: the plant, and before it the cells that wait for somebody and the loud
+    alarms of packages."""
     states = {cell["name"]: standing(cell) for cell in moment.snapshot["cells"]}
     bad = {name: moment.words.cell(state) for name, state in states.items() if state not in WELL}
+    bad |= {each["package"]: moment.words.say(each["sentence"]) for each in packages.loud(moment)}
     waits = {name: _waits(moment, people) for name, people in waited_for(moment.snapshot).items()}
     causes = "; ".join(f"{name}: {word}" for name, word in (*bad.items(), *waits.items()))
     plant = moment.snapshot["plant"]

@@ -6,9 +6,9 @@ import re
 
 from fastapi import FastAPI, Request
 
-from .. import header, links, shell, tasks, timeline, trees
+from .. import header, links, shell, tasks, timeline, told, trees
 from ..asset_files import own
-from ..body import Parts, body
+from ..body import Parts, Places, body
 from ..toolkit import Client, ui
 from ..twin import window
 from ..wording import words
@@ -69,11 +69,16 @@ def open_page(
     client.on_connect(visitor.come)
     role = shell.role_shown(request)
     shell.fill(layout, wording, script=own("record.js"))
+
+    def top(places: Places) -> None:
+        header.of_record(layout, wording, places, role, beside=beside)
+        told.build()
+
     return body(
         layout,
         wording,
         PARTS,
-        header=lambda places: header.of_record(layout, wording, places, role, beside=beside),
+        header=top,
         footer=lambda: bar.build(layout, wording),
     )
 

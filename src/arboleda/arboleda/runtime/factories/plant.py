@@ -14,6 +14,7 @@ from arboleda.model.plant_model import Link, PlantModel
 from arboleda.recorder.preamble import Beginning
 
 from ..alarm_options import AlarmOptions
+from ..extensions.alarms import PackageAlarms
 from ..parts.alarms import alarms_part
 from ..parts.bridge import BridgePart
 from ..parts.drivers import DriversPart
@@ -46,6 +47,10 @@ def plant(assembly: Assembly) -> Iterable[Part]:
             leave_out_raiser=assembly.leave_out_raiser,
         )
         made.screens.diagnoses.append(held.pace.diagnosis)
+        packages = PackageAlarms()
+        made.screens.diagnoses.append(packages.diagnosis)
+        made.screens.beside = packages.rows
+        assembly.offer(PackageAlarms, packages)
         assembly.offer(Orchestrator, made)
         assembly.offer(LocalPlant, LocalPlant(made, held.history, assembly))
         assembly.links.add(lambda: {"memory": asdict(held.pace.pace)})
@@ -83,7 +88,8 @@ def alarms(assembly: Assembly) -> Iterator[Part]:
         page = assembly.ask(PageAddress)
         return None if page is None else page.address_of(cell, task)
 
-    part = alarms_part(assembly.model, options, assembly.need(Broker), address_of)
+    raised = assembly.need(PackageAlarms)
+    part = alarms_part(assembly.model, options, assembly.need(Broker), address_of, lambda: raised.standing)
     if part is not None:
         assembly.notes.append(lambda: part.notes)
         running.listeners.append(part.changed)

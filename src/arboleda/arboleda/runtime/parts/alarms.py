@@ -17,6 +17,7 @@ from arboleda.engine import Plant
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.views import alarms
+from arboleda.views.alarms import PackageAlarm
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from ..alarm_options import AlarmOptions
@@ -31,9 +32,16 @@ Page = Callable[[str, "str | None"], "str | None"]  # where a browser sees a cel
 class AlarmsPart:
     """AlarmsPart: raises the alarms of a plant, in the plant's thread, and has other threads deliver them."""
 
-    def __init__(self, receivers: Sequence[Receiver], page: Page) -> None:
+    def __init__(
+        self,
+        receivers: Sequence[Receiver],
+        page: Page,
+        of_packages: Callable[[], Sequence[PackageAlarm]] = tuple,
+    ) -> None:
         self._outboxes = [Outbox(each) for each in receivers]
         self._page = page
+        self._of_packages = of_packages  # those that stand
+        self._told: dict[PackageAlarm, str] = {}  # those that were told, with the id of that
         self._number = 0
         self._failed: deque[TaskChanged] = deque()  # from another thread
         self._paces: deque[Pace] = deque()  # from slow to fast and back, from another thread
@@ -78,11 +86,21 @@ class AlarmsPart:
             self._slow = id if pace.is_slow else None
         while self._failed:
             self._tell(plant, alarms.of_task(plant, self._failed.popleft()), None)
+        self._look_at_packages(plant)
         if plant.intake.closed or (plant.version == self._last_version and not self._blocked):
             return  # a person who ends a plant knows that it stands
         self._last_version = plant.version
         for name in plant.cells:
             self._look(plant, name)
+
+    def _look_at_packages(self, plant: Plant) -> None:
+        standing = self._of_packages()
+        if not standing and not self._told:
+            return
+        for over in [each for each in self._told if each not in standing]:
+            self._tell(plant, alarms.of_package(plant, over, over=True), self._told.pop(over))
+        for new in (each for each in standing if each not in self._told):
+            self._told[new] = self._tell(plant, alarms.of_package(plant, new), None)
 
     def _look(self, plant: Plant, name: str) -> None:
         run, open_alarm = plant.cells[name], self._open.get(name)
@@ -167,9 +185,13 @@ class OnTopic:
 
 
 def alarms_part(
-    model: PlantModel, options: AlarmOptions, broker: BrokerAddress, page: Page
+    model: PlantModel,
+    options: AlarmOptions,
+    broker: BrokerAddress,
+    page: Page,
+    of_packages: Callable[[], Sequence[PackageAlarm]] = tuple,
 ) -> AlarmsPart | None:
     """The alarms part, if anybody wants alarms."""
     hooks: list[Receiver] = [Webhook(options.hook)] if options.hook else []
     topics: list[Receiver] = [OnTopic(model, broker, options.topic)] if options.topic else []
-    return AlarmsPart([*hooks, *topics], page) if hooks or topics else None
+    return AlarmsPart([*hooks, *topics], page, of_packages) if hooks or topics else None

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections import Counter as Counted
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from prometheus_client import CollectorRegistry, Counter, Histogram, generate_latest
@@ -135,6 +136,12 @@ class Metrics:
             dict.fromkeys(needs_in(snapshot).items(), 1),
         )
         yield _rows(
+            "arboleda_package_alarms",
+            "Alarms that a package has raised, and that stand.",
+            ("package", "level"),
+            Counted((each["package"], each["level"]) for each in snapshot.get("alarms", ())),
+        )
+        yield _rows(
             "arboleda_cell_queue",
             "Tasks that wait.",
             ("cell",),
@@ -181,7 +188,7 @@ class _Now:
 
 
 def _rows(
-    name: str, about: str, labels: tuple[str, ...], values: dict[tuple[str, ...], float]
+    name: str, about: str, labels: tuple[str, ...], values: Mapping[tuple[str, ...], float]
 ) -> GaugeMetricFamily:
     family = GaugeMetricFamily(name, about, labels=labels)
     for row, value in values.items():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
 from arboleda.adapters import clock
@@ -84,6 +84,7 @@ class Screens:
         self.diagnoses: list[
             Callable[[], diagnostics.Diagnostic]
         ] = []  # of parts other than robots and cells
+        self.beside: Callable[[], Mapping[str, Any]] = dict  # what a snapshot has beside the plant's own
         self._plant = plant
         self._loop = loop
         self._keeping = keeping
@@ -100,7 +101,7 @@ class Screens:
     def open(self) -> None:
         """Make a snapshot for those who look before the first one that screens get."""
         try:
-            self._kept = view.snapshot(self._plant)
+            self._kept = {**view.snapshot(self._plant), **self.beside()}
         except Exception as error:  # noqa: BLE001 - a screen that cannot be drawn must not end the plant
             log_defect("the screens", error)
 
@@ -116,7 +117,7 @@ class Screens:
             self._require_durable(within_s)
         except StepInFlight:
             return self._last_kept
-        return slices.result
+        return {**slices.result, **self.beside()}
 
     def _read(self, fn: Callable[[Plant], Any], within_s: float) -> Any:
         """`fn(plant)` once all of the plant is kept; StepInFlight if it is not in time, or never will be."""
@@ -215,7 +216,8 @@ class Screens:
 
     def _publication(self) -> Generator[None, None, None]:
         """Make a snapshot and show it to all who watch, in parts between which the plant may be stepped."""
-        snapshot = yield from view.in_parts(self._plant, self._resting.part)
+        plant_view = yield from view.in_parts(self._plant, self._resting.part)
+        snapshot = {**plant_view, **self.beside()}
         self._shown_from = self._durability.hurry()
         while self._waits_to_show and not self._plant.intake.closed:
             yield  # this slice ends soon, and the next one waits

@@ -1,0 +1,1 @@
+"""What packages may do with a plant that runs."""
