@@ -7,16 +7,15 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from pydantic.errors import PydanticSchemaGenerationError
-
 from arboleda.drivers.port import GROUP, DriverSpec, FitsDevice, spec_of
 from arboleda.host.packages import entry_points
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import DriverUse, Link, PlantModel, Robot
 
-from . import package_drivers, settings
+from . import package_drivers
 from .document import Document, Place, choice, nearest, shown
-from .python_uses import LONGEST, PythonUses, SourceSpot, error_text, refused
+from .given_settings import FAULTY, Taker, given, loaded
+from .python_uses import LONGEST, PythonUses, error_text
 from .shapes import ROBOT_KEYS
 from .shared import SECTION as SHARED
 
@@ -120,6 +119,17 @@ def _check(document: Document, place: Place, use: DriverUse, device: Robot) -> N
         document.problem((*place, use.name, *inside), plain(sentence, LONGEST))
 
 
+def _settings(document: Document, place: Place, spec: DriverSpec, used: PythonUses) -> Any:
+    """The settings for the driver; FAULTY, with the problems kept, if they are wrong."""
+
+    def wrong(sentence: str) -> None:
+        used.keep(document, used.spot(spec).problem(sentence))
+
+    form = f"{KEY}: {{{spec.name}: {{{{}}: ...}}}}"
+    taker = Taker(what=KEY, name=spec.name, settings=spec.settings, form=form, wrong=wrong)
+    return given(document, place, taker)
+
+
 def _pace(document: Document, place: Place, settings: object) -> float:
     """The share of its model's speed at which a driver moves its robot, if its settings say that."""
     share = _offered(document, place, settings, SHARE, 1.0)
@@ -160,54 +170,14 @@ def _installed(document: Document, place: Place, name: str, used: PythonUses) ->
         allowed = [*COME_WITH_IT, *used.drivers, *points]
         document.problem(place, f"must be {choice(allowed)}, is {shown(name)}{nearest(name, allowed)}; {HOW}")
         return None
-    used.watch(SourceSpot(file=point.value), "importing this")
-    try:
-        loaded = point.load()
-    except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
-        document.problem(place, plain(f"{point.value} cannot be imported: {error_text(error)}", LONGEST))
-        return None
-    spec = spec_of(loaded)
-    if spec is None:
+    found = loaded(document, place, point, used)
+    spec = None if found is FAULTY else spec_of(found)
+    if spec is None and found is not FAULTY:
         document.problem(place, f"{point.value} is installed as a driver and is none; {HOW}")
     return spec
 
 
-def _settings(document: Document, place: Place, spec: DriverSpec, used: PythonUses) -> Any:
-    """The settings for the driver; FAULTY, with the problems kept, if they are wrong."""
-    has = document.has(place) and not isinstance(document.value(place), str)
-    if spec.settings is None:
-        if has and document.value(place):
-            document.problem(place, f"the driver {spec.name} has no settings")
-            return FAULTY
-        return None
-    try:
-        fits = settings.shape(f"Driver_{spec.name}", spec.settings)
-    except PydanticSchemaGenerationError:
-        what = f"the settings of {spec.name} have a type that no plant file can give"
-        used.keep(document, used.spot(spec).problem(f"{what}; it can {settings.TYPES}"))
-        return FAULTY
-    except Exception as error:  # noqa: BLE001 - annotations are user code, and may be of anything
-        used.keep(document, used.spot(spec).problem(f"the settings of {spec.name}: {error_text(error)}"))
-        return FAULTY
-    if not has:
-        missing = [name for name, field in fits.model_fields.items() if field.is_required()]
-        if missing:
-            form = f"{KEY}: {{{spec.name}: {{{missing[0]}: ...}}}}"
-            document.problem(place, f"the driver {spec.name} needs {', '.join(missing)}; write {form}")
-            return FAULTY
-    try:
-        read = settings.read(document, place, fits, spec.settings) if has else spec.settings(**dict(fits()))
-    except settings.SettingsRefused as unfit:
-        document.problem(unfit.place, plain(refused(unfit.error), LONGEST))
-        return FAULTY
-    except Exception as error:  # noqa: BLE001 - it is user code: whatever it raises is told
-        document.problem(place, plain(refused(error), LONGEST))
-        return FAULTY
-    return FAULTY if read is None else read
-
-
 SHARE, FACTS, RECOVERS = "model_speed_share", "reported_facts", "home_clears_faults"
-FAULTY = object()
 OF_DEVICES = (Link.MQTT.value, Link.ROS.value)
 COME_WITH_IT = (*OF_DEVICES, Link.NONE.value)
 """The drivers that come with Arboleda, by their names in a plant file."""
