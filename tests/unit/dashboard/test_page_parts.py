@@ -265,6 +265,7 @@ def test_parts_are_written_into_the_page_as_nicegui_would_write_them() -> None:
 
 def test_without_packages_the_page_names_what_installs_them(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(added, "registered", lambda *_: [])
+    monkeypatch.setattr("arboleda.host.pieces.registered", lambda *_: [])
     shown = html(loaded())
     gone = (
         "part-make",

@@ -59,6 +59,7 @@ def test_a_plant_that_runs_takes_it(before: str, after: str) -> None:
         ("queue_limit: 5", "places: {nest: {holds: 2}}", "which parts lie where"),
         ("queue_limit: 5", "needs: {}", "is checked from the start"),
         ("[lab nest]", "[lab home]", "who is in a zone"),
+        ("name: a\n", "name: a\nextensions: {orders: {most: 3}}\n", "a package gets its settings"),
         ("name: a", "name: b", "reads it when it starts"),
         ("[tend.xml, own.py]", "[tend.xml]", "Python is not imported again"),
         ("cells:\n", "cells:\n  other: {queue_limit: 1}\n", "a cell joins the plant"),

@@ -53,7 +53,7 @@ class AddedParts:
         acts = (SUBMIT, DOWNLOAD, *(each.value for each in Verb))
         self._taken = {(SECTION, each) for each in own} | {(ACT, each) for each in acts}
         self._parts: list[_Added] = []
-        for point in registered(GROUP):
+        for point in self._pieces.registered(GROUP):
             with self._pieces.calling(piece_of(point, "the part of the page")):
                 part = point.load()
                 if not isinstance(part, PagePart):

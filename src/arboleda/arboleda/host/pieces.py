@@ -6,7 +6,7 @@ Every call of a package goes through `Pieces`, so one that breaks takes nothing 
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -15,7 +15,7 @@ from importlib.metadata import EntryPoint
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
 
-from .packages import package_of
+from .packages import package_of, registered
 from .timer import called_after, told_after
 
 LOG = logging.getLogger(__name__)
@@ -59,21 +59,30 @@ def short(error: BaseException) -> str:
 
 
 class Pieces:
-    """Pieces: calls those of one process; `notes` has a line for each that is left out."""
+    """Pieces: calls those of one process; `notes` has a line for each that is left out.
+
+    Nothing of the packages in `off` is among them.
+    """
 
     def __init__(
         self,
         text_of: Callable[[BaseException], str] = short,
         tell: Callable[[str], None] | None = None,
+        off: Collection[str] = (),
     ) -> None:
         self.notes: list[str] = []
         self._text_of = text_of
         self._tell = tell or partial(LOG.warning, "%s")
+        self._off = off
         self._left_out: set[Piece] = set()
 
     def __contains__(self, piece: Piece) -> bool:
         """True unless the piece is left out."""
         return piece not in self._left_out
+
+    def registered(self, group: str) -> list[EntryPoint]:
+        """The entry points of a group, in the order of their names, of packages that are not off."""
+        return [each for each in registered(group) if package_of(each) not in self._off]
 
     @contextmanager
     def calling(self, piece: Piece) -> Iterator[None]:

@@ -15,6 +15,7 @@ OTHER_DEVICES = Phrase("revision.devices", "the devices of {cell} are others")
 OTHER_ZONES = Phrase("revision.zones", "the zones of {cell} are others")
 OTHER_PLACES = Phrase("revision.places", "the places, needs or interlocks of {cell} are others")
 OTHER_HOME = Phrase("revision.home", "{robot}, which cells share, has another home")
+OTHER_EXTENSIONS = Phrase("revision.extensions", "the settings of its packages are others")
 OTHER_PLANT = Phrase("revision.plant", "its name, its store, its links or its longest silence are others")
 BETWEEN_TASKS = (
     "recipes",
@@ -44,6 +45,8 @@ def obstacle(plant: PlantModel, other: PlantModel) -> Sentence | None:
     """The first thing in another version that a running plant cannot take; None where it can take all."""
     if _of_plant(plant) != _of_plant(other):
         return OTHER_PLANT()
+    if (plant.extensions, plant.extensions_off) != (other.extensions, other.extensions_off):
+        return OTHER_EXTENSIONS()
     if [cell.name for cell in plant.cells] != [cell.name for cell in other.cells]:
         return OTHER_CELLS()
     pairs = zip(plant.cells, other.cells, strict=True)

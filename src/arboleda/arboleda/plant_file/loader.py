@@ -19,7 +19,7 @@ from arboleda.model.plant_model import Cell, ForeignCommands, MqttVersion, Plant
 from arboleda.model.recipe import Recipe
 from arboleda.model.recording import Recording
 
-from . import drivers, own_kinds, own_recipes, sections, user_file
+from . import drivers, extensions, own_kinds, own_recipes, sections, user_file
 from .deadlines import check_arrivals_show
 from .declared_kinds import kinds
 from .devices import CELLS, Kinds, device_cell, is_of_devices, shared_devices
@@ -116,6 +116,7 @@ def _parsed(
         code = brought(document, content, apart=apart)
         missed, brings = code.missed, code.used.drivers
         plant = drivers.with_drivers(document, _plant(document, code.used, code.offered), code.used)
+        plant = extensions.with_extensions(document, plant, code.used)
     elif own_kinds.needs_python(document):
         plant = _named(document)
     else:
@@ -152,6 +153,7 @@ def trial(name: str, content: bytes, folder: Path | None, watch: Watch) -> Trial
     used = own_recipes.imported(document, own_recipes.listed(document), watch)
     _plant(document, used, tried)
     drivers.driver_uses(document, used)
+    extensions.settings_given(document, used)
     result.here, result.elsewhere = document.problems
     return result
 

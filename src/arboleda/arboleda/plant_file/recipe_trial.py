@@ -26,7 +26,7 @@ from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Recipe
 from arboleda.recipes.authoring import WrittenRecipe
 
-from . import drivers, own_kinds, own_recipes
+from . import drivers, extensions, own_kinds, own_recipes
 from .devices import CELLS, is_of_devices
 from .document import Document
 from .problems import MarkedProblem
@@ -98,7 +98,8 @@ def brought(document: Document, content: bytes, *, apart: bool = True) -> PlantP
         for place in [each for each in of_devices if not document.has((*each, "handover"))]:
             how = 'name a file that has one at the top of this one: "uses: [recipes.py]"'
             document.problem(place, f"offers no recipe; {how}", at=place)
-    if not (words or own_kinds.needs_python(document) or any(drivers.named(document))):
+    has_packages = any(drivers.named(document)) or any(extensions.named(document))
+    if not (words or own_kinds.needs_python(document) or has_packages):
         return PlantPython(document)
     result = verdict(document.name, document.folder, content, apart=apart)
     document.keep_all(result.here, result.elsewhere)

@@ -39,6 +39,7 @@ WHY = {
     "kinds": "what a device can do is agreed with it when the plant starts",
     "shared": "a device joins its cells when the plant starts",
     "devices": "a device and its driver are reached from the start of the plant on",
+    "extensions": "a package gets its settings when the plant starts",
     "store": "the memory is opened when the plant starts",
     SILENCE: "the bridge and the drivers watch their links by it, too",
 }

@@ -91,6 +91,7 @@ class PlantShape(Shape):
     history_days: Annotated[float, Field(gt=0, le=36_500, allow_inf_nan=False)] = PlantModel.history_days
     groot2: Annotated[int, Field(ge=1, le=65_534)] = NO_PORT
     opcua_view: Any = None
+    extensions: Any = None
     store: str = ""
     assistants: Literal["off", "read", "propose", "submit"] = "off"
     assistant_limits: Any = None

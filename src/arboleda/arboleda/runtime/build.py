@@ -74,7 +74,7 @@ class App:
         self._trouble: ArboledaError | None = None
         self._garbage = Garbage()
         self._turn_s = sys.getswitchinterval()
-        self._parts = PartList()
+        self._parts = PartList(model.extensions_off)
         try:
             self._assembly = self._begun(parts)
             self._parts.make(self._assembly, OWN)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import AbstractContextManager, nullcontext
 from importlib.metadata import EntryPoint
 from typing import NamedTuple
@@ -26,10 +26,11 @@ class PartList:
     A part of the runner that cannot start keeps the plant from starting, and so does a part of a package that
     the plant needs. Another part of a package may be for a count or a card on the page: where it breaks,
     robots work without it, and `notes` say so. A StartError is raised, whoever raises it.
+    Packages in `off` have no part.
     """
 
-    def __init__(self) -> None:
-        self.pieces = Pieces(error_text)
+    def __init__(self, off: Collection[str] = ()) -> None:
+        self.pieces = Pieces(error_text, off=off)
         self._made: list[_Made] = []
         self._started: list[_Made] = []
 

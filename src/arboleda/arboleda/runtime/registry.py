@@ -155,7 +155,7 @@ class Assembly(Offers):
 def packaged(pieces: Pieces) -> list[tuple[EntryPoint, Factory]]:
     """The factories of packages, each with its entry point; what cannot be loaded is left out."""
     found: list[tuple[EntryPoint, Factory]] = []
-    for point in registered(GROUP):
+    for point in pieces.registered(GROUP):
         with pieces.calling(piece_of(point, "the parts")):
             factories = tuple(point.load())
             if not all(isinstance(each, Factory) for each in factories):

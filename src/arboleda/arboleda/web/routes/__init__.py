@@ -36,7 +36,7 @@ def packaged(side: PlantApi, before: Sequence[APIRouter], pieces: Pieces) -> lis
     """The routers of packages, without a route that `before`, the page or another package has."""
     taken = {each for router in before for each in addresses(router.routes)}
     found: list[APIRouter] = []
-    for point in registered(GROUP):
+    for point in pieces.registered(GROUP):
         with pieces.calling(piece_of(point, "the routes")):
             router = point.load()(side)
             if not isinstance(router, APIRouter):

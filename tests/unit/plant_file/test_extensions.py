@@ -1,0 +1,151 @@
+"""`extensions` of a plant file: settings of packages, checked at their lines, and packages left out."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from tests.added_package import register
+
+from arboleda.host.pieces import Pieces
+from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.revision import obstacle
+from arboleda.plant_file import loader
+from arboleda.plant_file.extensions import settings_of
+from arboleda.runtime.build import Options, build
+from arboleda_proofs.testing import shipped
+
+PLANT = (Path(__file__).parents[3] / "examples/plants/by_hand.yaml").read_text("utf-8")
+CODE = """
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class OrderSettings:
+    cell: str
+    most: int = 5
+
+    def __post_init__(self):
+        if self.most < 1:
+            raise ValueError("most must be at least 1")
+
+
+class Orders:
+    settings_type = OrderSettings
+
+
+class Plain:
+    settings_type = None
+"""
+LINE = len(PLANT.splitlines()) + 1
+Load = Callable[[str], PlantModel]
+
+
+@pytest.fixture(autouse=True)
+def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Two packages: `orders` with settings, of which `cell` is needed, and `plain` without any."""
+    site = tmp_path / "site"
+    site.mkdir()
+    (site / "shop.py").write_text(CODE, "utf-8")
+    (site / "broken.py").write_text("raise RuntimeError('no luck')", "utf-8")
+    parts = ["orders.desk = shop:Orders", "plain = shop:Plain", "broken = broken"]
+    register(site, "shop", {"arboleda.parts": parts, "arboleda.routes": ["views = shop:Plain"]})
+    monkeypatch.syspath_prepend(site)
+    yield
+    sys.modules.pop("shop", None)
+
+
+@pytest.fixture
+def load(tmp_path: Path) -> Load:
+    """Reads a plant with this below it."""
+
+    def read(extensions: str) -> PlantModel:
+        file = tmp_path / "plant.yaml"
+        file.write_text(f"{PLANT}extensions: {extensions}\n", "utf-8")
+        return loader.load(file)
+
+    return read
+
+
+def test_a_package_gets_its_settings_as_the_dataclass_that_it_declares(load: Load) -> None:
+    (settings,) = load("{orders: {cell: sis_a}, plain: {}}").extensions.items()
+    name, given = settings
+    assert (name, type(given).__name__, vars(given)) == (
+        "orders",
+        "OrderSettings",
+        {"cell": "sis_a", "most": 5},
+    )
+
+
+@pytest.mark.parametrize(
+    ("extensions", "column", "told"),
+    [
+        (
+            "{ordres: {}}",
+            14,
+            'extensions: no installed package is called "ordres"; did you mean "orders"?; there are ',
+        ),
+        (
+            "{orders: {cell: lab, mots: 1}}",
+            34,
+            'the key "mots" is not known; did you mean "most"?; known: cell',
+        ),
+        (
+            "{orders: {cell: lab, most: many}}",
+            40,
+            'extensions.orders.most: must be a whole number, is "many"',
+        ),
+        ("{orders: {most: 1}}", 22, 'extensions.orders: the key "cell" is missing'),
+        ("{orders: {cell: lab, most: 0}}", 22, "extensions.orders: most must be at least 1"),
+        ("{orders: on}", 22, 'extensions.orders: must be off, or a mapping of its settings, is "on"'),
+        ("{plain: {cell: lab}}", 21, "extensions.plain: the extension plain has no settings"),
+        ("{views: {cell: lab}}", 21, "extensions.views: the extension views has no settings"),
+        ("{broken: {}}", 22, "extensions.broken: broken cannot be imported: RuntimeError: no luck"),
+        ("[orders]", 13, "extensions: must be a mapping (key: value), is a list"),
+    ],
+)
+def test_what_is_wrong_is_told_at_its_place(load: Load, extensions: str, column: int, told: str) -> None:
+    with pytest.raises(ConfigError) as refused:
+        load(extensions)
+    (problem,) = refused.value.problems
+    assert f"plant.yaml:{LINE}:{column}: " in problem and told in problem
+
+
+@pytest.mark.parametrize("off", ["off", "false"])
+def test_a_package_that_is_off_is_not_imported_and_has_no_piece_in_this_plant(load: Load, off: str) -> None:
+    plant = load(f"{{orders: {off}, broken: {off}}}")
+    assert plant.extensions == {} and plant.extensions_off == {"orders", "broken"}
+    names = [each.name for each in Pieces(off=plant.extensions_off).registered("arboleda.parts")]
+    assert "plain" in names and not {"orders.desk", "broken"} & {*names}
+    assert "shop" not in sys.modules
+
+
+@pytest.mark.parametrize(("extensions", "told"), [("{plain: {}}", ["no luck"]), ("{broken: off}", [])])
+def test_a_start_makes_nothing_of_a_package_that_is_off(
+    load: Load, tmp_path: Path, extensions: str, told: list[str]
+) -> None:
+    plant = replace(shipped("sis_a"), extensions_off=load(extensions).extensions_off)
+    app = build(plant, {"orchestrator"}, Options(state_dir=tmp_path / "state", page=False))
+    app.stop()
+    assert [each.rpartition(": ")[-1] for each in app.notes if "RuntimeError" in each] == told
+
+
+def test_a_package_that_is_not_named_has_its_defaults_or_is_told_what_to_write(load: Load) -> None:
+    plant = load("{plain: {}}")
+    from shop import OrderSettings  # type: ignore[import-not-found]
+
+    told = r"the plant file gives orders no cell; write extensions: \{orders: \{cell: \.\.\.\}\}"
+    with pytest.raises(ArboledaError, match=told):
+        settings_of(plant, "orders", OrderSettings)
+    assert settings_of(load("{orders: {cell: lab, most: 2}}"), "orders", OrderSettings).most == 2
+
+
+@pytest.mark.parametrize("other", ["{orders: {cell: lab, most: 3}}", "{orders: off}"])
+def test_a_running_plant_takes_no_other_settings(load: Load, other: str) -> None:
+    before = load("{orders: {cell: lab}}")
+    assert obstacle(before, before) is None
+    assert str(obstacle(before, load(other))) == "the settings of its packages are others"
