@@ -81,7 +81,7 @@ newest-test:  ## run the drivers' tests with the newest release of each of their
 	@scripts/install newest
 	ARBOLEDA_REQUIRE= .newest/bin/python -m pytest -p tests.second_tries $(NEWEST_TESTS) $(INTEGRATION_ARGS) # programs that `make test-tools` installs are in .venv alone
 
-wheel-check:  ## ask the package index whether all that a wheel needs is there for each system and Python
+wheel-check:  ## build the wheels in a clone, look into them, and ask the package index for all that they need, for each system and Python
 	@scripts/install tools
 	@PATH="$(CURDIR)/$(BIN):$$PATH" scripts/wheel-check
 
@@ -204,8 +204,8 @@ moving-picture:  ## take the picture of README.md that moves, docs/images/task.w
 	$(BIN)/python scripts/shots --moving
 
 clean:  ## remove .venv and whatever builds and tests left behind
-	rm -rf .venv .colcon .kilted .newest .check build firmware/build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
-	rm -rf *.egg-info src/*/*.egg-info shots
+	rm -rf .venv .colcon .kilted .newest .check .build build firmware/build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf *.egg-info src/*/*.egg-info packages/*/build shots
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## show this list

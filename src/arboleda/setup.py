@@ -1,6 +1,14 @@
 """The colcon build of this package; pip builds all of Arboleda from the pyproject.toml at the root."""
 
+import sys
+
 from setuptools import find_packages, setup
+
+if {"bdist_wheel", "dist_info", "editable_wheel", "sdist"}.intersection(sys.argv):
+    raise SystemExit(
+        "src/arboleda is built by colcon alone: its wheel would have Arboleda's name, and no libraries. "
+        "Give pip the folder above src, where pyproject.toml is."
+    )
 
 setup(
     name="arboleda",

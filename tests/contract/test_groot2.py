@@ -8,6 +8,7 @@ import random
 import signal
 import socket
 import struct
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -153,6 +154,10 @@ def test_what_keeps_it_from_starting_is_one_sentence(
     started("sis_a", port=port)
     with pytest.raises(StartError, match=f"ports {port} and {port + 1}, for sis_b: Address already in use"):
         started("sis_b", port=port)
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, "zmq", None)
+        with pytest.raises(StartError, match=r"install 'arboleda\[groot2\]'"):
+            started("sis_a", port=None)
     (tmp_path / "zmq.py").write_text("raise ImportError('no such library')\n")
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(StartError, match="is pyzmq installed"):

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from importlib.metadata import requires
+from itertools import chain
 from pathlib import Path
 
 from packaging.requirements import Requirement
 from tests.packages import PACKAGES
 
 ROOT = Path(__file__).parents[2]
+HOUSE = ROOT / "src/arboleda/arboleda"
+IMPORTED_AS = {"cryptography": "cryptography", "msgpack": "msgpack", "pillow": "PIL", "pyzmq": "zmq"}
 KEY = re.compile(r"<(?:exec_)?depend>(?:python3-)?([\w-]+)</")
 
 
@@ -24,6 +28,14 @@ def asked_of_pip() -> list[str]:
     block = re.search(r"^dependencies = \[\n(.*?)^\]$", text, re.MULTILINE | re.DOTALL)
     assert block
     return re.findall(r'^ *"([^";]+)', block[1], re.MULTILINE)
+
+
+def asked_of_extras() -> dict[str, list[str]]:
+    """The libraries, with their bounds, that extras of the runner bring and it does not need."""
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    names = ("certs", "groot2", "pictures")
+    rows = {name: re.search(rf"^{name} = \[(.*)\]$", text, re.MULTILINE) for name in names}
+    return {name: re.findall(r'"([^"]+)"', row[1]) for name, row in rows.items() if row}
 
 
 def asked_of_packages() -> set[str]:
@@ -41,7 +53,8 @@ def key(dependency: str) -> str:
 def test_the_requirements_beside_ros_2_have_the_bounds_of_pyproject() -> None:
     requirements = without_comments("requirements-ros.txt")
     assert requirements
-    assert set(requirements) <= {*asked_of_pip(), *asked_of_packages()}
+    extras = chain(*asked_of_extras().values())
+    assert set(requirements) <= {*asked_of_pip(), *asked_of_packages(), *extras}
 
 
 def test_each_library_comes_by_one_way_beside_ros_2() -> None:
@@ -76,3 +89,31 @@ def test_the_wheels_of_ros_2_are_asked_for_where_they_exist_only() -> None:
     assert asked and all(Requirement(each).marker is not None for each in asked)
     elsewhere = {"platform_machine": "aarch64", "sys_platform": "linux"}
     assert not any(marker.evaluate(elsewhere) for each in asked if (marker := Requirement(each).marker))
+
+
+def imported_at_once(path: Path) -> set[str]:
+    """The modules that a file imports as soon as it is loaded itself, by their whole names."""
+    package = path.relative_to(HOUSE.parent).parent.parts
+    found = set()
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            above = package[: len(package) - node.level + 1] if node.level else ()
+            start = ".".join((*above, *filter(None, [node.module])))
+            found |= {start, *(f"{start}.{alias.name}" for alias in node.names)}
+    return found
+
+
+def test_the_library_of_an_extra_is_loaded_where_it_is_asked_for_and_nobody_needs_it() -> None:
+    libraries = [Requirement(each).name for each in chain(*asked_of_extras().values())]
+    assert len(libraries) == len(IMPORTED_AS) and not {*libraries} & {
+        Requirement(e).name for e in asked_of_pip()
+    }
+    imports = {path: imported_at_once(path) for path in HOUSE.rglob("*.py") if "examples" not in path.parts}
+    names = {IMPORTED_AS[each] for each in libraries}
+    users = {path: names & {each.partition(".")[0] for each in found} for path, found in imports.items()}
+    users = {path: found for path, found in users.items() if found}
+    assert set().union(*users.values()) == names
+    modules = {".".join(path.relative_to(HOUSE.parent).with_suffix("").parts) for path in users}
+    assert [str(path) for path, found in imports.items() if found & modules] == []

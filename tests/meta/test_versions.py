@@ -27,7 +27,7 @@ def test_every_package_names_the_version_of_pyproject() -> None:
     files = [
         path for folder in packages for path in (folder / "package.xml", folder / "setup.py") if path.exists()
     ]
-    files.append(ROOT / "src/arboleda/arboleda/__init__.py")
+    files += [ROOT / "src/arboleda/arboleda/__init__.py", ROOT / "tools/bench/setup.py"]
     versions = {str(path.relative_to(ROOT)): version_in(path) for path in files}
     assert len(versions) >= 10
     assert set(versions.values()) == {version_in(ROOT / "pyproject.toml")}, versions

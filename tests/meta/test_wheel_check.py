@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
 
@@ -15,7 +16,7 @@ CHECK = load("wheel-check")
 
 def test_the_parts_are_those_that_who_runs_a_plant_installs() -> None:
     parts = CHECK.optional_parts((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    assert {"modbus", "opcua", "certs", "postgres", "mcp"} <= set(parts)
+    assert {"modbus", "opcua", "certs", "groot2", "pictures", "postgres", "mcp"} <= set(parts)
     assert not CHECK.OF_DEVELOPERS & set(parts)
     assert not {name.removeprefix("arboleda_") for name in PACKAGES} & set(parts)
 
@@ -57,3 +58,36 @@ def test_what_it_cannot_do_is_one_sentence(
     monkeypatch.setattr(CHECK.shutil, "which", lambda _name: "uv" if words else None)
     assert CHECK.main(words) == 2
     assert said in capsys.readouterr().err
+
+
+def wheel(folder: Path, *files: str, needs: str = "") -> Path:
+    """A wheel with these files and these lines of its metadata."""
+    with ZipFile(folder / "arboleda-0.1.0-py3-none-any.whl", "w") as made:
+        for name in files:
+            made.writestr(name, "")
+        made.writestr("arboleda-0.1.0.dist-info/METADATA", needs)
+    return folder / "arboleda-0.1.0-py3-none-any.whl"
+
+
+def test_a_wheel_with_benchmarks_or_with_the_libraries_of_an_extra_is_refused(tmp_path: Path) -> None:
+    needs = """Requires-Dist: rich
+Requires-Dist: PyZMQ>=25
+Requires-Dist: pyzmq>=25; extra == "groot2"
+Requires-Dist: ur-rtde>=1.6; sys_platform == "linux" and extra == "test"
+"""
+    made = wheel(tmp_path, "arboleda/__init__.py", "arboleda_bench/__init__.py", needs=needs)
+    assert CHECK.unwanted(made) == [
+        "the wheel brings arboleda_bench, which no plant needs",
+        "the wheel needs pyzmq, which an extra brings",
+    ]
+
+
+def test_a_folder_that_colcon_takes_for_a_package_is_found_where_it_looks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "tools").mkdir()
+    (tmp_path / "tools/COLCON_IGNORE").touch()
+    folders = ("build/lib/extension", ".build/lib/extension", "tools/build")
+    monkeypatch.setattr(CHECK, "untracked", lambda _: [Path(each) / "setup.py" for each in folders])
+    (found,) = CHECK.left_behind(tmp_path)
+    assert found.startswith("colcon takes build/lib/extension for a package")

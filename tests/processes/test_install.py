@@ -21,7 +21,7 @@ def install(
         shutil.copy(ROOT / "scripts" / name, folder / "scripts")
     for name in ("pyproject.toml", "constraints.txt", "constraints-kilted.txt"):
         shutil.copy(ROOT / name, folder)
-    for each in ROOT.glob("packages/*/setup.py"):
+    for each in (*ROOT.glob("packages/*/setup.py"), ROOT / "tools/bench/setup.py"):
         (folder / each.parent.relative_to(ROOT)).mkdir(parents=True)
         shutil.copy(each, folder / each.relative_to(ROOT))
     path = folder / "tools"

@@ -18,10 +18,12 @@ from tests.packages import PACKAGES as BESIDE
 from arboleda import __version__
 
 from ..patience import PATIENCE_S
+from ..scripts import load
 from .conftest import Process
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("src/arboleda/arboleda", "src/arboleda_ros/arboleda_ros", "tools/bench/arboleda_bench")
+CHECK = load("wheel-check")
+PACKAGES = ("src/arboleda/arboleda", "src/arboleda_ros/arboleda_ros")
 DESCRIPTION = "src/arboleda_description/arboleda_description"
 RUN = "from arboleda.cli.entry import main; main()"
 Command = Callable[..., "subprocess.CompletedProcess[str]"]
@@ -92,12 +94,28 @@ def test_it_holds_the_packages_and_nothing_else_and_what_it_says_of_itself_is_va
     assert said.description_content_type == "text/markdown" and "ros" in (said.provides_extra or ())
 
 
+def test_it_brings_nothing_that_only_developers_or_only_some_plants_need(wheel: Path) -> None:
+    assert CHECK.unwanted(wheel) == []
+
+
+def test_building_it_leaves_nothing_that_colcon_takes_for_a_package(clone: Path, wheel: Path) -> None:
+    assert wheel.is_file() and (clone / ".build").is_dir()
+    assert CHECK.left_behind(clone) == []
+
+
+def test_the_folder_for_colcon_makes_no_wheel_of_the_same_name(clone: Path, tmp_path: Path) -> None:
+    with pytest.raises(subprocess.CalledProcessError) as refused:
+        built(clone / "src/arboleda", tmp_path)
+    assert b"Give pip the folder above src, where pyproject.toml is." in refused.value.stderr
+
+
 @pytest.mark.parametrize("name", BESIDE)
 def test_the_wheel_of_a_package_beside_it_holds_the_package(name: str, clone: Path, tmp_path: Path) -> None:
     wanted = {file for file in tracked(f"packages/{name}/src/{name}") if "/README." not in file}
     with ZipFile(built(clone / "packages" / name, tmp_path)) as opened:
         held = {file for file in opened.namelist() if file.startswith(f"{name}/")}
     assert held == wanted
+    assert CHECK.left_behind(clone) == []
 
 
 @pytest.mark.system

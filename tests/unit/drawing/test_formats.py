@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import io
+import sys
 import xml.etree.ElementTree as ElementTree
 from typing import Any
 
@@ -11,6 +12,7 @@ from PIL import Image
 from arboleda.adapters.png import SCALE, plain
 from arboleda.cli.draw import Format, draw
 from arboleda.drawing.picture import LOOKS, MARK, Box, Word, picture
+from arboleda.model.errors import StartError
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -96,3 +98,12 @@ def test_the_graph_is_in_the_language_of_graphviz() -> None:
 
 def test_every_format_is_drawn() -> None:
     assert all(draw(ROWS, format) for format in Format)
+
+
+def test_a_png_without_its_library_is_one_sentence_with_the_line_to_type(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.delitem(sys.modules, "arboleda.adapters.png")
+    monkeypatch.setitem(sys.modules, "PIL", None)
+    with pytest.raises(StartError, match=r"Pillow .* -m pip install 'arboleda\[pictures\]'.* --format svg"):
+        draw(ROWS, "png")

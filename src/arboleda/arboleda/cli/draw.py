@@ -10,7 +10,15 @@ from arboleda.bt_xml.export import export
 from arboleda.drawing.picture import picture
 from arboleda.drawing.svg import svg
 from arboleda.drawing.words import dot, outline
+from arboleda.model.errors import StartError
+from arboleda.model.sentence import Phrase
+from arboleda.runtime import invocation
 
+NO_LIBRARY = Phrase(
+    "cli.draw.no_library",
+    "the library Pillow is not installed, which a PNG needs: type "
+    "`{python} -m pip install 'arboleda[pictures]'`, or take --format svg",
+)
 Rows = Sequence[dict[str, Any]]
 
 
@@ -30,8 +38,10 @@ def draw(rows: Rows, format: Format | str, *, statuses: bool = False) -> bytes:
 
 
 def _png(rows: Rows, _statuses: bool) -> bytes:
-    from arboleda.adapters.png import png  # Pillow takes a while to load, and only this format needs it
-
+    try:
+        from arboleda.adapters.png import png  # Pillow takes a while to load, and only this format needs it
+    except ModuleNotFoundError as error:
+        raise StartError(NO_LIBRARY(python=invocation.python())) from error
     return png(picture(rows))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
 from typing import Any
 
 from arboleda.model.errors import StartError
@@ -14,6 +15,8 @@ from arboleda.web.access.names import LOCAL, is_loopback
 from .viewer_process import Snapshot, ViewerProcess
 
 START_S = 20.0
+LIBRARIES = ("msgpack", "zmq")
+MISSING = "pyzmq and msgpack are not installed, which it needs: pip install 'arboleda[groot2]'"
 OF_TASK = ("id", "text", "state", "answers")
 
 
@@ -37,6 +40,8 @@ class Groot2Part(ViewerProcess):
 
     def start(self) -> None:
         """Start the process; StartError if a named port is taken, or a library is missing."""
+        if not all(map(find_spec, LIBRARIES)):
+            raise StartError(f"Groot2: {MISSING}")
         process = self.spawn(self._options.host, list(self._cells), self._options.port)
         answer = self.answer(process, START_S)
         if "ports" not in answer:
