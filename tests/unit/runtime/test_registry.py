@@ -76,7 +76,7 @@ def test_a_package_is_loaded_only_when_a_plant_is_put_together(tmp_path: Path, p
     ("code", "why"),
     [
         ("import no_such_library", "No module named 'no_such_library'"),
-        ("PARTS = [7]", "acme:PARTS is no sequence of factories of parts"),
+        ("PARTS = [7]", "acme:PARTS is neither a Part nor a sequence of factories of parts"),
         ("PARTS = 7", "'int' object is not iterable"),
         ("raise SystemExit(3)", "it ends the program"),
         (raising(make=WRONG), "ValueError: the shelf is full"),

@@ -649,9 +649,7 @@ class PlantModel:
     store: str = ""  # the database where its memory is, "": in a file of its own
     assistants: Assistants = Assistants.OFF
     assistant_limits: AssistantLimits = NO_LIMITS
-    extensions: Mapping[str, object] = field(
-        default_factory=dict, hash=False
-    )  # settings by package  # settings of packages, by name
+    extensions: Mapping[str, object] = field(default_factory=dict, hash=False)  # settings, by package
     extensions_off: frozenset[str] = frozenset()  # the packages that it leaves out
 
     def cell(self, name: str) -> Cell:

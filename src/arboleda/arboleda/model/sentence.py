@@ -167,3 +167,10 @@ def _text_of(value: Value, template: Callable[[Phrase], str], own: Callable[[str
 OWN = Phrase("own", "{text}")
 NOTHING = Phrase("nothing", "")()
 BOTH = Phrase("both", "{first}; {second}")
+
+
+def explained(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A row with the parts of its `sentence`, `key` and `values`; unchanged if that is text only."""
+    sentence = row["sentence"]
+    by_key = isinstance(sentence, Sentence) and sentence and sentence.phrase is not OWN
+    return {**row, **sentence.data()} if by_key else {**row}

@@ -110,6 +110,14 @@ class Loop(Generic[Event, Message]):
                 self._sleeps_until = due
                 self._awake.notify()
 
+    def wake(self) -> None:
+        """Step soon, even without an event; from any thread."""
+        with self._inbox_lock:
+            self._inbox_due = -math.inf
+            if self._sleeps_until > -math.inf:
+                self._sleeps_until = -math.inf
+                self._awake.notify()
+
     def read(self, fn: Callable[[Any], Result]) -> Result:
         """`fn(machine)` between two steps, from any thread; `fn` changes nothing and does not read again."""
         with self._between_steps:

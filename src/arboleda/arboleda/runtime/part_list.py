@@ -11,8 +11,9 @@ from arboleda.host.packages import left_out
 from arboleda.host.pieces import Piece, Pieces, piece_of
 from arboleda.plant_file.python_uses import error_text
 
+from .packaged import packaged
 from .parts.part import Part
-from .registry import Assembly, Factory, packaged
+from .registry import Assembly, Factory
 
 
 class _Made(NamedTuple):

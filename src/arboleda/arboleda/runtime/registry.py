@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import IntEnum
-from importlib.metadata import EntryPoint
 from typing import Any
 
 from arboleda.host.packages import registered
@@ -150,18 +149,6 @@ class Assembly(Offers):
             log_defect("a source of links", error)
         else:
             self.pieces.leave_out(piece, error)
-
-
-def packaged(pieces: Pieces) -> list[tuple[EntryPoint, Factory]]:
-    """The factories of packages, each with its entry point; what cannot be loaded is left out."""
-    found: list[tuple[EntryPoint, Factory]] = []
-    for point in pieces.registered(GROUP):
-        with pieces.calling(piece_of(point, "the parts")):
-            factories = tuple(point.load())
-            if not all(isinstance(each, Factory) for each in factories):
-                raise TypeError(f"{point.value} is no sequence of factories of parts")
-            found += [(point, each) for each in factories]
-    return found
 
 
 def _piece_in(module: str, what: str) -> Piece | None:

@@ -31,6 +31,7 @@ from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, Refuse
 from arboleda.model.messages import Outcome, Verb
 from arboleda.model.outside import plain, quoted
 from arboleda.model.packages import PackageMissing
+from arboleda.model.sentence import explained
 from arboleda.model.verbs import Arguments, from_text
 from arboleda.store.task_rows import COMMAND, HTTP, TaskRow, answers_of, choice_of, table, unchecked_of
 
@@ -45,7 +46,7 @@ from .routes import installed, packaged
 from .routes import routers as looks
 from .schema import openapi
 from .schema.bodies import AnyVerbArguments, Sentence, TaskFilter, TaskForm, TaskText, VerbArguments
-from .schema.plain_json import PlainJson, explained
+from .schema.plain_json import PlainJson
 from .schema.queries import (
     WRONG,
     Answers,

@@ -20,11 +20,12 @@ from arboleda.client.answers.proposals import (
     WholeProposal,
 )
 from arboleda.client.answers.tasks import Task
+from arboleda.model.sentence import explained
 from arboleda.web.access.auth import Role
 from arboleda.web.access.needs import needs
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel
-from arboleda.web.schema.plain_json import PlainJson, explained
+from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import answering, described_body, read_body
 from arboleda_make.proposals.api import ProposalsApi
 

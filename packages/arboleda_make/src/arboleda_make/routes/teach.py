@@ -13,11 +13,12 @@ from pydantic import Field, model_validator
 from starlette.exceptions import HTTPException
 
 from arboleda.client.answers.plant import Teaching
+from arboleda.model.sentence import explained
 from arboleda.web.access.auth import Role
 from arboleda.web.access.needs import needs
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel, Sentence
-from arboleda.web.schema.plain_json import PlainJson, explained
+from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, answering, described_body, read_body
 from arboleda_make.teaching import api as teach
 

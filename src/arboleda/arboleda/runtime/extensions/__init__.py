@@ -1,1 +1,1 @@
-"""What packages may do with a plant that runs."""
+"""Parts of packages: what they are made of, and the plant as they see it."""

@@ -16,6 +16,7 @@ from arboleda.host.packages import package_of, registered
 from arboleda.host.pieces import Pieces, piece_of
 
 from ..package_routes import addresses, guarded
+from ..part_routes import PartRoutes
 from ..plant_api import PlantApi
 
 GROUP = "arboleda.routes"
@@ -36,9 +37,10 @@ def packaged(side: PlantApi, before: Sequence[APIRouter], pieces: Pieces) -> lis
     """The routers of packages, without a route that `before`, the page or another package has."""
     taken = {each for router in before for each in addresses(router.routes)}
     found: list[APIRouter] = []
-    for point in pieces.registered(GROUP):
+    makers = [(point, lambda point=point: point.load()(side)) for point in pieces.registered(GROUP)]
+    for point, make in (*makers, *(side.ask(PartRoutes) or ())):
         with pieces.calling(piece_of(point, "the routes")):
-            router = point.load()(side)
+            router = make()
             if not isinstance(router, APIRouter):
                 raise TypeError(f"{point.value} makes no APIRouter")
             found.append(APIRouter())

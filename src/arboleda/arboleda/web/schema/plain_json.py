@@ -1,14 +1,13 @@
-"""Answers of plain data and sentences."""
+"""Answers of plain data."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from typing import Any
 
 from fastapi.responses import JSONResponse
 
-from arboleda.model.sentence import OWN, Sentence, in_json
+from arboleda.model.sentence import in_json
 
 
 class PlainJson(JSONResponse):
@@ -19,10 +18,3 @@ class PlainJson(JSONResponse):
             content, ensure_ascii=False, allow_nan=False, separators=(",", ":"), default=in_json
         )
         return text.encode("utf-8")
-
-
-def explained(row: Mapping[str, Any]) -> dict[str, Any]:
-    """A row with the parts of its `sentence`, `key` and `values`; unchanged if that is text only."""
-    sentence = row["sentence"]
-    by_key = isinstance(sentence, Sentence) and sentence and sentence.phrase is not OWN
-    return {**row, **sentence.data()} if by_key else {**row}

@@ -1,0 +1,102 @@
+"""Names for packages that add to Arboleda. Devices, recipes and clients have modules of their own:
+`arboleda.kinds`, `arboleda.drivers`, `arboleda.recipes`, `arboleda.client`.
+
+A package says for which API it is written, `"arboleda.api": ["1 = its_package"]` among its entry points;
+that is read before anything of it is imported. A name goes on for two minor versions after it is
+deprecated.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from arboleda.cli.commands import Command as Command
+    from arboleda.cli.language import say as say
+    from arboleda.cli.plant_options import (
+        RunningPlant as RunningPlant,
+    )
+    from arboleda.cli.plant_options import (
+        StateFolder as StateFolder,
+    )
+    from arboleda.cli.plant_options import (
+        client as client,
+    )
+    from arboleda.client.answers.tasks import Done as Done
+    from arboleda.client.answers.tasks import Task as Task
+    from arboleda.dashboard.asset_files import Assets as Assets
+    from arboleda.dashboard.faces.moment import Moment as Moment
+    from arboleda.dashboard.page_part import (
+        Act as Act,
+    )
+    from arboleda.dashboard.page_part import (
+        PagePart as PagePart,
+    )
+    from arboleda.dashboard.page_part import (
+        Place as Place,
+    )
+    from arboleda.dashboard.page_part import (
+        Request as Request,
+    )
+    from arboleda.dashboard.page_part import (
+        Section as Section,
+    )
+    from arboleda.dashboard.page_part import (
+        Spot as Spot,
+    )
+    from arboleda.dashboard.tags import act_button as act_button
+    from arboleda.dashboard.tags import live as live
+    from arboleda.dashboard.tags import rows as rows
+    from arboleda.dashboard.tags import tag as tag
+    from arboleda.model.errors import (
+        ArboledaError as ArboledaError,
+    )
+    from arboleda.model.errors import (
+        Refused as Refused,
+    )
+    from arboleda.model.errors import (
+        StartError as StartError,
+    )
+    from arboleda.model.sentence import Phrase as Phrase
+    from arboleda.model.sentence import Sentence as Sentence
+    from arboleda.runtime.extensions.part import Part as Part
+    from arboleda.runtime.extensions.plant import Device as Device
+    from arboleda.runtime.extensions.plant import Plant as Plant
+    from arboleda.runtime.extensions.table import Table as Table
+    from arboleda.web.access.auth import Role as Role
+    from arboleda.web.access.needs import needs as needs
+
+API = 1
+
+HOMES = {
+    "cli.commands": ("Command",),
+    "cli.language": ("say",),
+    "cli.plant_options": ("RunningPlant", "StateFolder", "client"),
+    "client.answers.tasks": ("Done", "Task"),
+    "dashboard.asset_files": ("Assets",),
+    "dashboard.faces.moment": ("Moment",),
+    "dashboard.page_part": ("Act", "PagePart", "Place", "Request", "Section", "Spot"),
+    "dashboard.tags": ("act_button", "live", "rows", "tag"),
+    "model.errors": ("ArboledaError", "Refused", "StartError"),
+    "model.sentence": ("Phrase", "Sentence"),
+    "runtime.extensions.part": ("Part",),
+    "runtime.extensions.plant": ("Device", "Plant"),
+    "runtime.extensions.table": ("Table",),
+    "web.access.auth": ("Role",),
+    "web.access.needs": ("needs",),
+}
+"""The modules that have the names, which load once somebody asks for one: a command needs no page."""
+
+__all__ = ["API", *sorted(name for names in HOMES.values() for name in names)]
+
+
+def __getattr__(name: str) -> Any:
+    for home, names in HOMES.items():
+        if name in names:
+            return getattr(import_module(f"{__package__}.{home}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return __all__

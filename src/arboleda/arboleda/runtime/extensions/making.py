@@ -1,0 +1,81 @@
+"""Parts of packages, made where a plant starts: each with the plant as it may see it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from importlib.metadata import EntryPoint
+from pathlib import Path
+
+from arboleda.host.packages import package_of
+from arboleda.host.pieces import piece_of
+from arboleda.plant_file.extensions import settings_of
+from arboleda.store.package_table import PackageTable
+from arboleda.web.part_routes import PartRoutes
+
+from ..parts.local_plant import LocalPlant
+from ..parts.orchestrator import Orchestrator
+from ..parts.part import Part as Started
+from ..registry import Assembly, Factory, Phase
+from .part import Part
+from .plant import Plant, Uses
+from .table import Table, Writes
+from .telling import Telling
+
+FOLDER = "extensions"  # in the state directory
+
+
+def factory_of(made_by: type[Part], point: EntryPoint) -> Factory:
+    """The factory of a part that a package registers as a class."""
+    return Factory(phase=Phase.RECORD, make=partial(_make, made_by, point))
+
+
+def _make(made_by: type[Part], point: EntryPoint, assembly: Assembly) -> Iterator[Started]:
+    """The part, then what tells it of the plant, which ends before it."""
+    running = assembly.ask(Orchestrator)
+    if running is None:  # a process without the plant, as a node of boards
+        return
+    telling = Telling(point.name, assembly.pieces, partial(piece_of, point))
+    writes, memory = _writes(assembly, running), assembly.holdings.memory
+    plant = Plant(
+        point.name,
+        Uses(
+            side=assembly.need(LocalPlant),
+            telling=telling,
+            tell_tasks=running.listeners.append,
+            tell_views=running.screens.watchers.append,
+            table=lambda name: Table(PackageTable(memory, name), writes),
+            folder=partial(_folder, assembly.holdings.state.path, point.name),
+        ),
+    )
+    declared = made_by.settings_type
+    part = made_by(plant, declared and settings_of(assembly.model, package_of(point), declared))
+    assembly.offer(made_by, part)
+    assembly.links.add(lambda: {point.name: plant.shown} if plant.shown else {})
+    _routes(assembly).append((point, part.routes))
+    yield part
+    yield telling
+
+
+def _writes(assembly: Assembly, running: Orchestrator) -> Writes:
+    """The writes of all packages, which the thread of the plant makes."""
+    writes = assembly.ask(Writes)
+    if writes is None:
+        writes = Writes(running.loop.wake, lambda: running.loop.running)
+        running.observers.append(writes.flush)
+        assembly.offer(Writes, writes)
+    return writes
+
+
+def _routes(assembly: Assembly) -> PartRoutes:
+    routes = assembly.ask(PartRoutes)
+    if routes is None:
+        routes = PartRoutes()
+        assembly.offer(PartRoutes, routes)
+    return routes
+
+
+def _folder(state: Path, name: str) -> Path:
+    folder = state / FOLDER / name
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    return folder

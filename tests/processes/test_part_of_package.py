@@ -1,0 +1,63 @@
+"""A part of a package in a plant that runs: its rows are written for any thread, and it delays nobody."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.added_package import install
+from tests.patience import PATIENCE_S
+
+from arboleda.runtime.build import App, Options, build
+from arboleda_proofs.testing import shipped
+
+CODE = """
+import threading
+
+from arboleda.extension import Part
+
+
+class Orders(Part):
+    def start(self):
+        self.hangs, self.goes_on = threading.Event(), threading.Event()
+        self.plant.on_task(self.hang)
+
+    def hang(self, task):
+        self.hangs.set()
+        self.goes_on.wait()
+"""
+
+
+@pytest.fixture
+def app(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[App]:
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    install(tmp_path / "site", "orders", CODE, what="Orders")
+    made = build(shipped("sis_a"), {"orchestrator"}, Options(state_dir=tmp_path / "state", page=False))
+    made.start()
+    yield made
+    part_of(made).goes_on.set()
+    made.stop()
+    sys.modules.pop("orders", None)
+
+
+def part_of(app: App) -> Any:
+    return app.offers.ask(sys.modules["orders"].Orders)
+
+
+def test_any_thread_puts_rows(app: App) -> None:
+    table = part_of(app).plant.table()
+    names = [f"lot{each}" for each in range(20)]
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(lambda name: table.put({name: {"amount": 1}}), names, timeout=PATIENCE_S))
+    assert part_of(app).plant.table().rows() == {each: {"amount": 1} for each in names}
+
+
+def test_a_listener_that_hangs_holds_up_no_task(app: App) -> None:
+    part = part_of(app)
+    part.plant.submit("sis_a 0B 7 #lot").result(PATIENCE_S)
+    assert part.hangs.wait(PATIENCE_S)
+    assert part.plant.submit("sis_a 0B 8 #next").result(PATIENCE_S).state == "queued"
