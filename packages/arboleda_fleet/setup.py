@@ -23,6 +23,7 @@ setup(
         "opcua": ["asyncua>=2.1,<3"],
     },
     entry_points={
+        "arboleda.client": ["fleet = arboleda_fleet.client:FleetRoutes"],
         "arboleda.commands": ["fleet = arboleda_fleet.commands:COMMANDS"],
         "arboleda.languages": ["fleet = arboleda_fleet"],
         "arboleda.page": ["fleet = arboleda_fleet.page.page_part:PAGE"],

@@ -18,6 +18,7 @@ setup(
     install_requires=["arboleda==0.1.0", "arboleda_proofs==0.1.0"],
     extras_require={"mcp": ["mcp>=2.3,<3"]},  # assistants (`arboleda mcp`)
     entry_points={
+        "arboleda.client": ["make = arboleda_make.client.methods:MakeRoutes"],
         "arboleda.commands": ["make = arboleda_make.commands:COMMANDS"],
         "arboleda.extras": [
             "mend = arboleda_make.mending.search:mend_of",

@@ -19,6 +19,7 @@ setup(
     ],
     install_requires=["arboleda==0.1.0"],
     entry_points={
+        "arboleda.client": ["proofs = arboleda_proofs.client:ProofsRoutes"],
         "arboleda.commands": ["proofs = arboleda_proofs.commands:COMMANDS"],
         "arboleda.extras": [
             "case = arboleda_proofs.commands.record_case:export",

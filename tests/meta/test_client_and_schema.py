@@ -2,85 +2,56 @@
 
 from __future__ import annotations
 
-from typing import Any, get_args, get_origin, get_type_hints
+from typing import get_type_hints
 
 import pytest
-from fastapi import APIRouter
-from fastapi.routing import APIRoute
 
-from arboleda.client import Draft, Plant
+from arboleda.client import Plant, Routes, Task, route
+from arboleda.client.added import OF_PACKAGES, added
 from arboleda.client.answers.plant import Event
-from arboleda.client.answers.rows import Rows
-from arboleda.client.calls import Flow, Following, Route
-from arboleda.host.packages import registered
 from arboleda.web import api, stream
-from arboleda.web.routes import GROUP, routers
+from arboleda.web.routes import routers
 from arboleda.web.schema.answers import model_of
-from arboleda.web.schema.openapi import described_route
 
-SIDE: Any = None  # nothing is asked of it
-PUBLIC: list[APIRouter] = [api.routes(SIDE), *routers(SIDE), stream.routes(SIDE, 1)]
-PUBLIC += [point.load()(SIDE) for point in registered(GROUP)]
-ROUTES = {
-    f"{method} {each.path}": each
-    for router in PUBLIC
-    for each in map(described_route, router.routes)
-    if isinstance(each, APIRoute)
-    for method in each.methods
-}
-METHODS = {
-    f"{side.__name__}.{name}": getattr(side, name)
-    for side in (Plant, Draft)
-    for name in dir(side)
-    if isinstance(getattr(side, name), Flow | Following)
-}
-DECLARED = {name: method for name, method in METHODS.items() if isinstance(method, Route)}
-# A button that is held has to be said again every 0.1 s, and an editor asks for what it draws and takes away.
-LEFT_TO_THE_PAGE = {
-    *(path for path in ROUTES if "/api/teach/" in path),
-    "POST /api/make/drawn/check",
-    "POST /api/make/drawn/edit",
-    "POST /api/make/objections",
-    "POST /api/make/remove",
-    "POST /api/make/runs/reach",
-}
+from ..client_methods import SIDE, differences, left, methods_of, routes_of
+
+ROUTES = routes_of([api.routes(SIDE), *routers(SIDE), stream.routes(SIDE, 1)])
+METHODS = methods_of(Plant)
 
 
-def test_every_route_has_a_method() -> None:
-    known = {path for method in METHODS.values() for path in method.routes}
-    assert known <= ROUTES.keys()
-    assert ROUTES.keys() - known == LEFT_TO_THE_PAGE
+def test_every_route_of_the_runner_has_a_method() -> None:
+    assert left(ROUTES, METHODS) == set()
 
 
-@pytest.mark.parametrize("name", DECLARED)
-def test_a_method_takes_what_its_route_takes(name: str) -> None:
-    method = DECLARED[name]
-    route = ROUTES[method.routes[0]]
-    described = route.openapi_extra or {}
-    body = described.get("requestBody", {}).get("content", {}).get("application/json", {}).get("schema", {})
-    taken = {each["name"] for each in described.get("parameters", ())} | body.get("properties", {}).keys()
-    taken |= {each.alias for each in (*route.dependant.path_params, *route.dependant.query_params)}
-    assert set(method.parameters) == taken - {"editor"}
-    assert method.by_editor is ("editor" in taken)
+def test_a_method_takes_and_returns_what_its_route_does() -> None:
+    assert differences(ROUTES, METHODS) == []
 
 
-@pytest.mark.parametrize("name", DECLARED)
-def test_a_method_returns_what_its_route_answers(name: str) -> None:
-    method = DECLARED[name]
-    wanted = list[get_args(method.answer)[0]] if get_origin(method.answer) is Rows else method.answer  # type: ignore[misc]
-    assert ROUTES[method.routes[0]].response_model == (None if wanted is str else model_of(wanted))
+def test_a_method_that_is_otherwise_than_its_route_is_found() -> None:
+    class Wrong(Routes):
+        tasks = route("GET", "/api/tasks", Task)(lambda self: None)
+        task = route("GET", "/api/tasks/{task_id}", Task)(lambda self, task_id, cell: None)
+        orders = route("GET", "/api/orders", Task)(lambda self: None)
+
+    found = differences(ROUTES, methods_of(Wrong))
+    assert [each.partition(" ")[0] for each in found] == ["Wrong.orders:", "Wrong.task:", "Wrong.tasks:"]
 
 
-def test_what_is_submitted_or_operated_is_answered_so_too() -> None:
-    for name, path in (
-        ("submit", "/api/tasks"),
-        ("submit_form", "/api/tasks"),
-        ("operate", "/api/plant/{verb}"),
-    ):
-        answer = get_type_hints(METHODS[f"Plant.{name}"].work)["return"]
-        assert ROUTES[f"POST {path}"].response_model is model_of(answer)
+@pytest.mark.parametrize(
+    ("name", "path"),
+    [("submit", "/api/tasks"), ("submit_form", "/api/tasks"), ("operate", "/api/plant/{verb}")],
+)
+def test_what_is_submitted_or_operated_is_answered_so_too(name: str, path: str) -> None:
+    answer = get_type_hints(METHODS[f"Plant.{name}"].work)["return"]
+    assert ROUTES[f"POST {path}"].response_model is model_of(answer)
 
 
 def test_an_event_is_of_a_kind_that_its_description_names() -> None:
     told = Event.__doc__ or ""
     assert all(kind in told for kind in ("snapshot", "plant", *(kind for kind, *_ in stream.ROWS.values())))
+
+
+def test_what_a_client_without_a_package_names_is_a_method_of_that_package() -> None:
+    for kind in added():
+        package = kind.__module__.partition(".")[0].removeprefix("arboleda_")
+        assert {name for name in OF_PACKAGES[package] if not hasattr(kind, name)} == set()

@@ -20,6 +20,9 @@ MODULES = [
         "arboleda.recipes",
         "arboleda.kinds",
         "arboleda.drivers",
+        "arboleda_fleet.client",
+        "arboleda_make.client",
+        "arboleda_proofs.client",
         "arboleda_proofs.testing",
     )
     if find_spec(name) and hasattr(importlib.import_module(name), "__all__")

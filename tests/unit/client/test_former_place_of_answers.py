@@ -1,16 +1,44 @@
-"""`arboleda.client.answers` has the types of its modules for one minor version, with a warning."""
+"""`arboleda.client` has what other modules have now, for one minor version and with a warning."""
 
 from __future__ import annotations
 
 import pytest
 
+from arboleda import client
 from arboleda.client import answers
 from arboleda.client.answers.plant import Cell
+from arboleda.host import packages
 
 
 def test_a_type_is_found_with_a_warning_that_says_where_it_is() -> None:
     with pytest.warns(DeprecationWarning, match=r"use `from arboleda\.client\.answers\.plant import Cell`"):
         assert answers.Cell is Cell
+
+
+def test_a_type_of_a_package_is_found_there() -> None:
+    with pytest.warns(
+        DeprecationWarning, match=r"use `from arboleda_make\.answers\.drafts import DraftState`"
+    ):
+        assert answers.DraftState.__name__ == "DraftState"
+
+
+def test_the_draft_is_found_in_its_package() -> None:
+    with pytest.warns(DeprecationWarning, match=r"use `from arboleda_make\.client import Draft`") as told:
+        assert client.Draft.__module__ == "arboleda_make.client.draft"
+    assert told[0].filename == __file__
+
+
+def test_where_its_package_is_missing_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(packages, "import_module", missing)
+    with (
+        pytest.warns(DeprecationWarning, match="Draft"),
+        pytest.raises(ImportError, match=r"^arboleda\.client\.Draft needs the package make"),
+    ):
+        client.Draft  # noqa: B018 - asking for it is the test
+
+
+def missing(name: str) -> None:
+    raise ModuleNotFoundError(name=name.partition(".")[0])
 
 
 def test_another_name_is_not_there() -> None:

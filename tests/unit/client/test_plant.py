@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
+import asyncio
 import sys
 from pathlib import Path
 from socket import gethostname
-from typing import Any
 
 import pytest
 from tests.guarded_plant import guarded
@@ -16,6 +15,7 @@ from tests.web_plant import KEPT, LATE, TASK, TOKENS, Plant
 from tests.web_plant import plant as plant
 
 from arboleda.client import (
+    AsyncPlant,
     Conflict,
     Forbidden,
     Later,
@@ -23,6 +23,7 @@ from arboleda.client import (
     NoAnswer,
     NotFound,
     OtherPlant,
+    PlantError,
     Rows,
     Unauthorized,
     WrongRequest,
@@ -34,7 +35,6 @@ from arboleda.runtime.leader import LeaderInfo
 from arboleda.runtime.web_options import WebOptions
 from arboleda.web.access.auth import Role
 from arboleda_fleet.standby.waiting_room import WaitingRoom
-from arboleda_make.drafts.api import DraftApi
 
 
 @pytest.fixture
@@ -48,7 +48,6 @@ def test_forms_and_looks_come_as_they_are_declared(client: Client, plant: Plant)
     assert plant.forms == [("sis_a", "", {"path": "0B", "station": 7}, "lot43")]
     assert client.recipes()[0].recipes[0].parameters[0].choices == ["5"]
     assert client.promises("sis_a,sis_b 0B 7")[1].cell == "sis_b"
-    assert client.oee(cell="sis_a")[0].failed == 1
 
 
 def test_the_history_comes_as_rows_and_as_a_table(client: Client, plant: Plant) -> None:
@@ -117,59 +116,32 @@ def test_an_act_is_followed_to_its_end(client: Client, plant: Plant) -> None:
     assert client.outcome(4).outcome == "done"
 
 
-def test_the_report_of_a_task_is_waited_for(client: Client, plant: Plant) -> None:
-    said = {"sentence": "ra1 was late", "key": "late", "values": {"robot": "ra1"}}
-    evidence = {"troubles": [], "last_command": None, "acts": [], "foreign": []}
-    facts = {
-        "task": "lot",
-        "text": "",
-        "cell": "sis_a",
-        "ended_s": 1.0,
-        "reason": "deadline",
-        "failure": said,
-    }
-    facts["cause"] = said | {"kind": "unended", "robot": "ra1"}
-    facts["evidence"] = evidence | {"absences": [{"at_s": -1.0, "seconds": 0.5}]}
-    page = '<script type="application/json" id="data">{}</script>'
-    plant.reports = iter([None, page.replace("{}", json.dumps({"scene": {}, "facts": facts})), page])
-    report = client.report("lot")
-    assert report.state == "written" and report.cause and report.cause.kind == "unended"
-    assert report.evidence and report.evidence.absences[0].seconds == 0.5
-    with pytest.raises(NotFound, match="an earlier version"):
-        client.report("lot")
+def test_any_route_is_asked_by_its_address(client: Client, plant: Plant) -> None:
+    assert [row["cell"] for row in client.get("/api/history", {"cell": "sis_a", "state": None})] == ["sis_a"]
+    assert plant.queries[-1].cell == "sis_a" and plant.queries[-1].state == ""
+    assert client.post("/api/tasks", {"text": "sis_a 0B 7"})["state"] == "queued"
+    assert client.post("/api/plant/stop")["verb"] == "stop"
+    with pytest.raises(WrongRequest, match="since"):
+        client.get("/api/history", {"since": "yesterday"})
+    with pytest.raises(NotFound, match="/api/docs"):
+        client.post("/api/nothing")
 
 
-def test_the_draft_is_edited_under_one_id(client: Client, plant: Any) -> None:
-    steps: list[tuple[Any, ...]] = []
-    state = {"file": "plant.yaml", "editor": None, "changes": [], "waiting": [], "undo": 0, "redo": 0}
-    state |= {"values": {}, "trees": [], "restart": [], "is_ours": True, "set_aside": [], "digest": "4f"}
-    choice = {"text": "zones.nest.free_while: {oven: {door: open}}", "value": {"oven": {"door": "open"}}}
-    offer = {"sentence": "nobody knows", "place": ["zones", "nest", "free_while"], "choices": [choice]}
-    applied = {"problems": [], "warnings": [], "version": 3, "cells": {"lab": "now"}, "cancelled": []}
-    applied |= {"offers": [offer]}
+def test_an_address_that_would_lead_to_another_host_is_refused(client: Client, machine: Machine) -> None:
+    with pytest.raises(PlantError, match=r"^The path of a route begins with /, as in /api/plant; '@x/api' "):
+        client.get("@x/api")
+    assert machine.asked == []
 
-    class Desk:
-        def __getattr__(self, name: str) -> Any:
-            return lambda *told: steps.append((name, *told)) or applied | state
 
-    plant.offered[DraftApi] = Desk()
-    draft = client.draft("ana-12345")
-    assert draft.state().file == "plant.yaml" and draft.take("Ana").is_ours
-    draft.set(["cells", "lab", "targets", 0], [1, {"b": None}])
-    assert draft.apply("why").cells == {"lab": "now"}
-    found = draft.check()
-    (offered,) = found.offers
-    draft.set(offered.place, offered.choices[0].value, of=found.digest)
-    assert steps == [
-        ("state",),
-        ("take", "ana-12345", "Ana"),
-        ("set", "ana-12345", ("cells", "lab", "targets", 0), [1, {"b": None}], None),
-        ("apply", "ana-12345", "why"),
-        ("check",),
-        ("set", "ana-12345", ("zones", "nest", "free_while"), {"oven": {"door": "open"}}, "4f"),
-    ]
-    with pytest.raises(WrongRequest, match="place"):
-        client.draft().remove([])
+def test_any_route_is_awaited_in_a_loop(machine: Machine, plant: Plant) -> None:
+    machine.listen(8080, guarded(plant).app)
+
+    async def work() -> None:
+        async with AsyncPlant(ORIGIN, patience_s=0.0) as client:
+            assert (await client.get("/api/plant"))["plant"] == "demo"
+            assert (await client.post("/api/plant/stop"))["verb"] == "stop"
+
+    asyncio.run(work())
 
 
 def test_what_is_not_there_is_said_to_be_that(client: Client) -> None:

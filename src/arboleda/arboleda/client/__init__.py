@@ -1,10 +1,12 @@
 """Client of a plant in Python, over its HTTP API: `from arboleda.client import Plant`. It needs httpx, and
-neither ROS 2, MQTT nor what the page is made with."""
+neither ROS 2, MQTT nor what the page is made with. Packages add methods to a plant by a class of `Routes`."""
 
 from __future__ import annotations
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from arboleda.model.packages import MAKE
 
 from .answers.plant import Snapshot
 from .answers.rows import Rows
@@ -14,6 +16,7 @@ from .errors import (
     Forbidden,
     Later,
     LibraryMissing,
+    MethodMissing,
     NoAnswer,
     NotFound,
     OtherPlant,
@@ -25,34 +28,43 @@ from .errors import (
 )
 
 if TYPE_CHECKING:
-    from .plant import AsyncDraft, AsyncPlant, Draft, Plant
+    from .calls import Awaiting, Blocking, Routes, route
+    from .plant import AsyncPlant, Plant
 
 __all__ = [
-    "AsyncDraft",
     "AsyncPlant",
+    "Awaiting",
+    "Blocking",
     "Conflict",
-    "Draft",
     "Forbidden",
     "KeptTask",
     "Later",
     "LibraryMissing",
+    "MethodMissing",
     "NoAnswer",
     "NotFound",
     "OtherPlant",
     "Plant",
     "PlantError",
     "Refusal",
+    "Routes",
     "Rows",
     "Snapshot",
     "StillRunning",
     "Task",
     "Unauthorized",
     "WrongRequest",
+    "route",
 ]
+CALLS = ("Awaiting", "Blocking", "Routes", "route")
 
 
 def __getattr__(name: str) -> Any:
     """Load the methods of plants once somebody asks one: who only uses the answers' types does not."""
+    if name in ("AsyncDraft", "Draft"):
+        from arboleda.host.packages import moved  # slow to load, and only needed here
+
+        return moved(name, f"{__name__}.{name}", "arboleda_make.client", MAKE)
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.plant"), name)
+    return getattr(import_module(f"{__name__}.{'calls' if name in CALLS else 'plant'}"), name)

@@ -20,20 +20,19 @@ Item = TypeVar("Item")
 MODULES = re.compile(r"\b[a-z_]+(\.[a-z_]+)*\.(?=[A-Z])")  # before the name of a class
 
 
-class Side:
-    """Client with a line to a plant; `_editor` is the id under which it edits a draft."""
+class Routes:
+    """Routes of a plant as methods, each declared by `route`; `of` is the plant, or a line to one."""
 
-    def __init__(self, line: Line, editor: str = "") -> None:
-        self._line = line
-        self._editor = editor
-
-
-class Blocking(Side):
-    """Client whose methods return results."""
+    def __init__(self, of: Routes | Line) -> None:
+        self._line: Line = of._line if isinstance(of, Routes) else of
 
 
-class Awaiting(Side):
-    """Client whose methods return something to await."""
+class Blocking(Routes):
+    """Routes whose methods return results: those of a Plant."""
+
+
+class Awaiting(Routes):
+    """Routes whose methods return something to await: those of an AsyncPlant."""
 
 
 class Flow(Generic[P, Result]):
@@ -55,7 +54,7 @@ class Flow(Generic[P, Result]):
     @overload
     def __get__(self, side: Awaiting, owner: type) -> Callable[P, Coroutine[Any, Any, Result]]: ...
 
-    def __get__(self, side: Side | None, owner: type) -> Any:
+    def __get__(self, side: Routes | None, owner: type) -> Any:
         if side is None:
             return self
 
@@ -83,7 +82,7 @@ class Following(Generic[P, Item]):
     @overload
     def __get__(self, side: Awaiting, owner: type) -> Callable[P, AsyncIterator[Item]]: ...
 
-    def __get__(self, side: Side | None, owner: type) -> Any:
+    def __get__(self, side: Routes | None, owner: type) -> Any:
         if side is None:
             return self
 
@@ -105,15 +104,13 @@ class Route(Flow[P, Result]):
         answer: type[Result],
         declared: Callable[Concatenate[Any, P], None],
         within_s: float,
-        by_editor: bool,
     ) -> None:
         self.method, self.path, self.answer, self.within_s = method, path, answer, within_s
-        self.by_editor = by_editor
         self._signature = inspect.signature(declared)
 
         @wraps(declared)
-        async def work(side: Side, /, *args: Any, **named: Any) -> Any:
-            call = self.call(side._editor, *args, **named)
+        async def work(side: Routes, /, *args: Any, **named: Any) -> Any:
+            call = self.call(side, *args, **named)
             if answer is str:
                 return (await side._line.reply(call)).text
             return read_answer(answer, await side._line.data(call))
@@ -128,18 +125,17 @@ class Route(Flow[P, Result]):
         """The names of what it is given."""
         return list(self._signature.parameters)[1:]
 
-    def call(self, editor: str, *args: Any, **named: Any) -> Call:
-        """The request for these arguments."""
-        signed = {"editor": editor} if self.by_editor else {}
+    def call(self, side: Routes, *args: Any, **named: Any) -> Call:
+        """The request of a client for these arguments."""
         given = dict(list(self._signature.bind(None, *args, **named).arguments.items())[1:])
         in_path = {name: given.pop(name) for name in list(given) if f"{{{name}}}" in self.path}
         reads = self.method == "GET"
-        takes_body = not reads and (signed or len(self.parameters) > len(in_path))
+        takes_body = not reads and len(self.parameters) > len(in_path)
         return Call(
             method=self.method,
             path=path_of(self.path, in_path),
-            query={name: value for name, value in given.items() if value is not None} if reads else {},
-            body={**signed, **given} if takes_body else None,
+            query=given if reads else {},
+            body=given if takes_body else None,
             is_repeatable=reads,
             within_s=self.within_s,
         )
@@ -156,11 +152,11 @@ def read_answer(wanted: type[Result], data: Any) -> Result:
 
 
 def route(
-    method: str, path: str, answer: type[Result], *, within_s: float = TIMEOUT_S, by_editor: bool = False
+    method: str, path: str, answer: type[Result], *, within_s: float = TIMEOUT_S
 ) -> Callable[[Callable[Concatenate[Any, P], None]], Route[P, Result]]:
-    """Decorator that makes a method of a route; the function only declares what it takes. `by_editor`: the id
-    of who edits the draft goes with it."""
-    return lambda declared: Route(method, path, answer, declared, within_s, by_editor)
+    """Decorator that makes a method of a route, as of `route("GET", "/api/orders/{number}", Order)`; the
+    function only declares what it takes. `answer` is a frozen dataclass or a type made of such."""
+    return lambda declared: Route(method, path, answer, declared, within_s)
 
 
 def flow(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.outside import plain
+from arboleda.model.packages import PackageMissing
 
 if TYPE_CHECKING:
     from .answers.tasks import Task
@@ -38,6 +39,10 @@ class StillRunning(PlantError):
 
 class LibraryMissing(PlantError):
     """A library is not installed; the sentence says how to install it."""
+
+
+class MethodMissing(PlantError, PackageMissing, AttributeError):
+    """A package adds the method, and is not installed here; the sentence says how to install it."""
 
 
 class Refusal(PlantError):

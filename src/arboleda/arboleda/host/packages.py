@@ -11,8 +11,9 @@ import sys
 from collections import defaultdict
 from collections.abc import Mapping
 from functools import lru_cache
-from importlib import metadata
+from importlib import import_module, metadata
 from typing import Any, NamedTuple
+from warnings import warn
 
 from arboleda.model.packages import MISSING, PackageMissing
 
@@ -57,6 +58,17 @@ def extra(name: str, package: str, what: str) -> Any:
         if each.name == name:
             return each.load()
     raise PackageMissing(MISSING(what=what, package=package))
+
+
+def moved(name: str, here: str, there: str, package: str) -> Any:
+    """A name of the module `here` that a package has now, for one minor version and with a warning."""
+    warn(f"use `from {there} import {name}`", DeprecationWarning, stacklevel=3)
+    try:
+        return getattr(import_module(there), name)
+    except ModuleNotFoundError as error:
+        if error.name != there.partition(".")[0]:
+            raise
+        raise ImportError(str(MISSING(what=here, package=package))) from error
 
 
 def package_of(point: metadata.EntryPoint) -> str:

@@ -7,7 +7,6 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from pydantic import Field, FiniteFloat
 
-from arboleda.client.answers.offers import CellOee
 from arboleda.model.packages import FLEET
 from arboleda.web.missing import missing
 from arboleda.web.plant_api import PlantApi
@@ -15,6 +14,7 @@ from arboleda.web.schema.bodies import RequestModel
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import WRONG, answering, described, query_of
 
+from .answers import CellOee
 from .api import OeeApi, OeeQuery
 
 

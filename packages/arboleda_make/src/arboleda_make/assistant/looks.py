@@ -12,6 +12,7 @@ from arboleda.drawing.picture import picture
 from arboleda.drawing.svg import svg
 from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import among, quoted
+from arboleda_make.client import AsyncMake
 
 Row = dict[str, Any]
 
@@ -44,12 +45,13 @@ async def recipes(reached: AsyncPlant) -> Row:
 
 
 async def nodes(reached: AsyncPlant, cell: str) -> Row:
-    return {"nodes": await reached.palette(cell), "trees": await reached.trees()}
+    made = AsyncMake(reached)
+    return {"nodes": await made.palette(cell), "trees": await made.trees()}
 
 
 async def targets(reached: AsyncPlant, cell: str) -> Row:
     """The targets of a cell as its plant file has them, and its devices with their kinds."""
-    found = await reached.proposal_base()
+    found = await AsyncMake(reached).proposal_base()
     return {**one(found.cells, cell), "kinds": found.kinds}
 
 

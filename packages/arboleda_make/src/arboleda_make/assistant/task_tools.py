@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
+from arboleda_make.client import AsyncMake
+from arboleda_proofs.client import AsyncProofs
+
 from .desk import GIVE, LOOK, Call, Desk, Reply, Tools, program_of
 
 State = Literal["", "queued", "running", "done", "failed", "cancelled"]
@@ -44,14 +47,14 @@ class TaskTools:
 
     async def why_failed(self, call: Call, task_id: str) -> Reply:
         """Why a task failed: the cause, and the evidence, out of the flight record. It may take a minute."""
-        return await self._desk.look(call, lambda plant: plant.report(task_id))
+        return await self._desk.look(call, lambda plant: AsyncProofs(plant).report(task_id))
 
     async def worked(self, call: Call, cell: str = "") -> Reply:
         """The OEE of the cells over the last 24 hours: availability, performance, quality."""
-        return await self._desk.look(call, lambda plant: plant.oee(cell=cell))
+        return await self._desk.look(call, lambda plant: plant.get("/api/oee", {"cell": cell}))
 
     async def give_task(self, call: Call, text: str) -> Reply:
         """Give a task, such as `lab to_tray #lot42`: of a recipe that a person approved as it is at work, in
         the cells, hours and number that the plant file allows. It moves robots."""
         by = program_of(call)
-        return await self._desk.look(call, lambda plant: plant.give(text, by))
+        return await self._desk.look(call, lambda plant: AsyncMake(plant).give(text, by))

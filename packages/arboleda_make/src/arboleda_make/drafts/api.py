@@ -17,7 +17,7 @@ class DraftRefused(Refused):
 
 
 class DraftApi(Protocol):
-    """Draft of one plant; all data is plain, with the keys of types in `arboleda.client.answers`.
+    """Draft of one plant; all data is plain, with the keys of types in `arboleda_make.answers`.
 
     `editor` is an id that its page or tool has made for itself. Each step answers the DraftState that it
     leads to; DraftRefused, and nothing is changed, where it cannot be.

@@ -10,7 +10,7 @@ from ..drafts.api import State
 
 
 class ProposalsApi(Protocol):
-    """Proposals of one plant, as plain data with the keys of types in `arboleda.client.answers`.
+    """Proposals of one plant, as plain data with the keys of types in `arboleda_make.answers`.
 
     DraftRefused, and nothing is changed, where it cannot be. `hash` names the content of one. Who
     calls these has the role for it.

@@ -12,13 +12,13 @@ from pydantic import Field
 from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
-from arboleda.client.answers.drafts import AppliedDraft, CheckedDraft, DraftState, KeptDraft, TreesText
 from arboleda.web.access.auth import Role
 from arboleda.web.access.needs import needs
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, answering, described_body, read_body
+from arboleda_make.answers.drafts import AppliedDraft, CheckedDraft, DraftState, KeptDraft, TreesText
 from arboleda_make.drafts.api import DraftApi, State
 
 MAY = "editing a draft"

@@ -10,8 +10,6 @@ from fastapi.responses import FileResponse, JSONResponse, Response
 from pydantic import Field
 from starlette.exceptions import HTTPException
 
-from arboleda.client.answers.drafts import DraftCells, DraftState, DriverRow, Objection, RunState
-from arboleda.client.answers.trees import Drawn, Nodes
 from arboleda.web.access.auth import Role
 from arboleda.web.access.needs import needs
 from arboleda.web.languages import FIRST
@@ -19,6 +17,8 @@ from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import RequestModel
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import answering, described, described_body, query_of, read_body
+from arboleda_make.answers.drafts import DraftCells, DraftState, DriverRow, Objection, RunState
+from arboleda_make.answers.trees import Drawn, Nodes
 from arboleda_make.trying.api import MakeApi
 
 from .draft import MAY, REFUSED, SHIPPED, RecipeName, Step

@@ -11,14 +11,6 @@ from pydantic import Field
 from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
-from arboleda.client.answers.drafts import RunState
-from arboleda.client.answers.proposals import (
-    DecidedProposal,
-    ProposalAnswer,
-    ProposalBase,
-    ProposalRow,
-    WholeProposal,
-)
 from arboleda.client.answers.tasks import Task
 from arboleda.model.sentence import explained
 from arboleda.web.access.auth import Role
@@ -27,6 +19,14 @@ from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import answering, described_body, read_body
+from arboleda_make.answers.drafts import RunState
+from arboleda_make.answers.proposals import (
+    DecidedProposal,
+    ProposalAnswer,
+    ProposalBase,
+    ProposalRow,
+    WholeProposal,
+)
 from arboleda_make.proposals.api import ProposalsApi
 
 from .draft import REFUSED, SHIPPED, Key

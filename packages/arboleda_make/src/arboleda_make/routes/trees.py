@@ -8,7 +8,6 @@ from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 
-from arboleda.client.answers.trees import Drawn, Nodes, TreeCopy, TreeFile
 from arboleda.web.access.auth import Role
 from arboleda.web.access.needs import needs
 from arboleda.web.languages import FIRST, spoken, texts
@@ -24,6 +23,7 @@ from arboleda.web.schema.queries import (
     query_of,
     read_body,
 )
+from arboleda_make.answers.trees import Drawn, Nodes, TreeCopy, TreeFile
 from arboleda_make.editing import desk
 
 from .tree_answers import CopyForm, EditForm, TreeForm, operation_of

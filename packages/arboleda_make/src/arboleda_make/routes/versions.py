@@ -10,14 +10,14 @@ from fastapi.responses import JSONResponse
 from pydantic import Field
 from starlette.exceptions import HTTPException
 
-from arboleda.client.answers.drafts import AppliedDraft
-from arboleda.client.answers.versions import VersionList
 from arboleda.web.access.auth import Role
 from arboleda.web.access.needs import needs
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import answering, described_body, read_body
+from arboleda_make.answers.drafts import AppliedDraft
+from arboleda_make.answers.versions import VersionList
 from arboleda_make.versions.api import VersionsApi
 
 from .draft import REFUSED, SHIPPED

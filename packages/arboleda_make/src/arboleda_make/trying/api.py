@@ -14,7 +14,7 @@ RUNS = ("try", "prove", "notice", "reach")
 
 
 class MakeApi(Protocol):
-    """All data is plain, with the keys of types in `arboleda.client.answers`. What runs does so in processes
+    """All data is plain, with the keys of types in `arboleda_make.answers`. What runs does so in processes
     of its own; a call waits for one that only looks."""
 
     @abstractmethod

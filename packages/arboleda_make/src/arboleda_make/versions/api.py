@@ -9,7 +9,7 @@ from ..drafts.api import State
 
 
 class VersionsApi(Protocol):
-    """Versions of one plant, as plain data with the keys of types in `arboleda.client.answers`.
+    """Versions of one plant, as plain data with the keys of types in `arboleda_make.answers`.
 
     DraftRefused, and nothing is changed, where it cannot be.
     """

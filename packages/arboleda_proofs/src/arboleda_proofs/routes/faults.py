@@ -10,13 +10,13 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from pydantic import Field
 
-from arboleda.client.answers.offers import FaultList, ProvokedFault
 from arboleda.web.access.auth import Role
 from arboleda.web.access.needs import needs
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, answering, described_body, read_body
+from arboleda_proofs.answers import FaultList, ProvokedFault
 from arboleda_proofs.running.faults_api import FaultRefused, FaultsApi
 
 OPERATORS = [needs(Role.OPERATOR, "provoking a fault")]

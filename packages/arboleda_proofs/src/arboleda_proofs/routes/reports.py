@@ -12,7 +12,6 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
-from arboleda.client.answers.reports import TaskReport
 from arboleda.model.errors import ArboledaError
 from arboleda.model.packages import PROOFS
 from arboleda.web.missing import missing
@@ -20,6 +19,7 @@ from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, answering
+from arboleda_proofs.answers import TaskReport
 from arboleda_proofs.running.reports_api import ReportsApi
 
 DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)

@@ -13,9 +13,9 @@ import pytest
 from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
-from arboleda.client.answers.reports import TaskReport
 from arboleda.model.errors import ConfigError
 from arboleda.web.schema.answers import model_of
+from arboleda_proofs.answers import TaskReport
 from arboleda_proofs.playback.report import reading
 from arboleda_proofs.routes.reports import DATA
 from arboleda_proofs.simulator.faults import KINDS, Fault

@@ -1,4 +1,4 @@
-"""Offers of a plant: recipes of cells, promises for a task, OEE, the level of assistants, faults."""
+"""Offers of a plant: recipes of cells, promises for a task, the level of assistants."""
 
 from __future__ import annotations
 
@@ -52,25 +52,6 @@ class Promise:
 
 
 @dataclass(frozen=True, kw_only=True)
-class CellOee:
-    """OEE of one cell; shares from 0 to 1, null where `missing` says why nobody can say."""
-
-    cell: str
-    since_s: Annotated[float, "Unix time; later than asked where nothing was kept before."]
-    until_s: float
-    planned_s: Annotated[float, "A task waited or was at work."]
-    worked_s: Annotated[float, "Of that, the cell was at work."]
-    done: int
-    failed: int
-    timed: Annotated[int, "Of these, tasks whose shortest time is known."]
-    availability: float | None
-    performance: float | None
-    quality: float | None
-    oee: Annotated[float | None, "The three of them multiplied."]
-    missing: str | None
-
-
-@dataclass(frozen=True, kw_only=True)
 class AssistantLevel:
     """Level of assistants, `assistants` of the plant file."""
 
@@ -81,32 +62,3 @@ class AssistantLevel:
     cells: Annotated[list[str], "Those to which they may give tasks."]
     at_once: Annotated[int, "How many of their tasks may be open."]
     hours: Annotated[str | None, "The hours of the day in which they may; null: at any time."]
-
-
-@dataclass(frozen=True, kw_only=True)
-class FaultKind:
-    """Fault that can be provoked at a virtual device."""
-
-    robot: str
-    kind: str
-    about: str
-    lasts: Annotated[bool, "False: it is over at once."]
-
-
-@dataclass(frozen=True, kw_only=True)
-class ProvokedFault:
-    """Fault that was provoked, and goes on for so long."""
-
-    number: int
-    robot: str
-    kind: str
-    about: str
-    left_s: Annotated[float, "For how long it goes on; 0.0: it was an instant."]
-
-
-@dataclass(frozen=True, kw_only=True)
-class FaultList:
-    """Faults that go on, and those that can be provoked."""
-
-    begun: Annotated[list[ProvokedFault], "Those that go on, the first one first."]
-    offers: Annotated[list[FaultKind], "What can be provoked; empty where no device is virtual."]

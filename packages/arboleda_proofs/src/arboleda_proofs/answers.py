@@ -1,9 +1,38 @@
-"""Reports of tasks that failed, and the evidence in them."""
+"""Answers of the API: faults by hand, and reports of tasks that failed with the evidence in them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
+
+
+@dataclass(frozen=True, kw_only=True)
+class FaultKind:
+    """Fault that can be provoked at a virtual device."""
+
+    robot: str
+    kind: str
+    about: str
+    lasts: Annotated[bool, "False: it is over at once."]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProvokedFault:
+    """Fault that was provoked, and goes on for so long."""
+
+    number: int
+    robot: str
+    kind: str
+    about: str
+    left_s: Annotated[float, "For how long it goes on; 0.0: it was an instant."]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FaultList:
+    """Faults that go on, and those that can be provoked."""
+
+    begun: Annotated[list[ProvokedFault], "Those that go on, the first one first."]
+    offers: Annotated[list[FaultKind], "What can be provoked; empty where no device is virtual."]
 
 
 @dataclass(frozen=True, kw_only=True)
