@@ -5,8 +5,8 @@ from __future__ import annotations
 from arboleda.engine import reasons
 from arboleda.model.advice import Advice, Hand, in_words
 from arboleda.model.cell_states import CellState
-from arboleda_proofs.simulator.hands import do
-from arboleda_proofs.testing import Rig
+from arboleda.rig.hands import do
+from arboleda.testing import Rig
 
 ENOUGH = 6  # acts that lead out of any state
 SOON_S, PATIENCE_S = 2.0, 60.0

@@ -13,8 +13,8 @@ from py_trees.common import Status
 from arboleda.engine import Act, steps
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import Heartbeat, OperatorAnswer, Report, TaskChanged, TaskState, Verb
+from arboleda.rig.world import BRIDGE, World
 from arboleda.sim.board import SILENCE_US, Board
-from arboleda_proofs.simulator.world import BRIDGE, World
 
 WORD = re.compile(rb'"rechazo":"(\w+)"')
 LATCH = b'{"paro":1'

@@ -6,10 +6,10 @@ from typing import Any
 
 from arboleda.model.advice import Hand
 from arboleda.model.messages import Verb
+from arboleda.rig import hands
+from arboleda.testing import Rig
 from arboleda.views import view
 from arboleda.views.readying import Due, due_in_cell, due_in_plant
-from arboleda_proofs.simulator import hands
-from arboleda_proofs.testing import Rig
 
 PATIENCE_S, LOOKS_S = 120.0, 0.5
 HEARD_S = 1.0  # after work of a hand

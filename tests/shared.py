@@ -30,8 +30,8 @@ import typer.testing
 from hypothesis import HealthCheck, settings
 
 from arboleda.plant_file import recipe_trial
+from arboleda.testing.domains import Domain
 from arboleda_proofs.campaigns.proof import forks
-from arboleda_proofs.testing.domains import Domain
 
 from . import tried_here
 from .dealing import dealt, share

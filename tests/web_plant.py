@@ -16,10 +16,10 @@ from arboleda.model.text import alternatives, spelled
 from arboleda.model.verbs import Arguments
 from arboleda.oee.figures import Oee, PastTask, PastTimes, PlantRun, oee
 from arboleda.store.task_rows import TaskQuery, TaskRow
+from arboleda.testing import shipped
 from arboleda.web.access.auth import Role
 from arboleda_fleet.oee.api import OeeApi, OeeQuery
 from arboleda_proofs.running.reports_api import ReportsApi
-from arboleda_proofs.testing import shipped
 
 QUEUED = {"id": "t-1", "text": "sis_a 0b 7", "cell": "sis_a", "state": "queued", "sentence": ""}
 PROMISE = {"hindrance": None, "full": False}

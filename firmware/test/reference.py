@@ -8,7 +8,7 @@ from arboleda.kinds.arm import Arm
 from arboleda.model.plant_model import Evidence
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 from .author import FIRST_BOOT
 from .scripts import CHANNELS, PLACES, Setting

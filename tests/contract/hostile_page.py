@@ -15,13 +15,13 @@ from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import OWN, Sentence
 from arboleda.oee.figures import Oee, PastTimes, oee
 from arboleda.store.task_rows import TaskQuery, TaskRow
+from arboleda.testing import Rig, shipped
 from arboleda.views import view
 from arboleda.web.access.auth import Door
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import names_for
 from arboleda.web.server import Server
 from arboleda_fleet.oee.api import OeeApi, OeeQuery
-from arboleda_proofs.testing import Rig, shipped
 
 EVIL = sys.argv[1]
 SAID = {

@@ -20,7 +20,7 @@ from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.parts.alarms import OnTopic
 from arboleda.runtime.parts.broker import OtherBroker
 from arboleda.runtime.parts.part import Broker
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 from ..patience import PATIENCE_S
 from .conftest import Inbox, Mosquitto

@@ -13,9 +13,9 @@ import pytest
 
 from arboleda.runtime.build import PARTS, Options, build
 from arboleda.runtime.parts.web import WebPart
+from arboleda.testing import shipped
 from arboleda.web import server
 from arboleda.web.server import Server
-from arboleda_proofs.testing import shipped
 
 from ..patience import PATIENCE_S
 

@@ -23,7 +23,7 @@ import zmq
 from arboleda.model.errors import StartError
 from arboleda.runtime.build import Options, build
 from arboleda.runtime.parts.groot2 import Groot2Options, Groot2Part
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 from ..patience import PATIENCE_S
 from ..ports import is_free, unused_port

@@ -18,9 +18,9 @@ from arboleda.client.answers.plant import Cell
 from arboleda.dashboard.wording import LANGUAGES, SENTENCES, tree_of, words
 from arboleda.model.cell_states import CellState
 from arboleda.model.sentence import Phrase
+from arboleda.testing import Rig, shipped
 from arboleda.views import view
 from arboleda.web.schema.answers import model_of
-from arboleda_proofs.testing import Rig, shipped
 
 ROOT = Path(__file__).parents[2]
 STANDINGS = ("blocked", "paused")

@@ -12,14 +12,14 @@ ROOT = Path(__file__).parents[2]
 SOURCES = (ROOT / "src/arboleda", ROOT / "src/arboleda_ros", *sorted((ROOT / "packages").glob("*/src")))
 MOST = 25
 LARGER: Mapping[str, int] = {
-    "arboleda_proofs.testing.rig.Rig": 52,
+    "arboleda.rig.rig.Rig": 52,
     "arboleda_proofs.simulator.truth.arm.ArmTruth": 44,
-    "arboleda_proofs.simulator.world.World": 41,
+    "arboleda.rig.world.World": 41,
     "arboleda_proofs.simulator.truth.machine.MachineTruth": 37,
     "arboleda_class.notebook.world.World": 36,
     "arboleda_proofs.simulator.truth.truth.Truth": 34,
     "arboleda.sim.board.Board": 32,
-    "arboleda_proofs.simulator.plant_process.PlantProcess": 31,
+    "arboleda.rig.plant_process.PlantProcess": 31,
     "arboleda_proofs.simulator.truth.mobile.MobileTruth": 31,
     "arboleda.sim.machine.MachineBody": 30,
     "arboleda_proofs.testing.sim.Sim": 30,

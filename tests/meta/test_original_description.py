@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from arboleda.testing import shipped
 from arboleda_bringup.table import root_link
-from arboleda_proofs.testing import shipped
 
 HOW_TO = Path(__file__).parents[2] / "docs/how-to"
 PAGES = ("original-description.md", "original-description.es.md")

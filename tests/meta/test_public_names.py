@@ -20,6 +20,7 @@ MODULES = [
         "arboleda.recipes",
         "arboleda.kinds",
         "arboleda.drivers",
+        "arboleda.testing",
         "arboleda_fleet.client",
         "arboleda_make.client",
         "arboleda_proofs.client",

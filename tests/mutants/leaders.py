@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from arboleda.departures.leading import Lease, may_leave
+from arboleda.rig.hosts.database import LeaderRow
 from arboleda.sim.receipts import Receipts
-from arboleda_proofs.simulator.hosts.database import LeaderRow
 
 from .mutant import edit, mutant
 

@@ -27,7 +27,7 @@ from arboleda_proofs.playback.report.tries import ForkTrial
 from arboleda.recorder.cause import Cause
 from arboleda.recorder.incident import Incident
 from arboleda_fleet.standby.waiting_room import waiting_page
-from arboleda_proofs.testing.plants import shipped
+from arboleda.testing.plants import shipped
 from arboleda.web.access import login
 
 app = FastAPI()

@@ -47,8 +47,8 @@ METHOD = '''    def waiting(self) -> int:
 LOOK = r"""
 import asyncio, httpx, json, types
 from arboleda.runtime.parts.local_plant import LocalPlant
-from arboleda_proofs.testing.plants import shipped
-from arboleda_proofs.testing.rig import Rig
+from arboleda.testing.plants import shipped
+from arboleda.rig.rig import Rig
 from arboleda.web.api import make_app
 from arboleda.web.schema.openapi import render
 

@@ -32,8 +32,8 @@ from arboleda.dashboard.panel import OFFERS
 from arboleda.dashboard.wording import words
 from arboleda.model.messages import Verb
 from arboleda_proofs.simulator.faults.operators import KINDS
-from arboleda_proofs.testing.plants import shipped
-from arboleda_proofs.testing.rig import Rig
+from arboleda.testing.plants import shipped
+from arboleda.rig.rig import Rig
 from arboleda.views import view
 from arboleda.web.api import make_app, verb_arguments, verb_of
 from arboleda.web.access.auth import Role, allowed

@@ -12,7 +12,7 @@ import pytest
 from tests.added_package import COUNTER, install
 
 from arboleda.runtime.build import TURN_S, Options, build
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import sys
 
 SHOWN = """
 from arboleda.resume import fingerprint
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 print(fingerprint.of_cell(shipped().cells[0], "storage", {}))
 """

@@ -13,7 +13,7 @@ from tests.added_package import install
 from tests.patience import PATIENCE_S
 
 from arboleda.runtime.build import App, Options, build
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 CODE = """
 import threading

@@ -11,7 +11,7 @@ from arboleda.runtime.build import Options, build
 from arboleda.runtime.parts.page import PagePlant
 from arboleda.store.lead import OtherLeader
 from arboleda.store.plant_memory import PlantMemory
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 
 def test_it_has_made_no_page_of_which_a_process_has_one(

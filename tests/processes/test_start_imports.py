@@ -56,7 +56,8 @@ OF_THE_PAGE = {
 }
 OF_CLIENTS = {"httpx", "arboleda.client.plant", "arboleda.client.http"}
 OF_TRIALS = {
-    "arboleda_proofs.simulator.world",
+    "arboleda.rig.world",
+    "arboleda.testing",
     "arboleda_proofs.simulator.faults",
     "arboleda_make.assistant",
     "pytest",

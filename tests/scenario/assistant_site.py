@@ -34,6 +34,7 @@ from arboleda.plant_file import draft_check, loader
 from arboleda.runtime import at_work
 from arboleda.runtime.parts.orchestrator import PutToWork
 from arboleda.store.task_rows import TaskQuery
+from arboleda.testing import Rig
 from arboleda.views import view
 from arboleda.web.access.auth import Door, Role
 from arboleda.web.access.guard import Guard
@@ -45,7 +46,6 @@ from arboleda_make.proposals.api import ProposalsApi
 from arboleda_make.proposals.desk import ProposalDesk
 from arboleda_make.proposals.tasks import AssistantTasks
 from arboleda_make.versions.desk import VersionDesk
-from arboleda_proofs.testing import Rig
 
 from ..threads import run_here
 

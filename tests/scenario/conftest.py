@@ -7,7 +7,9 @@ from typing import Any
 import pytest
 
 from arboleda.model.plant_model import Evidence
-from arboleda_proofs.testing import Rig, Witness, faults, shipped, slowed
+from arboleda.rig import faults
+from arboleda.testing import Rig, shipped, slowed
+from arboleda_proofs.testing import Witness
 
 from ..cells import with_robot
 

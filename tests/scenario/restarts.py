@@ -7,8 +7,8 @@ from typing import Any
 from arboleda.core.plant import Plant
 from arboleda.model.messages import Fact, Failure, Heartbeat, KeptTask, TaskChanged, TaskState
 from arboleda.model.plant_model import PlantModel
-from arboleda_proofs.simulator.world import PLANT
-from arboleda_proofs.testing import Rig
+from arboleda.rig.world import PLANT
+from arboleda.testing import Rig
 
 ENDED = (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED)
 

@@ -16,9 +16,9 @@ from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Home
 from arboleda.model.messages import Absence, OperatorRequest, Reason, Verb
 from arboleda.model.plant_model import Evidence
-from arboleda_proofs.simulator.world import BRIDGE, PLANT
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.rig import Rig
+from arboleda.rig.rig import Rig
+from arboleda.rig.world import BRIDGE, PLANT
+from arboleda.testing import shipped
 
 from ..lengths import sample
 

@@ -13,10 +13,12 @@ from arboleda.model.advice import Advice, Hand, sentence
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import OperatorRequest, Reason, TaskState, Verb
 from arboleda.model.plant_model import Evidence
+from arboleda.rig import faults
+from arboleda.rig.world import BRIDGE
+from arboleda.testing import Rig, shipped, slowed
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
-from arboleda_proofs.simulator.world import BRIDGE
-from arboleda_proofs.testing import Rig, Witness, faults, shipped, slowed
+from arboleda_proofs.testing import Witness
 
 from ..following import advised, follow, works
 from ..lengths import sample

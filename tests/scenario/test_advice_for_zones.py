@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.model.messages import Verb
 from arboleda.plant_file.loader import load
-from arboleda_proofs.testing import Rig
+from arboleda.testing import Rig
 
 from ..following import advised, follow, works
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import yaml
 
 from arboleda.model.messages import TaskState, Verb
+from arboleda.rig.world import PLANT
 from arboleda_drawn.plants import loaded
 from arboleda_proofs.simulator.judged_world import JudgedWorld
-from arboleda_proofs.simulator.world import PLANT
 
 FILE = """
     name: drawn_1090

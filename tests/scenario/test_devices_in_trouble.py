@@ -10,9 +10,9 @@ import pytest
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import InternalError, TaskChanged, TaskState, Verb
 from arboleda.recipes import Kit, parallel, recipe, work
+from arboleda.rig.network import keeps_its_place
+from arboleda.rig.world import BRIDGE, PLANT, World
 from arboleda.sim.machine import MachineBody
-from arboleda_proofs.simulator.network import keeps_its_place
-from arboleda_proofs.simulator.world import BRIDGE, PLANT, World
 
 from ..unit.kinds.station import plant
 

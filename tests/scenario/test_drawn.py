@@ -9,7 +9,7 @@ import pytest
 from arboleda.model.commands import Command
 from arboleda.model.messages import MotionState, Report, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Link
-from arboleda_proofs.testing import Rig, shipped
+from arboleda.testing import Rig, shipped
 
 from ..cells import with_robot
 

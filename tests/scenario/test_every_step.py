@@ -13,8 +13,9 @@ from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence
 from arboleda.sim.arm import ArmBody
+from arboleda.testing import Rig
 from arboleda.trees.leaves import Act, Await, Dwell
-from arboleda_proofs.testing import Rig, Witness
+from arboleda_proofs.testing import Witness
 
 from ..lengths import sample
 

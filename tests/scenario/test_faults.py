@@ -18,11 +18,13 @@ from arboleda.core import reasons
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Reason, TaskState
 from arboleda.model.plant_model import Evidence
+from arboleda.rig import faults
 from arboleda.sim.arm import ArmBody
+from arboleda.testing import Rig, shipped, slowed
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees import steps
 from arboleda.wire.transport import Publication
-from arboleda_proofs.testing import Rig, Witness, faults, shipped, slowed
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda_proofs.testing import Witness
 
 from ..lengths import sample
 

@@ -9,11 +9,11 @@ import pytest
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Home
 from arboleda.model.messages import MotionState
+from arboleda.rig.rig import Rig
+from arboleda.rig.world import BRIDGE
+from arboleda.testing import shipped
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
-from arboleda_proofs.simulator.world import BRIDGE
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.rig import Rig
 
 
 @pytest.fixture

@@ -16,15 +16,17 @@ from arboleda.model.commands import Home
 from arboleda.model.messages import Journal, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel, Retry
 from arboleda.plant_file.loader import load
+from arboleda.rig import faults
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.freshness import Freshness
+from arboleda.testing import Rig, shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.board import Board, Message
 from arboleda.wire.hop import FromPlant
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.run import Simulation
 from arboleda_proofs.simulator.shrink import explicit
-from arboleda_proofs.testing import Rig, Witness, faults, shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda_proofs.testing import Witness
 
 from ..cells import with_poses
 

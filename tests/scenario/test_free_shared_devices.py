@@ -6,9 +6,9 @@ import pytest
 import yaml
 
 from arboleda.model.messages import TaskState
+from arboleda.rig.world import World
 from arboleda_drawn.plants import loaded
 from arboleda_proofs.simulator.judged_world import JudgedWorld
-from arboleda_proofs.simulator.world import World
 
 FILE = """
     name: bench

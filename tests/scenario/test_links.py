@@ -8,10 +8,10 @@ import pytest
 
 from arboleda.model.messages import Reason, TaskChanged, TaskState
 from arboleda.model.plant_model import Evidence
+from arboleda.testing import Rig, shipped
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.run import Simulation
 from arboleda_proofs.simulator.shrink import explicit
-from arboleda_proofs.testing import Rig, shipped
 
 from ..lengths import sample
 from ..probes import Probes

@@ -10,8 +10,8 @@ from arboleda.core.plant import Plant
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.messages import Event, MotionState, Reason, Report, TaskChanged, TaskRequest, TaskState
 from arboleda.model.plant_model import Evidence, Link, PlantModel
-from arboleda_proofs.testing import Rig, shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing import Rig, shipped
+from arboleda.testing.storage_layout import StorageLayout
 
 from ..cells import with_palletizing, with_poses, with_robot
 

@@ -10,7 +10,7 @@ from arboleda.bt_xml import leaves
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskState
 from arboleda.plant_file.loader import load
-from arboleda_proofs.testing import Rig
+from arboleda.testing import Rig
 
 from .restarts import ENDED
 

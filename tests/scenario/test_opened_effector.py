@@ -11,8 +11,8 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Interference, Reason, Verb
 from arboleda.model.plant_model import Evidence
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.rig import Rig
+from arboleda.rig.rig import Rig
+from arboleda.testing import shipped
 
 TASK = "sis_a 0B 4"
 STEPS = ("grip/try 1/effector on/dwell", "move to station 4")

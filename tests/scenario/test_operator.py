@@ -13,8 +13,10 @@ from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Fact, Journal, OperatorRequest, Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Link, PlantModel
+from arboleda.rig import faults
+from arboleda.testing import Rig, shipped, slowed
 from arboleda.wire.transport import Publication
-from arboleda_proofs.testing import Rig, Witness, faults, shipped, slowed
+from arboleda_proofs.testing import Witness
 
 from ..cells import with_robot
 from .restarts import crash_without_trail

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from arboleda.model.messages import Shutdown
+from arboleda.rig.world import World
 from arboleda_drawn.plants import of_devices
 from arboleda_proofs.simulator.run import Simulation
-from arboleda_proofs.simulator.world import World
 
 from ..lengths import sample
 

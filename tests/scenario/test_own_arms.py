@@ -10,12 +10,12 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.plant_file.robot_models import mobile_models
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_drawn.plants import ATTEMPTS, as_yaml
 from arboleda_drawn.storage import draw
 from arboleda_proofs.campaigns.plants import Plant, PlantRotation
 from arboleda_proofs.campaigns.setting import Setting
 from arboleda_proofs.testing import Sim
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 from ..lengths import sample
 from ..unit.plant_file import own_arms

@@ -13,7 +13,7 @@ from arboleda.cli import nodes
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Reason, TaskState
 from arboleda.plant_file.loader import load
-from arboleda_proofs.testing import Rig
+from arboleda.testing import Rig
 
 from .restarts import ENDED, restart
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Switch
 from arboleda.plant_file.loader import load
-from arboleda_proofs.testing import Rig
+from arboleda.testing import Rig
 
 from .restarts import ENDED
 

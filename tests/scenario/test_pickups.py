@@ -6,7 +6,8 @@ import pytest
 
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import PlantModel
-from arboleda_proofs.testing import Rig, Witness, shipped
+from arboleda.testing import Rig, shipped
+from arboleda_proofs.testing import Witness
 
 from .restarts import crash_without_trail
 

@@ -11,9 +11,11 @@ import pytest
 from arboleda.model.messages import Check, Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence
 from arboleda.recipes import Kit, recipe, work
+from arboleda.rig import faults
+from arboleda.rig.world import PLANT
 from arboleda.sim.arm import ArmBody
-from arboleda_proofs.simulator.world import PLANT
-from arboleda_proofs.testing import Rig, Witness, faults, shipped, slowed
+from arboleda.testing import Rig, shipped, slowed
+from arboleda_proofs.testing import Witness
 
 from .restarts import restart
 

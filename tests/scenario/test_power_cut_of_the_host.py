@@ -8,9 +8,10 @@ from collections.abc import Callable, Iterable
 import pytest
 
 from arboleda.model.messages import Fact, TaskState, Verb
+from arboleda.rig.plant_process import Fuse, Side
+from arboleda.testing import Rig, shipped
 from arboleda.wire.transport import Publication
-from arboleda_proofs.simulator.plant_process import Fuse, Side
-from arboleda_proofs.testing import Rig, Witness, shipped
+from arboleda_proofs.testing import Witness
 
 from .test_walk_back import CELL, ID, TASK, full, held, outcome, run, ways
 

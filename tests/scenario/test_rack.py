@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from arboleda.model.messages import Fact, TaskState, Verb
+from arboleda.testing import Rig, shipped
 from arboleda.views import view
-from arboleda_proofs.testing import Rig, shipped
 
 
 @pytest.fixture

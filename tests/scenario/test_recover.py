@@ -10,8 +10,8 @@ import pytest
 from arboleda.model.commands import Switch, Work
 from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.plant_file.loader import load
+from arboleda.testing import Rig
 from arboleda.trees.tree_run import step_of
-from arboleda_proofs.testing import Rig
 
 from .restarts import ENDED, restart
 

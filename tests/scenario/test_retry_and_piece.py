@@ -11,12 +11,14 @@ from arboleda.kinds.mobile import FollowPath
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Retry
+from arboleda.rig import faults
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
+from arboleda.testing import Rig
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees.tree_run import TreeRun
 from arboleda.wire.transport import Publication
-from arboleda_proofs.testing import Rig, Witness, faults
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda_proofs.testing import Witness
 
 Stage = Callable[..., tuple[Rig, Witness]]
 TASK = "sis_a 0B 7"

@@ -7,11 +7,11 @@ import pytest
 from arboleda.core.cell import CellRun
 from arboleda.core.revisions import Revisions
 from arboleda.model.messages import CellRevised
+from arboleda.testing import shipped
 from arboleda_proofs.simulator import judged_world
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.judged import judged_by
 from arboleda_proofs.simulator.run import Result, Simulation
-from arboleda_proofs.testing import shipped
 
 from ..lengths import length, sample
 

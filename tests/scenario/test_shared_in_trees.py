@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.model.messages import TaskState, Verb
 from arboleda.plant_file.loader import load
-from arboleda_proofs.testing import Rig
+from arboleda.testing import Rig
 
 from .restarts import ENDED, restart
 

@@ -9,6 +9,7 @@ import pytest
 
 from arboleda.model.messages import MotionState
 from arboleda.plant_file.loader import load
+from arboleda.testing.plants import shipped
 from arboleda.views import view
 from arboleda_driver_faults.dobot import DobotRig
 from arboleda_driver_faults.gcode import GantryRig, MarlinRig, MoonrakerRig
@@ -18,7 +19,6 @@ from arboleda_driver_faults.rig import Result, Rig, World
 from arboleda_driver_faults.serial_arm import ServoRig
 from arboleda_driver_faults.ur import UrRig
 from arboleda_driver_faults.vda5050 import AgvRig
-from arboleda_proofs.testing.plants import shipped
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SLOW = {

@@ -6,7 +6,7 @@ import pytest
 
 from arboleda.model.messages import TaskState
 from arboleda.model.plant_model import Evidence
-from arboleda_proofs.testing import Rig, shipped
+from arboleda.testing import Rig, shipped
 
 from ..lengths import sample
 

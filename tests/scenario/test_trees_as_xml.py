@@ -14,9 +14,9 @@ from arboleda.model.messages import TaskState, Verb
 from arboleda.model.recipe import Limits
 from arboleda.model.text import parse
 from arboleda.plant_file.loader import load
+from arboleda.testing import Rig
 from arboleda.trees.leaves import title_of
 from arboleda.views import view
-from arboleda_proofs.testing import Rig
 
 from ..lengths import sample
 from .restarts import ENDED, restart

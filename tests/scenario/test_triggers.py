@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.model.messages import TaskRequest, TaskState
 from arboleda.model.plant_model import PlantModel
-from arboleda_proofs.testing import Rig, shipped
+from arboleda.testing import Rig, shipped
 
 from ..cells import with_robot
 

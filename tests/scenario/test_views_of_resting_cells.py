@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from arboleda.core.plant import Plant
+from arboleda.rig.world import World
 from arboleda.views import view
 from arboleda.views.resting_cells import RestingCells
 from arboleda_drawn.plants import DrawnPlants
 from arboleda_proofs.campaigns.request import Request
 from arboleda_proofs.simulator.run import Simulation
-from arboleda_proofs.simulator.world import World
 
 from ..lengths import length
 

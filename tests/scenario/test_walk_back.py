@@ -16,10 +16,12 @@ from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Fact, Reason, Remember, Shutdown, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.resume import fingerprint
+from arboleda.rig import faults
+from arboleda.testing import Rig, shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.payloads import EffectorGoal, encode
 from arboleda.wire.transport import Publication
-from arboleda_proofs.testing import Rig, Witness, faults, shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda_proofs.testing import Witness
 
 from ..cells import with_poses
 from .restarts import ENDED, Mortal, restart

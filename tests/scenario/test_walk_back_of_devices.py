@@ -16,10 +16,10 @@ from arboleda.model.messages import Check, TaskState, Verb
 from arboleda.model.plant_model import PlantModel, Retry
 from arboleda.plant_file.loader import load
 from arboleda.recipes import Kit, parallel, recipe, work
+from arboleda.rig import hands
+from arboleda.testing import Rig
 from arboleda.views import view
 from arboleda.wire.transport import Publication
-from arboleda_proofs.simulator import hands
-from arboleda_proofs.testing import Rig
 
 from ..lengths import sample
 from ..unit.kinds.lab import model as bench

@@ -8,9 +8,9 @@ from itertools import product
 import pytest
 
 from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.testing import shipped, slowed
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_proofs.simulator.run import Simulation
-from arboleda_proofs.testing import shipped, slowed
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 from ..cells import with_palletizing, with_poses
 from ..lengths import sample

@@ -16,8 +16,10 @@ from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Fact, Journal, Reason, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.plant_file.loader import load
+from arboleda.rig import faults
+from arboleda.testing import Rig, slowed
 from arboleda.views.zone_rows import zone_rows
-from arboleda_proofs.testing import Rig, Witness, faults, slowed
+from arboleda_proofs.testing import Witness
 
 from ..following import advised, follow, works
 from ..lengths import sample

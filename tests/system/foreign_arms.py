@@ -21,10 +21,10 @@ from arboleda.kinds.arm import Arm
 from arboleda.model.messages import MotionState
 from arboleda.model.plant_model import Link
 from arboleda.plant_file import loader
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.payloads import Channel, JointsGoal, Presence, StopGoal, Telemetry, decode, encode
 from arboleda.wire.topics import topic
 from arboleda.wire.units import from_wire, to_wire
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 TICK_S, PERIOD_S, LATE_S = 0.01, 0.1, 0.2
 SPEED = 0.9  # of what each joint may do

@@ -47,8 +47,8 @@ from arboleda.runtime import host_claim
 from arboleda.runtime.host_claim import node_claim
 from arboleda.runtime.parts.orchestrator import Orchestrator
 from arboleda.store.sqlite import Store
+from arboleda.testing import shipped
 from arboleda.wire.status import STALE, to_status
-from arboleda_proofs.testing import shipped
 from arboleda_ros import convert, statuses
 from arboleda_ros.command_topics import NoBridge
 from arboleda_ros.link import connect

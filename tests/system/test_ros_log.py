@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 
 from arboleda.runtime.log_queue import log_to
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 from ..patience import PATIENCE_S
 from .conftest import paths

@@ -21,10 +21,10 @@ from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.plant_file import loader
 from arboleda.plant_file.urdf import robot_urdf, root_link
+from arboleda.testing import shipped
 from arboleda.wire import payloads, topics, units
 from arboleda.wire.topics import Channel
 from arboleda.wire.values import Telemetry
-from arboleda_proofs.testing import shipped
 
 from ..chromium import FEW_FRAMES, browsers, people
 from ..patience import PATIENCE_S

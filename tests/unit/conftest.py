@@ -7,7 +7,7 @@ import pytest
 from arboleda.geometry import bodies
 from arboleda.geometry.bodies import Body
 from arboleda.plant_file.urdf import robot_urdf
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 
 @pytest.fixture(scope="session")

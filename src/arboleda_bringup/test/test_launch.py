@@ -13,8 +13,8 @@ import yaml
 
 pytest.importorskip("rclpy")
 
+from arboleda.testing import shipped
 from arboleda_bringup.arguments import ARGUMENTS
-from arboleda_proofs.testing import shipped
 from arboleda_ros import running
 
 PACKAGE = Path(__file__).parents[1]

@@ -12,11 +12,11 @@ import pytest
 
 from arboleda.model.errors import StartError
 from arboleda.model.plant_model import Link, PlantModel, Robot
+from arboleda.testing import shipped
 from arboleda_bringup.arguments import ARGUMENTS
 from arboleda_bringup.choice import read
 from arboleda_bringup.row import Row
 from arboleda_bringup.table import table
-from arboleda_proofs.testing import shipped
 
 PACKAGE = Path(__file__).parents[1]
 DEFAULTS = {argument.name: argument.default for argument in ARGUMENTS}

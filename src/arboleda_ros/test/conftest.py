@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from arboleda_proofs.testing.domains import Domain
+from arboleda.testing.domains import Domain
 
 TYPED = ["test_execute_task.py", "test_execute_task_ends.py", "test_named_values.py", "test_typed.py"]
 collect_ignore = [] if importlib.util.find_spec("arboleda_interfaces") else TYPED

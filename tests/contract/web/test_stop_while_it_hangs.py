@@ -16,7 +16,7 @@ from arboleda.departures.leaving import ends_motion
 from arboleda.model.messages import Verb
 from arboleda.runtime.build import App, Options, build
 from arboleda.store.sqlite import Store
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 
 class Robots:

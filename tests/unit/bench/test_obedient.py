@@ -6,8 +6,8 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.testing import plants
 from arboleda_bench.obedient import Yard, command_in, is_over
-from arboleda_proofs.testing import plants
 
 
 def test_robots_that_obey_bring_a_task_to_its_end():

@@ -9,8 +9,8 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import Heartbeat, TaskChanged, TaskRequest
+from arboleda.testing.plants import shipped
 from arboleda_bench import clockwork, played
-from arboleda_proofs.testing.plants import shipped
 
 MOVE_S = 0.3
 

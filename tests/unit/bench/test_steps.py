@@ -11,9 +11,9 @@ from arboleda.model.commands import Command
 from arboleda.model.messages import TaskState
 from arboleda.model.plant_model import Cell
 from arboleda.plant_file.loader import load
+from arboleda.rig.rig import Rig
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_bench import plants, steps
-from arboleda_proofs.testing.rig import Rig
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 
 @pytest.fixture

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
+from arboleda.rig.rig import Rig
+from arboleda.testing import plants
 from arboleda_bench.time_by_part import time_by_part
-from arboleda_proofs.testing import plants
-from arboleda_proofs.testing.rig import Rig
 
 
 def test_the_shares_of_the_parts_add_up_and_libraries_belong_to_their_callers():

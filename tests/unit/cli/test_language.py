@@ -11,8 +11,8 @@ from arboleda.cli.screen import says
 from arboleda.client.errors import Conflict
 from arboleda.model import text
 from arboleda.model.errors import ArboledaError, TextError
+from arboleda.testing import shipped
 from arboleda_proofs.running.fault_desk import AN_INSTANT
-from arboleda_proofs.testing import shipped
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from arboleda.cli.commands import commands
 from arboleda.cli.main import cli
 from arboleda.host.packages import entry_points, left_out
 from arboleda.runtime.build import Options, build
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 NEWER = (
     "Arboleda goes on without acme 1: it is written for API 2, and here is API 1; "

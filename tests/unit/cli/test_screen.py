@@ -14,8 +14,8 @@ from arboleda.cli import screen as shown
 from arboleda.cli.screen import Screen, joints, logged, parting, table
 from arboleda.model.messages import MotionState, Reason, TaskChanged, TaskState, Verb
 from arboleda.runtime.parts.plant_log import task_line
+from arboleda.testing import Rig, shipped
 from arboleda.views import view
-from arboleda_proofs.testing import Rig, shipped
 
 from ..kinds.lab import Bench, model
 from ..kinds.test_people import asking

@@ -12,9 +12,9 @@ from arboleda.cli.client import PlantClient
 from arboleda.cli.main import cli
 from arboleda.model.errors import ArboledaError
 from arboleda.model.sentence import in_json
+from arboleda.rig.rig import Rig
+from arboleda.testing.plants import shipped
 from arboleda.views import view
-from arboleda_proofs.testing.plants import shipped
-from arboleda_proofs.testing.rig import Rig
 
 BEGINS = {"ascii": b"{o} storage", "svg": b"<svg", "png": b"\x89PNG", "dot": b"digraph"}
 

@@ -16,8 +16,8 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import Evidence, PlantModel
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 
 
 class Hand:

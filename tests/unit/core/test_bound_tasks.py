@@ -6,7 +6,7 @@ import pytest
 
 from arboleda.core.plant import Plant
 from arboleda.model.messages import KeptTask, Revision, RevisionName, TaskChanged, TaskRequest, TaskState
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 TEXT = "sis_a 0B 7 #lot1"
 FIRST, SECOND = (RevisionName(digest=each, number=number) for number, each in enumerate(("one", "two"), 1))

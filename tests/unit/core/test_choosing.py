@@ -8,10 +8,10 @@ from arboleda.core.choosing import CHOSEN, CHOSEN_IN_TROUBLE, FULL, HINDERED, LA
 from arboleda.model.errors import TextError
 from arboleda.model.messages import Course, TaskChanged, TaskRequest, TaskState, Verb
 from arboleda.model.task import Order, Task
+from arboleda.rig.rig import Rig
+from arboleda.rig.world import PLANT
+from arboleda.testing import shipped
 from arboleda.views.view import promises
-from arboleda_proofs.simulator.world import PLANT
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.rig import Rig
 
 TASK = "sis_a,sis_b 0B 7"
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from arboleda.testing import shipped
 from arboleda_bench.obedient import Yard, command_in, is_over
 from arboleda_bench.step import begin_task, go_on
-from arboleda_proofs.testing import shipped
 
 
 def played(yard: Yard, *, asks: bool) -> tuple[list[Any], list[float]]:

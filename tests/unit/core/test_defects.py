@@ -33,8 +33,8 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import Evidence
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees.leaves import Act
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
 Make = Callable[[Evidence], Any]

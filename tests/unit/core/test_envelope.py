@@ -9,7 +9,7 @@ import pytest
 from arboleda.core.envelope import unsettled
 from arboleda.model.messages import Fact, KeptTask, Remember, TaskChanged, TaskState
 from arboleda.resume.trail import Trail
-from arboleda_proofs.testing import Rig, shipped
+from arboleda.testing import Rig, shipped
 
 AT_WORK = KeptTask(id="a", text="sis_a 0B 7", cell="sis_a", state=TaskState.RUNNING)
 SWITCHING = Remember(fact=Fact.EFFECTOR, name="ra1", value="switching")

@@ -11,7 +11,7 @@ from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Home
 from arboleda.model.messages import MotionState, Verb
 from arboleda.model.plant_model import DriverUse, Evidence, PlantModel, Robot
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 from .conftest import Hand
 from .test_plant import driven_to_the_arm

@@ -10,7 +10,7 @@ from arboleda.core.intake import HISTORY, Intake
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskState
 from arboleda.model.task import Task
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 
 def best(orders: object) -> NoReturn:

@@ -18,7 +18,7 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.sentence import OWN
-from arboleda_proofs.testing.plants import shipped
+from arboleda.testing.plants import shipped
 
 
 def kept(id: str, text: str, state: TaskState = TaskState.QUEUED, **more: object) -> KeptTask:

@@ -28,10 +28,10 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import APART_S, Evidence, Timing
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees import leaves
 from arboleda.views import view
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
 

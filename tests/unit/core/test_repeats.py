@@ -18,7 +18,7 @@ from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home
 from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import Evidence
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 EPOCH = 7
 HERE, THERE = (0.0, 0.0, 0.0), (0.5, 0.1, 0.0)

@@ -10,11 +10,11 @@ from py_trees.common import Status
 from arboleda.core.plant import SHORTEST_ABSENCE_S, Plant
 from arboleda.model.messages import Fact, MotionState, Notice, Remember, Report, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.rig.rig import Rig
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees.leaves import Act
 from arboleda_proofs.campaigns.request import shared
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.rig import Rig
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 MOBILE = "rm_sis_a"
 

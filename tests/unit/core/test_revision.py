@@ -24,9 +24,9 @@ from arboleda.model.plant_model import Cell, PlantModel, Pose, Retry, Timing
 from arboleda.model.recipe import Recipe
 from arboleda.recorder.replay import plant_of, replayed
 from arboleda.recorder.tape import TapedPlant, recorded
-from arboleda_proofs.simulator.world import World
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.rig import Rig
+from arboleda.rig.rig import Rig
+from arboleda.rig.world import World
+from arboleda.testing import shipped
 
 NEXT = RevisionName(digest="d1", number=2)
 Q = (0.1, 0.2, 0.05)

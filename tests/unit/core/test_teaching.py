@@ -17,7 +17,7 @@ from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import Fact, Jog, Journal, Remember, Verb
 from arboleda.plant_file.loader import load
-from arboleda_proofs.testing import Rig, shipped
+from arboleda.testing import Rig, shipped
 
 BEAT_S = 0.05  # how often a page says that a button is held
 FAR = 0.5  # rad

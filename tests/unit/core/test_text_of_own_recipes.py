@@ -13,7 +13,7 @@ from arboleda.model.errors import TextError
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Parameter, Recipe
 from arboleda.model.text import example, parse, spelled
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 
 def colours(cell: Cell) -> Sequence[str]:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from arboleda.core.plant import Plant
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskRequest, Verb
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 MODEL = shipped()
 ANY = st.text(st.characters(exclude_categories=()), max_size=300)

@@ -9,7 +9,7 @@ import pytest
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.messages import MotionState, OperatorRequest, Verb
 from arboleda.plant_file.loader import load
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 
 from .conftest import Hand
 

@@ -7,8 +7,8 @@ import pytest
 
 from arboleda.dashboard.faces import Face
 from arboleda.dashboard.page_state import PageState
+from arboleda.testing import Rig, shipped
 from arboleda.views import view
-from arboleda_proofs.testing import Rig, shipped
 
 LINKS: dict[str, Any] = {
     "broker": {"address": "here:1883", "connected": True},

@@ -10,9 +10,9 @@ import pytest
 from arboleda.dashboard.faces.moment import clock
 from arboleda.model.messages import Journal, Verb
 from arboleda.runtime.parts.plant_log import act_line
+from arboleda.testing import Rig, shipped
 from arboleda.views import view
 from arboleda.views.chronicle import EVENTS, Chronicle
-from arboleda_proofs.testing import Rig, shipped
 
 
 def act(**said: Any) -> dict[str, Any]:

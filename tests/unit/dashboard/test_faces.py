@@ -13,8 +13,8 @@ from arboleda.dashboard.faces.tasks import sorted_tasks
 from arboleda.dashboard.wording import words
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import Evidence
+from arboleda.rig import faults
 from arboleda.views.changes import changed
-from arboleda_proofs.testing import faults
 
 
 def robot(name: str, **said: Any) -> dict[str, Any]:

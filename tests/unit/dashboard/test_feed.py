@@ -13,8 +13,8 @@ from arboleda.dashboard import frames as frames_module
 from arboleda.dashboard.feed import Feed
 from arboleda.dashboard.frames import BEAT_S, BEHIND, Background
 from arboleda.model.errors import ArboledaError
+from arboleda.testing import Rig, shipped
 from arboleda.views import view
-from arboleda_proofs.testing import Rig, shipped
 
 
 class Side:

@@ -14,8 +14,8 @@ from arboleda.dashboard.tags import markup
 from arboleda.dashboard.wording import words
 from arboleda.model.messages import Event
 from arboleda.model.plant_model import PlantModel
+from arboleda.testing import shipped
 from arboleda.views import view
-from arboleda_proofs.testing import shipped
 
 from ..kinds.lab import Bench, model
 from .conftest import LINKS

@@ -24,10 +24,10 @@ from arboleda.dashboard.feed import Feed
 from arboleda.dashboard.page_part import GROUP
 from arboleda.dashboard.wording import words
 from arboleda.host.pieces import Pieces
+from arboleda.testing import shipped
 from arboleda.views import view
 from arboleda.web.access.auth import Role
 from arboleda.web.package_routes import PackageRoute
-from arboleda_proofs.testing import shipped
 
 CODE = """
 from arboleda.dashboard.asset_files import Assets

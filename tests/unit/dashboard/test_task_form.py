@@ -5,8 +5,8 @@ from __future__ import annotations
 from arboleda.dashboard import task_form
 from arboleda.dashboard.tags import markup
 from arboleda.dashboard.wording import words
+from arboleda.testing import shipped
 from arboleda.views import view
-from arboleda_proofs.testing import shipped
 
 
 def test_an_end_of_a_path_has_its_letter() -> None:

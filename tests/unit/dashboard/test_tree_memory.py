@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.dashboard.tree_memory import EndedTree, TreeMemory, ancestors, judged, parent
 from arboleda.model.messages import Verb
-from arboleda_proofs.testing import Rig, shipped
+from arboleda.testing import Rig, shipped
 
 
 def row(path: str, status: str, *, kind: str = "command", failure: str | None = None) -> dict[str, Any]:

@@ -22,7 +22,7 @@ from arboleda.departures.stop_lane import (
 from arboleda.kinds.arm import SetEffector
 from arboleda.model.commands import Home, Stop, StopMode
 from arboleda.model.messages import Heartbeat, OperatorAnswer, OperatorRequest, Outcome, Report, Verb
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 MODEL = shipped()
 EPOCH = 7

@@ -12,8 +12,8 @@ from urdf_parser_py.urdf import Robot
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.urdf import robot_urdf, root_link
+from arboleda.testing import shipped
 from arboleda_description.urdf import render
-from arboleda_proofs.testing import shipped
 
 from .drawn import Matrix, at, place, product, read, shifted, turned
 

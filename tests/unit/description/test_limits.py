@@ -15,11 +15,11 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.robot_models import arm_models, mobile_models
 from arboleda.plant_file.urdf import prefix, robot_urdf
 from arboleda.sim.devices import Devices
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire import units
 from arboleda.wire.payloads import JointsGoal
 from arboleda_description.urdf import render
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 from .drawn import moving, read
 

@@ -16,7 +16,7 @@ from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Stop, StopMode, Switch
 from arboleda.model.messages import Failure, MotionState, Reason, Report
 from arboleda.model.plant_model import DriverUse, Evidence
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 EPOCH = 7
 

@@ -14,8 +14,8 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command, Home, Motion, Position, Stop, StopMode
 from arboleda.model.messages import MotionState, Reason, Report
 from arboleda.model.plant_model import Evidence
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 
 MOVING, STOPPED = MotionState.MOVING, MotionState.STOPPED
 HERE, THERE = (0.0, 0.0, 0.0), (0.5, 0.1, 0.0)

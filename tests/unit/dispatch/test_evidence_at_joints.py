@@ -15,8 +15,8 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import MotionState, Reason, Report
 from arboleda.model.plant_model import APART_S, Evidence
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 
 MOVING, STOPPED = MotionState.MOVING, MotionState.STOPPED
 CELL = shipped("sis_a", evidence=Evidence.JOINTS).cell("sis_a")

@@ -8,7 +8,7 @@ from arboleda.dispatch.belief import RATE_S
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import Evidence
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 
 class Arm:

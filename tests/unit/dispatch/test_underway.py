@@ -13,9 +13,9 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Switch
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Evidence
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_proofs.campaigns.request import shared
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 MODEL = shared()
 ARM = next(StorageLayout(cell).arm.name for cell in MODEL.cells if StorageLayout(cell).space.zones)

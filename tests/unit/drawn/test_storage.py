@@ -13,10 +13,10 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.plant_file import shapes
 from arboleda.plant_file.robot_models import arm_models, mobile_models
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_drawn.plants import loaded, of_storage
 from arboleda_drawn.storage import NOT_DRAWN, draw, smaller
 from arboleda_proofs.campaigns.plants import Plant
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 SEEDS = range(120)
 LINKS = set(Link) - {Link.SCREEN, Link.DRIVER}  # a person is a device, and drivers are not drawn

@@ -32,8 +32,8 @@ from arboleda.model.messages import MotionState, Report, Undelivered
 from arboleda.model.plant_model import Evidence, Link
 from arboleda.model.sentence import OWN
 from arboleda.sim.board import SILENCE, SILENCE_US
-from arboleda_proofs.testing.plants import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 
 from ..kinds.station import STATION, plant
 

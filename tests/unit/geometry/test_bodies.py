@@ -9,7 +9,7 @@ import pytest
 from arboleda.geometry import bodies, kinematics
 from arboleda.geometry.bodies import Body
 from arboleda.plant_file.urdf import root_link
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 ROBOT = """<robot name="r"><link name="a"/><link name="b"><visual><geometry>{shape}</geometry></visual></link>
 <joint name="j" type="{kind}"><parent link="a"/><child link="b"/>{more}</joint></robot>"""

@@ -10,7 +10,7 @@ import pytest
 from arboleda.geometry import kinematics
 from arboleda.geometry.bodies import Body, links
 from arboleda.plant_file.urdf import robot_urdf
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 from ..description import drawn
 

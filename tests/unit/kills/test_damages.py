@@ -14,9 +14,9 @@ from arboleda.recorder.files import FOLDER
 from arboleda.recorder.writing import Writing
 from arboleda.runtime.state import StateDir
 from arboleda.store.sqlite import Store
+from arboleda.testing import shipped
 from arboleda_kills import damages
 from arboleda_kills.damages import WAYS, unnoticed
-from arboleda_proofs.testing import shipped
 
 from ..recorder.recorded import beginning_of
 from ..store.memory_samples import ended, queued

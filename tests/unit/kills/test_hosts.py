@@ -10,12 +10,12 @@ from typing import ClassVar
 import pytest
 from tests.threads import AtTheEnd, stand_in
 
+from arboleda.testing import shipped
 from arboleda_kills.hosts import visitors as module
 from arboleda_kills.hosts.cable import Cable
 from arboleda_kills.hosts.entrances import Answer
 from arboleda_kills.hosts.run import two_leaders
 from arboleda_kills.hosts.visitors import Visitors
-from arboleda_proofs.testing import shipped
 
 ONE_BY_ONE = [(1.0, "ra1", "7-1"), (2.0, "ra1", "7-2"), (3.0, "ra1", "8-1"), (3.1, "ra2", "8-2")]
 

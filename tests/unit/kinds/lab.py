@@ -7,7 +7,7 @@ from arboleda.model.commands import Command, OnStop
 from arboleda.model.messages import TaskChanged
 from arboleda.model.plant_model import Cell, Evidence, Link, PlantModel
 from arboleda.recipes import Choice, Kit, recipe, work
-from arboleda_proofs.testing.rig import Rig
+from arboleda.rig.rig import Rig
 
 LID = FactType(type=str, words=("open", "closed"), first="open")
 DOSE = FactType(type=int, words=(5, 10, 20), first=5)

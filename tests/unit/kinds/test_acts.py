@@ -15,11 +15,12 @@ from arboleda.model.cell_states import CellState
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Journal, Outcome, Reason, Verb
 from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.rig import faults
+from arboleda.rig.rig import Rig
 from arboleda.sim.arm import ArmBody
+from arboleda.testing import shipped
 from arboleda.views.chronicle import Chronicle
 from arboleda.views.view import snapshot
-from arboleda_proofs.testing import faults, shipped
-from arboleda_proofs.testing.rig import Rig
 
 from .lab import OVEN, Bench, model
 from .tending import plant

@@ -7,7 +7,7 @@ from tests.following import advised, works
 from tests.readying import make_ready
 
 from arboleda.model.messages import Outcome, Verb
-from arboleda_proofs.simulator.hands import do
+from arboleda.rig.hands import do
 
 from .lab import Bench
 from .test_examples import load

@@ -13,7 +13,7 @@ from arboleda.model.commands import Command, Query, Stop
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import Link
 from arboleda.plant_file.loader import load
-from arboleda_proofs.testing import Rig
+from arboleda.testing import Rig
 
 from .test_examples import OF_STORAGE, PLAIN, Case, Shop
 

@@ -17,9 +17,9 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Reason, TaskState
 from arboleda.model.verbs import Verb
 from arboleda.plant_file.loader import load
+from arboleda.rig.world import PLANT as PLANT_PROCESS
 from arboleda.views import view
 from arboleda.wire.transport import Publication
-from arboleda_proofs.simulator.world import PLANT as PLANT_PROCESS
 
 from .lab import Bench
 

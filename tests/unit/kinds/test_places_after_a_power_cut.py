@@ -6,7 +6,7 @@ import pytest
 
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
-from arboleda_proofs.testing import Rig
+from arboleda.testing import Rig
 
 PLANT = """
 name: lab

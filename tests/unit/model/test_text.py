@@ -11,7 +11,7 @@ from arboleda.model.errors import TextError
 from arboleda.model.plant_model import Link
 from arboleda.model.task import Order
 from arboleda.model.text import parse
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 SHIPPED = shipped()
 

@@ -4,7 +4,7 @@ import pytest
 from py_trees.composites import Selector, Sequence
 
 from arboleda.model.tree_nodes import nodes_of
-from arboleda_proofs.testing import Rig, shipped
+from arboleda.testing import Rig, shipped
 
 
 def test_nodes_come_in_the_order_of_iterate() -> None:

@@ -13,8 +13,8 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Crossing, Pose, Workspace
 from arboleda.model.zone_plan import Leg, entered, passed, plan, recovery_zones
 from arboleda.plant_file.storage_form import plan_problems
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 
 NONE = frozenset[str]()
 STATION, OTHER, PLACE = 7, 4, 8  # PLACE is where the shipped cell palletizes to

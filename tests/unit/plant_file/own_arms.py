@@ -7,7 +7,7 @@ from pathlib import Path
 from arboleda.kinds.arm import Arm
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 
 ROOT = Path(__file__).parents[3]
 TENDER = ROOT / "examples/machine_tending/models/tender.urdf"

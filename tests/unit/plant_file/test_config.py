@@ -11,8 +11,8 @@ from tests.packages import leave_out
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, MqttVersion, PlantModel, Timing
 from arboleda.plant_file import loader
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_bench.cost.counter import count
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "plants"
 PATHS = {

@@ -9,7 +9,7 @@ import pytest
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Cell
 from arboleda.plant_file import loader
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 
 TEXT = """\
 name: p

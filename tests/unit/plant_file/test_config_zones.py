@@ -10,7 +10,7 @@ import pytest
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Cell, Crossing, PlantModel, Pose, Retry, Timing
 from arboleda.plant_file import loader
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 
 DOCS = Path(__file__).parents[3] / "docs" / "how-to" / "plant-file.md"
 PLANT = files("arboleda").joinpath("plants/plant.yaml").read_text("utf-8")

@@ -17,7 +17,7 @@ from arboleda.model.revision import obstacle
 from arboleda.plant_file import loader
 from arboleda.plant_file.extensions import settings_of
 from arboleda.runtime.build import Options, build
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 PLANT = (Path(__file__).parents[3] / "examples/plants/by_hand.yaml").read_text("utf-8")
 CODE = """

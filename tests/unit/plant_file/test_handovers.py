@@ -16,9 +16,9 @@ from arboleda.model.sentence import NOTHING
 from arboleda.plant_file import loader
 from arboleda.recipes import Kit, RecipeError
 from arboleda.recipes.handles import Step
+from arboleda.testing import Rig
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.run import Simulation
-from arboleda_proofs.testing import Rig
 
 SHORT = """name: hall
 cells:

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from arboleda.cli.main import cli
 from arboleda.plant_file import layout_check, loader
 from arboleda.plant_file.layout_mends import moved_grid
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 ROOT = Path(__file__).parents[3]
 EXAMPLES = sorted((ROOT / "examples" / "plants").glob("*.yaml"))

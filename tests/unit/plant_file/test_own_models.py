@@ -20,9 +20,9 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import layout_check, loader
 from arboleda.plant_file.robot_models import arm_models
 from arboleda.plant_file.urdf import robot_urdf, root_link
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire import payloads, units
 from arboleda.wire.values import Telemetry
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 from .own_arms import GANTRY, ONE, SLIDE, TENDER, arm, gantry, joint, link, robot, swing, tender, written
 

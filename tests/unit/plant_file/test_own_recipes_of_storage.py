@@ -15,12 +15,12 @@ from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.text import parse
 from arboleda.plant_file import loader
+from arboleda.rig.rig import Rig
 from arboleda.sim.arm import ArmBody
+from arboleda.testing import shipped
 from arboleda.views import forms
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.run import Simulation
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.rig import Rig
 
 RECIPES = """
 from arboleda.recipes import Target, parallel, recipe, work

@@ -19,8 +19,8 @@ from arboleda.kinds.mobile import Mobile
 from arboleda.model import text
 from arboleda.model.plant_model import Cell, Pose
 from arboleda.plant_file.urdf import robot_urdf
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 
 CELLS = {cell.name: cell for cell in shipped().cells}
 TASKS = [f"{cell} {path} {n}" for cell in CELLS for path in CELLS[cell].paths for n in range(9)]

@@ -13,8 +13,8 @@ from arboleda.cli.main import cli, main
 from arboleda.model.errors import ConfigError, StartError
 from arboleda.plant_file import loader
 from arboleda.plant_file.urdf import robot_urdf
+from arboleda.testing import shipped
 from arboleda_description import urdf as drawings
-from arboleda_proofs.testing import shipped
 
 EXAMPLES = Path(__file__).parents[3] / "examples/plants"
 

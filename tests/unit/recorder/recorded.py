@@ -19,10 +19,10 @@ from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import Step
 from arboleda.recorder.view_log import ViewSnapshot
 from arboleda.recorder.writing import Writing
+from arboleda.rig import world
+from arboleda.rig.rig import Rig
+from arboleda.testing.plants import shipped
 from arboleda.views import twin_view, view
-from arboleda_proofs.simulator import world
-from arboleda_proofs.testing.plants import shipped
-from arboleda_proofs.testing.rig import Rig
 
 CONTENTS = {"plant.yaml": b"name: arboleda\n", "lib/own.py": b"\x00\xff"}
 FILES = PlantFiles(plant="plant.yaml", contents=CONTENTS)

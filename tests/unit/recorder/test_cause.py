@@ -16,10 +16,10 @@ from arboleda.recorder.incident import Reader
 from arboleda.recorder.replay import plant_of
 from arboleda.recorder.tape import TapedPlant
 from arboleda.recorder.troubles import ALARM, BOOT, BRIDGE, SILENCE, Trouble, Troubles
+from arboleda.rig.world import World
+from arboleda.testing import shipped
 from arboleda_proofs.running.fault_desk import INSTANT
 from arboleda_proofs.simulator.faults import KINDS, Fault
-from arboleda_proofs.simulator.world import World
-from arboleda_proofs.testing import shipped
 
 ARM = "ra1"
 SENT = TaskCommand(id="7-1", robot=ARM, at=8.0, accepted_at=8.1)

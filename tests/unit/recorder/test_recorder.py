@@ -22,7 +22,7 @@ from arboleda.recorder.recorder import Recorder
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import Step
 from arboleda.recorder.writing import Writing
-from arboleda_proofs.testing import Rig, shipped
+from arboleda.testing import Rig, shipped
 
 from .recorded import DEFAULT, Site, beginning_of
 

@@ -14,7 +14,7 @@ from arboleda.recorder import reader
 from arboleda.recorder.plain_data import plain
 from arboleda.recorder.replay import Difference, ReplayedStep, first_difference, plant_of, replayed
 from arboleda.recorder.steps import from_json
-from arboleda_proofs.testing.plants import shipped
+from arboleda.testing.plants import shipped
 
 from .recorded import FILES, Site
 

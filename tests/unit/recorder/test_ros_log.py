@@ -19,8 +19,8 @@ from arboleda.recorder import cdr, ros_types
 from arboleda.recorder.ros_log import DIAGNOSTICS, RosLog
 from arboleda.recorder.ros_types import JOINT_STATE, STRING, UINT8
 from arboleda.recorder.steps import Step
+from arboleda.testing.plants import shipped
 from arboleda.views.diagnostics import diagnostics
-from arboleda_proofs.testing.plants import shipped
 
 from .recorded import Site
 

@@ -13,8 +13,8 @@ from arboleda.recorder.replay import plant_of, replayed
 from arboleda.recorder.simulated_recorder import SimulatedRecorder
 from arboleda.recorder.tape import SECOND
 from arboleda.recorder.views import Views
-from arboleda_proofs.simulator.world import PLANT, World
-from arboleda_proofs.testing.plants import shipped
+from arboleda.rig.world import PLANT, World
+from arboleda.testing.plants import shipped
 
 from .recorded import FILES
 

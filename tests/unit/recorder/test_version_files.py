@@ -12,7 +12,7 @@ from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.reader import alone
 from arboleda.recorder.version_files import VersionFiles, versions_in
 from arboleda.recorder.writing import Writing
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 from .recorded import DEFAULT, beginning_of
 

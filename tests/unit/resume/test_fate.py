@@ -9,7 +9,7 @@ import pytest
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.messages import MotionState, Receipt, Report
 from arboleda.resume.walk_back import Fate, fate
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 BRIDGE = 1001
 GOAL = (0.5, 0.0, 0.0)

@@ -16,9 +16,9 @@ from arboleda.model.plant_model import Cell
 from arboleda.model.task import Order
 from arboleda.plant_file.loader import load
 from arboleda.resume import fingerprint
+from arboleda.testing import shipped
 from arboleda.trees import steps
 from arboleda.trees.leaves import Unless
-from arboleda_proofs.testing import shipped
 
 MADE_BY_CODE = "ae0d51165bde685fa42ee56dc501189c"
 OVENS = """

@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.model.messages import Fact
 from arboleda.resume.trail import Trail
-from arboleda_proofs.testing import Rig, shipped
+from arboleda.testing import Rig, shipped
 
 
 @pytest.fixture

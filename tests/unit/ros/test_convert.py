@@ -15,7 +15,7 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.errors import PayloadError
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 from arboleda_ros.convert import command, command_message, is_copy, labelled_command, labelled_message
 
 PLANT = shipped("sis_a")

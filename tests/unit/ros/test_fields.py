@@ -6,7 +6,7 @@ import pytest
 
 from arboleda.model.errors import TextError
 from arboleda.model.text import parse
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 from arboleda_ros.typed.fields import compose
 
 SHIPPED = shipped()

@@ -13,7 +13,7 @@ from std_msgs.msg import Bool, UInt8
 
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import MotionState, Report
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 from arboleda_ros.plain_reports import PlainReports
 
 PLANT = shipped("sis_a")

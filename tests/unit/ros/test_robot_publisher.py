@@ -14,7 +14,7 @@ from rclpy.serialization import serialize_message
 
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import MotionState, Report
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 from arboleda_ros import statuses
 from arboleda_ros.robot_publisher import JointsMessage, StatusMessage
 

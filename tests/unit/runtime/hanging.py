@@ -16,7 +16,7 @@ from arboleda.model.messages import TaskChanged
 from arboleda.runtime.parts import plant_log
 from arboleda.runtime.parts.orchestrator import Orchestrator
 from arboleda.store.sqlite import Store
-from arboleda_proofs.testing.plants import shipped
+from arboleda.testing.plants import shipped
 
 MODEL = shipped("sis_a", "sis_b")
 ROBOTS = set(MODEL.robots)

@@ -19,14 +19,14 @@ from arboleda.model.messages import Reason, Shutdown, TaskChanged, TaskState, Ve
 from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import OWN
 from arboleda.recipes import Kit, parallel, recipe, work
+from arboleda.rig.rig import Rig
+from arboleda.rig.world import PLANT
 from arboleda.runtime.alarm_options import TOPIC, alarm_options
 from arboleda.runtime.build import Options, build
 from arboleda.runtime.parts.alarms import AlarmsPart
 from arboleda.runtime.parts.commit_pace import Pace
+from arboleda.testing import shipped
 from arboleda.views import alarms as view
-from arboleda_proofs.simulator.world import PLANT
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.rig import Rig
 
 from ..kinds.lab import Bench
 from ..kinds.test_people import attended, question, refill

@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.model.errors import StartError
 from arboleda.runtime.build import PARTS, Options, build
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 
 def test_all_parts_need_no_compiled_firmware(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

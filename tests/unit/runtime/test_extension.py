@@ -22,10 +22,10 @@ from arboleda.host.pieces import Pieces
 from arboleda.model.messages import Verb
 from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.parts.local_plant import LocalPlant
+from arboleda.testing import shipped
 from arboleda.views import view
 from arboleda.web.api import make_app
 from arboleda.web.languages import contents, texts
-from arboleda_proofs.testing import shipped
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = ROOT / "examples/extension"

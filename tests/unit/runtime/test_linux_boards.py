@@ -11,8 +11,8 @@ from arboleda.adapters.broker_login import Address, Credentials
 from arboleda.model.errors import StartError
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.runtime.parts.linux_boards import LinuxBoards, on_linux
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 
 
 class Broker:

@@ -16,8 +16,8 @@ from arboleda.adapters import clock
 from arboleda.core.plant import Plant
 from arboleda.model.messages import Reason, TaskChanged, TaskState
 from arboleda.runtime.parts.metrics import Metrics
+from arboleda.testing import shipped
 from arboleda.views import view
-from arboleda_proofs.testing import shipped
 
 Read = Callable[..., "float | None"]
 LINKS = {

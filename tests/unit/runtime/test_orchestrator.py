@@ -46,8 +46,8 @@ from arboleda.runtime.parts.slices import PAUSE_S, SLICE_S
 from arboleda.store.lead import Superseded
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskQuery, answers_of
+from arboleda.testing.plants import shipped
 from arboleda.wire import status
-from arboleda_proofs.testing.plants import shipped
 
 GRIP = Remember(fact=Fact.EFFECTOR, name="ra1", value="switching")
 ON, OFF = (SetEffector(id=id, robot="ra1", on=on) for id, on in (("7-1", True), ("7-9", False)))

@@ -15,16 +15,16 @@ from arboleda.dashboard.page_state import PageState
 from arboleda.model.sentence import Phrase, in_json
 from arboleda.recorder.plain_data import plain, value_from
 from arboleda.recorder.rows import PLANT, rows_of
+from arboleda.rig.rig import Rig
 from arboleda.runtime.build import Options, build
 from arboleda.runtime.extensions.alarms import MOST, PackageAlarms
 from arboleda.runtime.parts.alarms import AlarmsPart
 from arboleda.runtime.parts.local_plant import LocalPlant
+from arboleda.testing import shipped
 from arboleda.views import twin_view, view
 from arboleda.views.chronicle import Chronicle
 from arboleda.web.stream import changed
 from arboleda.wire.status import ERROR, OK, WARN
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.rig import Rig
 
 NO_LINKS: dict[str, Any] = {"broker": None, "ros": None, "refused": {}, "standbys": []}
 

@@ -17,8 +17,8 @@ from arboleda.runtime.extensions import table
 from arboleda.runtime.extensions.telling import Telling
 from arboleda.runtime.parts.local_plant import LocalPlant
 from arboleda.store.task_rows import TaskQuery
+from arboleda.testing import shipped
 from arboleda.web.api import make_app
-from arboleda_proofs.testing import shipped
 
 CODE = """
 from arboleda.extension import Part

@@ -8,7 +8,7 @@ from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device
 from arboleda.kinds.mobile import Mobile
 from arboleda.runtime.rate import at_rate
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 from ..kinds.lab import model
 

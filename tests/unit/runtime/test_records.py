@@ -14,11 +14,11 @@ from arboleda.model.recording import Limits
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import part_path
 from arboleda.recorder.simulated_recorder import SimulatedRecorder
+from arboleda.rig.world import World
 from arboleda.runtime.parts import records
 from arboleda.runtime.parts.records import Records
+from arboleda.testing import shipped
 from arboleda.views import view
-from arboleda_proofs.simulator.world import World
-from arboleda_proofs.testing import shipped
 
 MODEL = shipped("sis_a")
 LAYOUT = view.layout(MODEL)

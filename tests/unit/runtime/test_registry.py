@@ -19,8 +19,8 @@ from arboleda.runtime import holdings, registry
 from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.part_list import PartList
 from arboleda.runtime.registry import Factory, Phase
+from arboleda.testing import shipped
 from arboleda_fleet import factories as standby
-from arboleda_proofs.testing import shipped
 
 Install = Callable[[str, str], None]
 RAISES = "from arboleda.runtime.registry import Factory, Phase\n\n\nclass Part:\n"

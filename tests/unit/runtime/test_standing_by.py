@@ -10,7 +10,7 @@ from tests.packages import leave_out
 from arboleda.model.errors import StartError
 from arboleda.runtime.options import Options
 from arboleda.runtime.standing_by import take_over
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 
 def test_standing_by_without_its_package_is_refused_with_the_line_that_installs_it(

@@ -12,7 +12,7 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.model.messages import MotionState, Report, TaskRequest
 from arboleda.model.plant_model import Evidence
 from arboleda.runtime.parts.urgency import COMPANY_S, PASSING, RESTING_S, Urgency
-from arboleda_proofs.testing.plants import shipped
+from arboleda.testing.plants import shipped
 
 REST = Report(
     at=0.0, robot="ra1", epoch=9, boot_id=4, state=MotionState.STOPPED, q=(0.0, 0.0, 0.0), piece=False

@@ -8,7 +8,7 @@ import pytest
 from arboleda.model.sentence import in_json
 from arboleda.runtime import view_text
 from arboleda.runtime.parts.slices import Slices
-from arboleda_proofs.testing import Rig, shipped
+from arboleda.testing import Rig, shipped
 
 
 def text_of(snapshot: dict[str, Any]) -> str:

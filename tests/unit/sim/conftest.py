@@ -10,10 +10,10 @@ import pytest
 
 from arboleda.model.plant_model import PlantModel
 from arboleda.sim.devices import Devices, Reboot, ToBoard
+from arboleda.testing import shipped
 from arboleda.wire.payloads import Payload, Telemetry, decode, encode
 from arboleda.wire.topics import Channel, parse, topic
 from arboleda.wire.transport import Connection, Delivery, Publication
-from arboleda_proofs.testing import shipped
 
 
 class Bench:

@@ -9,9 +9,9 @@ import pytest
 from arboleda.model.commands import StopMode
 from arboleda.model.messages import MotionState
 from arboleda.sim.arm import ArmBody
+from arboleda.testing import shipped
 from arboleda.wire.payloads import Beat, EffectorGoal, HomeGoal, JointsGoal, PathGoal, StopGoal
 from arboleda.wire.topics import Channel
-from arboleda_proofs.testing import shipped
 
 ARM, SIX_AXES, CART = "ra_1", "ra_3", "rm_sis_a"
 PICKUP = (45.0, 9.9, 0.0)  # 10 deg are 11 steps of 0.9 deg

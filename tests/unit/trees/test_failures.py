@@ -8,8 +8,8 @@ from py_trees.behaviours import Success
 from arboleda.core.plant import Plant
 from arboleda.dispatch.belief import OFFLINE
 from arboleda.model.messages import Failure, Reason
+from arboleda.testing import shipped
 from arboleda.trees.context import Context
-from arboleda_proofs.testing import shipped
 
 FIRST = Failure(reason=Reason.LINK_LOST, sentence=OFFLINE.phrase(robot="ra1"))
 THEN = Failure(reason=Reason.DEVICE_FAULT, sentence=OFFLINE.phrase(robot="rm_sis_a"))

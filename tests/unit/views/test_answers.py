@@ -14,8 +14,8 @@ from arboleda.client.reading import read
 from arboleda.model.messages import Verb
 from arboleda.model.sentence import in_json
 from arboleda.plant_file.loader import load
+from arboleda.testing import Rig, shipped
 from arboleda.web.schema.answers import model_of
-from arboleda_proofs.testing import Rig, shipped
 
 ADDED_BY_THE_SERVER = {"key", "values"}  # of the sentence on a task
 KITTING = Path(arboleda.__file__).parent / "examples/kitting/plant.yaml"

@@ -11,8 +11,8 @@ import pytest
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import in_json
 from arboleda.recipes import Kit, Number, recipe, work
+from arboleda.testing import Rig, shipped
 from arboleda.views import diagnostics, forms, geometry, twin_view, view
-from arboleda_proofs.testing import Rig, shipped
 
 from ..kinds.lab import Bench, model
 

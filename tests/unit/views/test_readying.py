@@ -8,7 +8,7 @@ from tests.readying import due, give, make_ready
 
 from arboleda.model.advice import Hand
 from arboleda.model.messages import TaskState, Verb
-from arboleda_proofs.testing import Rig, shipped, slowed
+from arboleda.testing import Rig, shipped, slowed
 
 TASK = "sis_a 0B 7"
 

@@ -9,9 +9,9 @@ import pytest
 
 from arboleda.model.messages import Verb
 from arboleda.plant_file.loader import load
+from arboleda.testing import Rig, shipped
 from arboleda.views import view
 from arboleda.views.resting_cells import RestingCells
-from arboleda_proofs.testing import Rig, shipped
 
 CELLS = {"sis_a", "sis_b", "sis_c"}
 

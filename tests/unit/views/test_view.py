@@ -10,9 +10,9 @@ from py_trees.common import Status
 from arboleda.model.messages import MotionState, OperatorRequest, Verb
 from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import in_json
+from arboleda.testing import Rig, shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.views import tree_view, view
-from arboleda_proofs.testing import Rig, shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 from ..core.conftest import Hand
 

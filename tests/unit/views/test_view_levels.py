@@ -9,9 +9,9 @@ from py_trees.behaviours import Failure, Running, Success
 from py_trees.composites import Selector, Sequence
 
 from arboleda.model.messages import MotionState, TaskState, Verb
+from arboleda.testing import Rig, shipped
 from arboleda.views import diagnostics, tree_view, view
 from arboleda.wire.status import ERROR, OK, STALE, WARN
-from arboleda_proofs.testing import Rig, shipped
 
 TASK = "sis_a 0B 7"
 

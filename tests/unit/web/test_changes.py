@@ -8,10 +8,10 @@ import copy
 import pytest
 
 from arboleda.core.plant import Plant
+from arboleda.testing.plants import shipped
 from arboleda.views import view
 from arboleda.web import stream
 from arboleda.web.stream import Reader, changed
-from arboleda_proofs.testing.plants import shipped
 
 
 @pytest.fixture

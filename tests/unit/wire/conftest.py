@@ -11,12 +11,12 @@ import pytest
 from arboleda.model.commands import Command
 from arboleda.model.messages import Heartbeat, MotionState, Report
 from arboleda.model.plant_model import Evidence
+from arboleda.testing import shipped
 from arboleda.wire.bridge import Bridge, Message
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import Payload, Presence, Telemetry, decode, encode
 from arboleda.wire.topics import Channel, parse, topic
 from arboleda.wire.transport import Connection, Delivery, Publication
-from arboleda_proofs.testing import shipped
 
 EPOCH = 1_000
 

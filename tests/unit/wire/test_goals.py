@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from arboleda.kinds.joints import MoveJoints
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.forms import form_of
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 ARM = StorageLayout(shipped("sis_a").cell("sis_a")).arm
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.messages import MotionState
 from arboleda.model.plant_model import Evidence
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.motion import LINGER_S, OpenMotion
 from arboleda.wire.values import Telemetry
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 ELSEWHERE, GOAL = (0.5, 0.5, 0.5), (0.1, 0.2, 0.05)
 

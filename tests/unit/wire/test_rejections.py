@@ -7,10 +7,10 @@ import pytest
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home
+from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.payloads import REFUSALS
 from arboleda.wire.rejections import refused
-from arboleda_proofs.testing.plants import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 
 @pytest.mark.parametrize("word", sorted(REFUSALS))

@@ -14,6 +14,7 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import MotionState, Receipt, Report, Tokens
 from arboleda.model.sentence import OWN
+from arboleda.testing import shipped
 from arboleda.wire import rejections
 from arboleda.wire.board import DENIED
 from arboleda.wire.status import (
@@ -26,7 +27,6 @@ from arboleda.wire.status import (
     to_status,
     to_token_label,
 )
-from arboleda_proofs.testing import shipped
 
 ROBOTS = shipped("sis_a").robots
 UINT = st.integers(0, 2**32 - 1)

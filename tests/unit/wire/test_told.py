@@ -6,10 +6,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from arboleda.model.errors import PayloadError
+from arboleda.testing import shipped
 from arboleda.wire.bridge import Bridge
 from arboleda.wire.status import Status, from_label, from_status
 from arboleda.wire.transport import Delivery
-from arboleda_proofs.testing import shipped
 
 MODEL = shipped()
 ANY = st.text(st.characters(exclude_categories=()), max_size=300)

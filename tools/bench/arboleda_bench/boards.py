@@ -17,6 +17,7 @@ from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command
 from arboleda.model.messages import MotionState
 from arboleda.model.plant_model import Cell, PlantModel, Robot
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.payloads import (
     EffectorGoal,
     Goal,
@@ -31,7 +32,6 @@ from arboleda.wire.payloads import (
 from arboleda.wire.topics import Channel, parse, topic
 from arboleda.wire.transport import Connection, Delivery, Publication
 from arboleda.wire.units import from_wire
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 from . import steps
 from .clockwork import Clockwork, now

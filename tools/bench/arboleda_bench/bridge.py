@@ -30,7 +30,7 @@ from dataclasses import dataclass, field
 from statistics import median
 
 from arboleda.plant_file.loader import load
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_ros.link import connect
 
 from . import plants

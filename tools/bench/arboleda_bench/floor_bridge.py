@@ -24,7 +24,7 @@ from std_msgs.msg import Bool, Float32MultiArray, UInt8, UInt32
 from arboleda.kinds.arm import Arm
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_ros import qos
 from arboleda_ros.link import connect
 

@@ -17,8 +17,8 @@ from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import APART_S, Cell, PlantModel, Robot
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.hop import PLAIN
-from arboleda_proofs.testing.storage_layout import StorageLayout
 from arboleda_ros import convert, qos
 from arboleda_ros.robot_publisher import JointsMessage
 

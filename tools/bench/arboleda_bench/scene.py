@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.model.errors import ArboledaError
-from arboleda_proofs.testing.domains import Domain
+from arboleda.testing.domains import Domain
 
 from .processes import Process
 

@@ -29,6 +29,7 @@ from time import process_time
 
 from arboleda.model.errors import ArboledaError
 from arboleda.plant_file import loader
+from arboleda.rig.world import World
 from arboleda_proofs.campaigns.plants import Plant, PlantRotation
 from arboleda_proofs.campaigns.request import Request
 from arboleda_proofs.campaigns.setting import Setting
@@ -36,7 +37,6 @@ from arboleda_proofs.campaigns.workers import collect_rarely
 from arboleda_proofs.simulator.judged import INVARIANTS
 from arboleda_proofs.simulator.people import Attendant, Customers
 from arboleda_proofs.simulator.run import MINUTE_S
-from arboleda_proofs.simulator.world import World
 
 from .result import Aim, Figure, Result
 from .scene import Scene

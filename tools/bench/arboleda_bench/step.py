@@ -33,9 +33,9 @@ from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.views import view
 from arboleda.views.resting_cells import RestingCells
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 from . import plants
 from .obedient import Yard, command_in, is_over

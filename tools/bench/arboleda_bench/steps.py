@@ -10,7 +10,7 @@ from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Cell
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 
 PATH, STATION = "0B", 1
 GOLDEN = 0.6180339887498949  # its multiples fall evenly into any interval

@@ -24,9 +24,7 @@ PARTS = {  # what part of the house a file belongs to; the first that fits
     "/simulator/invariants/": "invariants",
     "/simulator/judged_world.py": "invariants",
     "/simulator/trace.py": "trace",
-    "/simulator/world.py": "network and time",
-    "/simulator/network.py": "network and time",
-    "/simulator/plant_process.py": "network and time",
+    "/arboleda/rig/": "network and time",
     "/simulator/": "faults and people",
 }
 DEEPEST = 20  # callers above a library's function; beyond, nobody is to blame

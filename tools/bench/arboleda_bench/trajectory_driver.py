@@ -16,9 +16,9 @@ from typing import Any
 from arboleda.drivers import MotionState, MoveJoints
 from arboleda.kinds.arm import Arm
 from arboleda.model.errors import ArboledaError
+from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_drivers.joint_trajectory.settings import Settings
-from arboleda_proofs.testing.plants import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 from .reports import Reports
 from .result import Aim, Figure, Result, percentile

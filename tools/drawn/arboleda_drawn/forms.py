@@ -16,9 +16,9 @@ from arboleda.model.commands import Command, Question
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import PlantModel
+from arboleda.rig.world import World
 from arboleda_proofs.simulator.chance import Dice
 from arboleda_proofs.simulator.people import answer_anything, any_text
-from arboleda_proofs.simulator.world import World
 from frame.words import words
 
 from . import devices

@@ -42,8 +42,8 @@ from arboleda.model.messages import (
 )
 from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.model.sentence import OWN
+from arboleda.rig.disk import Disk
 from arboleda_drivers.virtual.faults import Faults
-from arboleda_proofs.simulator.disk import Disk
 
 START_S, EPOCH = 100.0, 7
 TASKS = 4

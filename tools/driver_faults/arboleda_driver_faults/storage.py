@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda.testing.storage_layout import StorageLayout
 
 from .rig import EPOCH, Rig
 

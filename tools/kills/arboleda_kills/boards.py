@@ -24,8 +24,8 @@ from arboleda.runtime.rate import at_rate
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.sim.devices import Devices, FromBoard
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.payloads import Goal, StopGoal
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 from .board_clients import BoardClients, forget_unsent
 from .deeds import ALONE, PICK_UP, Deed, Did

@@ -17,11 +17,11 @@ from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.sim.body import BodyReport
 from arboleda.sim.motors import Motors
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.payloads import Beat, EffectorGoal, Goal, HomeGoal, JointsGoal, StopGoal, Telemetry
 from arboleda.wire.transport import Delivery, Publication
 from arboleda_boards.conformance.judge import CHECKS, Judge
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 from .conformance_trial import Trial, wrong
 

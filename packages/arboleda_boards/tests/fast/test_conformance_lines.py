@@ -8,9 +8,9 @@ import pytest
 
 from arboleda.cli.language import say
 from arboleda.model.plant_model import Evidence
+from arboleda.testing import shipped
 from arboleda_boards.conformance.command import _deeds, _line, _verdict
 from arboleda_boards.conformance.judge import CHECKS, Finding
-from arboleda_proofs.testing import shipped
 
 ARM = shipped("sis_b").robots["ra2"]
 MOVES = next(each for each in CHECKS if each.name == "moves")

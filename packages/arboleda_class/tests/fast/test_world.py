@@ -12,9 +12,10 @@ from tests.unit.kinds.tending import plant
 
 import arboleda_proofs.testing
 from arboleda.recipes import Kit, recipe, work
+from arboleda.testing import shipped
 from arboleda_class.notebook import Drawing, World
 from arboleda_class.notebook.drawn import Happening, Table
-from arboleda_proofs.testing import Misuse, shipped
+from arboleda_proofs.testing import Misuse
 
 
 @recipe("there")
@@ -165,7 +166,8 @@ def test_names_of_before_are_there_with_a_warning_that_says_the_new_ones() -> No
 def test_without_this_package_they_are_refused_with_the_line_that_installs_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setitem(sys.modules, "arboleda_class.notebook", None)
+    monkeypatch.delitem(sys.modules, "arboleda_class.notebook")
+    monkeypatch.setitem(sys.modules, "arboleda_class", None)
     refused = pytest.raises(ImportError, match=r"World needs .* type pip install 'arboleda\[class\]'")
     with pytest.warns(DeprecationWarning, match="World"), refused:
         arboleda_proofs.testing.World  # noqa: B018 - the name is looked up, as by `from ... import`

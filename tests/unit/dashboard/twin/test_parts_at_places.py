@@ -16,9 +16,9 @@ from arboleda.model.verbs import Verb
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.recorder.motion import key_of
 from arboleda.recorder.rows import positions_of, rows_of
+from arboleda.testing import Rig, shipped
 from arboleda.views import twin_view
 from arboleda.views.geometry import places
-from arboleda_proofs.testing import Rig, shipped
 
 from ...kinds.test_places import Lab
 

@@ -14,9 +14,9 @@ from arboleda.geometry import kinematics
 from arboleda.geometry.bodies import Body
 from arboleda.geometry.hull import hull
 from arboleda.model.plant_model import Cell, Crossing, PlantModel, Pose, Workspace
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.views.geometry import places
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 
 def zoned() -> PlantModel:

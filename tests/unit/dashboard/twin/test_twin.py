@@ -13,10 +13,10 @@ from arboleda.geometry import kinematics
 from arboleda.geometry.bodies import Body
 from arboleda.model.messages import MotionState, Report, TaskRequest, Verb
 from arboleda.model.plant_model import Cell, Evidence, PlantModel
+from arboleda.testing import Rig, shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.views import twin_view
 from arboleda.views.geometry import places
-from arboleda_proofs.testing import Rig, shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 from ...kinds import lab
 

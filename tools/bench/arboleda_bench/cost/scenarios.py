@@ -29,6 +29,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import Step, as_json
+from arboleda.rig.world import World
 from arboleda.runtime.parts.local_plant import LocalPlant
 from arboleda.runtime.parts.orchestrator import Orchestrator
 from arboleda.store.sqlite import IN_MEMORY, Store
@@ -40,7 +41,6 @@ from arboleda.web.api import make_app
 from arboleda_proofs.campaigns.request import Request
 from arboleda_proofs.simulator.people import Attendant, Customers
 from arboleda_proofs.simulator.run import MINUTE_S
-from arboleda_proofs.simulator.world import World
 
 from .. import plants
 from ..obedient import EPOCH, Yard, command_in, is_over

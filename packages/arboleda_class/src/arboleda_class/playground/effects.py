@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from arboleda.rig.world import World
 from arboleda_proofs.simulator.faults.targets import arm_body, machine_body, robot_of
-from arboleda_proofs.simulator.world import World
 
 from .acts import MishapBegun
 

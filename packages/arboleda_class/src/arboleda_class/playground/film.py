@@ -9,8 +9,8 @@ from typing import Any
 from arboleda.dashboard.page_state import PageState
 from arboleda.engine import Plant
 from arboleda.model.plant_model import PlantModel
+from arboleda.rig.world import START_S
 from arboleda.views import twin_view, view
-from arboleda_proofs.simulator.world import START_S
 
 from .acts import Act
 from .effects import Provoked

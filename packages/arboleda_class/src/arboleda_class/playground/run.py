@@ -10,10 +10,10 @@ from arboleda.model.advice import Hand
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Sentence
+from arboleda.rig import hands
 from arboleda.views import twin_view, view
 from arboleda.views.resting_cells import RestingCells
 from arboleda_proofs.running.fault_desk import BEGAN, INSTANT, OVER
-from arboleda_proofs.simulator import hands
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 from arboleda_proofs.simulator.mishaps import MISHAPS

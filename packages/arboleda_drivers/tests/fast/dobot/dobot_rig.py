@@ -8,12 +8,12 @@ from dataclasses import replace
 
 from arboleda.drivers import MoveJoints, Report
 from arboleda.model.plant_model import Evidence, Link
+from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_driver_faults.dobot_loopback import Loopback as Pair
 from arboleda_drivers.dobot.virtual.faults import FAULTS
 from arboleda_drivers.dobot.virtual.machine import VirtualDobot
 from arboleda_drivers.virtual.faults import Faults
-from arboleda_proofs.testing.plants import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 START_S = 100.0
 ARM = replace(StorageLayout(shipped("sis_c").cells[0]).arm, link=Link.DRIVER, evidence=Evidence.IDS)

@@ -6,13 +6,13 @@ import pytest
 from tests.lengths import sample
 
 from arboleda.kinds.joints.motion import JointMotion
+from arboleda.testing.plants import shipped
 from arboleda_driver_faults.dobot import CAUSES, DobotRig
 from arboleda_driver_faults.rig import TASKS, run
 from arboleda_drivers.connections.look import Look
 from arboleda_drivers.dobot import work
 from arboleda_drivers.dobot.frames import Feedback, Mode
 from arboleda_drivers.dobot.virtual.faults import FAULTS
-from arboleda_proofs.testing.plants import shipped
 
 SHIPPED = shipped()
 SEEDS = 12

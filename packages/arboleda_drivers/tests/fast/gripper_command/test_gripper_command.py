@@ -12,6 +12,8 @@ from arboleda.kinds.declared import Device
 from arboleda.kinds.gripper import GripperSettings, gripper
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Evidence, Link
+from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_drivers.gripper_command.machine import Width, machine
 from arboleda_drivers.gripper_command.settings import Settings
 from arboleda_drivers.ros_action.events import (
@@ -27,8 +29,6 @@ from arboleda_drivers.ros_action.events import (
     Status,
 )
 from arboleda_drivers.ros_action.joints import JointStateEvent
-from arboleda_proofs.testing.plants import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 JAW = Device(
     name="jaw",

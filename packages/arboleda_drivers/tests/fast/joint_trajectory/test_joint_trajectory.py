@@ -9,6 +9,8 @@ import pytest
 
 from arboleda.drivers import Home, MotionState, MoveJoints, Report, SetEffector, Stop, StopMode
 from arboleda.model.plant_model import Evidence, Link
+from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_drivers.joint_trajectory.machine import machine
 from arboleda_drivers.joint_trajectory.settings import Settings
 from arboleda_drivers.ros_action.events import (
@@ -28,8 +30,6 @@ from arboleda_drivers.ros_action.events import (
     UnusableMessage,
 )
 from arboleda_drivers.ros_action.joints import JointStateEvent
-from arboleda_proofs.testing.plants import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 ARM = replace(StorageLayout(shipped("sis_c").cells[0]).arm, link=Link.DRIVER, evidence=Evidence.IDS)
 NAMES = tuple(joint.name for joint in ARM.joints)

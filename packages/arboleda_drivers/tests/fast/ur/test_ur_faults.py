@@ -6,6 +6,7 @@ import pytest
 from tests.lengths import sample
 
 from arboleda.kinds.joints.motion import JointMotion
+from arboleda.testing.plants import shipped
 from arboleda_driver_faults.rig import TASKS, run
 from arboleda_driver_faults.ur import CAUSES, UrRig
 from arboleda_drivers.connections.look import Look
@@ -13,7 +14,6 @@ from arboleda_drivers.ur import work
 from arboleda_drivers.ur.arm_state import Runtime
 from arboleda_drivers.ur.rtde import Frame
 from arboleda_drivers.ur.virtual.faults import FAULTS
-from arboleda_proofs.testing.plants import shipped
 
 SHIPPED = shipped()
 SEEDS = 12

@@ -8,12 +8,12 @@ from dataclasses import replace
 
 from arboleda.drivers import MoveJoints, Report
 from arboleda.model.plant_model import Evidence, Link
+from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_driver_faults.ur_loopback import Loopback as Pair
 from arboleda_drivers.ur.virtual.faults import FAULTS
 from arboleda_drivers.ur.virtual.machine import VirtualUr
 from arboleda_drivers.virtual.faults import Faults
-from arboleda_proofs.testing.plants import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 START_S = 100.0
 PERIOD_S = 0.04  # a fifth of the frames is enough to see every state

@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 
 from arboleda.drivers import DriverError
+from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_drivers.joint_trajectory.adapter import FollowJointTrajectory
 from arboleda_drivers.joint_trajectory.settings import Settings as ArmSettings
 from arboleda_drivers.nav2.adapter import NavigateToPose
 from arboleda_drivers.nav2.settings import ToPose
-from arboleda_proofs.testing.plants import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 CELL = shipped("sis_c").cells[0]
 

@@ -30,6 +30,8 @@ from arboleda.kinds.gripper import gripper
 from arboleda.kinds.mobile import Grid, Mobile
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Evidence, Link, Robot
+from arboleda.testing.plants import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_drivers.gripper_command.settings import Settings as GripperSettings
 from arboleda_drivers.gripper_command.virtual.machine import FAULTS as GRIPPER_FAULTS
 from arboleda_drivers.joint_trajectory.settings import Settings as ArmSettings
@@ -38,8 +40,6 @@ from arboleda_drivers.nav2.pose import Pose
 from arboleda_drivers.nav2.settings import ToPose, Waypoints
 from arboleda_drivers.nav2.virtual.machine import FAULTS as BASE_FAULTS
 from arboleda_drivers.virtual.faults import Faults
-from arboleda_proofs.testing.plants import shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 pytestmark = pytest.mark.system
 

@@ -16,16 +16,16 @@ from arboleda.model.cell_states import CellState
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskChanged, TaskState, Verb
 from arboleda.oee.figures import SEEN_S, Oee
+from arboleda.rig.rig import Rig
 from arboleda.runtime.build import Options, build
 from arboleda.runtime.state import STORE
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery
 from arboleda.store.time_table import TimeTable
+from arboleda.testing import shipped
 from arboleda_fleet.oee.api import OeeApi, OeeQuery
 from arboleda_fleet.oee.cell_times import CellTimes
 from arboleda_fleet.oee.rows import figures
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.rig import Rig
 
 BEGAN = 1_000_000.0  # Unix time of the rig's first second
 

@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 
 from arboleda.model.cell_states import CellState
+from arboleda.rig.rig import Rig
+from arboleda.testing import shipped
 from arboleda.views import view
 from arboleda_fleet.opcua_view.packml import STATES, Counts, tags
-from arboleda_proofs.testing import shipped
-from arboleda_proofs.testing.rig import Rig
 
 CELL: dict[str, Any] = {
     "name": "line",

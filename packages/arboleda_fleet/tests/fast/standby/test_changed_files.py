@@ -10,8 +10,8 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.recording import Recording
 from arboleda.plant_file.versions import MARK, Versions, version_of
+from arboleda.testing import shipped
 from arboleda_fleet.standby.changed_files import is_changed, read_again
-from arboleda_proofs.testing import shipped
 
 FILES = PlantFiles(plant="plant.yaml", contents={"plant.yaml": b"name: a", "t.xml": b"<root/>"})
 

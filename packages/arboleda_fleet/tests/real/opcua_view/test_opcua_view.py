@@ -25,8 +25,8 @@ from tests.shared import need_tool
 from arboleda.model.plant_model import OpcUaView
 from arboleda.oee.figures import Oee
 from arboleda.runtime.build import Options, build
+from arboleda.testing import shipped
 from arboleda_fleet.opcua_view.part import OpcUaViewOptions, OpcUaViewPart
-from arboleda_proofs.testing import shipped
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("asyncua")]
 

@@ -12,12 +12,12 @@ from tests.postgres import Server
 
 from arboleda.departures.leading import LEASE_S, WANTED_S
 from arboleda.model.messages import Fact, Remember
+from arboleda.rig.hosts.database import LeaderRow
 from arboleda.store.lead import Superseded
 from arboleda_fleet.postgres.lead import LEAD
 from arboleda_fleet.postgres.leader_row import END_LEASE, LAST_SEEN
 from arboleda_fleet.postgres.leadership import PostgresLeadership
 from arboleda_fleet.postgres.memory import PostgresMemory
-from arboleda_proofs.simulator.hosts.database import LeaderRow
 
 NOW = 1000.0
 AGES_S = (0.1, LEASE_S + 1.0, WANTED_S - 5.0, WANTED_S + 5.0, -3600.0)  # or the clock is set back

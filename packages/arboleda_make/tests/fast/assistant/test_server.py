@@ -13,8 +13,8 @@ from tests.in_process import machine as machine
 from tests.web_plant import Plant
 
 from arboleda.model.assistants import NO_LIMITS, Assistants
+from arboleda.testing import Rig, shipped
 from arboleda_make.assistant.bench import Bench
-from arboleda_proofs.testing import Rig, shipped
 
 from .asking import in_process, replied
 from .asking import read as read

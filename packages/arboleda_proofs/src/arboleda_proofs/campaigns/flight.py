@@ -15,7 +15,7 @@ from arboleda.recorder import copying, reader
 from arboleda.recorder.files import parts_in
 from arboleda.recorder.simulated_recorder import RecordNotWritten, SimulatedRecorder
 from arboleda.recorder.tape import SECOND
-from arboleda_proofs.simulator.world import START_S
+from arboleda.rig.world import START_S
 
 from .plants import Plant
 from .setting import MakePlant

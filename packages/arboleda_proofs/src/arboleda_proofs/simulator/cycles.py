@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .world import World
+from arboleda.rig.world import World
 
 
 def has_told(world: World, cell: str | None, since: float) -> bool:

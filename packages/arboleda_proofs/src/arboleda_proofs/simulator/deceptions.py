@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 
-from .network import Line
-from .world import BRIDGE, PLANT, World
+from arboleda.rig.network import Line
+from arboleda.rig.world import BRIDGE, PLANT, World
 
 MOMENT_S = 0.1
 NOBODY = ""

@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING
 
 from arboleda.model.facts import Facts
 from arboleda.model.plant_model import PlantModel
+from arboleda.rig.network import Client, Line
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.sim.devices import Alarm, Devices, FromBoard, Reboot, ToBoard
 from arboleda.wire.payloads import Presence, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Connection, Delivery, Publication
-
-from .network import Client, Line
 
 if TYPE_CHECKING:
     from .faults import End

@@ -16,10 +16,10 @@ from arboleda.model.sentence import Sentence
 from arboleda.recipes.authoring import FAIL
 from arboleda.recipes.decorators import RESCUE_FAILED
 from arboleda.recipes.place_questions import NO_PART_YET, NO_ROOM_YET
+from arboleda.rig.world import World
 
 from .record import Record
 from .truth.refused_commands import RefusedCommands
-from .world import World
 
 AS_WRITTEN = (FAIL.key, FAILS.key)  # steps that do nothing but fail
 UP_TO_OTHERS = (NO_PART_YET.key, NO_ROOM_YET.key)  # waits for what another task brings, or takes

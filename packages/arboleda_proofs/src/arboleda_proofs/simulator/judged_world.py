@@ -9,20 +9,20 @@ from collections.abc import Callable, Iterable
 from arboleda.engine import Plant
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders
+from arboleda.rig.hosts.database import LeaderRow, SharedDisk
+from arboleda.rig.hosts.hosts import Hosts
+from arboleda.rig.network import Line
+from arboleda.rig.world import FIRST_EPOCH, START_S, World
 
 from .faults import KINDS, Fault
 from .findings import Findings
-from .hosts.database import LeaderRow, SharedDisk
-from .hosts.hosts import Hosts
 from .invariants import Invariant
 from .invariants.invariant import Judges, Look
 from .judged import judged_by
-from .network import Line
 from .record import Record
 from .recorded.leaders import Leaders
 from .trace import Trace
 from .truth.truth import Truth
-from .world import FIRST_EPOCH, START_S, World
 
 REST_S = 600.0  # after the last fault, or end of a task or of a wait for a zone since, all must be at rest
 WAITS = 10  # that one task may have one after another, each as long as the plant file allows for a zone

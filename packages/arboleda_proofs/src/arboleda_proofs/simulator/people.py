@@ -19,15 +19,15 @@ from arboleda.model.messages import TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Cell, Link
 from arboleda.model.recipe import Recipe
 from arboleda.recipes.place_questions import GETS_PART, GETS_ROOM
+from arboleda.rig.hands import HANDS, do
+from arboleda.rig.world import World
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import OrderGoal
 
 from .chance import Dice
 from .cycles import has_told
-from .hands import HANDS, do
 from .recorded.zone_users import running
 from .task_words import task_words
-from .world import World
 
 WAITING = 2  # tasks that the customers of a cell keep in its queue
 REMEMBERED = 24  # of their tasks

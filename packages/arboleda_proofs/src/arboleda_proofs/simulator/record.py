@@ -23,6 +23,7 @@ from arboleda.model.messages import (
     TaskState,
     Verb,
 )
+from arboleda.rig.world import World
 
 from .recorded.acts import Acts
 from .recorded.boards import Boards
@@ -54,7 +55,6 @@ from .recorded.trees import Trees
 from .recorded.unattended import GETS_GOING, Unattended
 from .recorded.verbs import EarlierState
 from .recorded.waiting import Waiting
-from .world import World
 
 GIVEN_UP = (State.FAILED, State.CANCELLED)
 NO_OBSTACLES: frozenset[Obstacle] = frozenset()

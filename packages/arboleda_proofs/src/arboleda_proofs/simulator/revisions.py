@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from arboleda.model.plant_model import Cell, PlantModel, Pose, Retry, Workspace
+from arboleda.rig.world import World
 
 from .chance import Dice
-from .world import World
 
 EVERY_S = (5.0, 60.0)  # between two changes
 SMALL_RAD = 0.01  # by which a joint of a target moves

@@ -12,12 +12,12 @@ from arboleda.model.errors import TextError
 from arboleda.model.messages import ENDED, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.verbs import Arguments, as_text, from_text
+from arboleda.rig.hands import BEFOREHAND
+from arboleda.rig.manual_work import BY_HAND_S
+from arboleda.rig.world import World
 
 from .checks import BadFaults, is_number, only, within
 from .cycles import has_told
-from .hands import BEFOREHAND
-from .manual_work import BY_HAND_S
-from .world import World
 
 KEYS = ("at", "task", "do")
 HAND = "--by-hand"

@@ -16,11 +16,11 @@ from arboleda.kinds.declared import Device, Effect
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import APART_S, Evidence, Robot
+from arboleda.rig.world import World
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
 from .chance import Dice
-from .world import World
 
 PERIOD_S = 0.1
 STATE = "estado"

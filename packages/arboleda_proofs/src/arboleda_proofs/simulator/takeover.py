@@ -10,11 +10,10 @@ from arboleda.engine.inspection import HEARTBEAT_S
 from arboleda.model.commands import Command, Position, Stop, StopMode
 from arboleda.model.messages import Heartbeat, MotionState, Report
 from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.rig.world import BRIDGE, World
 from arboleda.sim.body import BodyReport
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
-
-from .world import BRIDGE, World
 
 Given = tuple[float, Command | Heartbeat]
 APART_S = 0.3  # a virtual robot may be as far away as the real one moves in this time

@@ -11,10 +11,9 @@ from typing import Any
 
 from arboleda.model.messages import Heartbeat, OperatorRequest, TaskChanged, TaskRequest
 from arboleda.model.verbs import as_text
+from arboleda.rig.disk import is_step
+from arboleda.rig.world import World
 from arboleda.wire.hop import shown
-
-from .disk import is_step
-from .world import World
 
 KEPT = 2000  # lines
 DECLARED = "definition"  # of a verb, which stands in the plant file

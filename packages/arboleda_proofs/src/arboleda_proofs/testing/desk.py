@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskRequest, TaskState, Verb
 from arboleda.model.verbs import Arguments
-from arboleda_proofs.simulator.hands import BEFOREHAND
-from arboleda_proofs.simulator.manual_work import BY_HAND_S
-from arboleda_proofs.simulator.world import World
+from arboleda.rig.hands import BEFOREHAND
+from arboleda.rig.manual_work import BY_HAND_S
+from arboleda.rig.world import World
 
 NO_ANSWER = "the plant did not answer"
 ASKED = "asked"  # a task that the plant has said nothing of yet

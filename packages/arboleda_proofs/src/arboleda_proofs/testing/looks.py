@@ -9,10 +9,10 @@ from functools import partial
 
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Robot
+from arboleda.rig.world import World
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
 from arboleda.views import view
-from arboleda_proofs.simulator.world import World
 
 MM_PER_M = 1000.0
 Joints = tuple[float, ...]

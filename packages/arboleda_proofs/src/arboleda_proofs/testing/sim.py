@@ -13,6 +13,7 @@ from arboleda.model.messages import Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Build
 from arboleda.model.verbs import from_text
+from arboleda.rig.world import World
 from arboleda.views import view
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.invariants import Invariant
@@ -21,7 +22,6 @@ from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda_proofs.simulator.levels import LEVELS
 from arboleda_proofs.simulator.people import STANDS_BY_S, Attendant, FixedAnswers
 from arboleda_proofs.simulator.run import NO_EXCEPTION
-from arboleda_proofs.simulator.world import World
 
 from . import arguments, looks, seeds, single_faults, wording
 from .answers import prepare

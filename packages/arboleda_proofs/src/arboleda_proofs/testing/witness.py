@@ -6,12 +6,11 @@ from collections.abc import Iterable, Iterator
 
 from arboleda.model import text
 from arboleda.model.task import Order
+from arboleda.rig.rig import Rig
 from arboleda.wire.transport import Publication
 from arboleda_proofs.simulator.truth.arm import ArmTruth
 from arboleda_proofs.simulator.truth.grips import Switching
 from arboleda_proofs.simulator.truth.truth import Truth
-
-from .rig import Rig
 
 STARTS_MOTION = ("juntas", "camino", "referencia")
 

@@ -17,6 +17,7 @@ import pytest
 from arboleda.cli.main import main
 from arboleda.model.plant_model import Evidence
 from arboleda.plant_file import loader
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda_proofs.campaigns import report, screen, setting
 from arboleda_proofs.campaigns.request import Request, shared
 from arboleda_proofs.campaigns.seed_campaign import SeedCampaign
@@ -26,7 +27,6 @@ from arboleda_proofs.simulator.faults import KINDS
 from arboleda_proofs.simulator.faults.titles import TITLES
 from arboleda_proofs.simulator.invariants import Invariant
 from arboleda_proofs.simulator.invariants.invariant import Look, Trigger, invariant
-from arboleda_proofs.testing.storage_layout import StorageLayout
 
 PLANT = """
 name: small

@@ -14,12 +14,12 @@ from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
+from arboleda.rig.world import World
 from arboleda.web.schema.answers import model_of
 from arboleda_proofs.answers import TaskReport
 from arboleda_proofs.playback.report import reading
 from arboleda_proofs.routes.reports import DATA
 from arboleda_proofs.simulator.faults import KINDS, Fault
-from arboleda_proofs.simulator.world import World
 from arboleda_proofs.testing import Sim
 
 from .test_fork_command import written

@@ -10,6 +10,8 @@ from arboleda.core import advisor
 from arboleda.core.operator import Operator
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import OperatorRequest, Verb
+from arboleda.rig.world import World
+from arboleda.testing import shipped
 from arboleda_proofs.simulator.invariants.advice import (
     ADVICE,
     ENOUGH,
@@ -21,8 +23,6 @@ from arboleda_proofs.simulator.people import Attendant
 from arboleda_proofs.simulator.record import Record
 from arboleda_proofs.simulator.recorded.acts import Acts
 from arboleda_proofs.simulator.truth.truth import Truth
-from arboleda_proofs.simulator.world import World
-from arboleda_proofs.testing import shipped
 
 TASK = "sis_a 0B 7"
 

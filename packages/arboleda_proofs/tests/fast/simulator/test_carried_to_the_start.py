@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.testing import shipped
 from arboleda_proofs.simulator.judged_world import JudgedWorld
-from arboleda_proofs.testing import shipped
 
 
 def test_the_way_to_the_start_is_left_out_where_the_robot_is_there_by_then() -> None:

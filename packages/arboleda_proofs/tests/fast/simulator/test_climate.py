@@ -8,11 +8,11 @@ from dataclasses import asdict
 import pytest
 
 from arboleda.model.plant_model import Evidence
+from arboleda.testing import shipped
 from arboleda_proofs.simulator.checks import BadFaults
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.faults import KINDS, OF_DEVICES, OF_PLACES, Fault
 from arboleda_proofs.simulator.levels import LEVELS
-from arboleda_proofs.testing import shipped
 
 MODEL = shipped()
 DRAWN = [name for name, kind in KINDS.items() if kind.weight and name not in (*OF_DEVICES, *OF_PLACES)]

@@ -17,7 +17,7 @@ from arboleda.model.plant_model import Cell, Evidence, Link, PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.recipes import Choice, Kit, recipe, work
 from arboleda.recipes import Number as Blows
-from arboleda_proofs.simulator import plant_process
+from arboleda.rig import plant_process
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld

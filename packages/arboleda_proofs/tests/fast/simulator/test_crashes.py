@@ -15,16 +15,16 @@ from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Fact, Heartbeat, TaskChanged, TaskState, Verb
 from arboleda.plant_file.loader import load
+from arboleda.rig.plant_process import Fuse, Side
+from arboleda.rig.world import PLANT, World
+from arboleda.testing import shipped
 from arboleda_proofs.simulator.chance import Dice
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.faults import KINDS, OF_CRASHES, Fault
 from arboleda_proofs.simulator.faults.crashes import IN_ONE_PROCESS
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 from arboleda_proofs.simulator.people import Customers
-from arboleda_proofs.simulator.plant_process import Fuse, Side
 from arboleda_proofs.simulator.run import Simulation
-from arboleda_proofs.simulator.world import PLANT, World
-from arboleda_proofs.testing import shipped
 
 LESSONS = Path(__file__).parents[5] / "examples" / "plants" / "lessons.yaml"
 

@@ -9,11 +9,11 @@ from tests.unit.kinds.tending import plant
 from arboleda.model.advice import in_words
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.recipes import Kit, parallel, recipe, work
+from arboleda.rig.world import BRIDGE, World
 from arboleda_proofs.simulator.faults import KINDS, Fault
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 from arboleda_proofs.simulator.people import Attendant
 from arboleda_proofs.simulator.truth.truth import Truth
-from arboleda_proofs.simulator.world import BRIDGE, World
 
 
 @recipe("apart")

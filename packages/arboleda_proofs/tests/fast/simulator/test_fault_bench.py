@@ -10,6 +10,7 @@ import pytest
 from arboleda.model.messages import MotionState
 from arboleda.plant_file import loader
 from arboleda.sim.devices import Devices, FromBoard, ToBoard
+from arboleda.testing import shipped
 from arboleda.wire.payloads import EffectorGoal, JointsGoal, Payload, Telemetry, decode, encode
 from arboleda.wire.topics import Channel, parse, topic
 from arboleda.wire.transport import Connection, Delivery
@@ -22,7 +23,6 @@ from arboleda_proofs.simulator.fault_bench import (
 )
 from arboleda_proofs.simulator.faults.targets import arm_body
 from arboleda_proofs.simulator.mishaps import MISHAPS
-from arboleda_proofs.testing import shipped
 
 NUMBERS = itertools.count(1)
 MILL = Path(__file__).parents[5] / "examples" / "machine_tending" / "plant.yaml"

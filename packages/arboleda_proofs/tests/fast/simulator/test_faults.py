@@ -13,6 +13,8 @@ from arboleda.core.plant import HEARTBEAT_S
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Heartbeat, Verb
 from arboleda.model.plant_model import Evidence
+from arboleda.rig.world import BRIDGE, PLANT, World
+from arboleda.testing import shipped
 from arboleda.wire.payloads import decode
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery
@@ -21,8 +23,6 @@ from arboleda_proofs.simulator.faults import KINDS, OF_CRASHES, OF_DEVICES, OF_H
 from arboleda_proofs.simulator.faults.foreigners import GARBAGE
 from arboleda_proofs.simulator.faults.operators import SAID
 from arboleda_proofs.simulator.faults.orchestrators import LATEST
-from arboleda_proofs.simulator.world import BRIDGE, PLANT, World
-from arboleda_proofs.testing import shipped
 
 LOOK_S = 1.0
 

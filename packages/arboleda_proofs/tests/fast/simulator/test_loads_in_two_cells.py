@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping
 import pytest
 
 from arboleda.model.messages import Verb
+from arboleda.testing import shipped
 from arboleda.trees.part_places import Places
 from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
-from arboleda_proofs.testing import shipped
 
 Books = Mapping[str, Places]
 Set = Callable[[Books, Places, Mapping[str, int]], None]

@@ -8,7 +8,10 @@ import pytest
 
 from arboleda.model.messages import TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence
+from arboleda.rig.network import Client
+from arboleda.rig.world import BRIDGE, PLANT
 from arboleda.sim.arm import ArmBody
+from arboleda.testing import shipped
 from arboleda.wire.payloads import EffectorGoal, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
@@ -16,9 +19,6 @@ from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.invariants import Invariant
 from arboleda_proofs.simulator.invariants.grips import GRIPS
 from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
-from arboleda_proofs.simulator.network import Client
-from arboleda_proofs.simulator.world import BRIDGE, PLANT
-from arboleda_proofs.testing import shipped
 
 ARM = "ra_1"
 OFF = "effector_off_only_where_legal"

@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 
 from arboleda.model.plant_model import Place, PlantModel
+from arboleda.testing import shipped
 from arboleda.trees.part_places import Places
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.run import Simulation
-from arboleda_proofs.testing import shipped
 
 
 def model() -> PlantModel:

@@ -7,12 +7,12 @@ from collections import defaultdict
 import pytest
 
 from arboleda.model.commands import Stop, StopMode
+from arboleda.testing import shipped
 from arboleda.wire.transport import Publication
 from arboleda_proofs.simulator.recorded.board_link import KnownLink
 from arboleda_proofs.simulator.recorded.motions import KnownMotion
 from arboleda_proofs.simulator.recorded.numbers import KnownNumbers
 from arboleda_proofs.simulator.recorded.passed_commands import PassedCommands
-from arboleda_proofs.testing import shipped
 
 ARM = shipped().robots["ra1"]
 

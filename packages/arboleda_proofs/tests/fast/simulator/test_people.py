@@ -7,13 +7,13 @@ from dataclasses import replace
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.plant_model import Evidence
+from arboleda.rig.world import World
+from arboleda.testing import shipped
 from arboleda_proofs.simulator.invariants.invariant import Look
 from arboleda_proofs.simulator.invariants.motion import no_move_after_a_boot_that_was_told
 from arboleda_proofs.simulator.people import WAITING, Customers
 from arboleda_proofs.simulator.record import Record
 from arboleda_proofs.simulator.truth.truth import Truth
-from arboleda_proofs.simulator.world import World
-from arboleda_proofs.testing import shipped
 
 MOBILE = "rm_sis_a"
 

@@ -22,8 +22,10 @@ from arboleda.model.commands import Home
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.model.sentence import Sentence
+from arboleda.rig.world import World
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
+from arboleda.testing.plants import shipped
 from arboleda.trees import steps
 from arboleda.trees.cell_commands import CellCommands
 from arboleda.trees.cell_zones import CellZones
@@ -48,8 +50,6 @@ from arboleda_proofs.simulator.invariants.stop import STOP
 from arboleda_proofs.simulator.invariants.zones import ZONES
 from arboleda_proofs.simulator.record import Record
 from arboleda_proofs.simulator.truth.truth import Truth
-from arboleda_proofs.simulator.world import World
-from arboleda_proofs.testing.plants import shipped
 
 OF_PARTS = (
     parts_are_taken_and_put_where_they_can_be,

@@ -7,10 +7,10 @@ from dataclasses import replace
 import pytest
 
 from arboleda.model.messages import Fact, Remember, TaskChanged, TaskState, Verb
+from arboleda.rig.plant_process import Fuse, Side
+from arboleda.rig.world import PLANT, World
 from arboleda_proofs.simulator.invariants.part_places import books_of_parts_are_true
 from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
-from arboleda_proofs.simulator.plant_process import Fuse, Side
-from arboleda_proofs.simulator.world import PLANT, World
 
 from .test_general_invariants import looks, storing
 

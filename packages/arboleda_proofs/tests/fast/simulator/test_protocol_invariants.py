@@ -32,9 +32,11 @@ from arboleda.model.plant_model import Evidence, ForeignCommands, PlantModel, Re
 from arboleda.model.sentence import Phrase, as_sentence
 from arboleda.plant_file.loader import load
 from arboleda.recipes import recipe, work
+from arboleda.rig.world import BRIDGE, PLANT, World
 from arboleda.sim.board import Board
 from arboleda.sim.freshness import Freshness
 from arboleda.sim.receipts import Receipts
+from arboleda.testing.plants import shipped, slowed
 from arboleda.trees import cell_commands, cell_time, cell_zones, leaves
 from arboleda.wire import board as wire_board
 from arboleda.wire.bridge import PLANT_GONE_S
@@ -48,8 +50,6 @@ from arboleda_proofs.simulator.invariants.tasks import TASKS
 from arboleda_proofs.simulator.invariants.wire import WIRE
 from arboleda_proofs.simulator.record import Record
 from arboleda_proofs.simulator.truth.truth import Truth
-from arboleda_proofs.simulator.world import BRIDGE, PLANT, World
-from arboleda_proofs.testing.plants import shipped, slowed
 
 INVARIANTS = (*COMMANDS, *TASKS, *WIRE, *LIVENESS, *BOOKS)
 TASK = "sis_a 0B 7"

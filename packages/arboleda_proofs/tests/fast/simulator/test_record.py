@@ -13,14 +13,14 @@ from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import MotionState, Report, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence
+from arboleda.rig.world import BRIDGE, PLANT, World
+from arboleda.testing.plants import shipped
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
 from arboleda_proofs.simulator.record import Record
 from arboleda_proofs.simulator.recorded.robots import KnownRobot, Obstacle, StopProgress
 from arboleda_proofs.simulator.recorded.scopes import Scopes
 from arboleda_proofs.simulator.recorded.tasks import KEPT, Tasks
-from arboleda_proofs.simulator.world import BRIDGE, PLANT, World
-from arboleda_proofs.testing.plants import shipped
 
 TASK = "sis_a 0B 7"
 STALE_S = 1.5

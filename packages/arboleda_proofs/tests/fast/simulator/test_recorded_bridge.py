@@ -9,14 +9,14 @@ from dataclasses import replace
 import pytest
 
 from arboleda.model.messages import Heartbeat, MotionState, Report
+from arboleda.rig.moment import BridgeStep
+from arboleda.rig.world import World
 from arboleda.wire.board import Message
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Delivery, Publication
 from arboleda_proofs.campaigns.request import Request
-from arboleda_proofs.simulator.moment import BridgeStep
 from arboleda_proofs.simulator.recorded.bridge import Bridges
 from arboleda_proofs.simulator.recorded.reported_telemetry import REPORTS
-from arboleda_proofs.simulator.world import World
 
 SETTLED_S = 3.0
 

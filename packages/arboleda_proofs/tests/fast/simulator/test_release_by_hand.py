@@ -8,9 +8,9 @@ from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.effectors import Effectors
 from arboleda.model.messages import Verb
 from arboleda.model.sentence import Phrase
+from arboleda.rig.world import PLANT
+from arboleda.testing import shipped
 from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
-from arboleda_proofs.simulator.world import PLANT
-from arboleda_proofs.testing import shipped
 
 LATE_S = 0.002  # for so long the plant hears nothing, so that two things that happen meanwhile make one step
 

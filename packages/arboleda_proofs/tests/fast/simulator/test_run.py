@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from arboleda.testing import shipped
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.run import Simulation
-from arboleda_proofs.testing import shipped
 
 FREEZE = Fault(kind="plant_freeze", at=20.0, seconds=3.0, target="plant", word="plant", amount=50_000.0)
 

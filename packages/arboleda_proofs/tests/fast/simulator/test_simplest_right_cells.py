@@ -10,6 +10,8 @@ import pytest
 from arboleda.model.advice import Advice
 from arboleda.model.messages import Check, Verb
 from arboleda.plant_file.loader import load
+from arboleda.rig.hands import do
+from arboleda.rig.world import World
 from arboleda.trees.handling import Handling
 from arboleda_proofs.campaigns.plants import Plant
 from arboleda_proofs.campaigns.proof.calm import calm_runs
@@ -19,12 +21,10 @@ from arboleda_proofs.campaigns.proof.proof import Proof
 from arboleda_proofs.campaigns.proof.scenario import scenarios
 from arboleda_proofs.simulator import people
 from arboleda_proofs.simulator.faults.kind import Fault
-from arboleda_proofs.simulator.hands import do
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 from arboleda_proofs.simulator.people import Attendant
 from arboleda_proofs.simulator.run import Result, Simulation
 from arboleda_proofs.simulator.scripted_people import script_from
-from arboleda_proofs.simulator.world import World
 
 PLACES = """
     targets:

@@ -10,16 +10,16 @@ import pytest
 from arboleda.departures import leading
 from arboleda.departures.leading import LEASE_S, LOOK_S, Standing
 from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState, Verb
+from arboleda.rig.hosts.former_leader import LateMessage
+from arboleda.rig.hosts.hosts import STARTS_S, Hosts
+from arboleda.rig.world import PLANT
+from arboleda.testing import shipped
 from arboleda.wire.payloads import StopGoal
 from arboleda_proofs.simulator.checks import BadFaults
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.faults import NOT_WITH_STANDBY, OF_HOSTS, Fault
-from arboleda_proofs.simulator.hosts.former_leader import LateMessage
-from arboleda_proofs.simulator.hosts.hosts import STARTS_S, Hosts
 from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda_proofs.simulator.run import Simulation
-from arboleda_proofs.simulator.world import PLANT
-from arboleda_proofs.testing import shipped
 
 SOON_S = LEASE_S + 3 * LOOK_S + STARTS_S
 
@@ -127,7 +127,7 @@ def test_a_leader_with_a_slow_clock_that_is_cut_off_is_no_second_leader(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     # who waits leads in the first possible moment
-    monkeypatch.setattr("arboleda_proofs.simulator.hosts.hosts.LOOK_S", 0.01)
+    monkeypatch.setattr("arboleda.rig.hosts.hosts.LOOK_S", 0.01)
     cut_off_with_a_slow_clock()
     monkeypatch.setattr(leading, "SURE_S", LEASE_S)  # without the margin for clocks it is one
     with pytest.raises(BrokenInvariant, match="a_lead_is_over_before_the_next_begins"):

@@ -16,7 +16,8 @@ from arboleda.model.messages import ENDED, KeptTask, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.task import Task
 from arboleda.resume.walk_back import WalkBack
-from arboleda_proofs.simulator import plant_process
+from arboleda.rig import plant_process
+from arboleda.testing import shipped
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.faults import KINDS, OF_CRASHES
 from arboleda_proofs.simulator.invariants.part_places import parts_are_taken_and_put_where_they_can_be
@@ -24,7 +25,6 @@ from arboleda_proofs.simulator.invariants.starts import STARTS
 from arboleda_proofs.simulator.judged import INVARIANTS, judged_by
 from arboleda_proofs.simulator.judged_world import BrokenInvariant
 from arboleda_proofs.simulator.run import Simulation
-from arboleda_proofs.testing import shipped
 
 from .test_general_invariants import load, shop
 

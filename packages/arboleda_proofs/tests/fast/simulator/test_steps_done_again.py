@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from arboleda.kinds.joints.commands import MoveJoints
+from arboleda.testing import shipped
 from arboleda.wire.forms import form_of
 from arboleda_proofs.simulator.recorded.starts import Starts, Step
-from arboleda_proofs.testing import shipped
 
 ANOTHER_PLACE = (0.5, 0.2, 0.01)
 HOME = (0.0, 0.0, 0.0)

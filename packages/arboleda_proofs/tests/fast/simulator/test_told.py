@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
+from arboleda.testing import shipped
 from arboleda_proofs.simulator.checks import BadFaults
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.run import Result, Simulation
 from arboleda_proofs.simulator.scripted_people import script_from
-from arboleda_proofs.testing import shipped
 
 MODEL = shipped("sis_a")
 TASK = {"at": 2.0, "task": "sis_a 0B 7 #lot"}

@@ -10,6 +10,8 @@ from tests.cells import with_poses, with_robot
 from arboleda.model.commands import StopMode
 from arboleda.model.messages import Report, Verb
 from arboleda.model.plant_model import APART_S, Crossing, Evidence, PlantModel
+from arboleda.rig.world import PLANT, World
+from arboleda.testing import shipped, slowed
 from arboleda.wire.payloads import HomeGoal, JointsGoal, StopGoal, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
@@ -20,8 +22,6 @@ from arboleda_proofs.simulator.record import Record
 from arboleda_proofs.simulator.truth.arm import ArmTruth
 from arboleda_proofs.simulator.truth.part_places import CellPlaces
 from arboleda_proofs.simulator.truth.truth import Truth
-from arboleda_proofs.simulator.world import PLANT, World
-from arboleda_proofs.testing import shipped, slowed
 
 ARM, MOBILE = "ra_1", "rm_sis_a"
 

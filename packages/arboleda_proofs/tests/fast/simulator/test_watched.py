@@ -8,10 +8,10 @@ from itertools import pairwise
 import pytest
 
 from arboleda.model.messages import SystemStart, Verb
+from arboleda.testing import shipped
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.invariants.invariant import Look, Trigger, invariant
 from arboleda_proofs.simulator.judged_world import STAYS_S, BrokenInvariant, JudgedWorld
-from arboleda_proofs.testing import shipped
 
 
 @invariant(Trigger.SENT)

@@ -11,10 +11,10 @@ from tests.unit.kinds.test_places import PLANT, written
 
 from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.plant_file.loader import load
+from arboleda.testing import shipped
 from arboleda_proofs.simulator.faults.kind import Fault
 from arboleda_proofs.simulator.run import Result, Simulation
 from arboleda_proofs.simulator.scripted_people import script_from
-from arboleda_proofs.testing import shipped
 
 TICK_S, HOP_S = 0.001, 0.2
 GRIP = re.compile(r" *(\d+\.\d+) +plant +Remember fact=effector name=\w+ value=(switching|on|off)")

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from arboleda.model.messages import Heartbeat, Verb
+from arboleda.rig.world import BRIDGE, PLANT, World
+from arboleda.testing import shipped
 from arboleda.wire.transport import Publication
 from arboleda_proofs.simulator.trace import Trace
-from arboleda_proofs.simulator.world import BRIDGE, PLANT, World
-from arboleda_proofs.testing import shipped
 
 TASK = "sis_a 0B 7"
 

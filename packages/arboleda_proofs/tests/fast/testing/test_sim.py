@@ -12,11 +12,12 @@ from tests.unit.kinds.tending import plant
 from arboleda.model.task import Order
 from arboleda.recipes import Kit, recipe, work
 from arboleda.recipes.storage import storage
+from arboleda.testing import shipped
+from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Dwell
 from arboleda_proofs.simulator.invariants.invariant import Look, Trigger, invariant
-from arboleda_proofs.testing import Misuse, Sim, shipped
-from arboleda_proofs.testing.storage_layout import StorageLayout
+from arboleda_proofs.testing import Misuse, Sim
 
 
 @recipe("thrice")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from hypothesis import given
 
 from arboleda.model.text import parse
+from arboleda.testing import shipped
 from arboleda_proofs.simulator.faults import KINDS, Fault
-from arboleda_proofs.testing import shipped
 from arboleda_proofs.testing.strategies import faults, tasks
 
 PLANT = shipped("sis_a", "sis_c")

@@ -15,7 +15,7 @@ from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, TaskChanged
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.findings import PlantFinding, Source
-from arboleda_proofs.simulator.plant_process import Fuse, Side
+from arboleda.rig.plant_process import Fuse, Side
 
 from .end_state import EndState
 from .instants import Instant, Mark, instants

@@ -22,12 +22,12 @@ from arboleda.kinds.declared import DeviceKind
 from arboleda.model.plant_model import Cell, PlantModel, Robot
 from arboleda.model.recipe import Recipe
 from arboleda.model.sentence import Phrase
+from arboleda.rig.network import Client, Line
+from arboleda.rig.world import World
 from arboleda.sim.board import Board
 from arboleda.sim.freshness import Freshness
 from arboleda.wire.board_reports import BoardReports
 from arboleda.wire.bridge import Bridge
-from arboleda_proofs.simulator.network import Client, Line
-from arboleda_proofs.simulator.world import World
 
 from .growing_numbers import REPORTS, TELEMETRY, GrowingNumber, Ranks, growing
 

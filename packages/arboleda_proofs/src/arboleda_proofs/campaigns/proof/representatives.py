@@ -12,9 +12,9 @@ from functools import cached_property
 from itertools import product
 
 from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.rig.plant_process import Side
 from arboleda_proofs.simulator.faults import COUNTED, KINDS, OF_QUEUES, STICKING, UNHEARD, Fault
 from arboleda_proofs.simulator.faults.operators import NOWHERE
-from arboleda_proofs.simulator.plant_process import Side
 
 from .calm import Calm
 from .instants import Instant

@@ -15,14 +15,14 @@ from arboleda.model.cell_states import CellState
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.model.task import Order
+from arboleda.rig.hands import HANDS
+from arboleda.rig.world import PLANT
 from arboleda_proofs.simulator.faults import Fault
-from arboleda_proofs.simulator.hands import HANDS
 from arboleda_proofs.simulator.invariants.part_places import recipes_end_as_they_say
 from arboleda_proofs.simulator.judged_world import BrokenInvariant, JudgedWorld
 from arboleda_proofs.simulator.people import STANDS_BY_S, Attendant, FixedAnswers
 from arboleda_proofs.simulator.run import NO_EXCEPTION
 from arboleda_proofs.simulator.truth.refused_commands import RefusedCommands
-from arboleda_proofs.simulator.world import PLANT
 
 from .end_state import EndState, differences, end_state, facts_by_report, stated
 from .outcome import IS_DONE, End, Outcome, Run

@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterable
 from arboleda.model.messages import Event, OperatorRequest, RestartRequest, Revision, Shutdown, TaskRequest
 from arboleda.model.plant_model import Evidence, Link
 from arboleda.recorder.troubles import ALARM, BOOT, BRIDGE, Trouble
+from arboleda.rig.network import keeps_its_place
+from arboleda.rig.world import World
 from arboleda.wire.transport import Publication
-from arboleda_proofs.simulator.network import keeps_its_place
-from arboleda_proofs.simulator.world import World
 
 # What comes from people; devices are virtual.
 INPUTS = (TaskRequest, OperatorRequest, Shutdown, Revision, RestartRequest)

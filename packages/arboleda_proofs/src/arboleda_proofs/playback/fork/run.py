@@ -21,9 +21,9 @@ from arboleda.recorder.replay import ReplayedStep, first_difference
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import RecordedStep, hash_of, outcome
 from arboleda.recorder.troubles import Trouble, Troubles
+from arboleda.rig.world import World
 from arboleda_proofs.campaigns.plants import ELSEWHERE
 from arboleda_proofs.simulator.takeover import taken_over
-from arboleda_proofs.simulator.world import World
 
 from . import device_replay
 from .builders import LateLookup

@@ -8,9 +8,8 @@ from typing import Protocol
 
 from arboleda.model.facts import Facts
 from arboleda.model.plant_model import PlantModel
+from arboleda.rig.network import Client
 from arboleda.sim.board import Board
-
-from ..network import Client
 
 
 class Connections(Protocol):

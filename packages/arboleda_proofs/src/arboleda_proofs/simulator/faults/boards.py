@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from arboleda.model.plant_model import PlantModel
+from arboleda.rig.network import keeps_its_place
+from arboleda.rig.world import World
 
-from ..network import keeps_its_place
-from ..world import World
 from . import targets
 from .board_site import BoardSite
 from .kind import End, Fault, all_alike, board_kind, kind, words

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from arboleda.rig.plant_process import Fuse, Side
+from arboleda.rig.world import BRIDGE, PLANT, World
+
 from ..chance import Dice
-from ..plant_process import Fuse, Side
-from ..world import BRIDGE, PLANT, World
 from . import targets
 from .kind import End, Fault, kind, words
 from .shared_effects import hold

@@ -7,10 +7,10 @@ from typing import Any
 from arboleda.kinds.declared import FactType
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import PlantModel
+from arboleda.rig.world import World
 
 from ..chance import Dice
 from ..deceptions import begin_to_deceive
-from ..world import World
 from . import targets
 from .board_site import BoardSite
 from .false_telemetry import Fields, deceive

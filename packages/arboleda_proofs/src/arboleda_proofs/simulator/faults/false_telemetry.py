@@ -6,11 +6,11 @@ import json
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
+from arboleda.rig.world import World
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
 from ..deceptions import begin_to_deceive
-from ..world import World
 from .kind import End
 
 Fields = dict[str, Any]

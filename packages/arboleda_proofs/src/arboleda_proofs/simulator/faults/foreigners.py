@@ -13,13 +13,13 @@ from collections.abc import Callable, Iterable
 
 from arboleda.model.commands import StopMode
 from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.rig.world import BRIDGE, World
 from arboleda.wire.forms import form_of
 from arboleda.wire.payloads import Goal, StopGoal, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Delivery, Publication
 
 from ..chance import Dice
-from ..world import BRIDGE, World
 from . import targets
 from .kind import UNHEARD, End, Fault, kind, unheard, words
 from .orchestrators import ORDERS

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from arboleda.model.plant_model import PlantModel
+from arboleda.rig.hosts.hosts import NAMES, Hosts
+from arboleda.rig.hosts.process import StorePath
+from arboleda.rig.world import BRIDGE, PLANT, World
 
 from ..checks import BadFaults
-from ..hosts.hosts import NAMES, Hosts
-from ..hosts.process import StorePath
-from ..world import BRIDGE, PLANT, World
 from . import targets
 from .kind import End, Fault, kind, words
 from .shared_effects import stall, trouble

@@ -8,9 +8,9 @@ from typing import Any
 
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Sentence
+from arboleda.rig.world import World
 
 from ..chance import Dice
-from ..world import World
 from .board_site import BoardSite
 
 End = Callable[[], None]

@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from arboleda.rig.network import Line, Trouble, keeps_its_place
+from arboleda.rig.world import World
+
 from ..chance import Dice
-from ..network import Line, Trouble, keeps_its_place
-from ..world import World
 from . import targets
 from .board_site import BoardSite
 from .kind import End, Fault, board_kind, kind, words

@@ -12,11 +12,11 @@ from arboleda.model.recipe import Recipe
 from arboleda.model.sentence import Sentence
 from arboleda.model.task import Task
 from arboleda.model.verbs import PARTS, STATION, WORK, Arguments, Devices, Scope
+from arboleda.rig import hands
+from arboleda.rig.world import World
 
-from .. import hands
 from ..chance import Dice
 from ..people import ShortForms, any_text
-from ..world import World
 from . import targets
 from .kind import Fault, Kind, Words, all_alike, kind, no_words, words
 

@@ -13,13 +13,13 @@ from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.facts import Value
 from arboleda.model.messages import Heartbeat
 from arboleda.model.plant_model import PlantModel
+from arboleda.rig.world import BRIDGE, World
 from arboleda.wire.bridge import PLANT_GONE_S
 from arboleda.wire.epochs import AHEAD_S
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.strict import UINT32
 
 from ..chance import Dice
-from ..world import BRIDGE, World
 from . import targets
 from .kind import UNHEARD, Fault, kind, unheard, words
 

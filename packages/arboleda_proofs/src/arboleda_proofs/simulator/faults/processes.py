@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from ..network import keeps_its_place
-from ..world import BRIDGE, PLANT, World
+from arboleda.rig.network import keeps_its_place
+from arboleda.rig.world import BRIDGE, PLANT, World
+
 from . import targets
 from .kind import End, Fault, kind, words
 from .shared_effects import hold, stall, trouble

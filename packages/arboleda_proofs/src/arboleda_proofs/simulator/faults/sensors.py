@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from arboleda.rig.world import World
+
 from ..chance import Dice
-from ..world import World
 from . import targets
 from .false_telemetry import deceive
 from .kind import End, Fault, kind, words

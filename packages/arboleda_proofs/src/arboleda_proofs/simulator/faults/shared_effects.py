@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ..network import Line, Trouble
+from arboleda.rig.network import Line, Trouble
+
 from .board_site import BoardSite
 from .kind import End
 

@@ -6,10 +6,10 @@ from typing import cast
 
 from arboleda.model.commands import Query
 from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
+from arboleda.rig.world import BRIDGE, PLANT
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.machine import MachineBody
 
-from ..world import BRIDGE, PLANT
 from .board_site import BoardSite
 
 

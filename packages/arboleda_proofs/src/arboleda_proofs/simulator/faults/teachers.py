@@ -9,9 +9,9 @@ from arboleda.engine import Teaching
 from arboleda.model.commands import Position
 from arboleda.model.messages import Jog, Verb
 from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.rig.world import World
 
 from ..chance import Dice
-from ..world import World
 from .kind import Fault, kind, words
 
 BEAT_S = 0.05  # how often a page says that a button is held

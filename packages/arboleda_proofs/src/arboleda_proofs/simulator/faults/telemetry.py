@@ -9,10 +9,10 @@ from typing import Any, cast
 from arboleda.kinds.joints import Joint, Jointed
 from arboleda.model.messages import MotionState
 from arboleda.model.plant_model import Evidence, PlantModel, Robot
+from arboleda.rig.world import World
 from arboleda.wire.units import to_wire
 
 from ..chance import Dice
-from ..world import World
 from . import targets
 from .false_telemetry import Fields, alter, deceive, retold
 from .kind import End, Fault, all_alike, kind, words

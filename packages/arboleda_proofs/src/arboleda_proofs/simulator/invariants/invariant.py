@@ -10,11 +10,12 @@ from enum import Enum
 from itertools import compress
 from operator import attrgetter
 
-from ..moment import Moment
+from arboleda.rig.moment import Moment
+from arboleda.rig.world import World
+
 from ..record import Record
 from ..recorded.leaders import Leaders
 from ..truth.truth import Truth
-from ..world import World
 
 
 @dataclass(kw_only=True)

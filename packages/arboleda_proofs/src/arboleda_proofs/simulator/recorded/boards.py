@@ -12,6 +12,9 @@ from typing import Any, NamedTuple
 from arboleda.engine import Belief
 from arboleda.kinds.joints import Joint
 from arboleda.model.plant_model import Robot
+from arboleda.rig.moment import Moment
+from arboleda.rig.network import Client
+from arboleda.rig.world import World
 from arboleda.sim.board import Board
 from arboleda.wire.epochs import can_follow
 from arboleda.wire.payloads import Goal, StopGoal
@@ -19,9 +22,6 @@ from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Delivery, Publication
 
 from ..commands import goal as goal_of
-from ..moment import Moment
-from ..network import Client
-from ..world import World
 
 RECENT = 512  # telemetry messages, more than the bridge or a line keep
 DECIMALS = 4

@@ -14,12 +14,12 @@ from arboleda.engine import Belief
 from arboleda.model.commands import Command
 from arboleda.model.messages import Heartbeat, Report
 from arboleda.model.plant_model import Link, PlantModel
+from arboleda.rig.moment import BridgeStep
 from arboleda.wire import rejections
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.rejections import ForeignCommand, Rejection
 from arboleda.wire.transport import Connection, Delivery, Publication
 
-from ..moment import BridgeStep
 from .bridged_board import BridgedBoard
 
 YEAR_2100, AHEAD_S = 4_102_444_800, 366 * 86_400  # Unix time; how far ahead another machine's clock may be

@@ -13,8 +13,8 @@ from arboleda.model.cell_states import CellState
 from arboleda.model.errors import TextError
 from arboleda.model.messages import Course, Fact, TaskRequest, TaskState
 from arboleda.model.task import Order, Task
+from arboleda.rig.world import World
 
-from ..world import World
 from .courses import Courses
 from .robots import KnownRobot
 from .scopes import UNSENT

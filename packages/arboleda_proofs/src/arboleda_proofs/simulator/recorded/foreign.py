@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from arboleda.model.commands import Command
+from arboleda.rig.moment import BridgeStep
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.rejections import ForeignCommand, Rejection
-
-from ..moment import BridgeStep
 
 # for so long a command may turn out to be a copy of one of the plant's, or a copy to be a foreign command
 UNSURE_S = 1.0

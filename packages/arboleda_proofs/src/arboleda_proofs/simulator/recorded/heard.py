@@ -8,8 +8,8 @@ from arboleda.engine import Belief, State
 from arboleda.model.commands import Command, Home
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import PlantModel
+from arboleda.rig.moment import Moment
 
-from ..moment import Moment
 from .cells import KnownCell
 from .commands import Commands
 from .proofs import Proofs

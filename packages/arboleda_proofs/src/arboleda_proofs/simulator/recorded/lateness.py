@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..world import BRIDGE, World
+from arboleda.rig.world import BRIDGE, World
 
 SLOW_S = 10.0  # after the last sign of it, a bridge that stalled or a slow line may still have old reports
 

@@ -7,14 +7,14 @@ from itertools import pairwise
 from arboleda.departures.leading import Standing
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import ENDED, Heartbeat, TaskChanged, TaskState
+from arboleda.rig.hosts.database import Write
+from arboleda.rig.hosts.former_leader import LateMessage
+from arboleda.rig.hosts.hosts import Hosts
+from arboleda.rig.world import World
 from arboleda.wire.payloads import Goal
 from arboleda.wire.topics import Channel, parse
 from arboleda.wire.transport import Publication
 
-from ..hosts.database import Write
-from ..hosts.former_leader import LateMessage
-from ..hosts.hosts import Hosts
-from ..world import World
 from .boards import Boards
 
 NO_ORDERS = (Channel.STOP, Channel.BEAT)

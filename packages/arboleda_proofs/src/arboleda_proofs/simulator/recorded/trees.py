@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from arboleda.engine import Act
 from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command
+from arboleda.rig.world import World
 
-from ..world import World
 from .cells import LOOK_S, KnownCell
 from .commands import SentCommand
 from .starts import Starts, Step, turn_of

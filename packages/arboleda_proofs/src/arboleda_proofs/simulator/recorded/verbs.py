@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import OperatorRequest, TaskState
 from arboleda.model.sentence import Sentence
+from arboleda.rig.world import World
 
-from ..world import World
 from .cells import KnownCell
 from .tasks import Tasks
 

@@ -8,11 +8,11 @@ from operator import add, sub
 from arboleda.kinds.arm import Arm
 from arboleda.model.commands import Position
 from arboleda.model.plant_model import Cell, Pose
+from arboleda.rig.network import Client
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import EffectorGoal
 
-from ..network import Client
 from .robot import NOWHERE, Act, RobotTruth
 
 JITTER_STEPS = 2  # a ramp that slows down may speed up again by that much (D. Austin, 2005)

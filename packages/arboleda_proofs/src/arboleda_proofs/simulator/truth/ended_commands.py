@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from arboleda.engine import Entry, State
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import APART_S
-
-from ..world import BRIDGE, World
+from arboleda.rig.world import BRIDGE, World
 
 CALM_S = 20.0  # after the last fault, whatever it left under way has arrived or is given up
 

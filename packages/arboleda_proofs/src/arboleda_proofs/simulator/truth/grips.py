@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from arboleda.model.commands import Command, Motion, Switch
 from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import Cell
+from arboleda.rig.world import World
 from arboleda.wire.payloads import EffectorGoal
 
-from ..world import World
 from .arm import ArmTruth
 from .robot import NOWHERE, RobotTruth
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from arboleda.model.commands import Command, Switch, needs_clear
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Cell, Interlock, Robot
+from arboleda.rig.network import Client
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import Goal, OrderGoal
 
-from ..network import Client
 from .robot import Act, RobotTruth
 
 Facts = dict[str, Value]

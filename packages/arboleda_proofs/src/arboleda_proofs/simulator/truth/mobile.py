@@ -5,12 +5,12 @@ from __future__ import annotations
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.commands import Position
 from arboleda.model.plant_model import Cell
+from arboleda.rig.network import Client
 from arboleda.sim.board import Board
 from arboleda.sim.mobile import MobileBody
 from arboleda.sim.starts import start_of
 from arboleda.wire.payloads import PathGoal
 
-from ..network import Client
 from .robot import NOWHERE, RobotTruth
 
 

@@ -17,9 +17,9 @@ from arboleda.model.grips import Grip
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Cell, Evidence, Place, Robot, Workspace
 from arboleda.model.recipe import Recipe
+from arboleda.rig.world import World
 
 from ..recorded.scopes import Scopes
-from ..world import World
 from .grips import Effector, part_poses
 from .mobile import MobileTruth
 from .robot import RobotTruth

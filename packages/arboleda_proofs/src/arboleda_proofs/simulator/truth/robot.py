@@ -11,13 +11,13 @@ from typing import Any
 
 from arboleda.model.commands import Command, Position, StopMode
 from arboleda.model.plant_model import Cell, Evidence, Interlock, Robot
+from arboleda.rig.network import Client
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery, Publication
 
 from ..commands import goal as goal_of
-from ..network import Client
 
 NOWHERE: frozenset[str] = frozenset()
 MOTIONS = (JointsGoal, PathGoal, HomeGoal)

@@ -13,8 +13,8 @@ from arboleda.model.commands import Command
 from arboleda.model.messages import CellRevised, Fact, OperatorAnswer, Remember, Report, Verb
 from arboleda.model.plant_model import Evidence, Robot
 from arboleda.model.whole_cells import whole_cell
+from arboleda.rig.world import World
 
-from ..world import World
 from .arm import ArmTruth
 from .boots import Boots
 from .ended_commands import CALM_S, Books

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Cell
+from arboleda.rig.world import World
 
-from ..world import World
 from .robot import RobotTruth
 
 

@@ -8,13 +8,13 @@ from arboleda.model.commands import Command, Motion, Query
 from arboleda.model.facts import Value
 from arboleda.model.messages import ENDED, Check, Fact, OperatorAnswer, Report, TaskChanged, TaskState, Verb
 from arboleda.model.whole_cells import whole_cell
+from arboleda.rig.world import World
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import OrderGoal
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
 from ..commands import goal as goal_of
-from ..world import World
 from .ended_commands import EndedCommand
 from .grips import GripsTruth
 from .last_answers import LastAnswers

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from ..world import World
+from arboleda.rig.world import World
+
 from .robot import RobotTruth
 
 

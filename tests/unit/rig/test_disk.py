@@ -11,9 +11,9 @@ from arboleda.core.intake import HISTORY
 from arboleda.departures.leaving import SYNCED_WITHIN_S
 from arboleda.model.messages import Fact, Reason, Remember, TaskChanged, TaskState
 from arboleda.model.sentence import OWN
+from arboleda.rig.disk import Disk, is_kept
 from arboleda.runtime.memory import kept_tasks, remembered
 from arboleda.store.sqlite import Store
-from arboleda_proofs.simulator.disk import Disk, is_kept
 
 
 def said(id: str, state: TaskState = TaskState.QUEUED, **why: object) -> TaskChanged:

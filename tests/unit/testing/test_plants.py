@@ -6,7 +6,7 @@ import pytest
 
 from arboleda.model.plant_model import Evidence, Link
 from arboleda.plant_file.loader import load
-from arboleda_proofs.testing import shipped
+from arboleda.testing import shipped
 
 
 def test_without_a_word_it_is_the_shipped_plant() -> None:

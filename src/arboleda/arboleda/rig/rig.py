@@ -9,9 +9,9 @@ from py_trees.common import Status
 
 from arboleda.model.messages import Event, OperatorAnswer, TaskChanged, Verb
 from arboleda.model.plant_model import PlantModel
+from arboleda.rig.world import PLANT, World
 from arboleda.views import view
 from arboleda.wire.transport import Publication
-from arboleda_proofs.simulator.world import PLANT, World
 
 
 class Rig(World):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from arboleda.rig.network import Broker, Client, Hop, Line
 from arboleda.wire.transport import Delivery, Publication
-from arboleda_proofs.simulator.network import Broker, Client, Hop, Line
 
 TELEMETRY, COMMAND, PRESENCE = "ra_1/sensores", "ra_1/juntas", "ra_1/conexion"
 
