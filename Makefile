@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test smoke check long-test integration-test test-tools judge-test ros-test ros-build kilted-test newest-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
+.PHONY: run test smoke check long-test integration-test test-tools judge-test ros-test ros-build kilted-test newest-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost names-taken performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -131,6 +131,9 @@ exercises:  ## judge every right and wrong work of the exercises; minutes
 cost:  ## count the Python calls and different functions of pinned scenarios; fails where there are more than 2 % more; COST=--pin writes the table anew
 	@scripts/install test
 	$(BIN)/python -m arboleda_bench.cost $(COST)
+
+names-taken:  ## write lower numbers of what packages take from the runner beside its doors; `make test` says when
+	@scripts/names-taken --lower
 
 performance:  ## measure, and write docs/performance.md; on a quiet machine, about twenty minutes; PERFORMANCE="--quick" takes at most ten
 	@scripts/install test
