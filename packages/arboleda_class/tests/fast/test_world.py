@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from xml.etree import ElementTree as Xml
 
 import pytest
@@ -166,8 +167,9 @@ def test_names_of_before_are_there_with_a_warning_that_says_the_new_ones() -> No
 def test_without_this_package_they_are_refused_with_the_line_that_installs_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.delitem(sys.modules, "arboleda_class.notebook")
-    monkeypatch.setitem(sys.modules, "arboleda_class", None)
+    for name in ("arboleda_class.notebook", "arboleda_class"):
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setattr(sys, "path", [each for each in sys.path if not Path(each, "arboleda_class").is_dir()])
     refused = pytest.raises(ImportError, match=r"World needs .* type pip install 'arboleda\[class\]'")
     with pytest.warns(DeprecationWarning, match="World"), refused:
         arboleda_proofs.testing.World  # noqa: B018 - the name is looked up, as by `from ... import`
