@@ -51,6 +51,14 @@ def test_the_client_operates_the_plant_or_one_thing_of_it(state: StateDir, plant
         client.operate(Verb.CLEAR, "sis_a")
 
 
+def test_the_client_asks_any_route(state: StateDir, plant: Plant) -> None:
+    client = PlantClient(state.path)
+    assert [row["id"] for row in client.get("/api/tasks")] == ["t-1"]
+    assert client.post("/api/tasks", {"text": "sis_a 0B 7"})["state"] == "queued"
+    with pytest.raises(ArboledaError, match="/api/docs"):
+        client.post("/api/nothing", is_repeatable=True)
+
+
 def test_the_client_follows_an_act_until_it_has_ended(state: StateDir, plant: Plant) -> None:
     rows = iter([{"outcome": "under_way"}, {"outcome": "under_way"}, {"outcome": "failed"}])
     plant.act = lambda number: {"number": number, **next(rows)}

@@ -120,15 +120,14 @@ def test_what_cannot_be_is_refused_with_what_would_be_needed(
 class Plant:
     """A plant that provokes what it is asked for, but at no device that it does not have."""
 
-    def provoke(self, kind: str, device: str, lasting_s: float | None) -> dict[str, Any]:
-        if device != "ra1":
-            raise ArboledaError(f"there is no device {device}; virtual ones are ra1")
-        return {**DONE, "kind": kind, "left_s": lasting_s}
+    def post(self, path: str, body: dict[str, Any], *, is_repeatable: bool = False) -> Any:
+        if path == "/api/faults/end":
+            return [DONE] if body["robot"] == "ra1" else []
+        if body["robot"] != "ra1":
+            raise ArboledaError(f"there is no device {body['robot']}; virtual ones are ra1")
+        return {**DONE, "kind": body["kind"], "left_s": body.get("seconds")}
 
-    def end_faults(self, device: str) -> list[dict[str, Any]]:
-        return [DONE] if device == "ra1" else []
-
-    def faults(self) -> dict[str, Any]:
+    def get(self, path: str) -> dict[str, Any]:
         return {"begun": [], "offers": [{**DONE, "lasts": True}]}
 
 

@@ -31,7 +31,6 @@ NEXT_S = 30.0  # for a plant that lost its leader to get the next one
 NOBODY_S = 15.0  # a standby on a busy host needs less to begin leading; until then nobody leads or waits
 LOOK_S = 0.2
 FOLLOWED_S = 120.0  # a homing may take a minute
-CHECKED_S = 330.0  # a check of the plant's files has five minutes
 URGENT_S = 1.5  # a stop is answered within some ms
 STANDS_BY = Phrase("cli.client.stands_by", "this process stands by and does nothing itself: it {it}")
 LOST_TASK = Phrase(
@@ -95,9 +94,21 @@ class PlantClient:
         """The view of the plant."""
         return self._row("GET", "/api/plant")
 
-    def get(self, path: str) -> dict[str, Any]:
-        """The object that a route answers, also one of a package."""
-        return self._row("GET", path)
+    def get(self, path: str) -> Any:
+        """The JSON that a route answers, also one of a package."""
+        return self._ask("GET", path)
+
+    def post(
+        self,
+        path: str,
+        body: dict[str, Any] | None = None,
+        *,
+        is_repeatable: bool = False,
+        within_s: float = TIMEOUT_S,
+    ) -> Any:
+        """Have a route do something, also one of a package; its answer. `is_repeatable`: nothing is done
+        twice where two processes of the plant hear it."""
+        return self._ask("POST", path, body, repeatable=is_repeatable, within_s=within_s)
 
     def task(self, task: str) -> dict[str, Any]:
         """One task by its id."""
@@ -111,29 +122,6 @@ class PlantClient:
         body = (dict(arguments) | ({"by_hand": True} if by_hand else {})) or None
         stops = verb.row.stops
         return self._row("POST", f"/api/{where}/{verb.value}", body, repeatable=stops, urgent=stops)
-
-    def put_to_work(self, version: int, name: str) -> dict[str, Any]:
-        """Have the plant put a kept version to work; the answer says when each cell takes it."""
-        path = f"/api/versions/{version}/put"
-        return self._row("POST", path, {"name": name}, repeatable=True, within_s=CHECKED_S)
-
-    def restart_at_rest(self, name: str) -> None:
-        """Have the plant restart once all its cells rest; Refused where it cannot restart itself."""
-        self._ask("POST", "/api/versions/restart", {"name": name}, repeatable=True)
-
-    def faults(self) -> dict[str, Any]:
-        """The faults that go on at virtual devices, and those that can be provoked."""
-        return self._row("GET", "/api/faults")
-
-    def provoke(self, kind: str, robot: str, seconds: float | None) -> dict[str, Any]:
-        """Have a fault happen to a virtual device; Refused if it cannot."""
-        lasting = {} if seconds is None else {"seconds": seconds}
-        return self._row("POST", "/api/faults", {"kind": kind, "robot": robot, **lasting})
-
-    def end_faults(self, robot: str) -> list[dict[str, Any]]:
-        """End the faults of a device ("": of all); those that went on."""
-        ended: Any = self._ask("POST", "/api/faults/end", {"robot": robot}, repeatable=True)
-        return list(ended)
 
     def outcome(self, act: int) -> dict[str, Any]:
         """The row of an act once it has ended; after FOLLOWED_S as it is then."""

@@ -25,6 +25,7 @@ from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.versions import Version, Versions, version_of, whole
 from arboleda.runtime import at_work
 from arboleda.runtime.state import Running, default_state, find_running
+from arboleda_make.client.draft import CHECKED_S
 
 LONGEST = 500  # characters of a line
 NOT_TAKEN = 1
@@ -255,11 +256,12 @@ def _keep(kept: Versions, base: _Base, version: Version) -> int:
 
 def _put_to_work(number: int, plant: Path | None, state: Path | None, *, restarts: bool) -> None:
     """Have the plant that runs take a version, and print when each cell does; status 1 if it does not."""
-    reached = client(plant, state)
+    reached, by = client(plant, state), {"name": getpass.getuser()}
     try:
-        answer = reached.put_to_work(number, getpass.getuser())
+        path = f"/api/versions/{number}/put"
+        answer = reached.post(path, by, is_repeatable=True, within_s=CHECKED_S)
         if answer["restart"] and restarts:
-            reached.restart_at_rest(getpass.getuser())
+            reached.post("/api/versions/restart", by, is_repeatable=True)
     except ArboledaError as error:
         _print(say(NOT_TAKEN_NOW(why=error.sentence)))
         raise typer.Exit(NOT_TAKEN) from error

@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 from fastapi import FastAPI, HTTPException, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
+from pydantic import Field
 
 from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.shell import language_of
 from arboleda.web.access.auth import Role
 from arboleda.web.access.needs import needs
-from arboleda.web.schema.bodies import FindingLines
+from arboleda.web.schema.bodies import BodyModel
 from arboleda.web.schema.queries import read_body
 from arboleda_make.trying.api import MakeApi
 
 PATH = "/findings.json"
 OPERATORS = [needs(Role.OPERATOR, "reading what was found in a draft")]
 NO_DRAFT = "This plant has no draft."
+
+
+class FindingLines(BodyModel):
+    """Findings in English, as the API gives them, that a page wants in its language."""
+
+    lines: list[Annotated[str, Field(max_length=5000)]] = Field(max_length=1000)
 
 
 def serve(server: FastAPI, plant: PageApi) -> None:

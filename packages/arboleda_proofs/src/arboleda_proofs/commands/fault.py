@@ -17,6 +17,7 @@ LONGEST = 500  # characters of a line
 SPAN = re.compile(r"(\d+(?:\.\d+)?)\s*(s|m|min)?")
 SECONDS = {"s": 1.0, "m": 60.0, "min": 60.0}
 END = "end"
+FAULTS = "/api/faults"
 
 NO_TIME = Phrase("cli.fault.no_time", "{value} is no time: write it as 5s, 0.5s or 2m")
 LASTS_AT_BEGIN = Phrase("cli.fault.lasts_at_begin", "--for is of a fault that begins")
@@ -74,17 +75,18 @@ def fault(
     lasting_s = _seconds(seconds)
     reached = client(plant, state, store, tokens)
     if kind is None or listed:
-        known = reached.faults()
+        known = reached.get(FAULTS)
         _print(_offered(known["offers"]) if listed else _going_on(known["begun"]))
     elif kind == END:
         if lasting_s is not None:
             raise typer.BadParameter(say(LASTS_AT_BEGIN()))
-        ended = reached.end_faults(device or "")
+        ended = reached.post(f"{FAULTS}/end", {"robot": device or ""}, is_repeatable=True)
         _print([say(ENDED(named=_named(each))) for each in ended] or [say(NONE_ON())])
     elif device is None:
         raise typer.BadParameter(say(WHICH_DEVICE(kind=plain(kind, 80))))
     else:
-        begun = reached.provoke(kind, device, lasting_s)
+        lasting = {} if lasting_s is None else {"seconds": lasting_s}
+        begun = reached.post(FAULTS, {"kind": kind, "robot": device, **lasting})
         left = f"{begun['left_s']:g}" if begun["left_s"] else ""
         _print([say(BEGUN(named=_named(begun), seconds=left)) if left else _named(begun)])
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, create_model, model_validator
 
@@ -54,12 +54,6 @@ class TaskFilter(RequestModel):
             before=self.before,
             limit=self.limit,
         )
-
-
-class FindingLines(BodyModel):
-    """Findings in English, as the API gives them, that a page wants in its language."""
-
-    lines: list[Annotated[str, Field(max_length=5000)]] = Field(max_length=1000)
 
 
 class TaskText(BodyModel):
