@@ -44,6 +44,13 @@ def left_out() -> tuple[str, ...]:
     return tuple(_installed().left_out.values())
 
 
+def why_left_out(group: str, name: str) -> str:
+    """The sentence that a distribution is left out which has this name in a group; "" where there is none."""
+    found = _installed()
+    points = (each for each in found.points.select(group=group) if name in (each.name, package_of(each)))
+    return next((found.left_out[each.dist] for each in points if each.dist in found.left_out), "")
+
+
 def registered(group: str) -> list[metadata.EntryPoint]:
     """The entry points of a group in the order of their names; none is loaded."""
     return sorted(entry_points(group), key=lambda each: each.name)

@@ -651,6 +651,7 @@ class PlantModel:
     assistant_limits: AssistantLimits = NO_LIMITS
     extensions: Mapping[str, object] = field(default_factory=dict, hash=False)  # settings, by package
     extensions_off: frozenset[str] = frozenset()  # the packages that it leaves out
+    brought: Mapping[str, Mapping[str, str]] = field(default_factory=dict, compare=False)  # by packages
 
     def cell(self, name: str) -> Cell:
         return next(cell for cell in self.cells if cell.name == name)

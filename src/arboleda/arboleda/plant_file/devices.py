@@ -15,6 +15,7 @@ from .arrays import arrays
 from .deadlines import ROUNDING_S, SHOWN_S
 from .document import Document, Place, choice, misnamed, nearest, shown
 from .drivers import OF_DEVICES, link
+from .not_installed import why_nobody
 from .python_uses import KindInPython, PythonUses
 from .robot_kind import RobotKind
 from .shapes import NAME_RULE, ROBOT_KEYS, DeviceCellShape, DeviceShape, is_name
@@ -203,7 +204,9 @@ def _kind(document: Document, place: Place, kinds: Kinds) -> DeviceKind | None:
     hint = nearest(name, kinds.all_names)
     if name in kinds.used.broken or not kinds.used.may_import:
         return None
-    if hint or kinds.used.is_whole:  # else a file that could not be imported may have the kind
+    if why := why_nobody(document, own_kinds.GROUP, name):
+        document.problem(place, why)
+    elif hint or kinds.used.is_whole:  # else a file that could not be imported may have the kind
         own = "" if hint else '; one of your own is declared under "kinds" at the top of the file'
         document.problem(place, f"must be {choice(kinds.all_names)}, is {shown(name)}{hint or own}")
     return None

@@ -12,9 +12,9 @@ from arboleda.host.packages import entry_points
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import DriverUse, Link, PlantModel, Robot
 
-from . import package_drivers
 from .document import Document, Place, choice, nearest, shown
 from .given_settings import FAULTY, Taker, given, loaded
+from .not_installed import why_nobody
 from .python_uses import LONGEST, PythonUses, error_text
 from .shapes import ROBOT_KEYS
 from .shared import SECTION as SHARED
@@ -163,8 +163,8 @@ def _installed(document: Document, place: Place, name: str, used: PythonUses) ->
     point = points.get(name)
     if point is None and not used.is_whole:
         return None
-    if point is None and name in package_drivers.ALL:
-        document.problem(place, package_drivers.not_installed(name))
+    if point is None and (why := why_nobody(document, GROUP, name)):
+        document.problem(place, why)
         return None
     if point is None:
         allowed = [*COME_WITH_IT, *used.drivers, *points]

@@ -13,6 +13,7 @@ from arboleda.model.plant_model import PlantModel
 
 from .document import Document, Place, choice, nearest, shown
 from .given_settings import FAULTY, Taker, given, loaded, required
+from .not_installed import why_nobody
 from .python_uses import PythonUses
 from .settings import shape
 
@@ -69,6 +70,7 @@ def settings_of(plant: PlantModel, name: str, declared: type) -> Any:
 def _nobody(document: Document, name: str, known: list[str]) -> None:
     there = choice(known) if known else "none"
     told = NOBODY.format(name=shown(name), nearest=nearest(name, known), known=there)
+    told = why_nobody(document, PARTS, name) or told
     document.problem((SECTION,), told, at=(SECTION, name))
 
 

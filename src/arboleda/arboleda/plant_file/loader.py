@@ -20,6 +20,7 @@ from arboleda.model.recipe import Recipe
 from arboleda.model.recording import Recording
 
 from . import drivers, extensions, own_kinds, own_recipes, sections, user_file
+from .brought import by_packages
 from .deadlines import check_arrivals_show
 from .declared_kinds import kinds
 from .devices import CELLS, Kinds, device_cell, is_of_devices, shared_devices
@@ -124,6 +125,7 @@ def _parsed(
     document.finish(document.keys(CELLS))
     if plant is None:
         raise ConfigError((f"{document.name}: the file cannot be read as a plant",))
+    plant = replace(plant, brought=by_packages(document))
     return _Reading(plant, document, missed, brings)
 
 

@@ -40,15 +40,15 @@ def registered() -> dict[str, list[EntryPoint]]:
 
 def needs_python(document: Document) -> bool:
     """True if a device may be of a kind of a file that is used, or of an installed package."""
-    names = {name for name, _ in _named(document)}
+    names = {name for name, _ in named(document)}
     uses = document.has(("uses",)) and not names <= COME_WITH_IT.keys()
     return uses or (bool(names) and not names.isdisjoint(registered()))
 
 
 def complete(document: Document, used: PythonUses) -> None:
     """Add the kinds that devices name and that Arboleda or an installed package has."""
-    entries = registered() if any(name not in used.kinds for name, _ in _named(document)) else {}
-    for name, place in _named(document):
+    entries = registered() if any(name not in used.kinds for name, _ in named(document)) else {}
+    for name, place in named(document):
         rows = entries.get(name, [])
         if name in used.kinds or not (rows or name in COME_WITH_IT):
             continue
@@ -107,7 +107,7 @@ def device(
     return None if wrong is not None else (shape, made)
 
 
-def _named(document: Document) -> Iterator[tuple[str, Place]]:
+def named(document: Document) -> Iterator[tuple[str, Place]]:
     """The kinds that devices name and that the plant file does not declare, with their places."""
     declared = document.keys(("kinds",))
     sections: list[Place] = [("cells", cell, "devices") for cell in document.keys(("cells",))]

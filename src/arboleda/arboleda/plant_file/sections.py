@@ -10,9 +10,11 @@ from arboleda.model.plant_model import OpcUaView, Timing
 from arboleda.model.recording import Limits, Recording
 from arboleda.model.sentence import OWN
 from arboleda.store.address import has_password
+from arboleda.store.schemes import GROUP as SCHEMES
 from arboleda.store.schemes import objection
 
 from .document import Document, Place, choice, shown
+from .not_installed import why_nobody
 from .shapes import AssistantLimitsShape, FileShape, OpcUaViewShape, RecordShape, TimingShape
 
 ASSISTANTS, ASSISTANT_LIMITS = "assistants", "assistant_limits"
@@ -22,6 +24,7 @@ NEEDS_LIMITS = (
 NEEDS_SUBMIT = 'counts only with "assistants: submit"'
 RECORD: Place = ("record",)
 REPORTS: Place = ("reports",)
+STORE: Place = ("store",)
 ON, OFF = "on", "off"
 
 
@@ -83,9 +86,10 @@ def store_address(document: Document, address: str) -> str:
     """The database of the plant's memory. No problem repeats it, for there may be a password in it."""
     wrong = objection(address) if address else ""
     if wrong:
-        document.problem(("store",), wrong)
+        why = why_nobody(document, SCHEMES, address.partition("://")[0])
+        document.problem(STORE, why or wrong)
     elif has_password(address):
-        document.problem(("store",), "has a password in it; leave it to PGPASSWORD or ~/.pgpass")
+        document.problem(STORE, "has a password in it; leave it to PGPASSWORD or ~/.pgpass")
     return address
 
 

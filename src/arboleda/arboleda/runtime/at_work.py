@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import shutil
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
 from arboleda.model.errors import StartError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import versions
+from arboleda.plant_file.not_installed import FILE as PACKAGES
 from arboleda.plant_file.versions import Version, version_of
+
+from .state import replace_file
 
 FOLDER, FRESH = "at_work", "at_work.new"  # the second for a moment only, in which the first may be gone
 
@@ -25,6 +30,14 @@ def keep(state: Path, files: PlantFiles | None, at: str) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     if files is not None:
         fresh.rename(folder)
+
+
+def keep_brought(state: Path, brought: Mapping[str, Mapping[str, str]]) -> None:
+    """Keep which packages bring what of the plant; a start goes on where the disk refuses."""
+    file = state / PACKAGES
+    if brought or file.exists():
+        with suppress(OSError):
+            replace_file(file, json.dumps(brought))
 
 
 def version(state: Path) -> Version | None:

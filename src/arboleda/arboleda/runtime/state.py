@@ -15,6 +15,9 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 from arboleda.host import files, locks
+from arboleda.host.state_folders import default_state as default_state
+from arboleda.host.state_folders import plants_root
+from arboleda.host.state_folders import state_root as state_root
 from arboleda.model.errors import ArboledaError, ConfigError, StartError
 from arboleda.plant_file.user_file import read_bytes
 from arboleda.store.held_files import HeldFiles
@@ -31,15 +34,10 @@ NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 LOCK_TRIES, LOCK_PAUSE_S = 5, 0.05  # a `status` looks at the lock for a moment; that is no owner
 
 
-def default_state(plant: str) -> Path:
-    """`$XDG_STATE_HOME/arboleda/<plant>`, else `~/.local/state/arboleda/<plant>`."""
-    return _default_root() / plant
-
-
 def running_plants() -> list[Path]:
     """The default state directories on which a plant runs now, by name."""
     try:
-        return [path for path in sorted(_default_root().iterdir()) if find_running(path) is not None]
+        return [path for path in sorted(plants_root().iterdir()) if find_running(path) is not None]
     except OSError:
         return []
 
@@ -47,19 +45,9 @@ def running_plants() -> list[Path]:
 def plants_of_databases() -> list[Path]:
     """The default state directories whose last plant had its memory in a database, by name."""
     try:
-        return [path for path in sorted(_default_root().iterdir()) if (last := last_run(path)) and last.store]
+        return [path for path in sorted(plants_root().iterdir()) if (last := last_run(path)) and last.store]
     except OSError:
         return []
-
-
-def state_root() -> Path:
-    """`$XDG_STATE_HOME`, else `~/.local/state`."""
-    base = os.environ.get("XDG_STATE_HOME", "")
-    return Path(base) if os.path.isabs(base) else Path.home() / ".local" / "state"
-
-
-def _default_root() -> Path:
-    return state_root() / "arboleda"
 
 
 @dataclass(frozen=True, kw_only=True)
