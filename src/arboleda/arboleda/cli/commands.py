@@ -88,6 +88,9 @@ OURS: Mapping[str, Command] = {
     "new": Command(
         "new", "Write a plant of your own: an arm, a device, a recipe and a test, in a folder of its own."
     ),
+    "extension": Command(
+        "extension", "Installed packages that add to Arboleda: which there are, and which are off."
+    ),
     "examples": Command(
         "examples", "List the examples that come with Arboleda, or write one to a folder, to be changed."
     ),

@@ -38,6 +38,7 @@ SECTIONS: Mapping[str, tuple[str, ...]] = {
         *(
             "new",
             "examples",
+            "extension",
             "check",
             "apply",
             "tree",

@@ -1,0 +1,122 @@
+"""`arboleda extension`: the installed packages that add something, and which of them are off."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from typing import Annotated
+
+import typer
+
+from arboleda.host.distributions import OFF, Added, added, called, kept_off, off_file
+from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.outside import quoted
+from arboleda.model.sentence import Phrase, Value
+from arboleda.runtime import invocation
+from arboleda.runtime.state import replace_file
+
+from .language import allowed, finding, say
+from .new import NOT_WRITTEN
+from .overview import WholeSentences
+
+cli = typer.Typer(
+    cls=WholeSentences,
+    help="Installed packages that add to Arboleda: which there are, and which are off.",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+)
+NONE = Phrase("cli.extension.none", "no package is installed that adds anything")
+LINE = Phrase("cli.extension.line", "{name} {version} ({api}): {adds}")
+IS_OFF = Phrase("cli.extension.is_off", "off: {command} extension on {name}")
+NO_PACKAGE = Phrase("cli.extension.no_package", "there is no package {name}; {others}")
+WENT_OFF = Phrase(
+    "cli.extension.went_off",
+    "{name} is off for every plant of this user, from the next start on. To take it back: "
+    "{command} extension on {name}",
+)
+WENT_ON = Phrase("cli.extension.went_on", "{name} is on again, from the next start of a plant on")
+BY_VARIABLE = Phrase("cli.extension.by_variable", "{name} is off by {variable}, which this does not change")
+WORDS = {
+    "commands": Phrase("cli.extension.commands", "commands"),
+    "languages": Phrase("cli.extension.languages", "languages"),
+    "page": Phrase("cli.extension.page", "the page"),
+    "parts": Phrase("cli.extension.parts", "parts"),
+    "routes": Phrase("cli.extension.routes", "routes"),
+}
+NAMED = {
+    "drivers": Phrase("cli.extension.drivers", "drivers {names}"),
+    "kinds": Phrase("cli.extension.kinds", "kinds {names}"),
+    "stores": Phrase("cli.extension.stores", "stores {names}"),
+}
+Name = typer.Argument(metavar="NAME", help="A package, as `arboleda extension list` names it.")
+
+
+@cli.command("list")
+def list_extensions() -> None:
+    """List the installed packages that add something: what each adds, and whether it is off or left out."""
+    rows = added()
+    for each in rows:
+        print("\n".join(_lines(each)))
+    if not rows:
+        print(say(NONE()))
+
+
+@cli.command()
+def off(name: Annotated[str, Name]) -> None:
+    """Leave a package out of every plant of this user, from the next start on; nothing of it is imported.
+
+    A plant file leaves it out of one plant: `extensions: {NAME: off}`.
+    """
+    found = _found(name)
+    _keep({*kept_off(), called(found.name)})
+    print(say(WENT_OFF(name=found.name, command=invocation.command())))
+
+
+@cli.command()
+def on(name: Annotated[str, Name]) -> None:
+    """Take back what `arboleda extension off` did."""
+    found = _found(name)
+    _keep(kept_off() - found.names)
+    still_off = next(each for each in added() if each.name == found.name).is_off
+    print(say(BY_VARIABLE(name=found.name, variable=OFF) if still_off else WENT_ON(name=found.name)))
+
+
+def add_to(parent: typer.Typer) -> None:
+    """Add the group."""
+    parent.add_typer(cli, name="extension")
+
+
+def _found(name: str) -> Added:
+    """The package of that name; ArboledaError where there is none."""
+    rows = added()
+    for each in rows:
+        if called(name) in each.names:
+            return each
+    raise ArboledaError(NO_PACKAGE(name=quoted(name), others=allowed(name, [each.name for each in rows])))
+
+
+def _keep(names: Collection[str]) -> None:
+    """Keep which packages are off; StartError if the machine refuses."""
+    file = off_file()
+    try:
+        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        replace_file(file, "".join(f"{each}\n" for each in sorted(names)))
+    except OSError as error:
+        raise StartError(NOT_WRITTEN(folder=str(file), error=str(error.strerror or error))) from error
+
+
+def _lines(each: Added) -> Iterator[str]:
+    numbers = ", ".join(each.adds.get("api", ()))
+    api = f"API {numbers}" if numbers else ""
+    yield say(LINE(name=each.name, version=each.version, api=api, adds=tuple(_adds(each))))
+    if each.is_off:
+        yield f"  {say(IS_OFF(name=each.name, command=invocation.command()))}"
+    elif each.left_out:
+        yield f"  {finding(each.left_out)}"
+
+
+def _adds(each: Added) -> Iterator[Value]:
+    for group, names in sorted(each.adds.items()):
+        if group in NAMED:
+            yield NAMED[group](names=names)
+        elif group != "api":
+            yield WORDS[group]() if group in WORDS else group
