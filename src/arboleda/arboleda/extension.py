@@ -11,6 +11,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from arboleda.host.distributions import API as API
+
 if TYPE_CHECKING:
     from arboleda.cli.commands import Command as Command
     from arboleda.cli.language import say as say
@@ -66,8 +68,6 @@ if TYPE_CHECKING:
     from arboleda.runtime.extensions.table import Table as Table
     from arboleda.web.access.auth import Role as Role
     from arboleda.web.access.needs import needs as needs
-
-API = 1
 
 HOMES = {
     "cli.commands": ("Command",),

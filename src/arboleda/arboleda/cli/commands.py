@@ -89,7 +89,7 @@ OURS: Mapping[str, Command] = {
         "new", "Write a plant of your own: an arm, a device, a recipe and a test, in a folder of its own."
     ),
     "extension": Command(
-        "extension", "Installed packages that add to Arboleda: which there are, and which are off."
+        "extension", "Installed packages that add to Arboleda: which there are, which are off, and a new one."
     ),
     "examples": Command(
         "examples", "List the examples that come with Arboleda, or write one to a folder, to be changed."

@@ -1,26 +1,31 @@
-"""`arboleda extension`: the installed packages that add something, and which of them are off."""
+"""`arboleda extension`: the installed packages that add something, which of them are off, and a new one."""
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Collection, Iterator
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from arboleda.host.distributions import OFF, Added, added, called, kept_off, off_file
-from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.errors import ArboledaError, ConfigError, StartError
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase, Value
+from arboleda.plant_file.shapes import NAME_RULE as RULE
+from arboleda.plant_file.shapes import is_name
 from arboleda.runtime import invocation
 from arboleda.runtime.state import replace_file
 
 from .language import allowed, finding, say
-from .new import NOT_WRITTEN
+from .new import NAMED, NOT_WRITTEN, WROTE, write_started
 from .overview import WholeSentences
 
 cli = typer.Typer(
     cls=WholeSentences,
-    help="Installed packages that add to Arboleda: which there are, and which are off.",
+    help="Installed packages that add to Arboleda: which there are, which are off, and a new one.",
     no_args_is_help=True,
     rich_markup_mode=None,
 )
@@ -42,11 +47,23 @@ WORDS = {
     "parts": Phrase("cli.extension.parts", "parts"),
     "routes": Phrase("cli.extension.routes", "routes"),
 }
-NAMED = {
+THINGS = {
     "drivers": Phrase("cli.extension.drivers", "drivers {names}"),
     "kinds": Phrase("cli.extension.kinds", "kinds {names}"),
     "stores": Phrase("cli.extension.stores", "stores {names}"),
 }
+WRITTEN = {"extension.toml": "pyproject.toml", "extension.py": f"{NAMED}.py"}
+NAME_RULE = Phrase("cli.extension.name_rule", f"{RULE}, and no module may have it")
+BAD_NAME = Phrase("cli.extension.bad_name", "{name} cannot be the name of a package; it must be {rule}")
+NEXT = Phrase(
+    "cli.extension.next",
+    """
+Install it beside Arboleda; what it counts is shown by a plant that starts after that, at /api/{name}:
+  {python} -m pip install -e {folder}
+  {command} up
+
+A plant file may set what Settings in {name}.py has: extensions: {{{name}: {{counts: failed}}}}""",
+)
 Name = typer.Argument(metavar="NAME", help="A package, as `arboleda extension list` names it.")
 
 
@@ -78,6 +95,22 @@ def on(name: Annotated[str, Name]) -> None:
     _keep(kept_off() - found.names)
     still_off = next(each for each in added() if each.name == found.name).is_off
     print(say(BY_VARIABLE(name=found.name, variable=OFF) if still_off else WENT_ON(name=found.name)))
+
+
+@cli.command()
+def new(
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="The folder to write; its name is that of the package.")
+    ],
+) -> None:
+    """Write a package of your own: a part that counts tasks, with settings, a table and a route."""
+    name = folder.resolve().name
+    if not is_name(name) or find_spec(name) is not None:
+        raise ConfigError((say(BAD_NAME(name=quoted(name), rule=NAME_RULE())),))
+    for file in write_started(folder, WRITTEN):
+        typer.echo(say(WROTE(file=str(file))))
+    told = {"command": invocation.command(), "python": invocation.python(), "name": name}
+    typer.echo(say(NEXT(**told, folder=shlex.quote(str(folder)))))
 
 
 def add_to(parent: typer.Typer) -> None:
@@ -116,7 +149,7 @@ def _lines(each: Added) -> Iterator[str]:
 
 def _adds(each: Added) -> Iterator[Value]:
     for group, names in sorted(each.adds.items()):
-        if group in NAMED:
-            yield NAMED[group](names=names)
+        if group in THINGS:
+            yield THINGS[group](names=names)
         elif group != "api":
             yield WORDS[group]() if group in WORDS else group

@@ -42,7 +42,7 @@ What the devices can do is in plant.yaml, what they do together in recipes.py. C
 )
 NO_EXAMPLE = Phrase("cli.examples.none", "there is no example {name}; {others}")
 RUN_IT = Phrase("cli.examples.run_it", "On virtual devices, with a page:")
-NAMED = "PLANT"  # stands for the plant's name in what is written
+NAMED = "NAME"  # stands for the name of the plant, or of the package, in what is written
 
 
 def add_to(cli: typer.Typer) -> None:
@@ -92,9 +92,17 @@ def write(folder: Path) -> list[Path]:
     name = folder.resolve().name
     if not is_plant_name(name):
         raise ConfigError((say(BAD_NAME(name=quoted(name), rule=NAME_RULE())),))
-    starter = files("arboleda").joinpath("starter")
-    texts = {called: starter.joinpath(source).read_text("utf-8") for source, called in WRITTEN.items()}
-    return write_files(folder, {called: _told(text).replace(NAMED, name) for called, text in texts.items()})
+    return write_started(folder, WRITTEN)
+
+
+def write_started(folder: Path, written: Mapping[str, str]) -> list[Path]:
+    """Write files of the starter, by what they are called there; NAMED stands for the name of the folder."""
+    starter, name = files("arboleda").joinpath("starter"), folder.resolve().name
+    texts = {called: starter.joinpath(source).read_text("utf-8") for source, called in written.items()}
+    return write_files(
+        folder,
+        {called.replace(NAMED, name): _told(text).replace(NAMED, name) for called, text in texts.items()},
+    )
 
 
 def _told(text: str) -> str:

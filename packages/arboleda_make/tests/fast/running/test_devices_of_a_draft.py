@@ -14,7 +14,7 @@ from arboleda.plant_file.yaml_marks import parse
 from arboleda_make.drafts.devices import with_device, without_cell, without_device
 from arboleda_make.drafts.draft import Draft, draft_of
 
-STARTER = files("arboleda").joinpath("starter/plant.yaml").read_text("utf-8").replace("PLANT", "lab")
+STARTER = files("arboleda").joinpath("starter/plant.yaml").read_text("utf-8").replace("NAME", "lab")
 LAMP = {"facts": {"lit": "bool"}, "verbs": {"shine": {"effect": "switch", "sets": {"lit": True}}}}
 ARM_HOME = {"deg": [0, 0], "mm": 0}
 
