@@ -9,10 +9,10 @@ setup(
     package_data={"arboleda_ended": ["languages/*/*.yaml"]},
     install_requires=["arboleda"],
     entry_points={
+        "arboleda.api": ["1 = arboleda_ended"],
         "arboleda.commands": ["ended = arboleda_ended.commands:COMMANDS"],
         "arboleda.languages": ["ended = arboleda_ended"],
         "arboleda.page": ["ended = arboleda_ended.page:PAGE"],
-        "arboleda.parts": ["ended = arboleda_ended.part:PARTS"],
-        "arboleda.routes": ["ended = arboleda_ended.routes:routes"],
+        "arboleda.parts": ["ended = arboleda_ended.part:EndedTasks"],
     },
 )

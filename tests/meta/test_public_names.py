@@ -17,6 +17,7 @@ MODULES = [
     name
     for name in (
         "arboleda.client",
+        "arboleda.extension",
         "arboleda.recipes",
         "arboleda.kinds",
         "arboleda.drivers",

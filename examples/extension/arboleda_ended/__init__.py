@@ -1,5 +1,5 @@
 """Ended tasks of each cell: counted, kept, and told by a command, over HTTP and on the page."""
 
-from arboleda.model.sentence import Phrase
+from arboleda.extension import Phrase
 
 ENDED = Phrase("ended.count", "tasks that ended here: {count}")

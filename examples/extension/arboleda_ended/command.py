@@ -1,7 +1,6 @@
 """`arboleda ended`."""
 
-from arboleda.cli.language import say
-from arboleda.cli.plant_options import RunningPlant, StateFolder, client
+from arboleda.extension import RunningPlant, StateFolder, client, say
 
 from . import ENDED
 

@@ -1,7 +1,6 @@
 """The line below the card of each cell."""
 
-from arboleda.dashboard.page_part import PagePart, Place, Section
-from arboleda.dashboard.tags import live
+from arboleda.extension import PagePart, Place, Section, live
 
 from . import ENDED
 
@@ -11,7 +10,7 @@ def card(spot):
 
 
 def face(moment):
-    counts = moment.links.get("ended", {})
+    counts = moment.links.get("ended", {}).get("counts", {})
     return {
         f"text/{cell}.ended": [moment.words.say(ENDED(count=count)), ""] for cell, count in counts.items()
     }

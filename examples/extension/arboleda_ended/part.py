@@ -1,47 +1,28 @@
-"""The part that counts ended tasks, and its table in the memory of the plant."""
+"""The part that counts ended tasks in a table, and tells the counts."""
 
-from arboleda.model.messages import ENDED
-from arboleda.runtime.parts.orchestrator import Orchestrator
-from arboleda.runtime.registry import Factory, Phase
-from arboleda.store.package_table import PackageTable
+from arboleda.extension import Part
 
 
-class EndedTasks:
-    def __init__(self, cells, table):
-        self.table = table
-        self.kept = table.rows()  # those of earlier starts
-        self.counts = {cell: int(self.kept.get(cell, 0)) for cell in cells}
-
+class EndedTasks(Part):
     def start(self):
-        pass
+        self.table = self.plant.table()
+        self.plant.on_task(self.count)
+        self.show()
 
-    def stop(self):
-        self.keep()
+    def count(self, task):
+        if task.has_ended:
+            self.table.put({task.cell: self.table.get(task.cell, 0) + 1})
+            self.show()
 
-    def changed(self, change):
-        """A task changed: told in a thread that must not wait."""
-        if change.state in ENDED:
-            self.counts[change.cell] = self.counts.get(change.cell, 0) + 1
+    def show(self):
+        self.plant.show(counts=dict.fromkeys(self.plant.cells, 0) | self.table.rows())
 
-    def keep(self, _plant=None):
-        """Write what is new; called in the thread of the plant, which has its memory."""
-        new = {cell: str(count) for cell, count in [*self.counts.items()] if count}
-        if new != self.kept:
-            self.table.put(new)
-            self.kept = new
+    def routes(self):
+        api = super().routes()
 
+        @api.get("/api/ended")
+        def ended() -> dict[str, int]:
+            """How many tasks ended in each cell, in all starts."""
+            return self.plant.shown["counts"]
 
-def ended(assembly):
-    plant = assembly.ask(Orchestrator)
-    if plant is None:  # a process without the plant, as a node of boards
-        return
-    cells = [cell.name for cell in assembly.model.cells]
-    part = EndedTasks(cells, PackageTable(assembly.holdings.memory, "ended"))
-    plant.listeners.append(part.changed)
-    plant.observers.append(part.keep)
-    assembly.offer(EndedTasks, part)  # the route asks for it
-    assembly.links.add(lambda: {"ended": {**part.counts}})  # the page shows it
-    yield part
-
-
-PARTS = [Factory(phase=Phase.RECORD, make=ended)]
+        return api

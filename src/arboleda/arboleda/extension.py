@@ -16,60 +16,26 @@ from arboleda.host.distributions import API as API
 if TYPE_CHECKING:
     from arboleda.cli.commands import Command as Command
     from arboleda.cli.language import say as say
-    from arboleda.cli.plant_options import (
-        RunningPlant as RunningPlant,
-    )
-    from arboleda.cli.plant_options import (
-        StateFolder as StateFolder,
-    )
-    from arboleda.cli.plant_options import (
-        client as client,
-    )
-    from arboleda.client.answers.tasks import Done as Done
-    from arboleda.client.answers.tasks import Task as Task
+    from arboleda.cli.plant_options import RunningPlant as RunningPlant, StateFolder as StateFolder
+    from arboleda.cli.plant_options import client as client
+    from arboleda.client.answers.tasks import Done as Done, Task as Task
     from arboleda.dashboard.asset_files import Assets as Assets
     from arboleda.dashboard.faces.moment import Moment as Moment
-    from arboleda.dashboard.page_part import (
-        Act as Act,
-    )
-    from arboleda.dashboard.page_part import (
-        PagePart as PagePart,
-    )
-    from arboleda.dashboard.page_part import (
-        Place as Place,
-    )
-    from arboleda.dashboard.page_part import (
-        Request as Request,
-    )
-    from arboleda.dashboard.page_part import (
-        Section as Section,
-    )
-    from arboleda.dashboard.page_part import (
-        Spot as Spot,
-    )
-    from arboleda.dashboard.tags import act_button as act_button
-    from arboleda.dashboard.tags import live as live
-    from arboleda.dashboard.tags import rows as rows
-    from arboleda.dashboard.tags import tag as tag
-    from arboleda.model.errors import (
-        ArboledaError as ArboledaError,
-    )
-    from arboleda.model.errors import (
-        Refused as Refused,
-    )
-    from arboleda.model.errors import (
-        StartError as StartError,
-    )
-    from arboleda.model.sentence import Phrase as Phrase
-    from arboleda.model.sentence import Sentence as Sentence
+    from arboleda.dashboard.page_part import Act as Act, PagePart as PagePart, Place as Place
+    from arboleda.dashboard.page_part import Request as Request, Section as Section, Spot as Spot
+    from arboleda.dashboard.tags import act_button as act_button, live as live, rows as rows, tag as tag
+    from arboleda.host.packages import API as API
+    from arboleda.model.errors import ArboledaError as ArboledaError, Refused as Refused
+    from arboleda.model.errors import StartError as StartError
+    from arboleda.model.sentence import Phrase as Phrase, Sentence as Sentence
     from arboleda.runtime.extensions.part import Part as Part
-    from arboleda.runtime.extensions.plant import Device as Device
-    from arboleda.runtime.extensions.plant import Plant as Plant
+    from arboleda.runtime.extensions.plant import Device as Device, Plant as Plant
     from arboleda.runtime.extensions.table import Table as Table
     from arboleda.web.access.auth import Role as Role
     from arboleda.web.access.needs import needs as needs
 
 HOMES = {
+    "host.packages": ("API",),
     "cli.commands": ("Command",),
     "cli.language": ("say",),
     "cli.plant_options": ("RunningPlant", "StateFolder", "client"),
@@ -88,7 +54,7 @@ HOMES = {
 }
 """The modules that have the names, which load once somebody asks for one: a command needs no page."""
 
-__all__ = ["API", *sorted(name for names in HOMES.values() for name in names)]
+__all__ = sorted(name for names in HOMES.values() for name in names)
 
 
 def __getattr__(name: str) -> Any:

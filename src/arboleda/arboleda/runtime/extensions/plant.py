@@ -162,7 +162,7 @@ class Plant:
         return self._uses.folder()
 
     def show(self, **values: object) -> None:
-        """Show these values, besides those shown before, on the page and as `links` of `GET /api/plant`.
+        """Show these values on the page, besides those shown before: they are in `links` of a `Moment`.
 
         They are plain data, as JSON has it; raises ValueError or TypeError for anything else.
         """
