@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from arboleda.dashboard.page_part import Act as Act, PagePart as PagePart, Place as Place
     from arboleda.dashboard.page_part import Request as Request, Section as Section, Spot as Spot
     from arboleda.dashboard.tags import act_button as act_button, live as live, rows as rows, tag as tag
-    from arboleda.host.packages import API as API
+    from arboleda.host.distributions import API as API
     from arboleda.model.errors import ArboledaError as ArboledaError, Refused as Refused
     from arboleda.model.errors import StartError as StartError
     from arboleda.model.sentence import Phrase as Phrase, Sentence as Sentence
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from arboleda.web.access.needs import needs as needs
 
 HOMES = {
-    "host.packages": ("API",),
+    "host.distributions": ("API",),
     "cli.commands": ("Command",),
     "cli.language": ("say",),
     "cli.plant_options": ("RunningPlant", "StateFolder", "client"),

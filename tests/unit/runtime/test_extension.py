@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from importlib import import_module
+from inspect import isfunction
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -25,6 +27,7 @@ from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.extensions.telling import Telling
 from arboleda.runtime.parts.local_plant import LocalPlant
 from arboleda.testing import shipped
+from arboleda.testing.plugin import MakePlantWith
 from arboleda.views import view
 from arboleda.web.api import make_app
 from arboleda.web.languages import contents, texts
@@ -105,14 +108,16 @@ def test_its_page_shows_all_of_its_code(page: str) -> None:
 
 
 def test_it_imports_one_module_of_arboleda() -> None:
-    nodes = [
-        each
-        for file in FILES
-        if file.suffix == ".py"
-        for each in ast.walk(ast.parse(file.read_text("utf-8")))
-    ]
-    imported = {str(each.module) for each in nodes if isinstance(each, ast.ImportFrom) and not each.level}
-    assert {name for name in imported if name.startswith("arboleda")} == {"arboleda.extension"}
+    trees = [ast.parse(file.read_text("utf-8")) for file in FILES if file.suffix == ".py"]
+    nodes = [each for tree in trees for each in ast.walk(tree) if isinstance(each, ast.ImportFrom)]
+    imported = {str(each.module) for each in nodes if not each.level}
+    assert imported == {"arboleda.extension", "arboleda_ended.part", "setuptools"}
+
+
+def test_its_test_passes(plant_with: MakePlantWith) -> None:
+    tests = [each for each in vars(import_module("test_ended")).values() if isfunction(each)]
+    assert len(tests) == 1
+    tests[0](plant_with)
 
 
 def test_its_part_counts_and_its_route_tells(app: App) -> None:

@@ -1,4 +1,5 @@
-"""Plants for tests: the shipped one and a rig of a plant, whose time is moved by hand.
+"""Plants for tests: the shipped one, a rig of a plant, and `plant_with` for parts of packages, a fixture.
+Time is moved by hand.
 
 Each name here is imported when it is first used. Names of `arboleda_proofs.testing` lead there, with a
 warning, for one minor version.
@@ -17,10 +18,16 @@ if TYPE_CHECKING:
     from arboleda.rig.rig import Rig
 
     from .plants import shipped, slowed
+    from .with_parts import PlantWith
 
-__all__ = ["Rig", "faults", "shipped", "slowed"]
+__all__ = ["PlantWith", "Rig", "faults", "shipped", "slowed"]
 
-HOMES = {"Rig": "arboleda.rig.rig", "shipped": f"{__name__}.plants", "slowed": f"{__name__}.plants"}
+HOMES = {
+    "PlantWith": f"{__name__}.with_parts",
+    "Rig": "arboleda.rig.rig",
+    "shipped": f"{__name__}.plants",
+    "slowed": f"{__name__}.plants",
+}
 
 
 def __getattr__(name: str) -> Any:
