@@ -46,7 +46,7 @@ def test_a_task_that_failed_gets_its_report_and_no_other_one_and_the_oldest_go(
         ended("lot-2"),
     ):
         part.changed(change)
-    until(lambda: "why lot-2 failed: the cause" in caplog.text)
+    until(lambda: "report of lot-2: the cause" in caplog.text)
     part.stop()
     part.stop()
     made = [path.name for path in folder.iterdir()]

@@ -111,8 +111,20 @@ class TaskEvidence:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ReportChapter:
+    """Chapter that a package has written; its picture is in the page of the report."""
+
+    package: str
+    title: str
+    text: str
+    rows: list[list[str]]
+    picture: Annotated[str, "The media type of its picture; empty where it has none."]
+
+
+@dataclass(frozen=True, kw_only=True)
 class TaskReport:
-    """Report of a task that failed; while it is `waiting`, it has nothing but its task."""
+    """Report of a task; while it is `waiting`, it has nothing but its task. Of one that has not failed there
+    is one where a package has written a chapter."""
 
     task: str
     state: Literal["waiting", "written"]
@@ -123,3 +135,4 @@ class TaskReport:
     failure: Annotated[Explanation | None, "As the plant said it then."] = None
     cause: TaskCause | None = None
     evidence: TaskEvidence | None = None
+    chapters: Annotated[list[ReportChapter], "What packages wrote."] = field(default_factory=list)

@@ -2,5 +2,5 @@
 
 POLICY = (
     "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; "
-    "style-src 'unsafe-inline'; frame-ancestors 'none'"
+    "img-src data:; style-src 'unsafe-inline'; frame-ancestors 'none'"
 )

@@ -12,6 +12,7 @@ from typing import IO
 from mcap.records import Attachment
 from mcap.writer import Writer
 
+from .chapter import CHAPTER
 from .errors import NoRecord
 from .files import DIGEST, VERSION, attach, put, write_beginning
 from .reader import PartReader, Record
@@ -51,7 +52,7 @@ def _opened(writer: Writer, reader: PartReader, known: Container[str]) -> Iterat
 
 def _attach(writer: Writer, piece: Attachment) -> None:
     """Copy an attachment, unless each file begins with it: then the copy has it already."""
-    if piece.name.startswith((DIGEST, VERSION)):
+    if piece.name.startswith((CHAPTER, DIGEST, VERSION)):
         attach(writer, piece.name, piece.media_type, piece.data, piece.log_time)
 
 

@@ -29,6 +29,9 @@ from arboleda.recipes.decorators import first_cause
 from arboleda.views import tree_view, twin_view
 
 from .cause import BY_KEY, Cause, Evidence, TaskCommand, cause_of
+from .chapter import Chapter
+from .chapters import chapters_of
+from .reader import Record
 from .troubles import Trouble, Troubles
 
 FRAMES_S, FRAME_S = 10.0, 0.2  # span and interval of the places of devices kept
@@ -62,6 +65,11 @@ class Incident:
     absences: list[tuple[float, float]] = field(default_factory=list)
     foreign: list[tuple[float, str]] = field(default_factory=list)
     provoked: list[tuple[float, str, Sentence]] = field(default_factory=list)
+    chapters: list[Chapter] = field(default_factory=list)  # of packages
+
+    def take_chapters(self, record: Record, *, later: bool) -> None:
+        """Take in what packages wrote about the task, in its record and, if wanted, in `later` ones."""
+        self.chapters = chapters_of(record, self.task, later=later)
 
     @property
     def evidence(self) -> Evidence:

@@ -77,6 +77,7 @@ class PartReader:
         self.schemas: dict[int, Schema] = {}
         self._file = _opened(path)
         self._is_torn = False
+        self._early: list[Attachment] = []  # those that were written before the first message
         try:
             self._records = self._pieces()
             self.read = self._begin()
@@ -105,6 +106,8 @@ class PartReader:
 
     def everything(self) -> Iterator[Message | Attachment]:
         """All messages not given yet, and the attachments between them."""
+        early, self._early = self._early, []
+        yield from early
         for record in self._records:
             if isinstance(record, Attachment):
                 yield record
@@ -144,6 +147,9 @@ class PartReader:
                 metadata = record.metadata
                 self._refuse_newer(metadata)
             elif isinstance(record, Attachment) and metadata is not None:
+                if record.name != BEGINNING and not record.name.startswith(OF_PLANT):
+                    self._early.append(record)
+                    continue
                 contents[record.name], began_ns = record.data, record.log_time
             elif isinstance(record, Chunk | Footer):
                 self._records = _with(record, self._records)

@@ -7,11 +7,13 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from arboleda.engine import Plant
 from arboleda.model.plant_files import PlantFiles
 
+from .chapter import Chapter
 from .state import state_of
 from .steps import Step
 from .version_files import VersionFiles
@@ -24,6 +26,7 @@ SLICE_S, PAUSE_S = 0.0003, 0.001  # of work, and between two slices of it, in wh
 SHARE = 0.1  # greatest share of the time for snapshots
 MOST_WAITING = 20_000  # steps; some minutes of a large plant
 PATIENCE_S = 5.0  # for the rest, at the end
+MOST_CHAPTERS = 50  # of reports that wait, of some MB each
 
 
 class Recorder:
@@ -38,6 +41,8 @@ class Recorder:
         self._writing = writing
         self._unix_ns = unix_ns
         self._waiting: deque[Step | ViewSnapshot | VersionFiles] = deque()
+        self._chapters: deque[Chapter] = deque()
+        self.wrote: list[Callable[[str], None]] = []  # told of their tasks; they are on the disk soon
         self._turn = 0
         self._snapshots_in = self._snapshots_out = 0
         self._see_after = 0.0
@@ -77,6 +82,16 @@ class Recorder:
             self._snapshots_in += 1
             self._wait(ViewSnapshot(self._unix_ns(), snapshot, drawn))
 
+    def add(self, chapter: Chapter) -> None:
+        """Take in a chapter of the report of a task; from any thread."""
+        if self._over or len(self._chapters) >= MOST_CHAPTERS:
+            why = self.trouble or f"{MOST_CHAPTERS} others wait for the disk"
+            LOG.warning(
+                "a chapter of %s for the report of %s is lost: %s", chapter.package, chapter.task, why
+            )
+            return
+        self._chapters.append(replace(chapter, unix_ns=self._unix_ns()))
+
     def _wait(self, item: Step | ViewSnapshot | VersionFiles) -> None:
         if len(self._waiting) < MOST_WAITING:
             self._waiting.append(item)
@@ -108,8 +123,19 @@ class Recorder:
                 if pausing and time.perf_counter() - began > SLICE_S:
                     time.sleep(PAUSE_S)
                     began = time.perf_counter()
+        written = [*self._write_chapters()]
         if not self._over:
             self._writing.tend()
+        for chapter in written:
+            for tell in self.wrote:
+                tell(chapter.task)
+
+    def _write_chapters(self) -> Iterator[Chapter]:
+        while self._chapters and not self._over:
+            chapter = self._chapters.popleft()
+            for _ in self._writing.put(chapter):
+                pass
+            yield chapter
 
     def _put(self, item: Step | ViewSnapshot | VersionFiles) -> Iterator[None]:
         """Write a step, or a snapshot if snapshots have not used up their share of the time; else skip it."""
@@ -129,4 +155,5 @@ class Recorder:
         self._over = True
         self.trouble = why
         self._waiting.clear()
+        self._chapters.clear()
         LOG.warning("the record has stopped: %s; the plant goes on without it", why)

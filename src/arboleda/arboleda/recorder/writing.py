@@ -11,6 +11,7 @@ from typing import Protocol
 from arboleda.model.recording import Limits
 
 from .channels import OURS, Channel
+from .chapter import Chapter
 from .files import DIGEST, PartFile, part_bytes, part_path, prune
 from .preamble import Beginning
 from .steps import TOPIC, Step, as_json
@@ -77,9 +78,9 @@ class Writing:
             for message in filter(None, log.whole()):
                 self._part.put(*message)
 
-    def put(self, item: Step | ViewSnapshot | VersionFiles) -> Iterator[None]:
+    def put(self, item: Step | ViewSnapshot | VersionFiles | Chapter) -> Iterator[None]:
         """Write the messages of a step or snapshot; in pieces, between which others may work."""
-        if isinstance(item, VersionFiles):
+        if isinstance(item, VersionFiles | Chapter):
             if self._part is not None:
                 self._part.attach(item.name, item.unix_ns, item.data())
             return

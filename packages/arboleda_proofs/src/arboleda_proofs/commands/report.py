@@ -22,7 +22,7 @@ HOW = (
     "The record of the plant is executed again, and forks of it are run: report only on records that you "
     "trust. The plant may run meanwhile."
 )
-EXIT = "Exit status: 0 written, 2 no such task, one that has not failed, or no record that can be replayed."
+EXIT = "Exit status: 0 written, 2 no such task, nothing to report of it, or no record that can be replayed."
 GONE = Phrase("cli.report.gone", "{file} cannot be replayed: its first files were deleted.")
 NOT_FAILED = Phrase("cli.report.not_failed", "{task}: it is {state}, so there is nothing to report")
 NO_STATE = Phrase("cli.report.no_state", "{task}: its state is unknown, so there is nothing to report")
@@ -57,7 +57,7 @@ def report(
         found = read(task, record, where, lambda share: tell(say(READING(share=f"{share:.0%}"))))
     if found.record.missing:
         raise NoRecord(say(GONE(file=str(found.record.paths[0]))))
-    if found.incident.failure is None:
+    if found.incident.failure is None and not found.incident.chapters:
         named, state_now = plain(task, 80), found.incident.state
         shown = NOT_FAILED(task=named, state=word("task_state", state_now.value)) if state_now else None
         raise ConfigError((say(shown or NO_STATE(task=named)),))
@@ -68,6 +68,7 @@ def report(
         target.write_text(content, "utf-8")
     except OSError as error:
         raise ConfigError((say(UNWRITTEN(file=str(target), error=str(error.strerror))),)) from error
-    print(plain(say(cause.sentence), LONGEST))
+    if cause is not None:
+        print(plain(say(cause.sentence), LONGEST))
     size = f"{len(content.encode()) / 1e3:.0f}"
     print(plain(say(HAS_KB(file=str(target), kilobytes=size)), LONGEST))

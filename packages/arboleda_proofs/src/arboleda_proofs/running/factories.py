@@ -24,11 +24,13 @@ def reports(assembly: Assembly) -> Iterator[Part]:
         return
     from .reports_part import NoReports, ReportsPart
 
-    if wanted is None or assembly.ask(RecordPart) is None:
+    record = assembly.ask(RecordPart)
+    if wanted is None or record is None:
         assembly.offer(ReportsApi, NoReports())
         return
     part = ReportsPart(assembly.holdings.state.path)
     assembly.offer(ReportsApi, part)
+    record.wrote.append(part.wrote)
     if wanted.reports:
         plant.listeners.append(part.changed)
     yield part

@@ -98,6 +98,11 @@ class ReportsPart(ReportsApi):
                 "no report of %s: %d others wait; `arboleda report` makes it", task.task, MOST_WAITING
             )
 
+    def wrote(self, task: str) -> None:
+        """Have a report that is there written anew, as a package has written about its task."""
+        if ID.fullmatch(task) and self._file(task).exists():
+            self._wait(task, self._after_s)
+
     def report(self, task: str) -> str | None:
         """The report of a task, in HTML; None: it is being written now, ask again. NoReport says why there is
         none, and asking once more tries once more."""
@@ -179,7 +184,7 @@ class ReportsPart(ReportsApi):
             made.unlink(missing_ok=True)
             return plain(output.strip().rpartition("\n")[2].removeprefix("arboleda: "), 300)
         made.replace(self._file(task))
-        LOG.info("why %s failed: %s (%s)", task, plain(output.partition("\n")[0], 200), self._file(task))
+        LOG.info("report of %s: %s (%s)", task, plain(output.partition("\n")[0], 200), self._file(task))
         return None
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
+from arboleda.recorder.chapter import Chapter
 from arboleda.recorder.files import PartFile
 from arboleda.recorder.steps import TOPIC, as_json
 from arboleda.recorder.tape import TapedPlant
@@ -25,8 +26,14 @@ Act = Callable[[World], None]
 EXAMPLE = Path(__file__).parents[5] / "examples" / "lab_bench" / "plant.yaml"
 
 
-def written(folder: Path, plant_file: Path | None, text: str, act: tuple[float, Act] | None) -> Path:
-    """The record of a simulated run of one task, in which something may go wrong."""
+def written(
+    folder: Path,
+    plant_file: Path | None,
+    text: str,
+    act: tuple[float, Act] | None,
+    chapters: Sequence[Chapter] = (),
+) -> Path:
+    """The record of a simulated run of one task, in which something may go wrong, and what packages wrote."""
     model, recording = loader.load_recorded(plant_file)
     assert recording is not None
     make = partial(TapedPlant, files=recording.files)
@@ -43,6 +50,8 @@ def written(folder: Path, plant_file: Path | None, text: str, act: tuple[float, 
     part = PartFile(path, beginning, 1, plant.tape[0].unix_ns)
     for step in plant.tape:
         part.put(TOPIC, step.unix_ns, as_json(step))
+    for each in chapters:
+        part.attach(each.name, each.unix_ns, each.data())
     part.close()
     return path
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from html import unescape
 from pathlib import Path
 from typing import Any
@@ -14,6 +16,7 @@ from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
 from arboleda.model.errors import ConfigError
+from arboleda.recorder.chapter import Chapter, chapter
 from arboleda.rig.world import World
 from arboleda.web.schema.answers import model_of
 from arboleda_proofs.answers import TaskReport
@@ -119,9 +122,7 @@ def test_a_report_is_small_whole_and_in_two_languages(tmp_path: Path) -> None:
 @pytest.mark.long
 def test_a_report_has_its_facts_as_data(tmp_path: Path) -> None:
     content = reported(tmp_path, 5.3, fault("mute", "ra_1", 2.6))
-    found = DATA.search(content)
-    assert found is not None
-    report = model_of(TaskReport).model_validate({**json.loads(found[1])["facts"], "state": "written"})
+    report = facts_of(content)
     assert (report.task, report.cell, report.reason) == ("lot", "sis_a", "link_lost")
     assert report.cause is not None and (report.cause.kind, report.cause.robot) == ("silence", "ra1")
     assert report.cause.key == "cause.silence" and "ra1 said nothing for 2." in report.cause.sentence
@@ -138,3 +139,67 @@ def test_a_task_without_failure_and_one_that_is_nowhere_are_sentences(
         CliRunner().invoke(cli, ["report", "lot", "--record", str(record)], catch_exceptions=False)
     with pytest.raises(ConfigError, match="other: no record of this plant has such a task"):
         CliRunner().invoke(cli, ["report", "other", "--state", str(tmp_path)], catch_exceptions=False)
+
+
+PICTURE = b"<svg xmlns='http://www.w3.org/2000/svg'><script>alert(1)</script></svg>"
+SEEN = chapter("lot", "camera", "Seen <b>", "__DATA__ & more\nsecond line", [("gap", "0.3 mm")], PICTURE)
+
+
+def in_folder(folder: Path, *chapters: Chapter, act: tuple[float, Act] | None = None) -> list[str]:
+    """What `arboleda report` says of a task in the records of a state directory, and the file it writes."""
+    (folder / "record").mkdir()
+    written(folder / "record", None, "sis_a 0B 7 #lot", act, chapters)
+    target = folder / "lot.html"
+    arguments = ["report", "lot", "--state", str(folder), "--output", str(target)]
+    outcome = CliRunner().invoke(cli, arguments, catch_exceptions=False)
+    assert outcome.exit_code == 0, outcome.output
+    return [*outcome.output.splitlines(), target.read_text("utf-8")]
+
+
+def test_of_a_task_that_is_done_the_report_has_what_packages_wrote(tmp_path: Path) -> None:
+    *said, content = in_folder(tmp_path, SEEN)
+    assert len(said) == 1 and said[0].startswith(f"{tmp_path / 'lot.html'} has ")
+    assert "<title>Task lot</title>" in content and "Tarea lot" in content
+    assert "<h2>Seen &lt;b&gt;</h2><p class=quiet>camera</p>" in content
+    assert "<p class=lines>__DATA__ &amp; more\nsecond line</p>" in content
+    assert "<tr><td>gap<td>0.3 mm</table>" in content
+    assert "arboleda record replay" in content and "id=test" not in content and "id=copy" not in content
+    report = facts_of(content)
+    assert report.cause is None and [each.title for each in report.chapters] == ["Seen <b>"]
+    assert report.chapters[0].rows == [["gap", "0.3 mm"]] and report.chapters[0].picture == "image/svg+xml"
+
+
+def test_a_picture_is_an_image_in_which_no_script_runs(tmp_path: Path) -> None:
+    content = in_folder(tmp_path, SEEN)[-1]
+    encoded = base64.b64encode(PICTURE).decode()
+    assert f'<img src="data:image/svg+xml;base64,{encoded}" alt="Seen &lt;b&gt;">' in content
+    assert "alert(1)" not in content and "default-src 'none'; img-src data:;" in content
+
+
+def test_what_a_later_start_wrote_about_a_task_is_in_its_report(tmp_path: Path) -> None:
+    record = tmp_path / "record"
+    record.mkdir()
+    written(record, None, "sis_a 0B 7 #lot", None, [SEEN])
+    other = tmp_path / "later"
+    other.mkdir()
+    late = replace(SEEN, title="Measured later")
+    written(other, None, "sis_a 0B 7 #other", None, [late]).rename(record / "8-0001.mcap")
+    found = reading.read("lot", None, record)
+    assert [each.title for each in found.incident.chapters] == ["Seen <b>", "Measured later"]
+    assert [each.title for each in reading.read("lot", record / "7-0001.mcap", record).incident.chapters] == [
+        "Seen <b>"
+    ]
+
+
+@pytest.mark.long
+def test_the_report_of_a_failure_has_them_after_the_evidence(tmp_path: Path) -> None:
+    content = in_folder(tmp_path, SEEN, act=(5.3, fault("mute", "ra_1", 2.6)))[-1]
+    parts = [content.index(each) for each in ("ra1 said nothing for", "Seen &lt;b&gt;", "id=test")]
+    assert parts == sorted(parts)
+    assert facts_of(content).cause is not None and len(facts_of(content).chapters) == 1
+
+
+def facts_of(content: str) -> Any:
+    found = DATA.search(content)
+    assert found is not None
+    return model_of(TaskReport).model_validate({**json.loads(found[1])["facts"], "state": "written"})

@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
-from arboleda_proofs.running.reports_part import MOST_WAITING, NoReport, ReportsPart
+from arboleda_proofs.running.reports_part import FOLDER, MOST_WAITING, NoReport, ReportsPart
 
 SHIPPED = loader.load_recorded()[1]
 
@@ -24,6 +24,20 @@ def test_one_too_many_is_refused(tmp_path: Path) -> None:
     for number in range(MOST_WAITING):
         assert part.report(f"lot-{number}") is None
     assert part.report("lot-0") is None, "it waits already"
+    with pytest.raises(NoReport, match="20 other reports wait"):
+        part.report("one-more")
+
+
+def test_a_report_that_is_there_is_written_anew_once_a_package_wrote_about_its_task(tmp_path: Path) -> None:
+    part = ReportsPart(tmp_path)
+    part.wrote("lot")
+    part.wrote("../lot")
+    (tmp_path / FOLDER).mkdir()
+    (tmp_path / FOLDER / "old.html").write_text("old")
+    part.wrote("old")
+    for number in range(MOST_WAITING - 1):
+        assert part.report(f"lot-{number}") is None
+    assert part.report("old") == "old", "until it is written"
     with pytest.raises(NoReport, match="20 other reports wait"):
         part.report("one-more")
 

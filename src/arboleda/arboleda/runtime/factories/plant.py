@@ -15,6 +15,7 @@ from arboleda.recorder.preamble import Beginning
 
 from ..alarm_options import AlarmOptions
 from ..extensions.alarms import PackageAlarms
+from ..extensions.chapters import Chapters
 from ..parts.alarms import alarms_part
 from ..parts.bridge import BridgePart
 from ..parts.drivers import DriversPart
@@ -51,6 +52,7 @@ def plant(assembly: Assembly) -> Iterable[Part]:
         made.screens.diagnoses.append(packages.diagnosis)
         made.screens.beside = packages.rows
         assembly.offer(PackageAlarms, packages)
+        assembly.offer(Chapters, Chapters(lambda: made.screens.recorder))
         assembly.offer(Orchestrator, made)
         assembly.offer(LocalPlant, LocalPlant(made, held.history, assembly))
         assembly.links.add(lambda: {"memory": asdict(held.pace.pace)})

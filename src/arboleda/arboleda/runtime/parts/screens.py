@@ -11,6 +11,7 @@ from arboleda.engine import Plant
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.sentence import Phrase
+from arboleda.recorder.chapter import Chapter
 from arboleda.views import diagnostics, twin_view, view
 from arboleda.views.resting_cells import RestingCells
 
@@ -36,14 +37,17 @@ NOT_KEPT = Phrase(
 class FlightRecorder(Protocol):
     """The writer of the flight record: gets each step and each snapshot in the plant's thread.
 
-    `trouble` is the reason for which it stopped.
+    `trouble` is the reason for which it stopped. `add` takes a chapter of the report of a task, in any
+    thread; `wrote` are told of its task once it is written.
     """
 
     trouble: str
+    wrote: list[Callable[[str], None]]
 
     def stepped(self, plant: Plant, now: float, events: Sequence[Any], messages: Sequence[Any]) -> None: ...
     def saw(self, snapshot: dict[str, Any], drawn: dict[str, Any]) -> None: ...
     def knows(self, digest: str, files: PlantFiles) -> None: ...
+    def add(self, chapter: Chapter) -> None: ...
 
 
 class RosPort(PlantPort, Protocol):

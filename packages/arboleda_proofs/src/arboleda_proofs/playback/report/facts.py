@@ -10,18 +10,34 @@ from arboleda.recorder.cause import Cause
 from arboleda.recorder.incident import Incident
 
 
-def facts(found: Incident, cause: Cause) -> dict[str, Any] | None:
-    """The facts of a task that failed; None of one that did not."""
-    if found.failure is None:
-        return None
-    zero = found.failed_at or found.ended_at or 0.0
-    last = found.evidence.last
-    accepted_at = None if last is None else last.accepted_at
-    return {
+def facts(found: Incident, cause: Cause | None) -> dict[str, Any]:
+    """The facts of a task; why it failed, if it did."""
+    of_task = {
         "task": found.task,
         "text": found.text,
         "cell": found.cell,
         "ended_s": found.unix_ns / 1e9,
+        "chapters": [  # without their pictures, which are in the page
+            {
+                "package": each.package,
+                "title": each.title,
+                "text": each.text,
+                "rows": [[*row] for row in each.rows],
+                "picture": each.picture_type,
+            }
+            for each in found.chapters
+        ],
+    }
+    return of_task if cause is None else {**of_task, **_of_failure(found, cause)}
+
+
+def _of_failure(found: Incident, cause: Cause) -> dict[str, Any]:
+    """The cause of a failure, and the evidence for it."""
+    assert found.failure is not None
+    zero = found.failed_at or found.ended_at or 0.0
+    last = found.evidence.last
+    accepted_at = None if last is None else last.accepted_at
+    return {
         "reason": found.failure.reason.value,
         "failure": _sentence_row(found.failure.sentence),
         "cause": {"kind": cause.kind, "robot": cause.robot, **_sentence_row(cause.sentence)},

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
@@ -25,13 +27,16 @@ from .facts import facts
 from .scene import scene
 from .tries import ForkTrial
 
+SLOT = re.compile("__([A-Z]+)__")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Report:
-    """The contents of a report; `command` executes the record again up to the end of the task."""
+    """The contents of a report; `command` executes the record again up to the end of the task. Of a task that
+    has not failed there is no `cause`, and nothing that would have changed it."""
 
     incident: Incident
-    cause: Cause
+    cause: Cause | None
     model: PlantModel
     tries: list[ForkTrial]
     case: str
@@ -41,27 +46,66 @@ class Report:
 def page(report: Report) -> str:
     """The content of the file."""
     template = resources.files(__package__).joinpath("report.html").read_text("utf-8")
-    drawn = scene(report.incident, report.model)
-    body = "\n".join(_parts(report, has_twin=drawn is not None))
-    data = json.dumps({"scene": drawn, "facts": facts(report.incident, report.cause)}).replace("<", "\\u003c")
-    title = escape(texts(FIRST, "report")["title"].format(task=report.incident.task))
-    hidden = ",".join(f"html[lang={each}] body [lang]:not([lang={each}])" for each in LANGUAGES)
-    names = " / ".join(escape(texts(each, "page")["name"]) for each in LANGUAGES)
-    put = {"TITLE": title, "HIDDEN": hidden, "NAMES": names, "LANGUAGES": json.dumps(LANGUAGES)}
-    for name, text in (put | {"BODY": body, "DATA": data}).items():
-        template = template.replace(f"__{name}__", text)
-    return template
+    drawn = scene(report.incident, report.model) if report.cause else None
+    told = {"scene": drawn, "facts": facts(report.incident, report.cause)}
+    put = {
+        "TITLE": escape(texts(FIRST, "report")[_title(report)].format(task=report.incident.task)),
+        "HIDDEN": ",".join(f"html[lang={each}] body [lang]:not([lang={each}])" for each in LANGUAGES),
+        "NAMES": " / ".join(escape(texts(each, "page")["name"]) for each in LANGUAGES),
+        "LANGUAGES": json.dumps(LANGUAGES),
+        "BODY": "\n".join(_parts(report, has_twin=drawn is not None)),
+        "DATA": json.dumps(told).replace("<", "\\u003c"),
+    }
+    return SLOT.sub(lambda found: put[found[1]], template)  # in one pass: texts may look like a slot
 
 
 def _parts(report: Report, *, has_twin: bool) -> Iterator[str]:
     found, cause = report.incident, report.cause
     when = datetime.fromtimestamp(found.unix_ns / 1e9).isoformat(" ", "seconds")
-    yield f"<h1>{_each('title', task=found.task)}</h1>"
+    yield f"<h1>{_each(_title(report), task=found.task)}</h1>"
     yield f"<p class=quiet>{escape(found.text)} · {escape(found.cell)} · {when}</p>"
+    if cause is not None:
+        yield from _why(found, cause)
+    yield from _chapters(found)
+    if cause is not None:
+        yield from _course(report, has_twin=has_twin)
+        yield from _changes(report)
+    yield f"<section><h2>{_each('again')}</h2><pre>{escape(report.command)}</pre></section>"
+    if cause is not None:
+        yield f"<section><h2>{_each('test')}</h2><p class=quiet>{_each('test_note')}</p>"
+        yield f"<pre id=test>{escape(report.case)}</pre>"
+        yield f"<button id=copy>{_each('copy')}</button> <button id=save>{_each('save')}</button></section>"
+
+
+def _title(report: Report) -> str:
+    """The key of the words in its title."""
+    return "title_of_any" if report.cause is None else "title"
+
+
+def _why(found: Incident, cause: Cause) -> Iterator[str]:
     yield f"<section class=cause><h2>{_each('cause')}</h2><p class=big>{_sentence_spans(cause.sentence)}</p>"
-    own = report.incident.failure.sentence if report.incident.failure else ""
+    own = found.failure.sentence if found.failure else ""
     yield f"<p class=quiet>{_each('cause_note')} {_sentence_spans(own)}</p></section>"
     yield f"<section><h2>{_each('evidence')}</h2><ul>{''.join(_evidence(found))}</ul></section>"
+
+
+def _chapters(found: Incident) -> Iterator[str]:
+    """What packages wrote. A picture is an image, in which no script runs."""
+    for each in found.chapters:
+        yield f"<section><h2>{escape(each.title)}</h2><p class=quiet>{escape(each.package)}</p>"
+        if each.text:
+            yield f"<p class=lines>{escape(each.text)}</p>"
+        rows = "".join(f"<tr>{''.join(f'<td>{escape(cell)}' for cell in row)}" for row in each.rows)
+        yield f"<table>{rows}</table>"
+        if each.picture:
+            source = f"data:{each.picture_type};base64,{base64.b64encode(each.picture).decode()}"
+            yield f'<img src="{source}" alt="{escape(each.title)}">'
+        yield "</section>"
+
+
+def _course(report: Report, *, has_twin: bool) -> Iterator[str]:
+    """The last seconds before the failure, and the acts of operators."""
+    found = report.incident
     if has_twin:
         yield f"<section><h2>{_each('twin')}</h2><svg id=twin></svg>"
         yield "<p><input id=time type=range min=0 value=0> <output id=at></output> "
@@ -73,12 +117,11 @@ def _parts(report: Report, *, has_twin: bool) -> Iterator[str]:
     acts = "".join(f"<li>{at - _zero(found):+.2f} s {escape(word)}</li>" for at, word in found.acts)
     acts = acts or f"<li>{_each('none')}</li>"
     yield f"</section><section><h2>{_each('acts')}</h2><ul>{acts}</ul></section>"
+
+
+def _changes(report: Report) -> Iterator[str]:
     yield f"<section><h2>{_each('changed')}</h2><p class=quiet>{_each(_note(report))}</p>"
     yield f"<table>{''.join(_try(each, report) for each in report.tries)}</table></section>"
-    yield f"<section><h2>{_each('again')}</h2><pre>{escape(report.command)}</pre></section>"
-    yield f"<section><h2>{_each('test')}</h2><p class=quiet>{_each('test_note')}</p>"
-    yield f"<pre id=test>{escape(report.case)}</pre>"
-    yield f"<button id=copy>{_each('copy')}</button> <button id=save>{_each('save')}</button></section>"
 
 
 def _note(report: Report) -> str:
@@ -109,7 +152,8 @@ def _mine(report: Report) -> list[str]:
     """The devices of the cell, and the robot that the cause names."""
     cells = [cell for cell in report.model.cells if cell.name == report.incident.cell]
     names = [robot.name for cell in cells for robot in cell.robots]
-    names += [report.cause.robot] if report.cause.robot and report.cause.robot not in names else []
+    blamed = report.cause.robot if report.cause else None
+    names += [blamed] if blamed and blamed not in names else []
     return [name for name in names if name in report.incident.messages]
 
 

@@ -55,6 +55,7 @@ def read(
             incident, steps = incident_of(task, whole, tell)
             if incident.ended_at is not None or time.monotonic() > until:
                 model = model_of(whole.first.beginning)
+                incident.take_chapters(whole, later=record is None)
                 return TaskRecord(record=whole, model=model, incident=incident, read=steps)
         elif time.monotonic() > until or not paths or not _is_written(paths[0]):
             raise ConfigError((f"{plain(task, 80)}: no record of this plant has such a task",))

@@ -1,0 +1,44 @@
+"""Chapters that packages write into the reports of tasks."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterable
+
+from arboleda.recorder.chapter import chapter
+
+from ..parts.screens import FlightRecorder
+
+LOG = logging.getLogger(__name__)
+
+
+class Chapters:
+    """Chapters of reports: kept in the flight record, from which reports are made, here and elsewhere.
+
+    `recorder` gives its writer, None where the plant writes no record: then nothing is kept.
+    """
+
+    def __init__(self, recorder: Callable[[], FlightRecorder | None]) -> None:
+        self._recorder = recorder
+        self._is_said = False
+
+    def add(
+        self,
+        package: str,
+        task: str,
+        title: str,
+        text: str = "",
+        rows: Iterable[Iterable[object]] = (),
+        picture: bytes | None = None,
+    ) -> None:
+        """Write a chapter; from any thread, waits for nothing. ValueError without a title, and for a picture
+        that is no PNG, JPEG or SVG, or is too large."""
+        made = chapter(task, package, title, text, rows, picture)
+        recorder = self._recorder()
+        if recorder is not None:
+            recorder.add(made)
+        elif not self._is_said:
+            self._is_said = True
+            LOG.warning(
+                "%s writes into the reports of tasks; this plant writes no record to keep it", package
+            )
