@@ -8,12 +8,13 @@ from collections.abc import Iterator
 from configparser import ConfigParser
 from dataclasses import replace
 from importlib import import_module
+from inspect import isfunction
 from pathlib import Path
 from typing import Any
 
 import pytest
 from tests.added_package import register
-from tests.in_process import Caller
+from tests.in_process import Caller, without_threads
 from typer.testing import CliRunner, Result
 
 from arboleda.cli.main import cli
@@ -22,6 +23,7 @@ from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.extensions.telling import Telling
 from arboleda.runtime.parts.local_plant import LocalPlant
 from arboleda.testing import shipped
+from arboleda.testing.plugin import MakePlantWith
 from arboleda.web.api import make_app
 
 NAME = "my_counts"
@@ -53,7 +55,8 @@ def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     for each in (tmp_path / "site", folder):
         monkeypatch.syspath_prepend(each)
     yield folder
-    sys.modules.pop(NAME, None)
+    for name in (NAME, f"test_{NAME}"):
+        sys.modules.pop(name, None)
 
 
 def counted(tmp_path: Path, **settings: str) -> tuple[App, Any]:
@@ -88,6 +91,13 @@ def test_what_it_writes_counts_the_tasks_that_its_settings_name(site: Path, tmp_
     assert counted(tmp_path)[1] == {"sis_a": 1}, (
         "the counts are kept, and a task that was cancelled is not done"
     )
+
+
+def test_its_test_passes(site: Path, plant_with: MakePlantWith, monkeypatch: pytest.MonkeyPatch) -> None:
+    without_threads(monkeypatch)
+    tests = [each for each in vars(import_module(f"test_{NAME}")).values() if isfunction(each)]
+    assert len(tests) == 1
+    tests[0](plant_with)
 
 
 def test_it_is_for_this_api(site: Path) -> None:

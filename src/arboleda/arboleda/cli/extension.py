@@ -52,7 +52,11 @@ THINGS = {
     "kinds": Phrase("cli.extension.kinds", "kinds {names}"),
     "stores": Phrase("cli.extension.stores", "stores {names}"),
 }
-WRITTEN = {"extension.toml": "pyproject.toml", "extension.py": f"{NAMED}.py"}
+WRITTEN = {
+    "extension.toml": "pyproject.toml",
+    "extension.py": f"{NAMED}.py",
+    "tests_of_extension.py": f"test_{NAMED}.py",
+}
 NAME_RULE = Phrase("cli.extension.name_rule", f"{RULE}, and no module may have it")
 BAD_NAME = Phrase("cli.extension.bad_name", "{name} cannot be the name of a package; it must be {rule}")
 NEXT = Phrase(
@@ -61,6 +65,9 @@ NEXT = Phrase(
 Install it beside Arboleda; what it counts is shown by a plant that starts after that, at /api/{name}:
   {python} -m pip install -e {folder}
   {command} up
+Its test; the first line once, for pytest has to be beside Arboleda:
+  {python} -m pip install pytest
+  {python} -m pytest {folder}
 
 A plant file may set what Settings in {name}.py has: extensions: {{{name}: {{counts: failed}}}}""",
 )
@@ -103,7 +110,7 @@ def new(
         Path, typer.Argument(metavar="FOLDER", help="The folder to write; its name is that of the package.")
     ],
 ) -> None:
-    """Write a package of your own: a part that counts tasks, with settings, a table and a route."""
+    """Write a package of your own: a part that counts tasks, with settings, a table, a route and a test."""
     name = folder.resolve().name
     if not is_name(name) or find_spec(name) is not None:
         raise ConfigError((say(BAD_NAME(name=quoted(name), rule=NAME_RULE())),))
