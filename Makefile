@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test smoke check long-test integration-test test-tools judge-test ros-test ros-build kilted-test newest-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost names-taken performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
+.PHONY: run test smoke check long-test integration-test alone-test test-tools judge-test ros-test ros-build kilted-test newest-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost names-taken performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -9,8 +9,8 @@ PYTEST_ARGS ?= -n auto --dist worksteal
 INTEGRATION_ARGS ?= -n 4 --dist worksteal # more than cores: most of the time, tests of the real chain wait
 SMOKE_ARGS ?= -n 2 --dist worksteal
 REAL = scripts/with-messages $(BIN)/python -m pytest -p tests.second_tries
-TESTS ?= tests/unit tests/scenario tests/meta packages/*/tests/fast
-INTEGRATION_TESTS ?= tests/processes tests/contract tests/system tests/tutorial packages/*/tests/real
+TESTS ?= tests/unit tests/scenario tests/meta $(wildcard packages/*/tests/fast)
+INTEGRATION_TESTS ?= tests/processes tests/contract tests/system tests/tutorial $(wildcard packages/*/tests/real)
 KILTED_TESTS ?= tests/unit/ros $(addprefix tests/system/test_ros_,tools.py link.py log.py)
 NEWEST_TESTS ?= packages/arboleda_drivers/tests/fast tests/unit/adapters $(addprefix packages/arboleda_drivers/tests/real/,contract modbus opcua s7 serial_arm) packages/arboleda_fleet/tests/real/opcua_view tests/contract/test_mqtt.py
 SIMULATE = $(BIN)/arboleda simulate $(if $(JOBS),--jobs $(JOBS))
@@ -60,6 +60,9 @@ integration-test:  ## run the tests with threads and processes: our own, adapter
 
 test-tools:  ## install the programs of others, too large for everybody, that some tests try what we write with: rerun
 	@scripts/install tools
+
+alone-test:  ## run the tests of the cell runner in a clone without packages/, in an environment of its own
+	@scripts/without-packages make test
 
 judge-test:  ## plant a bug for each invariant of the simulator, which has to find it; tests/mutants
 	@scripts/install test

@@ -31,7 +31,6 @@ from hypothesis import HealthCheck, settings
 
 from arboleda.plant_file import recipe_trial
 from arboleda.testing.domains import Domain
-from arboleda_proofs.campaigns.proof import forks
 
 from . import tried_here
 from .dealing import dealt, share
@@ -261,16 +260,13 @@ def nothing_beside(request: pytest.FixtureRequest) -> Iterator[None]:
 
 @pytest.fixture(autouse=True, scope="module")
 def quick_trials(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Python of a plant is tried in this process, and faults begin in it, but for tests of real parts; these
-    wait for another process however long that takes by the clock."""
+    """Python of a plant is tried in this process, but for tests of real parts; these wait for another process
+    however long that takes by the clock."""
     if is_real(request.node):
         with mock.patch.multiple(recipe_trial, WAITS=200.0, STUCK_S=3000.0):
             yield
         return
-    with (
-        mock.patch.object(recipe_trial, "verdict", tried_here.verdict),
-        mock.patch.object(forks, "CAN_FORK", False),
-    ):
+    with mock.patch.object(recipe_trial, "verdict", tried_here.verdict):
         yield
 
 

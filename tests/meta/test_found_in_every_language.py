@@ -12,10 +12,7 @@ from string import Formatter
 import pytest
 from tests.packages import PACKAGES
 
-from arboleda.dashboard.findings import findings
 from arboleda.web.languages import FIRST, LANGUAGES, contents
-from arboleda_boards.conformance.judge import CHECKS, DEVICE_CHECKS
-from arboleda_proofs.simulator.faults import KINDS
 
 PACKAGE = Path(__file__).parents[2] / "src/arboleda/arboleda"
 WORDS = PACKAGE / "web/languages"
@@ -177,18 +174,6 @@ def test_a_plant_that_runs_says_what_its_drivers_say(file: Path, language: str) 
     found = sentences(ast.parse(file.read_text("utf-8")))
     alone = [(line, text) for line, text in found if not _is_said(text, known)]
     assert alone == [], f"say these in {language}/reasons.yaml"
-
-
-@pytest.mark.parametrize("language", LANGUAGES[1:])
-def test_what_a_check_wants_of_a_board_has_its_twin(language: str) -> None:
-    wanted = {(each.steps.__doc__ or "").strip() for each in (*CHECKS, *DEVICE_CHECKS)}
-    assert wanted - said(language) == set(), f"say these in {language}/findings.yaml"
-
-
-@pytest.mark.parametrize("language", LANGUAGES[1:])
-def test_a_kind_of_fault_is_explained(language: str) -> None:
-    alone = [each.name for each in KINDS.values() if findings(language)(each.sentence) == each.sentence]
-    assert alone == [], f"say their docstrings in {language}/findings.yaml"
 
 
 def test_sentences_are_found() -> None:

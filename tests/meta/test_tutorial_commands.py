@@ -12,7 +12,6 @@ import pytest
 
 from arboleda.cli.main import main
 from arboleda.web.languages import LANGUAGES
-from arboleda_class.lessons import said
 
 from ..tutorial_pages import LEFT_OUT, ROOT, commands, differs, is_plain, pages
 
@@ -67,14 +66,3 @@ def test_left_out_lines_may_be_any_and_others_may_not() -> None:
     assert differs(page, "one\nport 127.0.0.1:1\ntwo\nthree\n")
     assert differs(page, "port 127.0.0.1:1\ntwo\n")
     assert differs(["one", LEFT_OUT], "one\nTraceback (most recent call last)\n")
-
-
-@pytest.mark.parametrize("page", pages("es"), ids=lambda page: page.stem)
-def test_a_spanish_page_shows_what_its_lesson_prints(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ARBOLEDA_LANG", "es")
-    english = commands(page.with_name(page.name.replace(".es.md", ".md")))
-    for (command, expected), (typed, printed) in zip(english, commands(page), strict=True):
-        assert typed == command
-        if "examples/" in command and ".venv/bin/python" in command:
-            spoken = [said(line) for line in expected if LEFT_OUT not in line]
-            assert [line for line in printed if LEFT_OUT not in line] == spoken

@@ -7,10 +7,9 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
+from packages.arboleda_make.tests.fast.scenario.assistant_site import REST, TREE, Site
 
 from arboleda_make.drafts.api import DraftRefused
-
-from ..scenario.assistant_site import REST, TREE, Site
 
 OTHER = TREE.format(name="Rest", steps="<Sequence><lamp_dark/></Sequence>")
 

@@ -9,12 +9,6 @@ import pytest
 from arboleda.model.messages import Reason, TaskChanged, TaskState
 from arboleda.model.plant_model import Evidence
 from arboleda.testing import Rig, shipped
-from arboleda_proofs.simulator.faults import Fault
-from arboleda_proofs.simulator.run import Simulation
-from arboleda_proofs.simulator.shrink import explicit
-
-from ..lengths import sample
-from ..probes import Probes
 
 LEVELS = pytest.mark.parametrize("evidence", list(Evidence))
 
@@ -65,18 +59,6 @@ def test_a_bridge_that_never_comes_back_leaves_no_task_hanging(evidence: Evidenc
     change = outcome(rig)
     by_deadline = evidence is Evidence.STATE
     assert change.reason is (Reason.DEADLINE if by_deadline else Reason.LINK_LOST)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("seed", sample([1, 2, 3], every=2))
-def test_what_a_cut_connection_has_kept_moves_nothing_when_it_is_mended(seed: int) -> None:
-    cut = Fault(kind="partition", at=5.0, seconds=8.0, target="ra_1", word="down, held")
-    simulation = Simulation(shipped("sis_a"), seed, explicit((cut,)))
-    probes = Probes(simulation.world)
-    result = simulation.run(seconds=60.0)
-    assert result.broken is None, str(result.broken)
-    assert probes.fired["board: tarde"] > 0, "commands came after it"
-    assert result.outcomes["done"] > 0, "and the cell goes on"
 
 
 @LEVELS

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import pytest
-
-from arboleda.model.messages import TaskState, Verb
+from arboleda.model.messages import Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.testing import Rig, shipped
-from arboleda_proofs.testing import Witness
 
 from .restarts import crash_without_trail
-
-TAKEN_AT = {"0A": "pick-up A", "0B": "pick-up", "0C": "pick-up C", "2A": "pick-up A", "1C": "pick-up C"}
 
 
 def held_with_a_part(model: PlantModel) -> Rig:
@@ -24,27 +19,6 @@ def held_with_a_part(model: PlantModel) -> Rig:
     assert rig.operate(Verb.HOLD, "sis_a") is None
     rig.wait(1.0)
     return rig
-
-
-@pytest.mark.parametrize("path", TAKEN_AT)
-def test_a_part_is_gripped_at_the_pick_up_of_its_exit(path: str) -> None:
-    rig = Rig(shipped("sis_a"))
-    witness = Witness(rig)
-    rig.wait(0.5)
-    rig.submit(f"sis_a {path} 7")
-    rig.wait_for("sis_a", f"move to {TAKEN_AT[path]}")
-    assert rig.wait(60.0, until=lambda: rig.plant.at_rest)
-    assert [change.state for change in rig.outcomes().values()] == [TaskState.DONE]
-    assert (witness.part["ra1"], witness.illegal) == ("station 7", [])
-
-
-def test_a_recovery_brings_the_part_back_to_the_exit_it_came_from() -> None:
-    rig = held_with_a_part(shipped("sis_a"))
-    witness = Witness(rig)
-    assert rig.operate(Verb.ABANDON, "sis_a") is None
-    rig.wait_for("sis_a", "carry back/move to pick-up A")
-    assert rig.wait(60.0, until=lambda: rig.plant.at_rest)
-    assert (witness.part["ra1"], witness.illegal) == ("pick-up A", [])
 
 
 def test_a_plant_that_starts_anew_brings_a_part_to_where_the_mobile_stands() -> None:

@@ -12,14 +12,9 @@ from arboleda.model.messages import Check, Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence
 from arboleda.recipes import Kit, recipe, work
 from arboleda.rig import faults
-from arboleda.rig.world import PLANT
 from arboleda.sim.arm import ArmBody
 from arboleda.testing import Rig, shipped, slowed
-from arboleda_proofs.testing import Witness
 
-from .restarts import restart
-
-Stage = Callable[..., tuple[Rig, Witness]]
 CELL = "sis_a"
 TASKS = {"storage": "sis_a 0B 7 #one", "palletizing": "ra1 palletizing #one"}
 tasks = pytest.mark.parametrize("recipe_name", TASKS)
@@ -117,26 +112,6 @@ def test_a_sensor_that_falls_silent_within_a_boot_is_waited_for() -> None:
     assert ended(rig).reason is Reason.NO_PIECE
 
 
-def test_a_check_that_is_needed_fails_without_a_sensor(stage: Stage) -> None:
-    rig, _ = stage(piece_check=True)
-    mute(rig)
-    rig.crash("ra_1")
-    rig.wait(2.0)
-    rig.operate(Verb.HOME, "ra1")
-    rig.wait(30.0)
-    rig.submit(TASKS["storage"])
-    assert ended(rig).reason is Reason.NO_PIECE
-
-
-def test_where_nothing_is_to_be_checked_a_lost_part_is_not_missed_and_the_task_says_so(stage: Stage) -> None:
-    rig, witness = stage(piece_check=False)
-    rig.submit(TASKS["storage"])
-    lost_part(rig)
-    change = ended(rig)
-    assert (change.state, change.unchecked) == (TaskState.DONE, (Check.GRIP,))
-    assert witness.part["ra1"] == "floor"
-
-
 @pytest.mark.parametrize("evidence", [Evidence.JOINTS, Evidence.STATE])
 def test_who_says_nothing_of_its_effector_has_released_nothing_for_sure(evidence: Evidence) -> None:
     rig = Rig(slowed(shipped(CELL, evidence=evidence), 2))
@@ -145,23 +120,6 @@ def test_who_says_nothing_of_its_effector_has_released_nothing_for_sure(evidence
     change = ended(rig)
     assert (change.state, change.unchecked) == (TaskState.DONE, (Check.GRIP, Check.RELEASE))
     assert str(change.sentence) == "not checked: whether the part was gripped and let go of"
-
-
-@pytest.mark.parametrize("evidence", [Evidence.JOINTS, Evidence.STATE])
-def test_a_release_that_a_reboot_cut_off_is_not_told_as_checked(stage: Stage, evidence: Evidence) -> None:
-    rig, _ = stage(evidence, arm={"assume_homed": True})
-    rig.submit(TASKS["storage"])
-    rig.wait_for(CELL, "effector off/switch")
-    rig.stall(PLANT, 10.0)
-    rig.stop_bridge()
-    rig.crash("ra_1")
-    rig.wait(1.0)
-    restart(rig)
-    rig.wait(8.0)
-    assert rig.plant.advice(CELL)[0].do is Verb.RETRY
-    assert rig.operate(Verb.RETRY, CELL) is None
-    change = ended(rig)
-    assert (change.state, change.unchecked) == (TaskState.DONE, (Check.RELEASE,))
 
 
 @recipe("fetch")

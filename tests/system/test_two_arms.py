@@ -14,7 +14,7 @@ pytestmark = pytest.mark.system
 
 PAGE = (Path(__file__).parents[2] / "docs/how-to/two-arms.md").read_text("utf-8")
 BROKER = "192.168.1.10:1883"
-# tests/scenario/test_scara_pair.py and packages/arboleda_boards/tests/real have these
+# test_scara_pair.py of arboleda_proofs and tests/real of arboleda_boards have these
 ELSEWHERE = ("python", "arboleda conformance")
 PICKUPS = {"ra_1": "45,10,0", "ra_2": "35,10,0"}
 

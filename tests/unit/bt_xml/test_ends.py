@@ -10,7 +10,6 @@ from arboleda.bt_xml import ends
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
-from arboleda_proofs.simulator.run import Simulation
 
 from ..kinds.test_places import PLANT
 from .findings import looked_at, mistakes, tree, warnings
@@ -110,13 +109,6 @@ def test_what_no_cell_says_is_refused_with_its_place(tmp_path: Path, end: str, s
     lines = refusal(tmp_path, end)
     assert all(line.startswith(f"{tmp_path / 'bring.xml'}:10:29: ") for line in lines)
     assert sentence in lines[0]
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("end", "broken"), [("nest: 1", None), ("nest: 0", "recipes_end_as_they_say")])
-def test_the_simulator_judges_the_end(tmp_path: Path, end: str, broken: str | None) -> None:
-    found = Simulation(plant(tmp_path, end), 1, lambda minute: []).run(cycles=1)
-    assert (found.broken and found.broken.invariant) == broken
 
 
 def test_a_parameter_of_which_the_end_says_how_many_parts_are_there_is_a_place(tmp_path: Path) -> None:

@@ -1,5 +1,5 @@
 """Nothing runs below a node that has ended, for every kind of node, every way out of it and every cause: of
-trees as XML, and of recipes in Python, of which what they raise is in tests/scenario/test_halted_trees.py.
+trees as XML, and of recipes in Python, of which what they raise is tried by arboleda_proofs.
 """
 
 from __future__ import annotations

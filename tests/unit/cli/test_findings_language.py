@@ -12,7 +12,6 @@ from arboleda.dashboard.wording import words
 from arboleda.model.sentence import Phrase
 from arboleda.web.languages import contents
 from arboleda.web.languages.templates import Templates
-from arboleda_proofs.campaigns.setting import rules
 
 SENTENCES: dict[str, str] = contents("es", "findings")["sentences"]
 FEWER = {"  faults     {0} of {1} {2} enough:"}  # the value is a verb, of which Spanish needs no second form
@@ -192,11 +191,6 @@ def test_a_reason_of_the_plant_is_said_inside_a_finding_as_on_the_page(reason: P
     sentence = reason(**{slot: "x9" if spec == "" else 7 for slot, spec in values(reason)})
     english = f'task failed once without any fault: recipe rinse (rejected), as in "rinse 1": {sentence}'
     assert findings("es")(english).endswith(f'"rinse 1": {words("es").say(sentence)}')
-
-
-@pytest.mark.parametrize("rule", list(rules().values()), ids=list(rules()))
-def test_the_rule_of_an_invariant_is_said_in_spanish(rule: str) -> None:
-    assert findings("es")(f"  must hold  {rule}") == f"  debe cumplirse {SENTENCES[rule]}"
 
 
 def values(phrase: Phrase) -> list[tuple[str, str]]:

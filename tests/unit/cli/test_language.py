@@ -5,14 +5,12 @@ from __future__ import annotations
 import pytest
 import typer.testing
 
-from arboleda.cli.language import VARIABLES, language, say_error, say_in, say_row
+from arboleda.cli.language import VARIABLES, language, say_in
 from arboleda.cli.main import cli
 from arboleda.cli.screen import says
-from arboleda.client.errors import Conflict
 from arboleda.model import text
-from arboleda.model.errors import ArboledaError, TextError
+from arboleda.model.errors import TextError
 from arboleda.testing import shipped
-from arboleda_proofs.running.fault_desk import AN_INSTANT
 
 
 @pytest.fixture
@@ -50,24 +48,6 @@ def test_the_overview_is_in_the_language(spanish: None) -> None:
     shown = typer.testing.CliRunner().invoke(cli, ["help", "operate"]).output
     words = " ".join(shown.split())
     assert words.startswith("Operarla:") and "Lleva un robot a su referencia." in words
-
-
-def test_errors_of_this_process_and_of_a_plant_are_said_in_it(spanish: None) -> None:
-    said = "lost_part termina al instante: no indique cuánto dura"
-    sentence = AN_INSTANT(kind="lost_part")
-    assert say_error(ArboledaError(sentence)) == said
-    assert say_error(Conflict(409, {"sentence": str(sentence), **sentence.data()})) == said
-    assert say_error(ArboledaError("in words of its own")) == "in words of its own"
-    assert say_error(Conflict(409, {"sentence": "of a later version", "key": "x.y", "values": {}})) == (
-        "of a later version"
-    )
-
-
-def test_a_task_is_told_in_it(spanish: None) -> None:
-    sentence = AN_INSTANT(kind="jam")
-    assert say_row({"sentence": str(sentence), **sentence.data()}).startswith("jam termina al instante")
-    assert say_row({"sentence": None}) == ""
-    assert say_row({"sentence": "broken", "key": "fault.an_instant", "values": {"kind": None}}) == "broken"
 
 
 def test_facts_that_every_arm_has_are_named_in_it(spanish: None) -> None:

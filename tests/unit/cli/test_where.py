@@ -16,10 +16,9 @@ from arboleda.cli import remote_plant
 from arboleda.cli import submit as command
 from arboleda.cli.client import PlantClient
 from arboleda.cli.main import main
-from arboleda.cli.plant_options import located, plant_here
+from arboleda.cli.plant_options import located
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime.state import StateDir, default_state, running_plants
-from arboleda_proofs.campaigns.request import Request
 
 Typed = Callable[..., tuple[int, str, str]]
 SHIPPED = files("arboleda").joinpath("plants/plant.yaml")
@@ -239,17 +238,6 @@ def test_where_there_is_no_plant_file_the_one_to_check_has_to_be_named(
     status, _, complaint = typed("check")
     assert status == 2
     assert "there is no plant.yaml in this folder; name the file to check" in " ".join(complaint.split())
-
-
-def test_the_plant_of_the_working_directory_is_simulated_unless_a_file_of_faults_is_of_another(
-    own_folder: Path,
-) -> None:
-    here = plant_here(None)
-    assert [plant.name for plant in Request(plant_here=here).plants.plants] == ["own"]
-    of_shipped = own_folder / "out.yaml"
-    of_shipped.write_text(yaml.safe_dump({"plant": "arboleda", "faults": []}), "utf-8")
-    request = Request(plant_here=here, faults=str(of_shipped))
-    assert [plant.name for plant in request.plants.plants] == ["arboleda"]
 
 
 @pytest.fixture

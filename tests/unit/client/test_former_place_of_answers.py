@@ -22,12 +22,6 @@ def test_a_type_of_a_package_is_found_there() -> None:
         assert answers.DraftState.__name__ == "DraftState"
 
 
-def test_the_draft_is_found_in_its_package() -> None:
-    with pytest.warns(DeprecationWarning, match=r"use `from arboleda_make\.client import Draft`") as told:
-        assert client.Draft.__module__ == "arboleda_make.client.draft"
-    assert told[0].filename == __file__
-
-
 def test_where_its_package_is_missing_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(packages, "import_module", missing)
     with (

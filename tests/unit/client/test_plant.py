@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import sys
-from pathlib import Path
-from socket import gethostname
 
 import pytest
 from tests.guarded_plant import guarded
@@ -20,7 +18,6 @@ from arboleda.client import (
     Forbidden,
     Later,
     LibraryMissing,
-    NoAnswer,
     NotFound,
     OtherPlant,
     PlantError,
@@ -31,10 +28,7 @@ from arboleda.client import (
 from arboleda.client import Plant as Client
 from arboleda.model.errors import QueueFull, TextError
 from arboleda.model.messages import Outcome, Verb
-from arboleda.runtime.leader import LeaderInfo
-from arboleda.runtime.web_options import WebOptions
 from arboleda.web.access.auth import Role
-from arboleda_fleet.standby.waiting_room import WaitingRoom
 
 
 @pytest.fixture
@@ -168,18 +162,3 @@ def test_another_plant_at_the_address_gets_nothing_done(machine: Machine, plant:
     with pytest.raises(OtherPlant, match="demo"):
         Client(ORIGIN, plant="other", patience_s=0.0).submit("sis_a 0B 7")
     assert plant.texts == []
-
-
-def test_a_leader_that_a_standby_names_is_followed(machine: Machine, plant: Plant, tmp_path: Path) -> None:
-    led = LeaderInfo(plant="demo", host=gethostname(), process=7, url="http://127.0.0.1:8081", epoch=7)
-    room = WaitingRoom("demo", tmp_path, WebOptions(port=8080))
-    room.show("waits for its end", led)
-    machine.listen(8080, room.app)
-    machine.listen(8081, guarded(plant).app)
-    client = Client(ORIGIN, patience_s=0.0)
-    assert client.submit("sis_a 0B 7").state == "queued" and client.stop().verb == "stop"
-    assert machine.asked == [8080, 8081, 8081]
-    room.show("begins to wait", None)
-    with pytest.raises(NoAnswer, match="it begins to wait"):
-        Client(ORIGIN, patience_s=0.0).submit("sis_a 0B 7")
-    assert len(plant.texts) == 1

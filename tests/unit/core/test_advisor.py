@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from arboleda.model.messages import Verb
+from arboleda.testing.plants import shared
 from arboleda.testing.storage_layout import StorageLayout
-from arboleda_proofs.campaigns.request import shared
 
 from .conftest import Hand
 

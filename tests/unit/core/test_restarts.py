@@ -12,9 +12,9 @@ from arboleda.model.messages import Fact, MotionState, Notice, Remember, Report,
 from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.rig.rig import Rig
 from arboleda.testing import shipped
+from arboleda.testing.plants import shared
 from arboleda.testing.storage_layout import StorageLayout
 from arboleda.trees.leaves import Act
-from arboleda_proofs.campaigns.request import shared
 
 MOBILE = "rm_sis_a"
 

@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 import re
-from importlib import resources
 from pathlib import Path
 
 import pytest
 
 from arboleda.dashboard.wording import flat, tree_of, words
-from arboleda.recipes.authoring import CHOOSE, FAIL, FALLBACK, IS, NO_OTHER, PARALLEL, WAIT
+from arboleda.recipes.authoring import IS, WAIT
 from arboleda.recipes.decorators import INVERT, REPEAT, RETRY, TIMEOUT, TRY
-from arboleda.recipes.handles import BECOMES, DOING, SAYS
-from arboleda.recipes.holding import WORK
-from arboleda_proofs.testing.sim import Sim
+from arboleda.recipes.handles import DOING
 
 ROOT = Path(__file__).parents[3]
-EXAMPLES = resources.files("arboleda") / "examples"
-OURS = {str(each()) for each in (CHOOSE, FAIL, FALLBACK, NO_OTHER, PARALLEL, WAIT, SAYS, BECOMES, WORK)}
 MIXED = {
     "archivo, not fichero": r"(?i)\bficheros?\b",
     "a reposo, not a casa": r"\ba casa\b",
@@ -72,24 +67,6 @@ def test_no_two_parts_of_the_page_have_one_name() -> None:
     names = [text.lower() for key, text in said.items() if key.startswith("tab.")]
     assert len(set(names)) == len(names)
     assert said["tab.events"].lower() not in said["tasks.list"].lower()
-
-
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize("example", ["assembly", "lab_bench", "machine_tending"])
-def test_the_tree_of_an_example_has_no_english_of_ours(example: str) -> None:
-    sim = Sim()
-    plant = sim.plant(Path(str(EXAMPLES / example / "plant.yaml")))
-    spanish = words("es")
-    for cell in plant.cells:
-        recipe = cell.recipes[0]
-        values = [next(iter(each.words(cell))) for each in recipe.parameters]
-        sim.submit(" ".join([cell.name, recipe.name, *values]))
-    sim.run(1.0)
-    trees = [cell["tree"] for cell in sim.snapshot()["cells"]]
-    names = {spanish.say(row["name"]) for tree in trees for row in tree}
-    assert len(names) > 10
-    assert not names & OURS
-    assert not [name for name in names if name.startswith("is ")]
 
 
 def test_steps_and_orders_of_own_kinds_are_said_in_spanish() -> None:

@@ -5,9 +5,7 @@ from string import Formatter
 from typing import Any
 
 import pytest
-from tests.lengths import length
 
-from arboleda.core.plant import Plant
 from arboleda.dashboard.wording import LANGUAGES, REASONS, SENTENCES, flat, tree_of, words
 from arboleda.dispatch import belief, dispatcher, evidence, zones
 from arboleda.dispatch.ledger import State
@@ -22,8 +20,6 @@ from arboleda.trees import paths, steps
 from arboleda.trees.tree_run import IN_RECOVERY
 from arboleda.views.tree_view import KINDS
 from arboleda.web.languages import contents
-from arboleda_proofs.campaigns.request import Request
-from arboleda_proofs.simulator.run import Simulation
 
 ENGLISH = LANGUAGES[0]
 
@@ -102,37 +98,6 @@ def test_every_word_of_the_plant_has_a_name(language: str, group: str, known: se
 def test_the_plants_sentences_are_said_in_spanish(plant: Sentence, english: str, spanish: str) -> None:
     assert words("es").say(plant) == spanish
     assert words("en").say(plant) == str(plant) == english
-
-
-@pytest.mark.long
-def test_what_a_plant_says_under_every_kind_of_fault_is_said_in_spanish() -> None:
-    said: set[Sentence] = set()
-    for seed in length((2, 5, 6), whole=range(1, 7)):  # these three say the most
-        run(seed, said)
-    assert len(said) > 100
-    assert [each for each in said if words("es").say(each) == str(each)] == []
-
-
-def run(seed: int, said: set[Sentence]) -> None:
-    """Add what a plant says to people in a simulation."""
-
-    def look(message: Any) -> None:
-        told = getattr(message, "sentence", None) or getattr(message, "refusal", None)
-        if isinstance(told, Sentence):
-            said.add(told)
-
-    setting = Request(cycles=8, faults="many").setting
-    with pytest.MonkeyPatch.context() as patch:
-        step = Plant.step
-
-        def heard(plant: Plant, now: float, events: Any) -> list[Any]:
-            out = step(plant, now, events)
-            for message in out:
-                look(message)
-            return out
-
-        patch.setattr(Plant, "step", heard)
-        Simulation(setting.plant(seed), seed, setting.climate(seed).faults, invariants=()).run(cycles=8)
 
 
 def test_what_is_no_sentence_stays_as_it_is() -> None:

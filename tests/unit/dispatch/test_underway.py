@@ -14,8 +14,8 @@ from arboleda.model.commands import Switch
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Evidence
 from arboleda.testing import shipped
+from arboleda.testing.plants import shared
 from arboleda.testing.storage_layout import StorageLayout
-from arboleda_proofs.campaigns.request import shared
 
 MODEL = shared()
 ARM = next(StorageLayout(cell).arm.name for cell in MODEL.cells if StorageLayout(cell).space.zones)

@@ -11,7 +11,6 @@ from types import SimpleNamespace
 import pytest
 
 from arboleda.host import files, limits, locks, machine
-from arboleda_make.versions import hang_up
 
 
 @pytest.fixture
@@ -102,15 +101,6 @@ def test_a_boot_that_nobody_tells_is_another_each_time(
 ) -> None:
     monkeypatch.setattr(machine, "BOOT_ID", tmp_path / "absent")
     assert machine.this_boot() != machine.this_boot()
-
-
-def test_without_the_signal_the_plant_leaves_signals_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(hang_up, "HANG_UP", None)
-    before = signal.getsignal(signal.SIGHUP)
-    part = hang_up.HangUpPart(lambda _: {})
-    part.start()
-    assert signal.getsignal(signal.SIGHUP) is before
-    part.stop()
 
 
 def test_without_an_alarm_no_process_ends_by_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,11 +8,8 @@ import pytest
 
 from arboleda.core.plant import Plant
 from arboleda.model.errors import ConfigError
-from arboleda.plant_file import advance_check
 from arboleda.plant_file.loader import load
 from arboleda.recipes.place_questions import PlaceHandle, PlaceQuestion
-from arboleda_proofs.simulator.judged_world import JudgedWorld
-from arboleda_proofs.simulator.run import Simulation
 
 PLANT = """
 name: hands
@@ -61,48 +58,6 @@ def written(folder: Path, code: str = RECIPES) -> Path:
     (folder / "recipes.py").write_text(code, "utf-8")
     (folder / "plant.yaml").write_text(PLANT, "utf-8")
     return folder / "plant.yaml"
-
-
-def ends(watched: JudgedWorld) -> list[tuple[str, str]]:
-    """How the tasks stand, each with the sentence of its failure."""
-    tasks = watched.world.plant.intake.tasks.values()
-    return [(each.state.value, "" if each.failure is None else str(each.failure.sentence)) for each in tasks]
-
-
-def test_a_cell_waits_for_the_part_that_the_other_one_brings_and_leaves_the_arm_to_it(tmp_path: Path) -> None:
-    watched = JudgedWorld(load(written(tmp_path)))
-    watched.world.request_task("right take")
-    watched.world.advance(1.0)
-    assert watched.world.plant.zones.holder("arm") is None
-    watched.world.request_task("left give")
-    watched.world.advance(12.0)
-    assert ends(watched) == [("done", ""), ("done", "")]
-    assert watched.truth.places.cells["right"].parts == {"pass": 0, "out_1": 1}
-
-
-def test_a_question_to_a_place_has_a_way_for_each_answer(tmp_path: Path) -> None:
-    watched = JudgedWorld(load(written(tmp_path)))
-    watched.world.request_task("left give")
-    watched.world.advance(6.0)
-    watched.world.request_task("left give")
-    watched.world.advance(1.0)
-    assert ends(watched) == [("done", ""), ("done", "")]
-    assert watched.world.plant.cells["left"].context.places.counts["pass"] == 1
-
-
-def test_a_wait_for_a_part_that_does_not_come_names_its_place(tmp_path: Path) -> None:
-    watched = JudgedWorld(load(written(tmp_path)))
-    watched.world.request_task("right take")
-    watched.world.advance(9.0)
-    assert ends(watched) == [("failed", "no part came to pass within 8 s")]
-
-
-@pytest.mark.long
-def test_nothing_is_found_in_two_cells_that_hand_parts_over(tmp_path: Path) -> None:
-    model = load(written(tmp_path, RECIPES.replace("at_most_s=8", "at_most_s=60")))
-    assert advance_check.warnings(model) == ()
-    result = Simulation(model, 2, lambda minute: []).run(cycles=4)
-    assert result.broken is None and not result.findings and result.outcomes["deadline"] == 1
 
 
 @pytest.mark.parametrize(

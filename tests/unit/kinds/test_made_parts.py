@@ -15,8 +15,6 @@ from arboleda.model.sentence import as_sentence
 from arboleda.model.verbs import Verb
 from arboleda.plant_file import advance_check, place_check
 from arboleda.plant_file.loader import load
-from arboleda_proofs.simulator.invariants.part_places import PLACES
-from arboleda_proofs.simulator.run import Simulation
 
 from .test_places import PLANT as LAB
 from .test_places import Lab, advice, written
@@ -82,13 +80,6 @@ def test_only_a_process_makes_a_part(tmp_path: Path) -> None:
     plant = PLANT.replace("effect: process, makes: part", "effect: motion, makes: part")
     with pytest.raises(ConfigError, match="only a process makes a part, and this is a motion"):
         load(written(tmp_path, plant, PRINT))
-
-
-def test_the_simulator_judges_what_is_made(tmp_path: Path) -> None:
-    result = Simulation(load(written(tmp_path, PLANT, PRINT)), 1, lambda minute: [], invariants=PLACES).run(
-        cycles=2
-    )
-    assert result.broken is None and result.outcomes == {"done": result.cycles}
 
 
 def test_nothing_is_made_of_an_order_that_the_device_refuses(tmp_path: Path) -> None:

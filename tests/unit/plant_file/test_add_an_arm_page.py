@@ -15,7 +15,6 @@ from arboleda.plant_file import loader
 from arboleda.plant_file.own_models import ENDINGS, FULL_SPEED_S, LEAST_STEP, MOST_JOINTS, STEP_DEG, STEP_MM
 from arboleda.plant_file.shapes import ModelShape, OffsetShape
 from arboleda.plant_file.urdf import robot_urdf
-from arboleda_proofs.testing import Sim
 
 PAGE = (Path(__file__).parents[3] / "docs/how-to/add-an-arm.md").read_text("utf-8")
 URDF = PAGE.partition("```xml\n")[2].partition("```")[0]
@@ -74,13 +73,6 @@ def test_both_forms_are_the_same_arm(folder: Path) -> None:
         body = bodies.read(robot_urdf(loader.load(Path("my_plant.yaml")), "lifter"))
         places.append(kinematics.at(kinematics.tool(body, (-0.1, 0.7, -0.4))))
     assert places[0] == pytest.approx(places[1])
-
-
-def test_the_task_of_the_page_is_done(folder: Path, sim: Sim) -> None:
-    sim.plant(folder / "my_plant.yaml")
-    task = sim.submit("bay 0B 0")
-    sim.run(until=lambda: task.ended)
-    assert task.state == "done"
 
 
 def test_the_page_has_every_key_and_every_default() -> None:

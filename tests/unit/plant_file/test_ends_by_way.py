@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -11,10 +10,6 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import advance_check
 from arboleda.plant_file.loader import load
-from arboleda_proofs.simulator.invariants.part_places import PLACES
-from arboleda_proofs.simulator.people import FixedAnswers
-from arboleda_proofs.simulator.run import Simulation
-from arboleda_proofs.simulator.scripted_people import script_from
 
 PLANT = """
 name: sorting
@@ -32,9 +27,6 @@ cells:
       reject: {arm: {deg: [-90, 20], mm: 50}}
     places: {in: {supply: true}, press: {holds: 50, output: true}, reject: {holds: 50, output: true}}
 """
-LENT = PLANT.replace("camera: {kind: camera}", "camera: {shared: camera}").replace(
-    "cells:", "shared: {camera: {kind: camera}}\ncells:"
-)
 RECIPES = """
 from arboleda.recipes import recipe, work
 
@@ -44,19 +36,6 @@ def sort(cell):
     seen, take = camera.look(), arm.visit("in", jaw.close(width_mm=30, force_n=20))
     ways = {"good": arm.visit("GOOD", jaw.open()), "bad": arm.visit("BAD", jaw.open())}
     return work(seen, take, cell.choose(seen, ways), arm.home())
-"""
-MAY_ASK = """
-from arboleda.recipes import Choice, recipe, work
-
-@recipe("sort", ends_with=ENDS)
-def sort(cell, how=Choice("look", "blind")):
-    arm, jaw, camera = cell.devices("arm", "jaw", "camera")
-    take, put = arm.visit("in", jaw.close(width_mm=30, force_n=20)), arm.visit("press", jaw.open())
-    if how == "blind":
-        return work(cell.using("camera", take, put), arm.home())
-    seen = camera.look()
-    ways = {"good": put, "bad": arm.visit("reject", jaw.open())}
-    return work(take, seen, cell.choose(seen, ways), arm.home())
 """
 ASKS_TWICE = """
 from arboleda.recipes import recipe, work
@@ -124,16 +103,6 @@ def as_xml(ends: str) -> str:
     }[ends]
 
 
-def judged(plant: PlantModel, answer: str, tasks: Sequence[str] = ("a sort",)) -> str | None:
-    """The rule that one of these tasks breaks, where the camera gives this answer."""
-    people = [{"at": 2.0 + 30 * number, "task": task} for number, task in enumerate(tasks)]
-    script = script_from(plant, {"people": people, "seconds": 30 * len(tasks)})
-    simulation = Simulation(plant, 1, lambda minute: (), script=script, invariants=PLACES)
-    FixedAnswers(simulation.world, {"camera": answer})
-    result = simulation.run()
-    return result.broken and result.broken.sentence
-
-
 @pytest.mark.parametrize("recipe", [RECIPES, TREE], ids=["python", "xml"])
 @pytest.mark.parametrize("ends", [BY_ANSWER, EITHER], ids=["by answer", "either"])
 def test_nothing_is_said_against_a_recipe_that_ends_as_it_says_on_each_way(
@@ -195,17 +164,3 @@ def test_what_no_way_can_end_with_is_refused(tmp_path: Path, ends: str, sentence
     with pytest.raises(ConfigError) as refused:
         sorting(tmp_path, ends)
     assert sentence in str(refused.value)
-
-
-@pytest.mark.parametrize("answer", ["good", "bad"])
-def test_the_simulator_judges_the_end_of_the_way_that_was_gone(tmp_path: Path, answer: str) -> None:
-    assert judged(sorting(tmp_path, BY_ANSWER), answer) is None
-    place = {"good": "press", "bad": "reject"}[answer]
-    sentence = f"t-1000-1 is called done, and {place} is 0, not 1"
-    assert judged(sorting(tmp_path, BY_ANSWER, SWAPPED), answer) == sentence
-
-
-@pytest.mark.parametrize("plant", [PLANT, LENT], ids=["its own", "shared"])
-def test_an_answer_to_an_earlier_task_does_not_say_which_end_is_meant(tmp_path: Path, plant: str) -> None:
-    model = sorting(tmp_path, BY_ANSWER, recipe=MAY_ASK, plant=plant)
-    assert judged(model, "bad", ["a sort look", "a sort blind"]) is None

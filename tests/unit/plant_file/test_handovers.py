@@ -17,8 +17,6 @@ from arboleda.plant_file import loader
 from arboleda.recipes import Kit, RecipeError
 from arboleda.recipes.handles import Step
 from arboleda.testing import Rig
-from arboleda_proofs.simulator.climate import Climate
-from arboleda_proofs.simulator.run import Simulation
 
 SHORT = """name: hall
 cells:
@@ -97,24 +95,6 @@ def test_the_recipes_of_storage_run_in_a_cell_of_devices(tmp_path: Path) -> None
         rig.submit(text)
     rig.wait(600, until=lambda: rig.plant.at_rest and not rig.plant.cells["bay"].queue)
     assert [change.state for change in rig.outcomes().values()] == [TaskState.DONE] * 3
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("more", ["", "      ana: {kind: person}\n"], ids=["alone", "with a person"])
-def test_such_a_cell_is_judged_right(tmp_path: Path, more: str) -> None:
-    model = load(tmp_path, LONG.replace("    targets:\n", f"{more}    targets:\n"))
-    result = Simulation(model, 3, Climate.draw(model, 3, "normal").faults).run(cycles=4)
-    assert result.broken is None, str(result.broken)
-    assert result.outcomes["done"]
-
-
-@pytest.mark.long
-def test_pick_ups_at_one_point_are_judged_right(tmp_path: Path) -> None:
-    model = load(tmp_path, LONG.replace("pickup_a: {arm: {deg: [50, 10]", "pickup_a: {arm: {deg: [45, 10]"))
-    targets = model.cells[0].reach["ra"].targets
-    assert targets["pickup"].q == targets["pickup_a"].q
-    result = Simulation(model, 1, Climate.draw(model, 1, "none").faults).run(cycles=1)
-    assert result.broken is None, str(result.broken)
 
 
 def test_the_case_of_a_path_does_not_matter(tmp_path: Path) -> None:

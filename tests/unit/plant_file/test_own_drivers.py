@@ -15,7 +15,6 @@ from arboleda.drivers.port import spec_of
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Link, PlantModel, Robot
 from arboleda.plant_file import drivers, loader
-from arboleda_proofs.campaigns.plants import Plant
 
 PLANT = """\
 name: lab
@@ -320,11 +319,6 @@ def test_a_subclass_of_a_driver_is_none_itself(load: Callable[..., PlantModel]) 
     assert found.driver is not None
     plain = type(found.driver.make())
     assert spec_of(plain) is not None and spec_of(type("Other", (plain,), {})) is None
-
-
-def test_a_plant_with_drivers_is_simulated_on_virtual_boards(load: Callable[..., PlantModel]) -> None:
-    simulated = oven(Plant(declared=load()).model)
-    assert simulated.link is Link.MQTT and simulated.driver is None
 
 
 def test_without_recipes_a_plant_file_is_read_without_its_drivers(load: Callable[..., PlantModel]) -> None:

@@ -19,8 +19,6 @@ from arboleda.rig.rig import Rig
 from arboleda.sim.arm import ArmBody
 from arboleda.testing import shipped
 from arboleda.views import forms
-from arboleda_proofs.simulator.climate import Climate
-from arboleda_proofs.simulator.run import Simulation
 
 RECIPES = """
 from arboleda.recipes import Target, parallel, recipe, work
@@ -173,13 +171,6 @@ def test_its_ways_take_the_zones_that_they_lead_into() -> None:
         assert [rig.plant.zones.holder("table") for _ in there] == [arms[cell].name for cell in there]
     assert inside == {(), ("left",), ("right",)}
     assert {each.state for each in rig.changes if each.state in ENDED} == {TaskState.DONE}
-
-
-@pytest.mark.long
-def test_simulations_of_them_hold() -> None:
-    result = Simulation(own(), 3, Climate.draw(own(), 3, "normal").faults).run(cycles=6)
-    assert result.broken is None
-    assert result.outcomes.get("done", 0) > 0
 
 
 @pytest.mark.sampled(4)

@@ -10,7 +10,6 @@ import pytest
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
 from arboleda.plant_file.shipped_kinds import COME_WITH_IT
-from arboleda_proofs.testing import Sim
 
 CART = """\
 from dataclasses import dataclass
@@ -86,14 +85,6 @@ def install(site: Path, entry: str = ENTRY) -> None:
     about.mkdir()
     (about / "METADATA").write_text("Metadata-Version: 2.1\nName: acme_carts\nVersion: 1.2\n", "utf-8")
     (about / "entry_points.txt").write_text(entry, "utf-8")
-
-
-def test_a_robot_of_a_kind_of_ones_own_goes_to_targets(tmp_path: Path, sim: Sim) -> None:
-    plant = sim.plant(write(tmp_path))
-    assert plant.robots["cart"].kind_name == "cart"
-    task = sim.submit("bay dock")
-    sim.run(until=lambda: task.ended)
-    assert task.history == ["queued", "running", "done"]
 
 
 def test_an_installed_package_brings_such_a_kind(tmp_path: Path, site: Path) -> None:

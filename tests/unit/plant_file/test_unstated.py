@@ -13,8 +13,6 @@ from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import draft_check, loader, unstated
 from arboleda.plant_file.mend import edited
 from arboleda.plant_file.offers import offers
-from arboleda_make.drafts.draft import draft_of
-from arboleda_proofs.campaigns.plants import Plant, notes
 
 PLANT = """
 name: lab
@@ -81,17 +79,6 @@ def written(folder: Path, plant: str) -> Path:
     return folder / "plant.yaml"
 
 
-def test_what_a_file_does_not_state_is_offered_with_its_place_in_the_file(tmp_path: Path) -> None:
-    model = loader.load(written(tmp_path, PLANT))
-    assert unstated.notes(model) == (
-        f"{PLACES}; cells.lab.places: {{inside: {{output: true}}, rack: {{supply: true}}}} would state it",
-        f"{GUARD}; zones.in_the_oven.free_while: "
-        "{oven: {door: open}} or {oven: {door: closed}} would state it",
-        f"{NEEDS}; kinds.oven.verbs.bake.needs: {{door: closed}} or {{door: open}} or {{}} would state it",
-    )
-    assert notes([Plant(declared=model)]) == [PLACES, GUARD, NEEDS], "as simulate and prove say it"
-
-
 def test_nothing_is_offered_where_all_of_it_is_stated(tmp_path: Path) -> None:
     assert unstated.notes(loader.load(written(tmp_path, STATED))) == ()
 
@@ -127,16 +114,6 @@ def test_an_offer_is_edits_of_which_each_alone_states_it(tmp_path: Path, number:
     for edit in offer.edits:
         file.write_text(edited({file.name: PLANT}, [edit])[file.name])
         assert offer.sentence not in unstated.unknowns(loader.load(file))
-
-
-@pytest.mark.parametrize("number", range(3))
-def test_an_offer_for_a_draft_is_a_step_of_it(tmp_path: Path, number: int) -> None:
-    file = written(tmp_path, PLANT)
-    draft = draft_of(PlantFiles(plant=file.name, contents={file.name: file.read_bytes()}))
-    offer = draft_check.check(draft.files, file).unstated[number]
-    for value in offer.values:
-        found = draft_check.check(draft.with_value(offer.place, value).files, file)
-        assert found.problems == () and offer.unknown not in [each.unknown for each in found.unstated]
 
 
 def test_no_edit_is_offered_for_what_is_to_stand_in_another_file(tmp_path: Path) -> None:

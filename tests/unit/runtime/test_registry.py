@@ -20,7 +20,6 @@ from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.part_list import PartList
 from arboleda.runtime.registry import Factory, Phase
 from arboleda.testing import shipped
-from arboleda_fleet import factories as standby
 
 Install = Callable[[str, str], None]
 RAISES = "from arboleda.runtime.registry import Factory, Phase\n\n\nclass Part:\n"
@@ -261,11 +260,6 @@ def test_a_part_that_the_plant_needs_keeps_it_from_starting_though_it_is_of_a_pa
     parts = listed([], broken="start", is_needed=True)
     with pytest.raises(ValueError, match="the shelf is full"):
         parts.start()
-
-
-def test_the_part_that_keeps_the_lead_is_needed() -> None:
-    (kept,) = (each for each in standby.FACTORIES if each.make is standby.lease)
-    assert kept.is_needed
 
 
 def test_a_shared_memory_is_refused_where_nothing_keeps_the_lead(

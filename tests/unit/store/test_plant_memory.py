@@ -26,8 +26,6 @@ from arboleda.store.package_table import PackageTable
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery, answers_of, course_of
 from arboleda.store.task_table import PRUNED
-from arboleda_fleet.oee.api import OeeQuery
-from arboleda_fleet.oee.rows import figures
 
 from .memory_samples import ACT, FOUND, LATCH, ODD, ended, queued, tell_of_four
 
@@ -343,16 +341,3 @@ def test_a_text_may_have_any_character(store):
     store.tasks.keep(queued("a"), ODD, 1.0)
     assert store.facts(Fact.STEP) == {ODD: ODD}
     assert [row.recipe for row in store.tasks.select(TaskQuery(recipe=ODD))] == [ODD]
-
-
-def test_figures_are_made_of_what_was_kept(site):
-    with site.memory() as store:
-        store.times.began(900.0)
-        store.tasks.keep(queued("a"), "storage", 910.0)
-        store.tasks.keep(ended("a", TaskState.RUNNING), "storage", 920.0)
-        store.tasks.keep(ended("a"), "storage", 930.0)
-        store.times.stands("sis_a", "held", 940.0)
-        store.times.stands("sis_a", None, 950.0)
-        store.times.note_run(1000.0, ended=True)
-        (found,) = figures(site.history(), OeeQuery(since_s=900.0, until_s=1000.0), 1000.0)
-    assert (found.cell, found.done, found.failed) == ("sis_a", 1, 0)

@@ -19,7 +19,6 @@ from arboleda.model.messages import OperatorAnswer, Outcome, Verb
 from arboleda.model.sentence import Phrase
 from arboleda.store.task_rows import TaskQuery
 from arboleda.web.api import make_app, own_up
-from arboleda_fleet.oee.api import OeeQuery
 
 
 def test_the_view_is_the_plant(web):
@@ -86,13 +85,6 @@ def test_a_wrong_query_is_refused_with_what_is_wrong(web, plant, query, sentence
     assert answer.status_code == 422 and answer.json()["sentence"].startswith(sentence)
     assert web.get(f"/api/history.csv?{query}").json() == answer.json()
     assert plant.queries == []
-
-
-def test_the_oee_is_told_with_what_is_missing_of_it(web, plant):
-    (row,) = web.get("/api/oee?cell=sis_a&since=5&until=9.5").json()
-    assert plant.oee_queries == [OeeQuery(cell="sis_a", since_s=5, until_s=9.5)]
-    assert (row["availability"], row["quality"], row["performance"], row["oee"]) == (1.0, 0.0, None, None)
-    assert row["missing"].startswith("0 of 1 tasks can be compared")
 
 
 @pytest.mark.parametrize(

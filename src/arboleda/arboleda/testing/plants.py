@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from importlib.resources import as_file, files
 from typing import Any
 
 from arboleda.model.plant_model import PlantModel, Robot
@@ -19,6 +20,12 @@ def shipped(*cells: str, **declared: Any) -> PlantModel:
         plant,
         cells=tuple(cell.with_robots(lambda robot: replace(robot, **declared)) for cell in chosen),
     )
+
+
+def shared() -> PlantModel:
+    """The second packaged plant, with the features that the shipped one does not use."""
+    with as_file(files("arboleda") / "plants" / "shared.yaml") as path:
+        return load(path)
 
 
 def slowed(plant: PlantModel, times: float) -> PlantModel:

@@ -174,11 +174,6 @@ class Request:
         return shlex.join([*self.command, *words, *plant, "--trace"])
 
 
-def shared() -> PlantModel:
-    """The second packaged plant, with the features that the shipped one does not use."""
-    return _shared()[0]
-
-
 def _shared() -> tuple[PlantModel, PlantFiles]:
     with as_file(files("arboleda") / "plants" / "shared.yaml") as path:
         return loader.load_with_files(path)

@@ -11,6 +11,7 @@ import pytest
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.testing import shipped
+from arboleda.testing.plants import shared
 from arboleda_proofs.campaigns.from_above import as_svg
 from arboleda_proofs.campaigns.proof.badge import badge
 from arboleda_proofs.campaigns.proof.calm import calm_run
@@ -26,7 +27,6 @@ from arboleda_proofs.campaigns.proof.proof_tally import ProofTally
 from arboleda_proofs.campaigns.proof.recipe_digest import recipe_digests
 from arboleda_proofs.campaigns.proof.scenario import alone, scenarios
 from arboleda_proofs.campaigns.proof.single_faults import single_faults
-from arboleda_proofs.campaigns.request import shared
 from arboleda_proofs.commands.prove import seconds_of
 
 AT = Instant(at=2.0, side=Side.BEFORE, what="the request", commits=2)

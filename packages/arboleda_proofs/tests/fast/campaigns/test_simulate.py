@@ -17,9 +17,10 @@ import pytest
 from arboleda.cli.main import main
 from arboleda.model.plant_model import Evidence
 from arboleda.plant_file import loader
+from arboleda.testing.plants import shared
 from arboleda.testing.storage_layout import StorageLayout
 from arboleda_proofs.campaigns import report, screen, setting
-from arboleda_proofs.campaigns.request import Request, shared
+from arboleda_proofs.campaigns.request import Request
 from arboleda_proofs.campaigns.seed_campaign import SeedCampaign
 from arboleda_proofs.campaigns.tally import Tally
 from arboleda_proofs.simulator import judged

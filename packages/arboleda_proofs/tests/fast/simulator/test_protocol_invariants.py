@@ -841,7 +841,7 @@ def test_no_starvation__of_a_cell_whose_cart_proves_no_place_and_was_led_into_a_
 
 def sharing(tmp_path: Path) -> PlantModel:
     """Two cells that share an arm, and no zone."""
-    shared = Path(__file__).parents[5] / "tests/scenario/shared_arm"
+    shared = Path(__file__).parents[1] / "scenario/shared_arm"
     (tmp_path / "recipes.py").write_text((shared / "recipes.py").read_text())
     (tmp_path / "plant.yaml").write_text((shared / "plant.yaml").read_text().partition("zones:")[0])
     return load(tmp_path / "plant.yaml")
