@@ -183,6 +183,18 @@ def test_what_the_plant_does_not_write_is_said(made: Made, monkeypatch: pytest.M
     monkeypatch.undo()
 
 
+def test_a_name_that_the_plant_uses_itself_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    install(tmp_path / "site", "memory", CODE.format(start="pass", follow="pass"), what="Orders")
+    app = build(shipped("sis_a"), {"orchestrator"}, Options(state_dir=tmp_path / "state", page=False))
+    app.stop()
+    sys.modules.pop("memory", None)
+    (said,) = left_out(app)
+    assert "Arboleda itself shows memory on the page: register it under another name" in said
+
+
 def test_its_folder_is_in_the_state_directory(made: Made, tmp_path: Path) -> None:
     _, part = made()
     assert part.plant.folder == tmp_path / "state/extensions/orders" and part.plant.folder.is_dir()

@@ -16,7 +16,7 @@ from arboleda.web.part_routes import PartRoutes
 from ..parts.local_plant import LocalPlant
 from ..parts.orchestrator import Orchestrator
 from ..parts.part import Part as Started
-from ..registry import Assembly, Factory, Phase
+from ..registry import OF_RUNNER, Assembly, Factory, NameTaken, Phase
 from .part import Part
 from .plant import Plant, Uses
 from .table import Table, Writes
@@ -35,6 +35,8 @@ def _make(made_by: type[Part], point: EntryPoint, assembly: Assembly) -> Iterato
     running = assembly.ask(Orchestrator)
     if running is None:  # a process without the plant, as a node of boards
         return
+    if point.name in OF_RUNNER:
+        raise NameTaken(f"Arboleda itself shows {point.name} on the page: register it under another name")
     telling = Telling(point.name, assembly.pieces, partial(piece_of, point))
     writes, memory = _writes(assembly, running), assembly.holdings.memory
     plant = Plant(

@@ -39,7 +39,9 @@ class Part:
         self.settings = settings
 
     def start(self) -> None:
-        """Begin; the plant has not begun yet, and waits. Tasks that are given here are done once it has.
+        """Begin; the plant has not begun yet, and waits for this.
+
+        Tasks that are given here are answered once it has begun: do not wait for their answers here.
 
         A StartError says that the plant must not start. Anything else that is raised leaves out this part.
         """

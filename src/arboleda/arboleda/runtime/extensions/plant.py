@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass
@@ -73,6 +74,7 @@ class Plant:
         self.extension = extension
         self._uses = uses
         self._shown: dict[str, Any] = {}
+        self._showing = threading.Lock()
 
     @property
     def name(self) -> str:
@@ -166,7 +168,9 @@ class Plant:
 
         They are plain data, as JSON has it; raises ValueError or TypeError for anything else.
         """
-        self._shown = {**self._shown, **json.loads(json.dumps(values, allow_nan=False))}
+        plain = json.loads(json.dumps(values, allow_nan=False))
+        with self._showing:
+            self._shown = {**self._shown, **plain}
 
     @property
     def shown(self) -> Mapping[str, Any]:
