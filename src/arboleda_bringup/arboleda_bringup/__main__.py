@@ -12,7 +12,7 @@ def main() -> int:
     from arboleda_ros.missing_libraries import sentence
 
     try:
-        from arboleda.model.errors import ArboledaError
+        from arboleda.extension import ArboledaError
 
         from .plan import plan
     except ImportError as error:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from arboleda.adapters.broker_login import MQTT_PORT, address
-from arboleda.model.errors import StartError
+from arboleda.extension import StartError
 from arboleda.runtime.rate import check_rate
 
 from .arguments import AUTO, EMBEDDED

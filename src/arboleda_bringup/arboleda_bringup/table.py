@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from arboleda.model.plant_model import Link, PlantModel, Robot
+from arboleda.drivers import Robot
+from arboleda.model.plant_model import Link, PlantModel
 from arboleda.plant_file.urdf import root_link
 
 from .choice import Choice

@@ -16,10 +16,10 @@ from rclpy.node import Node
 from std_msgs.msg import String, UInt32
 
 from arboleda.adapters.rate_limit import RateLimit
-from arboleda.model.commands import Command
+from arboleda.drivers import Command, Report, Robot
 from arboleda.model.errors import PayloadError
-from arboleda.model.messages import Heartbeat, Report
-from arboleda.model.plant_model import Link, PlantModel, Robot
+from arboleda.model.messages import Heartbeat
+from arboleda.model.plant_model import Link, PlantModel
 from arboleda.wire import epochs, rejections
 from arboleda.wire.hop import HEARTBEAT, PLAIN, FromPlant, without_id
 from arboleda.wire.rejections import ForeignCommand, Rejection

@@ -11,10 +11,10 @@ from rclpy.publisher import Publisher
 from std_msgs.msg import Float32MultiArray
 
 from arboleda.adapters.rate_limit import RateLimit
-from arboleda.model.commands import Command, Stop
-from arboleda.model.errors import ArboledaError
+from arboleda.drivers import Command, Robot, Stop
+from arboleda.extension import ArboledaError
 from arboleda.model.messages import Event, Interference
-from arboleda.model.plant_model import Link, Robot
+from arboleda.model.plant_model import Link
 from arboleda.wire import rejections
 from arboleda.wire.hop import PLAIN, kind_of
 from arboleda_ros import convert, qos

@@ -11,15 +11,14 @@ from typing import cast
 
 from std_msgs.msg import Float32MultiArray, MultiArrayDimension, String, UInt8
 
-from arboleda.kinds.arm import Arm, SetEffector
+from arboleda.drivers import Command, FollowPath, Home, MoveJoints, Robot, SetEffector, Stop, StopMode
+from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device, VerbCall
-from arboleda.kinds.joints import Jointed, MoveJoints
-from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.kinds.joints import Jointed
+from arboleda.kinds.mobile import Mobile
 from arboleda.model.by_class import nearest
-from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.counting import counted
 from arboleda.model.errors import PayloadError
-from arboleda.model.plant_model import Robot
 from arboleda.wire import order
 from arboleda.wire.hop import COMMAND, ORDER, PLAIN, kind_of, loses_its_id
 from arboleda.wire.status import (

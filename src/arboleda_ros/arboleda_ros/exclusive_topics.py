@@ -9,7 +9,7 @@ from typing import Any
 
 from rclpy.node import Node
 
-from arboleda.model.errors import StartError
+from arboleda.extension import StartError
 from arboleda.model.outside import plain
 
 _POLL_S = 0.02

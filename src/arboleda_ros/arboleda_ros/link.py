@@ -14,7 +14,7 @@ from rclpy.context import Context
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 
-from arboleda.model.errors import StartError
+from arboleda.extension import StartError
 from arboleda.model.messages import Event
 from arboleda.model.plant_model import PlantModel
 from arboleda.wire.hop import FromPlant

@@ -14,21 +14,20 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, String, UInt8, UInt32
 
+from arboleda.drivers import Command, Report, Robot
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device
-from arboleda.model.commands import Command
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import (
     Event,
     Heartbeat,
     Notice,
     OperatorAnswer,
-    Report,
     SystemStart,
     TaskChanged,
     TaskRequest,
 )
-from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
+from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.model.sentence import in_json
 from arboleda.runtime import view_text
 from arboleda.views import view

@@ -9,7 +9,7 @@ from concurrent.futures import TimeoutError as NotInTime
 from typing import Any
 from uuid import uuid4
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, Outcome, TaskChanged, TaskRequest, Verb
 from arboleda.model.verbs import from_text
 

@@ -16,7 +16,7 @@ from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 
 from arboleda.adapters.broker_login import login
-from arboleda.model.errors import ArboledaError, StartError
+from arboleda.extension import ArboledaError, StartError
 from arboleda.model.plant_model import Link as LinkKind
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recording import Recording

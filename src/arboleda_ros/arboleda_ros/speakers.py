@@ -10,8 +10,9 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from std_msgs.msg import UInt8
 
-from arboleda.model.messages import Event, Interference, MotionState, Report, Uncontested
-from arboleda.model.sentence import Sentence
+from arboleda.drivers import MotionState, Report
+from arboleda.extension import Sentence
+from arboleda.model.messages import Event, Interference, Uncontested
 from arboleda.wire.speaker import Speaker
 from arboleda_ros import qos
 from arboleda_ros.exclusive_topics import UNNAMED, full_name

@@ -7,9 +7,8 @@ from collections.abc import Callable, Mapping
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.serialization import deserialize_message
 
+from arboleda.drivers import Report, Robot
 from arboleda.model.errors import PayloadError
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Robot
 from arboleda.wire.status import NUMBER, NUMBER_DIGITS, Status, from_status
 from arboleda.wire.strict import UINT32
 

@@ -8,7 +8,7 @@ from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from arboleda.model.errors import StartError
+from arboleda.extension import StartError
 
 SIM_TIME = "use_sim_time"
 REFUSAL = (

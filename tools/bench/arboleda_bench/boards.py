@@ -11,12 +11,10 @@ from itertools import count
 
 from arboleda.adapters.broker_login import Address
 from arboleda.adapters.mqtt import MqttClient
-from arboleda.kinds.arm import Arm, SetEffector
-from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.mobile import FollowPath, Mobile
-from arboleda.model.commands import Command
-from arboleda.model.messages import MotionState
-from arboleda.model.plant_model import Cell, PlantModel, Robot
+from arboleda.drivers import Command, FollowPath, MotionState, MoveJoints, Robot, SetEffector
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.mobile import Mobile
+from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.payloads import (
     EffectorGoal,

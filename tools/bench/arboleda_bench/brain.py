@@ -11,7 +11,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from std_msgs.msg import String
 
-from arboleda.model.commands import Command
+from arboleda.drivers import Command
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.wire.hop import PLAIN

@@ -18,9 +18,8 @@ from rclpy.publisher import Publisher
 from rclpy.serialization import deserialize_message
 from std_msgs.msg import UInt32
 
+from arboleda.drivers import MotionState, MoveJoints
 from arboleda.kinds.arm import Arm
-from arboleda.kinds.joints import MoveJoints
-from arboleda.model.messages import MotionState
 from arboleda.wire.payloads import Telemetry, encode
 from arboleda_ros import convert, qos
 

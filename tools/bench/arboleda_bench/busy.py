@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.plant_file.loader import load
 from arboleda.runtime import view_text

@@ -10,7 +10,7 @@ import importlib
 from importlib.resources import files
 from types import ModuleType
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda_ros import missing_libraries
 
 NAMES = (

@@ -13,7 +13,8 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 
-from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.extension import ArboledaError
+from arboleda.model.errors import ConfigError
 from arboleda.plant_file.user_file import check_writable
 from arboleda_proofs.campaigns.screen import console, progress
 

@@ -9,7 +9,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from arboleda.model.errors import ArboledaError, StartError
+from arboleda.extension import ArboledaError, StartError
 from arboleda.plant_file.loader import load
 
 from .played import Crew

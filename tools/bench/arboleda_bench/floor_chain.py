@@ -14,7 +14,8 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from std_msgs.msg import Float32MultiArray, UInt8, UInt32
 
-from arboleda.kinds.arm import Arm, SetEffector
+from arboleda.drivers import SetEffector
+from arboleda.kinds.arm import Arm
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.wire.hop import COMMAND
 from arboleda_ros import convert, qos

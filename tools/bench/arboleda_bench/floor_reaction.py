@@ -13,11 +13,9 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, UInt8
 
+from arboleda.drivers import Command, FollowPath, MoveJoints, Robot
 from arboleda.kinds.arm import Arm
-from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.mobile import FollowPath
-from arboleda.model.commands import Command
-from arboleda.model.plant_model import Cell, PlantModel, Robot
+from arboleda.model.plant_model import Cell, PlantModel
 from arboleda_ros import convert, qos
 
 from . import brain, steps

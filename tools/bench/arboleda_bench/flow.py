@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from itertools import count, cycle
 from typing import Any
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 
 from .scene import wait_for
 

@@ -14,8 +14,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from arboleda.extension import ArboledaError
 from arboleda.kinds.declared import Device
-from arboleda.model.errors import ArboledaError
 from arboleda.plant_file.loader import load
 from arboleda_drivers.modbus.adapter import Modbus
 from arboleda_drivers.modbus.machine import ModbusDevice

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from arboleda.kinds.arm import SetEffector
-from arboleda.model.commands import Command
+from arboleda.drivers import Command, SetEffector
 
 
 @dataclass(frozen=True, kw_only=True)

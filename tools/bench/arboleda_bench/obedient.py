@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+from arboleda.drivers import Command, FollowPath, MotionState, MoveJoints, Report, Robot, SetEffector
 from arboleda.engine import Plant
-from arboleda.kinds.arm import Arm, SetEffector
-from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.mobile import FollowPath
-from arboleda.model.commands import Command
-from arboleda.model.messages import Event, MotionState, Report, TaskChanged, TaskRequest, TaskState
-from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.kinds.arm import Arm
+from arboleda.model.messages import Event, TaskChanged, TaskRequest, TaskState
+from arboleda.model.plant_model import PlantModel
 
 EPOCH = 1000
 MESSAGE_S = 1e-4  # from one word of a robot to the next; none counts as silent meanwhile

@@ -15,8 +15,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from arboleda.extension import ArboledaError
 from arboleda.kinds.declared import Device
-from arboleda.model.errors import ArboledaError
 from arboleda.plant_file.loader import load
 from arboleda_drivers.opcua.adapter import OpcUa
 from arboleda_drivers.opcua.machine import OpcUaDevice

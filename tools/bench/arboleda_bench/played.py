@@ -6,12 +6,21 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, cast
 
-from arboleda.kinds.arm import Arm, SetEffector
-from arboleda.kinds.joints import Jointed, MoveJoints
-from arboleda.kinds.mobile import FollowPath
-from arboleda.model.commands import Command, Home, Stop
-from arboleda.model.messages import Heartbeat, MotionState, Report
-from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.drivers import (
+    Command,
+    FollowPath,
+    Home,
+    MotionState,
+    MoveJoints,
+    Report,
+    Robot,
+    SetEffector,
+    Stop,
+)
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.joints import Jointed
+from arboleda.model.messages import Heartbeat
+from arboleda.model.plant_model import PlantModel
 
 from .clockwork import Clockwork, now
 

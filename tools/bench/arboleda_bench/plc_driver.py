@@ -6,8 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from arboleda.drivers import VerbCommand
-from arboleda.drivers.port import Driver
+from arboleda.drivers import Driver, VerbCommand
 from arboleda.kinds.declared import Device
 
 from .reports import Reports

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import IO
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 
 PATIENCE_S = 15.0
 PAGE = os.sysconf("SC_PAGE_SIZE")

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from arboleda.drivers import Report
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 
 
 class Reports:

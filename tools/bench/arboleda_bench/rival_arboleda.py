@@ -9,9 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from arboleda.kinds.arm import SetEffector
-from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.mobile import FollowPath
+from arboleda.drivers import FollowPath, MoveJoints, SetEffector
 from arboleda.model.messages import Heartbeat, TaskChanged, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load

@@ -6,9 +6,7 @@ import os
 import sys
 from pathlib import Path
 
-from arboleda.kinds.arm import SetEffector
-from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.mobile import FollowPath
+from arboleda.drivers import FollowPath, MoveJoints, SetEffector
 from arboleda.plant_file.loader import load
 
 from . import steps

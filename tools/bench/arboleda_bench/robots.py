@@ -11,12 +11,10 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt8
 
+from arboleda.drivers import Command, FollowPath, MotionState, MoveJoints, Report, Robot, Stop
 from arboleda.kinds.arm import Arm
-from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.mobile import FollowPath, Mobile
-from arboleda.model.commands import Command, Stop
-from arboleda.model.messages import MotionState, Report
-from arboleda.model.plant_model import APART_S, Cell, PlantModel, Robot
+from arboleda.kinds.mobile import Mobile
+from arboleda.model.plant_model import APART_S, Cell, PlantModel
 from arboleda.testing.storage_layout import StorageLayout
 from arboleda.wire.hop import PLAIN
 from arboleda_ros import convert, qos

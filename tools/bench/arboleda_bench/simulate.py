@@ -27,7 +27,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from time import process_time
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.plant_file import loader
 from arboleda.rig.world import World
 from arboleda_proofs.campaigns.plants import Plant, PlantRotation

@@ -27,10 +27,7 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.mobile import FollowPath
-from arboleda.model.commands import Command
-from arboleda.model.messages import Report
+from arboleda.drivers import Command, FollowPath, MoveJoints, Report
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.testing.storage_layout import StorageLayout

@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import count
 
-from arboleda.kinds.arm import SetEffector
-from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.mobile import FollowPath
-from arboleda.model.commands import Command
+from arboleda.drivers import Command, FollowPath, MoveJoints, SetEffector
 from arboleda.model.plant_model import Cell
 from arboleda.testing.storage_layout import StorageLayout
 

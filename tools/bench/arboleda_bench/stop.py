@@ -17,7 +17,7 @@ import time
 from contextlib import closing
 from pathlib import Path
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 
 from . import plants
 from .processes import Process

@@ -17,10 +17,8 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt8
 
-from arboleda.kinds.arm import SetEffector
-from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.mobile import FollowPath
-from arboleda.model.plant_model import Cell, PlantModel, Robot
+from arboleda.drivers import FollowPath, MoveJoints, Robot, SetEffector
+from arboleda.model.plant_model import Cell, PlantModel
 from arboleda_ros import convert, qos
 
 from . import brain, steps

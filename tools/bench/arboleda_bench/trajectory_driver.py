@@ -14,8 +14,8 @@ import time
 from typing import Any
 
 from arboleda.drivers import MotionState, MoveJoints
+from arboleda.extension import ArboledaError
 from arboleda.kinds.arm import Arm
-from arboleda.model.errors import ArboledaError
 from arboleda.testing.plants import shipped
 from arboleda.testing.storage_layout import StorageLayout
 from arboleda_drivers.joint_trajectory.settings import Settings

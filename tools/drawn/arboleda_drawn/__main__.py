@@ -18,7 +18,7 @@ from rich.console import Console
 from rich.text import Text
 
 from arboleda.cli.complaint import complain, status_of
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.plant_file.user_file import check_new, check_writable
 from arboleda_proofs.campaigns import screen, single_seed
 from arboleda_proofs.campaigns.defaults import CYCLES, LEVEL, SEED, SEEDS

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator, Sequence
 from functools import partial
 
+from arboleda.drivers import Command
 from arboleda.kinds.declared import VerbCall
-from arboleda.model.commands import Command
 from arboleda.model.messages import OperatorRequest, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Cell
 from arboleda.model.task import Task

@@ -12,7 +12,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 
-from arboleda.model.commands import Command, Question
+from arboleda.drivers import Command
+from arboleda.model.commands import Question
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import PlantModel

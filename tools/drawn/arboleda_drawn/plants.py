@@ -11,7 +11,8 @@ from typing import Any
 
 import yaml
 
-from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.extension import ArboledaError
+from arboleda.model.errors import ConfigError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import loader
 from arboleda.plant_file.robot_models import arm_models, mobile_models

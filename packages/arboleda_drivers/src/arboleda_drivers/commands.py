@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.cli.commands import Command
+from arboleda.extension import Command
 
 COMMANDS = {
     "virtual": Command(

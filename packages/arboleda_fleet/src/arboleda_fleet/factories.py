@@ -6,7 +6,7 @@ import logging
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.runtime.missing import LeadKeeper, OpcUaView
 from arboleda.runtime.parts.orchestrator import Orchestrator
 from arboleda.runtime.parts.part import Part

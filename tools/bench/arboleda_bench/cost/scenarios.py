@@ -21,10 +21,10 @@ import httpx
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from arboleda.adapters import clock
+from arboleda.drivers import Command, MoveJoints, Report
 from arboleda.engine import Plant
-from arboleda.kinds.joints import MoveJoints
-from arboleda.model.commands import Command
-from arboleda.model.messages import OperatorRequest, Report, TaskRequest, Verb
+from arboleda.extension import Role
+from arboleda.model.messages import OperatorRequest, TaskRequest, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.recorder.state import state_of
@@ -36,7 +36,6 @@ from arboleda.store.sqlite import IN_MEMORY, Store
 from arboleda.store.task_rows import TaskHistory
 from arboleda.views import view
 from arboleda.views.resting_cells import RestingCells
-from arboleda.web.access.auth import Role
 from arboleda.web.api import make_app
 from arboleda_proofs.campaigns.request import Request
 from arboleda_proofs.simulator.people import Attendant, Customers

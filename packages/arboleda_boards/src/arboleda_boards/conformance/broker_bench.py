@@ -10,8 +10,8 @@ from uuid import uuid4
 from arboleda.adapters import clock
 from arboleda.adapters.broker_login import Address, Credentials
 from arboleda.adapters.mqtt import MqttClient, NotConnected
-from arboleda.model.errors import StartError
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Robot
+from arboleda.extension import StartError
 from arboleda.runtime.interrupts import until
 from arboleda.runtime.loop import Loop
 from arboleda.wire.topics import Channel, topic

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice, product
 
+from arboleda.drivers import MotionState
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, VerbCall
 from arboleda.model.facts import Facts, Value
-from arboleda.model.messages import MotionState
 from arboleda.wire.payloads import DEVICE, Telemetry, decode
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery

@@ -7,13 +7,14 @@ from typing import Annotated, cast
 
 import typer
 
-from arboleda.cli.language import allowed, say
+from arboleda.cli.language import allowed
 from arboleda.cli.new import WROTE
 from arboleda.cli.plant_options import PlantFile
+from arboleda.drivers import Robot
+from arboleda.extension import Phrase, say
 from arboleda.kinds.declared import Device
 from arboleda.model.outside import quoted
-from arboleda.model.plant_model import Link, PlantModel, Robot
-from arboleda.model.sentence import Phrase
+from arboleda.model.plant_model import Link, PlantModel
 from arboleda.plant_file import loader
 from arboleda_boards.firmware_config.header import header
 from arboleda_boards.firmware_config.resolving import tables

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from arboleda.cli.language import allowed, finding_in, language, say, say_in
+from arboleda.cli.language import allowed, finding_in, language, say_in
 from arboleda.cli.new import WROTE, write_files
 from arboleda.cli.overview import WholeSentences
+from arboleda.extension import Phrase, say
 from arboleda.model.errors import ConfigError
-from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_writable
 from arboleda.runtime import invocation
 

@@ -9,7 +9,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.extension import ArboledaError
+from arboleda.model.errors import ConfigError
 from arboleda.model.facts import shown
 from arboleda.model.messages import Reason
 from arboleda.model.outside import plain

@@ -15,7 +15,7 @@ from arboleda.drawing.folding import folded
 from arboleda.drawing.picture import Picture, Word, picture
 from arboleda.drawing.svg import svg
 from arboleda.drawing.words import outline
-from arboleda.model.sentence import Sentence
+from arboleda.extension import Sentence
 from arboleda.views import tree_view
 from arboleda.web.languages import FIRST, texts
 from arboleda_class.lessons import said_in

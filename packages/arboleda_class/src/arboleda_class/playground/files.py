@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda_class.exercises.work import LARGEST, MOST, Work, packed, zip_name
 
 from .building import Texts

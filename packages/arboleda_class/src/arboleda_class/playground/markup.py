@@ -8,8 +8,8 @@ from typing import Any
 from arboleda.dashboard import header, links, menu, settings, tasks, timeline, trees
 from arboleda.dashboard.body import Parts, body, script_data
 from arboleda.dashboard.page_api import Layout
-from arboleda.dashboard.tags import rows, tag
 from arboleda.dashboard.wording import Words, words
+from arboleda.extension import rows, tag
 from arboleda.web.languages import texts
 from arboleda_proofs.page import fault_form
 from arboleda_proofs.simulator.mishaps import MISHAPS

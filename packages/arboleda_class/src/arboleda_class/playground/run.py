@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from typing import Any
 
 from arboleda.dashboard.page_state import PageState
+from arboleda.extension import Sentence
 from arboleda.model.advice import Hand
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, Verb
 from arboleda.model.plant_model import PlantModel
-from arboleda.model.sentence import Sentence
 from arboleda.rig import hands
 from arboleda.views import twin_view, view
 from arboleda.views.resting_cells import RestingCells

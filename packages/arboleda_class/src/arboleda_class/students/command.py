@@ -11,11 +11,10 @@ from urllib.parse import urlsplit
 
 import typer
 
-from arboleda.cli.language import say
 from arboleda.cli.new import BAD_NAME, NAME_RULE
-from arboleda.model.errors import ConfigError, StartError
+from arboleda.extension import Phrase, StartError, say
+from arboleda.model.errors import ConfigError
 from arboleda.model.outside import quoted
-from arboleda.model.sentence import Phrase
 from arboleda.plant_file.examples import PLANT
 from arboleda.plant_file.shapes import is_plant_name
 from arboleda.runtime import invocation

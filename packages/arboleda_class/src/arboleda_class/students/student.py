@@ -8,10 +8,10 @@ from itertools import count
 from pathlib import Path
 
 from arboleda.cli.new import write
+from arboleda.extension import Role
 from arboleda.plant_file.examples import PLANT
 from arboleda.runtime import tokens
 from arboleda.runtime.state import replace_file
-from arboleda.web.access.auth import Role
 
 STATE = "state"
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any, Protocol
 
-from arboleda.kinds.arm import SetEffector
-from arboleda.kinds.joints import Jointed, MoveJoints
-from arboleda.model.commands import Home
-from arboleda.model.messages import Report
+from arboleda.drivers import Home, MoveJoints, Report, SetEffector
+from arboleda.kinds.joints import Jointed
 
 from .receipts import Receipts
 

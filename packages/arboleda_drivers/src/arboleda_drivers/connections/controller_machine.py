@@ -10,10 +10,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from arboleda.drivers.port import NotSent, lost
-from arboleda.kinds.arm import SetEffector
-from arboleda.kinds.joints import MoveJoints
-from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.drivers import Command, Home, MoveJoints, NotSent, SetEffector, Stop, StopMode, lost
 
 from .controller import Controller
 from .link import Close, Closed, CommandNotSent, CommandRequest, LinkBroken, Open, Opened

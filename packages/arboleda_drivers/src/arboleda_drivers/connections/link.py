@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.model.commands import Command
+from arboleda.drivers import Command
 
 
 class LinkBroken(ValueError):

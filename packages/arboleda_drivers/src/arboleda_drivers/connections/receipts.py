@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from arboleda.model.messages import Report
+from arboleda.drivers import Report
 
 from .look import Look
 

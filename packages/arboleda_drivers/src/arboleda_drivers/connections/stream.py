@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.drivers.port import DriverError
-from arboleda.model.messages import Report
+from arboleda.drivers import DriverError, Report
 
 from .link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 

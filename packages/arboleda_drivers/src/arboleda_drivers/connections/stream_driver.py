@@ -10,10 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Protocol
 
-from arboleda.drivers.port import Clock, DriverError, Hear, NotSent
-from arboleda.model.commands import Command
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Clock, Command, DriverError, Hear, NotSent, Report, Robot
 from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.device_feed import taking
 from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from arboleda.drivers import MotionState, Robot
 from arboleda.kinds.arm import Arm
-from arboleda.model.messages import MotionState
-from arboleda.model.plant_model import Robot
 
 from .controller import Controller
 from .link import LinkBroken

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from arboleda.drivers.port import Clock, Hear, driver
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Clock, Hear, Robot, driver
 from arboleda_drivers.connections.tcp_ports import TcpPorts
 from arboleda_drivers.dobot.dashboard import SendLine
 from arboleda_drivers.dobot.machine import DashboardReply, FeedbackData, Machine

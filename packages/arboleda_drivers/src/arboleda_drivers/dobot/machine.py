@@ -6,11 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from arboleda.kinds.joints import MoveJoints
-from arboleda.model.commands import Home
+from arboleda.drivers import Home, MotionState, MoveJoints, Report, Robot
 from arboleda.model.facts import HEALTH, WELL
-from arboleda.model.messages import MotionState, Report
-from arboleda.model.plant_model import Robot
 from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from arboleda_drivers.connections.look import Look

@@ -5,8 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 
-from arboleda.drivers.port import driver
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Robot, driver
 from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.stream_driver import Stream, StreamDriver
 from arboleda_drivers.gcode.dialects import machine

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Robot
 from arboleda_drivers.connections.controller_machine import ControllerMachine
 
 from .controller import GcodeController

@@ -9,10 +9,8 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 
-from arboleda.kinds.joints import MoveJoints
-from arboleda.model.commands import Home
+from arboleda.drivers import Home, MotionState, MoveJoints, Report
 from arboleda.model.facts import HEALTH, WELL
-from arboleda.model.messages import MotionState, Report
 from arboleda_drivers.connections.link import LinkBroken
 from arboleda_drivers.connections.stream import Received
 

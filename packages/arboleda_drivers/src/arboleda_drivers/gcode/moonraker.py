@@ -6,10 +6,8 @@ the end of the last line that it has: so a move is sent in pieces, as it goes on
 
 from __future__ import annotations
 
-from arboleda.kinds.joints import MoveJoints
-from arboleda.model.commands import Home
+from arboleda.drivers import Home, MotionState, MoveJoints, Report
 from arboleda.model.facts import HEALTH, WELL
-from arboleda.model.messages import MotionState, Report
 from arboleda_drivers.connections.link import LinkBroken
 from arboleda_drivers.connections.stream import Received
 

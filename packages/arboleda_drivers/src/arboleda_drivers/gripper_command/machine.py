@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from arboleda.drivers import Command, Robot
 from arboleda.kinds.declared import Device, VerbCall
-from arboleda.model.commands import Command, Work
-from arboleda.model.plant_model import Robot
+from arboleda.model.commands import Work
 from arboleda_drivers.ros_action.events import GoalResult, Measurement, Status
 from arboleda_drivers.ros_action.joints import Joints
 from arboleda_drivers.ros_action.machine import Machine

@@ -6,8 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
+from arboleda.drivers import Robot
 from arboleda.kinds.declared import Device
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.model.plant_model import Evidence
 
 FACTS: dict[str, tuple[type, ...]] = {"gripped": (bool,), "width_mm": (int, float), "force_n": (int, float)}
 VALUES = ("width_mm", "force_n")

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from arboleda.drivers.port import driver
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Robot, driver
 from arboleda_drivers.joint_trajectory.machine import Trajectory, machine
 from arboleda_drivers.joint_trajectory.settings import Settings
 from arboleda_drivers.ros_action.action_client import ActionClientDriver

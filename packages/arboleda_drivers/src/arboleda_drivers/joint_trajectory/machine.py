@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.kinds.joints import Jointed, MoveJoints
-from arboleda.model.commands import Command
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Command, MoveJoints, Robot
+from arboleda.kinds.joints import Jointed
 from arboleda_drivers.ros_action.events import GoalResult, Measurement
 from arboleda_drivers.ros_action.joints import Joints
 from arboleda_drivers.ros_action.machine import Machine

@@ -6,9 +6,10 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from arboleda.drivers import Robot
 from arboleda.kinds.joints import Joint, Jointed
 from arboleda.model.facts import HEALTH
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.model.plant_model import Evidence
 from arboleda_drivers.ros_action.health import Health
 
 SHORTEST_S = 0.1

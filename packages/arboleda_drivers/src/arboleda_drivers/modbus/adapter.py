@@ -6,8 +6,7 @@ import logging
 from collections.abc import Hashable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from arboleda.drivers import Command, Report, Robot, driver
-from arboleda.drivers.port import DriverError
+from arboleda.drivers import Command, DriverError, Report, Robot, driver
 from arboleda_drivers.modbus.machine import Block, ModbusDevice, Raw, WriteRequest
 from arboleda_drivers.modbus.settings import Settings
 from arboleda_drivers.plc import polled

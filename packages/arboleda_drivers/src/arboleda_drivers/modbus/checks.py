@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations
 
+from arboleda.drivers import Robot
 from arboleda.kinds.declared import Device, DeviceVerb, Effect, FactType
 from arboleda.model.outside import among
-from arboleda.model.plant_model import Robot
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Place, Problem
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from arboleda.drivers.port import DriverError
+from arboleda.drivers import DriverError
 from arboleda_drivers.plc.limits import check_polling
 
 from .registers import Register, Write

@@ -9,12 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from arboleda.drivers.port import DriverError, NotSent
+from arboleda.drivers import Command, DriverError, NotSent, Report, Robot, Stop, StopMode
 from arboleda.kinds.declared import Device, Effect, VerbCall
-from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.facts import Value
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Robot
 from arboleda_drivers.plc.numbers import Numbers
 from arboleda_drivers.plc.plc_snapshot import PlcSnapshot, Question, report
 from arboleda_drivers.plc.program_watch import ProgramWatch

@@ -6,8 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from arboleda.drivers.port import driver
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Robot, driver
 from arboleda_drivers.nav2.localisation import MapPose, OdometryPose
 from arboleda_drivers.nav2.machine import Route, to_pose, waypoints
 from arboleda_drivers.nav2.pose import Pose

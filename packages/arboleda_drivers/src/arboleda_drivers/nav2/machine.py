@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from arboleda.kinds.mobile import FollowPath, Mobile
-from arboleda.model.commands import Command
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Command, FollowPath, Robot
+from arboleda.kinds.mobile import Mobile
 from arboleda_drivers.ros_action.events import GoalResult, Measurement
 from arboleda_drivers.ros_action.machine import Machine
 from arboleda_drivers.ros_action.mover import NoGoal, failure

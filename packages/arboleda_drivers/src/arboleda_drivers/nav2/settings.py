@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from arboleda.drivers import Robot
 from arboleda.kinds.mobile import Mobile
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.model.plant_model import Evidence
 
 from .pose import Pose
 

@@ -14,8 +14,7 @@ from concurrent.futures import TimeoutError as TooLate
 from dataclasses import replace
 from typing import Any
 
-from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, Stop, driver, lost
-from arboleda.drivers.port import DriverError
+from arboleda.drivers import Clock, Command, DriverError, Hear, NotSent, Report, Robot, Stop, driver, lost
 from arboleda_drivers.opcua.machine import Call, NodeValue, OpcUaDevice, Writing
 from arboleda_drivers.opcua.settings import Settings
 from arboleda_drivers.plc.plc_snapshot import UnreadableValue

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Literal
 
-from arboleda.drivers.port import DriverError
+from arboleda.drivers import DriverError
 from arboleda_drivers.plc.limits import check_alive, check_sequence
 from arboleda_drivers.plc.numbers import LAST
 from arboleda_drivers.plc.variables import FORMS, LIMITS, Form

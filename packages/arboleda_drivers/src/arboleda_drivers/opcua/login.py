@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from arboleda.drivers.port import DriverError
+from arboleda.drivers import DriverError
 from arboleda_drivers.opcua.settings import Settings
 
 FILES = ("CERT", "KEY", "SERVER_CERT")

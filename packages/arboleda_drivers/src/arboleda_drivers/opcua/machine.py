@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from arboleda.model.commands import Command, Stop
+from arboleda.drivers import Command, Robot, Stop
 from arboleda.model.facts import Value
-from arboleda.model.plant_model import Robot
 from arboleda_drivers.plc.handshake import Handshake, Read, stop_order
 
 from .nodes import Order

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from arboleda.drivers.port import DriverError
+from arboleda.drivers import DriverError
 from arboleda.model.outside import quoted
 from arboleda_drivers.plc.variables import FORMS, Form, PlcArgument, PlcVariable
 

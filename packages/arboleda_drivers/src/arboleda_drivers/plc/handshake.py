@@ -9,12 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Protocol, TypeVar
 
-from arboleda.drivers.port import DriverError, NotSent
+from arboleda.drivers import Command, DriverError, NotSent, Report, Robot, StopMode
 from arboleda.kinds.declared import Device, Effect, FactType, VerbCall
-from arboleda.model.commands import Command, StopMode
-from arboleda.model.messages import Report
 from arboleda.model.outside import quoted
-from arboleda.model.plant_model import Robot
 
 from .checks import answers
 from .numbers import LAST, Numbers

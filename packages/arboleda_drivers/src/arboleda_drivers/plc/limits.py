@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.drivers.port import DriverError
+from arboleda.drivers import DriverError
 
 from .handshake import SequencePlaces
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.drivers.port import DriverError
+from arboleda.drivers import DriverError, MotionState, Receipt, Report
 from arboleda.model.facts import Facts, Value
-from arboleda.model.messages import MotionState, Receipt, Report
 
 from .numbers import Numbers
 

@@ -9,8 +9,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
-from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, lost
-from arboleda.drivers.port import DriverError
+from arboleda.drivers import Clock, Command, DriverError, Hear, NotSent, Report, Robot, lost
 from arboleda_drivers.plc.plc_snapshot import UnreadableValue
 
 BEAT_S = 0.2  # period of reports without a change

@@ -11,11 +11,8 @@ from functools import partial
 from importlib import import_module
 from typing import Any
 
-from arboleda.drivers.port import Clock, DriverError, Hear, NotSent, driver
-from arboleda.model.commands import Command
-from arboleda.model.messages import Report
+from arboleda.drivers import Clock, Command, DriverError, Hear, NotSent, Report, Robot, driver
 from arboleda.model.outside import text_of_error
-from arboleda.model.plant_model import Robot
 from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from arboleda_drivers.pylabrobot.machine import Machine
 from arboleda_drivers.pylabrobot.messages import (

@@ -11,13 +11,11 @@ import math
 from collections import deque
 from collections.abc import Mapping, Sequence
 
-from arboleda.drivers.port import lost
+from arboleda.drivers import Command, MotionState, Report, Robot, Stop, StopMode, lost
 from arboleda.kinds.declared import Device, Effect, VerbCall
-from arboleda.model.commands import Command, Stop, StopMode, Work
+from arboleda.model.commands import Work
 from arboleda.model.facts import Facts
-from arboleda.model.messages import MotionState, Report
 from arboleda.model.outside import plain
-from arboleda.model.plant_model import Robot
 from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from arboleda_drivers.plc.checks import answers
 

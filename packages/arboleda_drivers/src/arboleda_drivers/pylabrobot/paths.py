@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
 
-from arboleda.drivers.port import DriverError
+from arboleda.drivers import DriverError
 
 STEP = re.compile(r"\.?([A-Za-z]\w*)|\[([^\[\]]+)\]|(\(\))")
 

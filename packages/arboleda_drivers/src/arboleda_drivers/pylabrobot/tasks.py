@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from arboleda.drivers import Command, Stop
 from arboleda.kinds.declared import VerbCall
-from arboleda.model.commands import Command, OnStop, Stop, Work
+from arboleda.model.commands import OnStop, Work
 
 from .messages import Raised, Returned
 

@@ -14,10 +14,7 @@ from functools import partial
 from importlib import import_module
 from typing import Any, ClassVar
 
-from arboleda.drivers.port import Clock, DriverError, Hear, NotSent
-from arboleda.model.commands import Command
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Clock, Command, DriverError, Hear, NotSent, Report, Robot
 from arboleda_drivers.connections.device_feed import taking
 from arboleda_drivers.ros_action.events import (
     CancelAll,

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Any
 
-from arboleda.model.commands import Command
-from arboleda.model.messages import Report
+from arboleda.drivers import Command, Report
 
 from .health import Call, CallAnswer, HealthReading
 

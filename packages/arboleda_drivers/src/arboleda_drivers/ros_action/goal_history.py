@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from zlib import crc32
 
-from arboleda.model.commands import Command
-from arboleda.model.messages import Receipt, Tokens
+from arboleda.drivers import Command, Receipt, Tokens
 
 from .events import ListedGoal, Status
 from .goal import Goal

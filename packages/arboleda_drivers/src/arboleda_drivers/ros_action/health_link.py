@@ -8,7 +8,7 @@ from importlib import import_module
 from operator import attrgetter
 from typing import Any
 
-from arboleda.drivers.port import DriverError
+from arboleda.drivers import DriverError
 from arboleda_drivers.ros_action.health import Call, CallAnswer, Health, HealthReading
 
 SUCCEEDED = 4  # action_msgs/msg/GoalStatus

@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from arboleda.drivers.port import lost
-from arboleda.model.commands import Command, Home, Stop, StopMode
-from arboleda.model.messages import MotionState, Report
+from arboleda.drivers import Command, Home, MotionState, Report, Stop, StopMode, lost
 from arboleda.model.outside import plain
 from arboleda_drivers.connections.receipts import Receipts
 

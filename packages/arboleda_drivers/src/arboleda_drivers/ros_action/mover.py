@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
-from arboleda.model.commands import Command
+from arboleda.drivers import Command
 
 from .events import GoalResult, Measurement, Status
 

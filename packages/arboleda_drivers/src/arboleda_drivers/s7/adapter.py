@@ -6,8 +6,7 @@ import logging
 from collections.abc import Hashable
 from typing import TYPE_CHECKING, Any
 
-from arboleda.drivers import Command, Report, Robot, Stop, driver
-from arboleda.drivers.port import DriverError
+from arboleda.drivers import Command, DriverError, Report, Robot, Stop, driver
 from arboleda_drivers.plc import polled
 from arboleda_drivers.plc.handshake import Read
 from arboleda_drivers.s7.addresses import Area, address

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from arboleda.drivers.port import DriverError
+from arboleda.drivers import DriverError
 from arboleda_drivers.plc.limits import check_alive, check_polling, check_sequence
 from arboleda_drivers.plc.variables import LIMITS, Form, PlcArgument, PlcVariable
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from arboleda.model.commands import Command, Stop
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Command, Robot, Stop
 from arboleda_drivers.plc.handshake import Handshake, Read, stop_order
 
 from .addresses import Address, Area, address

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Robot
 
 from .checks import problems
 from .keys import S7Keys

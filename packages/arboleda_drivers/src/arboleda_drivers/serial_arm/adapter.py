@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.drivers.port import driver
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Robot, driver
 from arboleda_drivers.connections.stream_driver import StreamDriver
 from arboleda_drivers.serial_arm.machine import Machine
 from arboleda_drivers.serial_arm.settings import Settings

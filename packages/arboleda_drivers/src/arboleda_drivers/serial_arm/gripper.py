@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.drivers.port import NotSent
-from arboleda.kinds.arm import SetEffector
+from arboleda.drivers import NotSent, SetEffector
 from arboleda_drivers.connections.receipts import Receipts
 
 from .bus import Bus

@@ -9,11 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from arboleda.kinds.joints import Jointed, MoveJoints
-from arboleda.model.commands import Home
+from arboleda.drivers import Home, MotionState, MoveJoints, Report, Robot
+from arboleda.kinds.joints import Jointed
 from arboleda.model.facts import HEALTH, WELL, Facts
-from arboleda.model.messages import MotionState, Report
-from arboleda.model.plant_model import Robot
 from arboleda_drivers.connections.controller import Controller
 from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.link import LinkBroken

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
-from arboleda.drivers.port import Clock, Hear, driver
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Clock, Hear, Robot, driver
 from arboleda_drivers.connections.tcp_ports import TcpPorts
 from arboleda_drivers.ur.machine import Machine
 from arboleda_drivers.ur.port_data import DASHBOARD, PRIMARY, RTDE, Received, Send

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from arboleda.model.messages import MotionState
+from arboleda.drivers import MotionState
 
 from .rtde import Frame
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from arboleda.drivers import Command
 from arboleda.kinds.declared import FactType, VerbCall
-from arboleda.model.commands import Command, Query
+from arboleda.model.commands import Query
 from arboleda.model.facts import Value, shown
 from arboleda.model.outside import plain
 

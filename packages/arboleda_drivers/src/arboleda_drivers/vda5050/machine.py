@@ -13,14 +13,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from arboleda.drivers.port import NotSent, lost
+from arboleda.drivers import Command, FollowPath, MotionState, NotSent, Report, Robot, Stop, lost
 from arboleda.kinds.declared import Device, VerbCall
-from arboleda.kinds.mobile import FollowPath, Mobile
-from arboleda.model.commands import Command, Stop
+from arboleda.kinds.mobile import Mobile
 from arboleda.model.facts import Facts
-from arboleda.model.messages import MotionState, Report
 from arboleda.model.outside import plain
-from arboleda.model.plant_model import Robot
 
 from . import factsheet
 from .answers import Answers

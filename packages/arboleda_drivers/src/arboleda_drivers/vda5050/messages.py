@@ -16,7 +16,7 @@ from typing import Any
 
 import fastjsonschema
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.model.outside import plain, quoted
 
 LARGEST = 1_000_000  # bytes of a message

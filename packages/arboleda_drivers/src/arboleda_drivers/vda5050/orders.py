@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from arboleda.kinds.mobile import FollowPath
-from arboleda.model.commands import Command
+from arboleda.drivers import Command, FollowPath
 from arboleda.model.facts import Facts
 
 from .state import ENDS_ORDER, VehicleState

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from arboleda.model.commands import StopMode
+from arboleda.drivers import StopMode
 
 from .orders import Action
 from .state import VehicleState

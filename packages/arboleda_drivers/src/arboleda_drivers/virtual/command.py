@@ -8,12 +8,11 @@ from importlib.util import find_spec
 
 import typer
 
-from arboleda.cli.language import say
 from arboleda.cli.overview import WholeSentences
 from arboleda.drivers.port import GROUP
+from arboleda.extension import Phrase, say
 from arboleda.host.packages import entry_points
 from arboleda.model.outside import text_of_error
-from arboleda.model.sentence import Phrase
 
 COMMAND = "virtual.command"  # in the folder of the driver
 UNUSABLE = Phrase("cli.virtual.unusable", "the virtual controller {module} cannot be loaded: {why}")

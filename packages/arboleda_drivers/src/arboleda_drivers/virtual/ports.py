@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import socket
 
-from arboleda.model.errors import StartError
+from arboleda.extension import StartError
 
 
 def listen(host: str, port: int) -> socket.socket:

@@ -10,8 +10,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Protocol
 
+from arboleda.extension import StartError
 from arboleda.host.pseudo_terminal import pseudo_terminal
-from arboleda.model.errors import StartError
 
 AT_ONCE = 4096
 LONGEST_WAIT_S = 0.05

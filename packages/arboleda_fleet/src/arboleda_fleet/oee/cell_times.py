@@ -7,8 +7,8 @@ from collections.abc import Callable
 from functools import partial
 
 from arboleda.engine import Plant
+from arboleda.extension import ArboledaError
 from arboleda.model.cell_states import CellState
-from arboleda.model.errors import ArboledaError
 from arboleda.oee.figures import SEEN_S
 from arboleda.store.time_table import TimeTable
 

@@ -14,11 +14,10 @@ from rich.table import Table
 from rich.text import Text
 
 from arboleda.cli import plant_options
-from arboleda.cli.language import say
-from arboleda.cli.plant_options import RunningPlant, StateFolder, StoreAddress
+from arboleda.cli.plant_options import StoreAddress
 from arboleda.cli.tasks import moment
+from arboleda.extension import Phrase, RunningPlant, StateFolder, say
 from arboleda.model.outside import plain
-from arboleda.model.sentence import Phrase
 from arboleda.oee.figures import Oee
 
 from .api import OeeQuery

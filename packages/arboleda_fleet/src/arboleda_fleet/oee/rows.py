@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.oee.figures import Downtime, Oee, PastTask, PastTimes, PlantRun, Shortest, oee
 from arboleda.store.task_rows import Database, History
 

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from arboleda.drivers import MotionState
 from arboleda.model.cell_states import CellState
-from arboleda.model.messages import MotionState
 from arboleda.views.alarms import needs_in
 
 Type = Literal["Boolean", "Int32", "Double", "String"]

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.model.messages import ENDED, TaskChanged, TaskState
 from arboleda.oee.figures import Oee
 from arboleda.runtime.parts.viewer_process import Snapshot, ViewerProcess

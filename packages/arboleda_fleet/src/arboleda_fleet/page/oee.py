@@ -10,10 +10,9 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 
 from arboleda.dashboard.page_api import PageApi
-from arboleda.dashboard.page_part import Spot
 from arboleda.dashboard.shell import language_of
-from arboleda.dashboard.tags import rows, tag
 from arboleda.dashboard.wording import words as words_of
+from arboleda.extension import Spot, rows, tag
 from arboleda.model.packages import FLEET
 from arboleda.web.missing import missing
 

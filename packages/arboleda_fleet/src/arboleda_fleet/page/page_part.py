@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.dashboard.asset_files import Assets
-from arboleda.dashboard.page_part import PagePart, Place, Section
+from arboleda.extension import Assets, PagePart, Place, Section
 
 from . import oee
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.model.errors import StartError
+from arboleda.extension import StartError
 from arboleda.runtime import invocation
 from arboleda.store.leadership import Leaders, Leadership
 from arboleda.store.plant_memory import PlantMemory

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.store.task_rows import Database, History
 
 from .schema import VERSION, exists, refuse_newer, schema_of, version

@@ -14,7 +14,7 @@ import psycopg
 
 from arboleda.adapters import clock
 from arboleda.departures.leading import LEASE_S, RENEW_S, WANTED_S, Lease, Silence
-from arboleda.model.errors import ArboledaError, StartError
+from arboleda.extension import ArboledaError, StartError
 from arboleda.model.outside import plain
 from arboleda.store.lead import Lead, OtherLeader, Standby, Superseded
 

@@ -7,7 +7,7 @@ from typing import Any
 from psycopg import sql
 
 from arboleda.departures.leading import LEASE_S
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.model.outside import plain
 from arboleda.store.leadership import Leader, Leaders
 

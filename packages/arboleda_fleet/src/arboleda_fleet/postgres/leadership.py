@@ -8,7 +8,7 @@ from typing import Any
 
 from arboleda.adapters import clock
 from arboleda.departures.leading import LEASE_S, Silence
-from arboleda.model.errors import ArboledaError, StartError
+from arboleda.extension import ArboledaError, StartError
 from arboleda.model.outside import plain
 from arboleda.store.leadership import Leader, Leadership
 

@@ -11,7 +11,7 @@ import psycopg
 
 from arboleda.adapters import clock
 from arboleda.departures.leading import AGAIN_S
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.store.plant_memory import PlantMemory
 from arboleda.store.rows import Statement
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from psycopg import sql
 
-from arboleda.model.errors import StartError
+from arboleda.extension import StartError
 
 from .server import Impatient
 

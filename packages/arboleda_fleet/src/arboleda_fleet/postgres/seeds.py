@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from psycopg import sql
 
-from arboleda.model.errors import StartError
+from arboleda.extension import StartError
 from arboleda.store.seeds import SeedRow, Seeds
 
 from .server import checked, connected, explained

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 import psycopg
 from psycopg import sql
 
-from arboleda.model.errors import ArboledaError, StartError
+from arboleda.extension import ArboledaError, StartError
 from arboleda.store.address import has_password, is_address
 
 OLDEST = 13  # the oldest supported version of the server

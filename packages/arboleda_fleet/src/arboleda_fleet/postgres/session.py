@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.model.errors import ArboledaError, StartError
+from arboleda.extension import ArboledaError, StartError
 
 from .schema import prepare, schema_of
 from .server import Impatient, checked, connected, explained

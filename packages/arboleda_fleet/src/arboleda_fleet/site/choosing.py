@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from urllib.parse import urlencode
 
 from arboleda.engine import Prospect, best
-from arboleda.model.errors import ArboledaError
-from arboleda.model.sentence import OWN, Phrase, Sentence
+from arboleda.extension import ArboledaError, Phrase, Sentence
+from arboleda.model.sentence import OWN
 from arboleda.model.task import Order
 from arboleda.model.text import BETWEEN_CELLS
 

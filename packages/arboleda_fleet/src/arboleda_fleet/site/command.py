@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from arboleda.model.errors import StartError
+from arboleda.extension import StartError
 from arboleda.runtime.state import state_root
 from arboleda.runtime.stores import leaders_of
 from arboleda.runtime.web_options import WebOptions

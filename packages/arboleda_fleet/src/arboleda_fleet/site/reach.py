@@ -8,9 +8,8 @@ from typing import Any
 import httpx
 
 from arboleda.client.protocol import COMMAND_LINE
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError, Phrase
 from arboleda.model.outside import plain, text_of_error
-from arboleda.model.sentence import Phrase
 from arboleda.runtime.endpoints import Place
 
 ANSWER_S = 2.5  # a browser gives a stop up after 3 s

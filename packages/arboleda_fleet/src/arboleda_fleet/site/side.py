@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from arboleda.model.sentence import Sentence
+from arboleda.extension import Sentence
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from arboleda.dashboard.frames import ended
-from arboleda.model.errors import ArboledaError
-from arboleda.model.sentence import BOTH, Phrase, Sentence
+from arboleda.extension import ArboledaError, Phrase, Sentence
+from arboleda.model.sentence import BOTH
 from arboleda.runtime.endpoints import Find, Place
 
 from .choosing import EXAMPLE, FORM, LONGEST, NO_SUCH, Choice, TaskRefused, chosen, names_plants

@@ -6,10 +6,8 @@ import time
 
 import typer
 
-from arboleda.cli.language import say
-from arboleda.cli.plant_options import RunningPlant, StateFolder, StoreAddress, database
-from arboleda.model.errors import ArboledaError, StartError
-from arboleda.model.sentence import Phrase
+from arboleda.cli.plant_options import StoreAddress, database
+from arboleda.extension import ArboledaError, Phrase, RunningPlant, StartError, StateFolder, say
 
 PATIENCE_S = 30.0
 LOOK_S = 0.05

@@ -9,7 +9,7 @@ from contextlib import suppress
 
 from arboleda.adapters import clock
 from arboleda.departures.leading import all_stand, at_work
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.model.messages import Verb
 from arboleda.runtime.parts.orchestrator import Orchestrator
 

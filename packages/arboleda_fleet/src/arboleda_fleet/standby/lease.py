@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable
 
 from arboleda.adapters import clock
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.runtime.parts.part import Crash
 from arboleda.store.lead import Superseded
 from arboleda.store.plant_memory import PlantMemory

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from arboleda.departures.leading import LOOK_S
-from arboleda.model.errors import ArboledaError, StartError
+from arboleda.extension import ArboledaError, StartError
 from arboleda.model.plant_model import PlantModel
 from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.interrupts import heed, interruptible

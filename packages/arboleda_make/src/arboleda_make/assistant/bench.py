@@ -12,8 +12,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from arboleda.extension import ArboledaError
 from arboleda.host.limits import BEHIND
-from arboleda.model.errors import ArboledaError
 from arboleda_make.trying.processes.extract import shown
 
 SPARE_S = 270.0  # after the budget: what is under way is ended, a mend is looked for

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, is_dataclass
 from typing import Any
 
-from arboleda.client.errors import Refusal
-from arboleda.model.errors import ArboledaError
+from arboleda.client import Refusal
+from arboleda.extension import ArboledaError
 from arboleda.model.outside import plain
 
 NOTE = (

@@ -10,7 +10,7 @@ from arboleda.client import AsyncPlant
 from arboleda.client.answers.plant import Cell
 from arboleda.drawing.picture import picture
 from arboleda.drawing.svg import svg
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.model.outside import among, quoted
 from arboleda_make.client import AsyncMake
 

@@ -12,12 +12,12 @@ from typing import Annotated
 import typer
 
 from arboleda.cli.check import WARNING
-from arboleda.cli.language import finding, say
-from arboleda.cli.plant_options import PlantFile, StateFolder, client
+from arboleda.cli.language import finding
+from arboleda.cli.plant_options import PlantFile
 from arboleda.cli.working import working
-from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.extension import ArboledaError, Phrase, StateFolder, client, say
+from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
-from arboleda.model.sentence import Phrase
 from arboleda.plant_file import draft_check, loader, plant_check
 from arboleda.plant_file.change import Change
 from arboleda.plant_file.changes import changes

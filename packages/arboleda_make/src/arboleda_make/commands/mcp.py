@@ -8,13 +8,11 @@ from typing import Annotated
 
 import typer
 
-from arboleda.cli.plant_options import PlantFile, StateFolder, TokensFile, located
-from arboleda.model.errors import ArboledaError, StartError
-from arboleda.model.sentence import Phrase
+from arboleda.cli.plant_options import PlantFile, TokensFile, located
+from arboleda.extension import ArboledaError, Phrase, Role, StartError, StateFolder
 from arboleda.runtime import endpoints, invocation, tokens
 from arboleda.runtime.endpoints import Place
 from arboleda.runtime.state import find_running
-from arboleda.web.access.auth import Role
 
 WHAT = "Let an assistant (a language model) look at a plant, try its plant file, and propose changes."
 HOW = """It speaks the Model Context Protocol over standard input and output, or with --port over HTTP on this

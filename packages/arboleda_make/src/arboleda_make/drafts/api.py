@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Any, Protocol
 
-from arboleda.model.errors import Refused
+from arboleda.extension import Refused
 
 State = dict[str, Any]
 Place = Sequence[str | int]

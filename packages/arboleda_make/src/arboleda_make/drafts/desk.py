@@ -10,7 +10,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, Protocol
 
-from arboleda.model.errors import StartError
+from arboleda.extension import StartError
 from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.changes import changes

@@ -13,8 +13,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from arboleda.extension import ArboledaError, StartError
 from arboleda.host.files import sync_folder
-from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import versions

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.draft_check import root_of
 from arboleda.plant_file.versions import Version

@@ -12,8 +12,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from arboleda.extension import ArboledaError
 from arboleda.host.limits import give_way
-from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import draft_check
 from arboleda.plant_file.draft_check import DraftCheck, Shade

@@ -14,7 +14,8 @@ from arboleda.engine import Context
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Reason
 from arboleda.model.outside import quoted
-from arboleda.recipes.authoring import Kit, Making, work
+from arboleda.recipes import Kit, work
+from arboleda.recipes.authoring import Making
 from arboleda.recipes.handles import Step, flat, question_of
 
 from .errors import EditError

@@ -9,7 +9,7 @@ from arboleda.bt_xml import leaves
 from arboleda.bt_xml.nodes import OF_LIBRARY, OF_MOVEIT, OF_NAV2, Category, Kind, Port
 from arboleda.bt_xml.runnable import INSTEAD
 from arboleda.model.plant_model import Cell
-from arboleda.recipes.nodes import WrittenNode
+from arboleda.recipes import WrittenNode
 
 Row = dict[str, Any]
 OLD = ("success_threshold", "failure_threshold", "threshold")  # ports of version 3

@@ -6,12 +6,12 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import loader
 from arboleda.plant_file.draft_check import shaded
 from arboleda.plant_file.mend import Cut, Mend, Texts, edit_of, edited
-from arboleda.recipes.authoring import WrittenRecipe
+from arboleda.recipes import WrittenRecipe
 from arboleda_proofs.campaigns.plants import Plant
 from arboleda_proofs.campaigns.proof.changed_recipe import noticed_with
 from arboleda_proofs.campaigns.proof.checks import checks

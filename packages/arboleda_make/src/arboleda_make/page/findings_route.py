@@ -11,8 +11,7 @@ from pydantic import Field
 
 from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.shell import language_of
-from arboleda.web.access.auth import Role
-from arboleda.web.access.needs import needs
+from arboleda.extension import Role, needs
 from arboleda.web.schema.bodies import BodyModel
 from arboleda.web.schema.queries import read_body
 from arboleda_make.trying.api import MakeApi

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from arboleda.dashboard.page_part import Spot
-from arboleda.dashboard.tags import tag, way
+from arboleda.dashboard.tags import way
 from arboleda.dashboard.wording import Words
+from arboleda.extension import Spot, tag
 from arboleda.plant_file.robot_models import arm_models
 from arboleda_make.trying.api import MakeApi
 

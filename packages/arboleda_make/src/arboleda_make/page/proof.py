@@ -8,8 +8,7 @@ from fastapi.responses import HTMLResponse, Response
 
 from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.sandbox import POLICY
-from arboleda.web.access.auth import Role
-from arboleda.web.access.needs import needs
+from arboleda.extension import Role, needs
 from arboleda_make.trying.api import MakeApi
 
 PATH = "/proof"

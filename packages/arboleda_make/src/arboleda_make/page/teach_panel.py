@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from arboleda.dashboard.faces import Face
-from arboleda.dashboard.faces.moment import Moment
 from arboleda.dashboard.page_api import Layout
-from arboleda.dashboard.page_part import Spot
-from arboleda.dashboard.tags import link, live, tag, way
+from arboleda.dashboard.tags import link, way
 from arboleda.dashboard.wording import Words
+from arboleda.extension import Moment, Spot, live, tag
 from arboleda.views.view import standing
 from arboleda_make.trying.api import MakeApi
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from arboleda.dashboard.page_part import Spot
-from arboleda.dashboard.tags import tag, way
+from arboleda.dashboard.tags import way
 from arboleda.dashboard.wording import Words
+from arboleda.extension import Spot, tag
 from arboleda_make.trying.api import MakeApi
 
 HOW = ("into", "before", "around", "instead")  # where a node of the palette goes

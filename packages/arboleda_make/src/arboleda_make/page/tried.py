@@ -8,7 +8,7 @@ from typing import Any
 
 from arboleda.dashboard.past.past import Past
 from arboleda.dashboard.past.side import Start
-from arboleda.model.sentence import Phrase
+from arboleda.extension import Phrase
 from arboleda.recorder import reader
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.views import Views

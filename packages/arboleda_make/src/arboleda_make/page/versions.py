@@ -7,10 +7,9 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse, Response
 
 from arboleda.dashboard.page_api import PageApi
-from arboleda.dashboard.page_part import Spot
 from arboleda.dashboard.shell import language_of
-from arboleda.dashboard.tags import tag
 from arboleda.dashboard.wording import words as words_of
+from arboleda.extension import Spot, tag
 from arboleda_make.versions.api import VersionsApi
 
 from .version_rows import face

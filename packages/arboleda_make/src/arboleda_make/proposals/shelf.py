@@ -10,7 +10,8 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from arboleda.model.errors import ConfigError, StartError
+from arboleda.extension import StartError
+from arboleda.model.errors import ConfigError
 from arboleda.model.outside import quoted
 from arboleda.runtime.state import replace_file
 from arboleda_make.drafts.api import DraftRefused

@@ -10,8 +10,8 @@ from datetime import datetime
 from typing import Any, Protocol
 
 from arboleda.engine import Plant
+from arboleda.extension import ArboledaError
 from arboleda.model.assistants import Assistants
-from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.task import Order

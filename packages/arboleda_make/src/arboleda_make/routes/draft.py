@@ -12,8 +12,7 @@ from pydantic import Field
 from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
-from arboleda.web.access.auth import Role
-from arboleda.web.access.needs import needs
+from arboleda.extension import Role, needs
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson

@@ -11,10 +11,9 @@ from pydantic import Field
 from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
-from arboleda.client.answers.tasks import Task
+from arboleda.client import Task
+from arboleda.extension import Role, needs
 from arboleda.model.sentence import explained
-from arboleda.web.access.auth import Role
-from arboleda.web.access.needs import needs
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel
 from arboleda.web.schema.plain_json import PlainJson

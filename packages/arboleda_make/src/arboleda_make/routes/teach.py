@@ -13,9 +13,8 @@ from pydantic import Field, model_validator
 from starlette.exceptions import HTTPException
 
 from arboleda.client.answers.plant import Teaching
+from arboleda.extension import Role, needs
 from arboleda.model.sentence import explained
-from arboleda.web.access.auth import Role
-from arboleda.web.access.needs import needs
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson

@@ -8,8 +8,7 @@ from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 
-from arboleda.web.access.auth import Role
-from arboleda.web.access.needs import needs
+from arboleda.extension import Role, needs
 from arboleda.web.languages import FIRST, spoken, texts
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import RequestModel, Sentence

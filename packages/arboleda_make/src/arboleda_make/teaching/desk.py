@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
 from arboleda.adapters import clock
+from arboleda.drivers import Robot
 from arboleda.engine import Plant
+from arboleda.extension import ArboledaError
 from arboleda.geometry import bodies
 from arboleda.geometry.bodies import Body
-from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Jog
-from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.runtime import tool_path
 from arboleda.views import view

@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from arboleda.drivers import Robot
 from arboleda.engine import CellRun, Plant
 from arboleda.kinds.declared import Device, DeviceVerb, FactType
 from arboleda.model.by_class import nearest
 from arboleda.model.commands import Position
 from arboleda.model.messages import OperatorRequest, Verb
-from arboleda.model.plant_model import Robot
 from arboleda.views import view
 from arboleda_make.teaching.api import Spot, TeachRefused
 

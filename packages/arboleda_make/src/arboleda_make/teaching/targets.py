@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from arboleda.model.plant_model import Cell, Robot
+from arboleda.drivers import Robot
+from arboleda.model.plant_model import Cell
 from arboleda_make.teaching.api import Spot, Target, TeachRefused
 
 from . import devices as taught_devices

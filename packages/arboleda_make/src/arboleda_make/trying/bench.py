@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from arboleda.drivers import Robot
 from arboleda.drivers.address import address
 from arboleda.model.outside import plain
 from arboleda.model.plant_files import PlantFiles
-from arboleda.model.plant_model import Robot
 from arboleda.plant_file.robot_models import pose_at_home
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.yaml_edit import EditRefused

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.recipe_trial import PATH
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.recipe_trial import PATH
 from arboleda_make.drafts.api import DraftRefused

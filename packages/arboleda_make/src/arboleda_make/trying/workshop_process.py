@@ -7,8 +7,8 @@ import pickle
 import sys
 from typing import Any
 
+from arboleda.extension import ArboledaError
 from arboleda.host.limits import give_way
-from arboleda.model.errors import ArboledaError
 
 from .workshop_plant import WorkshopPlant
 

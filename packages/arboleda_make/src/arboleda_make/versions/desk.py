@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.engine import CellRun, Plant
-from arboleda.model.errors import ArboledaError, ConfigError, StartError
+from arboleda.extension import ArboledaError, StartError
+from arboleda.model.errors import ConfigError
 from arboleda.model.messages import RevisionAnswer, RevisionName
 from arboleda.model.outside import plain
 from arboleda.model.plant_files import PlantFiles

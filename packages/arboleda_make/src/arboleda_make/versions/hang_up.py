@@ -10,8 +10,8 @@ from collections.abc import Callable
 from types import FrameType
 from typing import Any
 
+from arboleda.extension import ArboledaError
 from arboleda.host.signals import HANG_UP, has_terminal
-from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain
 
 LOG = logging.getLogger("arboleda.operators")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.model.sentence import Phrase
+from arboleda.extension import Phrase
 from arboleda_proofs.simulator.levels import CRASHES
 
 ONE_SEED = Phrase("cli.simulate.one_seed", "--trace and --record are for one seed; choose it with --seed")

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from arboleda.extension import ArboledaError
 from arboleda.model.counting import counted
-from arboleda.model.errors import ArboledaError
 from arboleda.model.recording import Limits
 from arboleda.recorder import copying, reader
 from arboleda.recorder.files import parts_in

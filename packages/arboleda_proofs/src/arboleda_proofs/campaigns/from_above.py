@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from arboleda.extension import ArboledaError
 from arboleda.geometry import bodies, kinematics
-from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import shown
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.urdf import robot_urdf

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from io import RawIOBase
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 
 TIME = 10  # columns of the time in a line of the trace
 

@@ -12,8 +12,8 @@ from rich.console import Console
 from rich.text import Text
 
 from arboleda import __version__
+from arboleda.extension import ArboledaError, StartError
 from arboleda.model.counting import counted
-from arboleda.model.errors import ArboledaError, StartError
 from arboleda.store.schemes import databases
 from arboleda.store.seeds import SeedRow
 from arboleda_proofs.simulator.levels import LEVELS

@@ -14,7 +14,7 @@ from threading import Thread
 from types import TracebackType
 from typing import Any
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 
 from .campaign import Campaign, R, Runs, SoFar
 

@@ -8,10 +8,9 @@ from typing import Annotated, Any
 
 import typer
 
-from arboleda.cli.language import say
-from arboleda.cli.plant_options import RunningPlant, StateFolder, StoreAddress, TokensFile, client
+from arboleda.cli.plant_options import StoreAddress, TokensFile
+from arboleda.extension import Phrase, RunningPlant, StateFolder, client, say
 from arboleda.model.outside import plain
-from arboleda.model.sentence import Phrase
 
 LONGEST = 500  # characters of a line
 SPAN = re.compile(r"(\d+(?:\.\d+)?)\s*(s|m|min)?")

@@ -7,13 +7,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from arboleda.cli.language import say
 from arboleda.cli.record import changes
+from arboleda.extension import Phrase, say
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
-from arboleda.model.sentence import Phrase
 from arboleda.plant_file import user_file
 from arboleda.plant_file.own_recipes import LARGEST
 from arboleda.recorder.preamble import Beginning

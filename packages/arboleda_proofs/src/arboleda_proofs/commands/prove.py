@@ -10,11 +10,11 @@ from typing import Annotated
 
 import typer
 
-from arboleda.cli.language import language, say
-from arboleda.cli.plant_options import PlantFile, StateFolder, folder
+from arboleda.cli.language import language
+from arboleda.cli.plant_options import PlantFile, folder
+from arboleda.extension import Phrase, StateFolder, say
 from arboleda.host.packages import extra
 from arboleda.model.packages import MAKE
-from arboleda.model.sentence import Phrase
 from arboleda.plant_file.user_file import check_writable
 
 BUDGET = "10m"

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from arboleda.cli.language import say
 from arboleda.cli.record import LONGEST
+from arboleda.extension import Phrase, Sentence, say
 from arboleda.model.outside import plain
-from arboleda.model.sentence import Phrase, Sentence
 from arboleda.plant_file.user_file import check_new
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.reader import Record

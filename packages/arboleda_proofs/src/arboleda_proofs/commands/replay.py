@@ -13,14 +13,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from arboleda import __version__
-from arboleda.cli.language import say
-from arboleda.cli.plant_options import StateFolder
 from arboleda.cli.record import File, changes, last_of
+from arboleda.extension import Phrase, Sentence, StateFolder, say
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import ENDED
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import PlantModel
-from arboleda.model.sentence import Phrase, Sentence
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.preamble import Beginning
 from arboleda.recorder.record_text import moment, sentence_of

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from arboleda.dashboard.faces import Face
-from arboleda.dashboard.faces.moment import Moment
-from arboleda.dashboard.page_part import Request, Spot
-from arboleda.dashboard.tags import tag
+from arboleda.extension import Moment, Request, Spot, tag
 from arboleda_proofs.running.demonstration_api import DemonstrationApi
 
 END = "end_demo"

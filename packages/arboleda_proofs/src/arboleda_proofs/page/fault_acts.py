@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from fastapi.concurrency import run_in_threadpool
 
-from arboleda.dashboard.page_part import Request
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError, Request
 from arboleda_proofs.running.faults_api import FaultsApi
 
 BEGIN, END = "fault", "end_fault"

@@ -6,10 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from arboleda.dashboard.page_api import Layout, PageApi
-from arboleda.dashboard.page_part import Spot
-from arboleda.dashboard.tags import rows, tag
 from arboleda.dashboard.wording import Words
-from arboleda.model.sentence import Sentence
+from arboleda.extension import Sentence, Spot, rows, tag
 from arboleda_proofs.running.faults_api import FaultsApi
 
 LASTING_S = (2, 5, 15, 60)

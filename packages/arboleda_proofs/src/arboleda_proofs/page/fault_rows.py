@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from arboleda.dashboard.faces import Face
-from arboleda.dashboard.faces.moment import Moment, seconds
+from arboleda.dashboard.faces.moment import seconds
+from arboleda.extension import Moment
 
 from .fault_acts import END
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from arboleda.dashboard.asset_files import Assets
 from arboleda.dashboard.faces import Face
-from arboleda.dashboard.faces.moment import Moment
-from arboleda.dashboard.page_part import Act, PagePart, Place, Section
+from arboleda.extension import Act, Assets, Moment, PagePart, Place, Section
 
 from . import demo, fault_acts, fault_form, fault_rows, reports
 

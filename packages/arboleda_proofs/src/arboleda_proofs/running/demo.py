@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.model.messages import MotionState
-from arboleda.model.plant_model import Cell, Link, PlantModel, Robot
+from arboleda.drivers import MotionState, Robot
+from arboleda.model.plant_model import Cell, Link, PlantModel
 from arboleda.sim.devices import Alarm, Reboot
 from arboleda.views.view import standing
 from arboleda_proofs.simulator.chance import Dice

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.model.messages import TaskChanged
 from arboleda.runtime.loop import Loop
 from arboleda.runtime.parts.part import Crash

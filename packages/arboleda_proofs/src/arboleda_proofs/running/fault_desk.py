@@ -10,10 +10,10 @@ from functools import cached_property
 from itertools import count
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from arboleda.model.errors import ArboledaError
+from arboleda.drivers import Robot
+from arboleda.extension import ArboledaError, Phrase, Sentence
 from arboleda.model.messages import Event, FaultByHand
-from arboleda.model.plant_model import PlantModel, Robot
-from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.plant_model import PlantModel
 from arboleda_proofs.running.faults_api import BegunFault, FaultOffer, FaultRefused, FaultsApi
 from arboleda_proofs.simulator.fault_bench import (
     FaultBench,

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from arboleda.model.errors import Refused
-from arboleda.model.sentence import Sentence
+from arboleda.extension import Refused, Sentence
 
 
 class FaultRefused(Refused):

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable
 from functools import cache
 from typing import Any
 
+from arboleda.drivers import Command, Stop, StopMode
 from arboleda.engine import Plant, State
 from arboleda.model.by_class import nearest
 from arboleda.model.cell_states import CellState
-from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.messages import (
     CellRevised,
     Fact,

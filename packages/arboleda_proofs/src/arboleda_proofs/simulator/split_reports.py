@@ -12,10 +12,10 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import cast
 
+from arboleda.drivers import Report, Robot
 from arboleda.kinds.declared import Device, Effect
 from arboleda.kinds.mobile import Mobile
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import APART_S, Evidence, Robot
+from arboleda.model.plant_model import APART_S, Evidence
 from arboleda.rig.world import World
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication

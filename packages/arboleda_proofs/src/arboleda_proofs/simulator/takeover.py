@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
+from arboleda.drivers import Command, MotionState, Report, Robot, Stop, StopMode
 from arboleda.engine import Belief, Entry, Plant, State
 from arboleda.engine.inspection import HEARTBEAT_S
-from arboleda.model.commands import Command, Position, Stop, StopMode
-from arboleda.model.messages import Heartbeat, MotionState, Report
-from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.model.commands import Position
+from arboleda.model.messages import Heartbeat
+from arboleda.model.plant_model import PlantModel
 from arboleda.rig.world import BRIDGE, World
 from arboleda.sim.body import BodyReport
 from arboleda.wire.hop import FromPlant

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
 
+from arboleda.drivers import Robot
 from arboleda.model.facts import Value
-from arboleda.model.plant_model import Robot
 from arboleda.rig.world import World
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 
 __tracebackhide__ = True
 

@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from arboleda.cli.language import say
-from arboleda.model.sentence import Phrase
+from arboleda.extension import Phrase, say
 from arboleda_drivers.virtual.faults import Faults
 from arboleda_drivers.virtual.pty_line import PtyLine
 from arboleda_drivers.virtual.serving import Controller, FaultNames, FaultPort, serve, with_faults

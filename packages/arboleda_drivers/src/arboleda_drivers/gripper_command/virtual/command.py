@@ -6,8 +6,7 @@ from typing import Annotated
 
 import typer
 
-from arboleda.cli.language import say
-from arboleda.model.sentence import Phrase
+from arboleda.extension import Phrase, say
 from arboleda_drivers.ros_action.virtual.options import JointStates, Lan, Rate
 from arboleda_drivers.virtual.serving import FaultNames, FaultPort, serve, with_faults
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import time
 
-from arboleda.drivers.port import DriverError
-from arboleda.model.errors import StartError
+from arboleda.drivers import DriverError
+from arboleda.extension import StartError
 from arboleda_drivers.opcua.adapter import need_library
 from arboleda_drivers.opcua.server import OpcUaServer
 from arboleda_drivers.virtual.faults import Faults

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from arboleda.drivers.port import DriverError
-from arboleda.model.errors import StartError
+from arboleda.drivers import DriverError
+from arboleda.extension import StartError
 from arboleda_drivers.ros_action.action_client import action_type
 from arboleda_drivers.ros_action.events import GoalAnswer, GoalResult, Measurement, Status
 from arboleda_drivers.ros_action.virtual.machine import (

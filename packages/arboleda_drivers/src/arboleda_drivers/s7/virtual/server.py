@@ -5,8 +5,8 @@ from __future__ import annotations
 import threading
 import time
 
-from arboleda.drivers.port import DriverError
-from arboleda.model.errors import StartError
+from arboleda.drivers import DriverError
+from arboleda.extension import StartError
 from arboleda_drivers.s7.adapter import need_library
 from arboleda_drivers.s7.server import Memory, S7Server
 from arboleda_drivers.virtual.faults import Faults

@@ -13,8 +13,8 @@ from typing import Any
 from arboleda.bt_xml import reading
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.recipe import TreeRecipe, tree_recipe
+from arboleda.extension import ArboledaError
 from arboleda.model import text
-from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import Value, shown
 from arboleda.model.plant_model import PlantModel
 from arboleda_make.editing import desk

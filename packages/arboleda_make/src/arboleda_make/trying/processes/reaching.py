@@ -11,13 +11,13 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from arboleda.adapters import clock
+from arboleda.drivers import Driver, MotionState, Report, Robot
 from arboleda.drivers.address import address
-from arboleda.drivers.port import Driver, Listens
+from arboleda.drivers.port import Listens
 from arboleda.drivers.reports import objection
-from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import MotionState, Report
+from arboleda.extension import ArboledaError
 from arboleda.model.outside import plain
-from arboleda.model.plant_model import DriverUse, Robot
+from arboleda.model.plant_model import DriverUse
 from arboleda.plant_file.python_uses import LONGEST, error_text
 
 from .process import errand, write

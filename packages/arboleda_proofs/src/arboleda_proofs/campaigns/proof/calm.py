@@ -7,9 +7,10 @@ from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from arboleda.bt_xml import telling
+from arboleda.drivers import Command
 from arboleda.engine import Entry
 from arboleda.kinds.declared import QueryCall
-from arboleda.model.commands import Command, Question
+from arboleda.model.commands import Question
 from arboleda.model.common_places import room_at, same_places
 from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, TaskChanged

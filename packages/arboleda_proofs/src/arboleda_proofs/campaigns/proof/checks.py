@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Cell
 from arboleda_proofs.simulator.faults.targets import queries

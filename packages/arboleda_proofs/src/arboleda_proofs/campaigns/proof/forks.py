@@ -13,8 +13,8 @@ from collections.abc import Callable, Sequence
 from functools import cached_property, partial
 from typing import Any
 
+from arboleda.extension import ArboledaError
 from arboleda.host import abilities
-from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.judged_world import BrokenInvariant

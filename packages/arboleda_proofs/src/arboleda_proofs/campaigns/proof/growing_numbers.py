@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from arboleda.drivers import Command, Report
 from arboleda.engine import Belief
 from arboleda.engine.inspection import SETTLES_IN, Stillness
-from arboleda.model.commands import Command
-from arboleda.model.messages import Report
 from arboleda.sim.freshness import Freshness
 from arboleda.sim.uplink import Uplink
 from arboleda.wire.link import BoardLink

@@ -16,12 +16,13 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
+from arboleda.drivers import Robot
 from arboleda.engine import Belief, Entry, Plant
 from arboleda.engine.inspection import Ledger, News, ReportMoment
+from arboleda.extension import Phrase
 from arboleda.kinds.declared import DeviceKind
-from arboleda.model.plant_model import Cell, PlantModel, Robot
+from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Recipe
-from arboleda.model.sentence import Phrase
 from arboleda.rig.network import Client, Line
 from arboleda.rig.world import World
 from arboleda.sim.board import Board

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from arboleda import __version__
-from arboleda.model.errors import ArboledaError
+from arboleda.extension import ArboledaError
 from arboleda.plant_file.check_answer import CheckAnswer
 from arboleda.plant_file.unstated import unknowns
 

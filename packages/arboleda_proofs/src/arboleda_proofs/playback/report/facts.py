@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from arboleda.model.sentence import OWN, Sentence
+from arboleda.extension import Sentence
+from arboleda.model.sentence import OWN
 from arboleda.recorder.cause import Cause
 from arboleda.recorder.incident import Incident
 

@@ -17,8 +17,8 @@ from arboleda.dashboard.findings import findings
 from arboleda.dashboard.wording import Words, words
 from arboleda.drawing.folding import folded
 from arboleda.drawing.words import outline
+from arboleda.extension import Sentence
 from arboleda.model.plant_model import PlantModel
-from arboleda.model.sentence import Sentence
 from arboleda.recorder.cause import Cause
 from arboleda.recorder.incident import Incident
 from arboleda.web.languages import FIRST, LANGUAGES, texts

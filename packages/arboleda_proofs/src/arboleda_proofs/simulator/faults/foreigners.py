@@ -11,8 +11,8 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable
 
-from arboleda.model.commands import StopMode
-from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.drivers import Robot, StopMode
+from arboleda.model.plant_model import PlantModel
 from arboleda.rig.world import BRIDGE, World
 from arboleda.wire.forms import form_of
 from arboleda.wire.payloads import Goal, StopGoal, encode

@@ -5,11 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import cast
 
-from arboleda.kinds.arm import SetEffector
+from arboleda.drivers import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.kinds.declared import Device, FactType
-from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.mobile import FollowPath
-from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.facts import Value
 from arboleda.model.messages import Heartbeat
 from arboleda.model.plant_model import PlantModel

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import cast
 
+from arboleda.drivers import Robot
 from arboleda.model.commands import Query
-from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
+from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.rig.world import BRIDGE, PLANT
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.machine import MachineBody

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from arboleda.drivers import Robot
 from arboleda.engine import Teaching
 from arboleda.model.commands import Position
 from arboleda.model.messages import Jog, Verb
-from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.model.plant_model import PlantModel
 from arboleda.rig.world import World
 
 from ..chance import Dice

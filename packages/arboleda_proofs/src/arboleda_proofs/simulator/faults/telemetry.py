@@ -6,9 +6,9 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any, cast
 
+from arboleda.drivers import MotionState, Robot
 from arboleda.kinds.joints import Joint, Jointed
-from arboleda.model.messages import MotionState
-from arboleda.model.plant_model import Evidence, PlantModel, Robot
+from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.rig.world import World
 from arboleda.wire.units import to_wire
 

@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from operator import attrgetter
 from typing import Any
 
+from arboleda.drivers import Robot
 from arboleda.kinds.declared import Device
 from arboleda.model.facts import Value
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.model.plant_model import Evidence
 
 from ..recorded.scopes import UNSENT
 from .invariant import Look, Trigger, invariant

@@ -8,14 +8,14 @@ from collections.abc import Iterable, Iterator
 from py_trees.behaviour import Behaviour
 
 from arboleda.bt_xml.running.decorators import Loop
+from arboleda.drivers import Command, Home, MotionState, MoveJoints, Robot, Stop, StopMode
 from arboleda.engine import Act, State
 from arboleda.engine.inspection import TABLE
-from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.joints.motion import JointMotion
 from arboleda.model.cell_states import CellState
-from arboleda.model.commands import Command, Home, Motion, Query, Stop, StopMode, Switch
-from arboleda.model.messages import MotionState, Reason, Verb
-from arboleda.model.plant_model import Cell, Evidence, Robot, Timing
+from arboleda.model.commands import Motion, Query, Switch
+from arboleda.model.messages import Reason, Verb
+from arboleda.model.plant_model import Cell, Evidence, Timing
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import Commands, SentCommand

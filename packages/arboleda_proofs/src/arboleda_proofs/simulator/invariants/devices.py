@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from arboleda.drivers import Command, Home, MotionState, Robot, Stop, StopMode
 from arboleda.engine import State
-from arboleda.model.commands import Command, Home, Motion, Query, Question, Stop, StopMode
-from arboleda.model.messages import Fact, MotionState, OperatorRequest, Reason, Remember, TaskState, Verb
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.model.commands import Motion, Query, Question
+from arboleda.model.messages import Fact, OperatorRequest, Reason, Remember, TaskState, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.wire.hop import shown
 
 from ..recorded.commands import SentCommand

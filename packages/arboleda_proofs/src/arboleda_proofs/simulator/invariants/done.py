@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.kinds.arm import SetEffector
-from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.mobile import FollowPath
-from arboleda.model.commands import Command, Home
+from arboleda.drivers import Command, FollowPath, Home, MoveJoints, SetEffector
 from arboleda.model.plant_model import Evidence
 
 from ..truth.arm import ArmTruth

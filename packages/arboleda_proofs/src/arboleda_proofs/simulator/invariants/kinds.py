@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
+from arboleda.drivers import Command
 from arboleda.kinds.declared import Effect, FactType, Slot, VerbCall
-from arboleda.model.commands import Command, Motion, Process, Query, Switch, Work
+from arboleda.model.commands import Motion, Process, Query, Switch, Work
 from arboleda.model.facts import Value
 
 from .invariant import Look, Trigger, invariant

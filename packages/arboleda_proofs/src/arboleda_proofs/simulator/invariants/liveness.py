@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from arboleda.drivers import MotionState
 from arboleda.engine import Entry, reasons
 from arboleda.model.cell_states import CellState
-from arboleda.model.messages import Fact, MotionState
+from arboleda.model.messages import Fact
 from arboleda.model.plant_model import Evidence, Link, Pose, Workspace
 from arboleda.sim.board import Board
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.model.commands import Stop, StopMode, Switch
+from arboleda.drivers import Stop, StopMode
+from arboleda.model.commands import Switch
 from arboleda.model.messages import Fact, Remember
 
 from ..recorded.robots import StopProgress

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.mobile import FollowPath
+from arboleda.drivers import FollowPath, MoveJoints
 from arboleda.wire.hop import shown
 from arboleda.wire.payloads import JointsGoal, PathGoal, StopGoal
 

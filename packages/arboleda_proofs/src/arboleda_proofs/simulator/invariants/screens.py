@@ -10,14 +10,14 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from arboleda.drivers import FollowPath, MoveJoints, Robot
 from arboleda.engine import OPEN, State
 from arboleda.kinds.arm import Arm
-from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.kinds.mobile import Mobile
 from arboleda.model.cell_states import CellState
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import OperatorRequest
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import OWN
 from arboleda.model.tree_nodes import nodes_of
 from arboleda.model.verbs import Scope, refusable

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from arboleda.drivers import Stop, StopMode
 from arboleda.model import text
-from arboleda.model.commands import Stop, StopMode
 from arboleda.model.errors import TextError
 from arboleda.model.messages import Heartbeat, TaskChanged, TaskRequest, TaskState
 from arboleda.wire.hop import shown

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 
+from arboleda.drivers import Command, Stop, StopMode
 from arboleda.model.cell_states import TABLE, Cause, CellState
-from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.messages import (
     ENDED,
     Fact,

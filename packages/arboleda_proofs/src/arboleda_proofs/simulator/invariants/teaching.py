@@ -6,13 +6,13 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from arboleda.drivers import Home, Robot, Stop
 from arboleda.engine.inspection import HOLD_S
 from arboleda.kinds.joints import Jointed
 from arboleda.kinds.joints.motion import STRIDE_S
 from arboleda.model.by_class import nearest
-from arboleda.model.commands import Home, Motion, Stop
+from arboleda.model.commands import Motion
 from arboleda.model.messages import TaskChanged, TaskState
-from arboleda.model.plant_model import Robot
 from arboleda.wire.hop import shown
 
 from .invariant import Look, Trigger, invariant

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
+from arboleda.drivers import Command, Home, Stop, StopMode
 from arboleda.engine import OPEN, State
 from arboleda.engine.inspection import RELEASING
 from arboleda.model.cell_states import CellState
-from arboleda.model.commands import Command, Home, Stop, StopMode, Switch
+from arboleda.model.commands import Switch
 from arboleda.model.common_places import with_common_places
 from arboleda.model.messages import Fact, Journal, OperatorAnswer, OperatorRequest, Outcome, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Link

@@ -6,12 +6,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
-from arboleda.kinds.arm import SetEffector
-from arboleda.kinds.joints import Joint, MoveJoints
-from arboleda.kinds.mobile import FollowPath, Grid
-from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.drivers import Command, FollowPath, Home, MoveJoints, Robot, SetEffector, Stop, StopMode
+from arboleda.kinds.joints import Joint
+from arboleda.kinds.mobile import Grid
 from arboleda.model.messages import Heartbeat
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.model.plant_model import Evidence
 from arboleda.wire.payloads import StopGoal
 
 from ..recorded.boards import fields, is_number, on_wire

@@ -7,8 +7,8 @@ from itertools import dropwhile
 
 from py_trees.common import Status
 
+from arboleda.drivers import MoveJoints
 from arboleda.engine import CellRun, State, TakeDevices, TakeZones
-from arboleda.kinds.joints import MoveJoints
 from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Position
 from arboleda.model.plant_model import Cell, Evidence, Pose, Workspace

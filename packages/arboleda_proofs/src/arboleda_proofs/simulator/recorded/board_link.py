@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from arboleda.drivers import Robot
 from arboleda.engine import Belief
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.model.plant_model import Evidence
 
 
 class KnownLink:

@@ -10,9 +10,9 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from arboleda.drivers import Command, Report
 from arboleda.engine import Belief
-from arboleda.model.commands import Command
-from arboleda.model.messages import Heartbeat, Report
+from arboleda.model.messages import Heartbeat
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.rig.moment import BridgeStep
 from arboleda.wire import rejections

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 
+from arboleda.drivers import Command, Report, Robot
 from arboleda.engine import Belief
-from arboleda.model.commands import Command
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.model.plant_model import Evidence
 from arboleda.wire.rejections import FOREIGN, Rejection
 from arboleda.wire.transport import Delivery, Publication
 

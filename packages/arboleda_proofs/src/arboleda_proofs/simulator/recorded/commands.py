@@ -7,11 +7,12 @@ from collections import deque
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from arboleda.drivers import Command, MotionState, Report, Stop, StopMode
 from arboleda.engine import OPEN, Entry, State
 from arboleda.engine.inspection import Ledger
 from arboleda.kinds.declared import WorkCall
-from arboleda.model.commands import Command, Motion, OnStop, Stop, StopMode, Switch, Work
-from arboleda.model.messages import Heartbeat, MotionState, Report, Verb
+from arboleda.model.commands import Motion, OnStop, Switch, Work
+from arboleda.model.messages import Heartbeat, Verb
 from arboleda.model.plant_model import Timing
 
 from .robots import KnownRobot, Obstacle

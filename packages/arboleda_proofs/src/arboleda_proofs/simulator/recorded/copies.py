@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.model.commands import Command
+from arboleda.drivers import Command
 from arboleda.wire.hop import without_id
 
 COPIES_S = 5.0  # how far a copy and its original may come apart

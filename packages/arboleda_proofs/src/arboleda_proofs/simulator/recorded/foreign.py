@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from arboleda.model.commands import Command
+from arboleda.drivers import Command
 from arboleda.rig.moment import BridgeStep
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.rejections import ForeignCommand, Rejection

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from arboleda.drivers import Command, Home, Report
 from arboleda.engine import Belief, State
-from arboleda.model.commands import Command, Home
-from arboleda.model.messages import Report
 from arboleda.model.plant_model import PlantModel
 from arboleda.rig.moment import Moment
 

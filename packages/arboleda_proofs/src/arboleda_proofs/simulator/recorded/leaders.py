@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 from arboleda.departures.leading import Standing
-from arboleda.model.commands import Stop, StopMode
+from arboleda.drivers import Stop, StopMode
 from arboleda.model.messages import ENDED, Heartbeat, TaskChanged, TaskState
 from arboleda.rig.hosts.database import Write
 from arboleda.rig.hosts.former_leader import LateMessage

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import Any
 
-from arboleda.model.messages import MotionState
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import MotionState, Robot
 from arboleda.wire.transport import Publication
 
 from .board_link import KnownLink

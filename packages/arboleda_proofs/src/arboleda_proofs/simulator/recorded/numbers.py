@@ -6,7 +6,7 @@ import json
 from collections import OrderedDict
 from typing import Any
 
-from arboleda.model.messages import Report
+from arboleda.drivers import Report
 from arboleda.wire.transport import Publication
 
 KEPT = 200  # numbers of a board, fewer than the bridge remembers

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from arboleda.drivers import Stop, StopMode
 from arboleda.model.cell_states import CellState
-from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.plant_model import PlantModel
 

@@ -5,12 +5,8 @@ from __future__ import annotations
 import json
 from collections import defaultdict
 
-from arboleda.kinds.arm import SetEffector
-from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.mobile import FollowPath
-from arboleda.model.commands import Command, Home, Motion, Stop, StopMode
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Command, FollowPath, Home, MoveJoints, Report, Robot, SetEffector, Stop, StopMode
+from arboleda.model.commands import Motion
 from arboleda.wire.hop import is_stop
 from arboleda.wire.rejections import Rejection
 from arboleda.wire.transport import Publication

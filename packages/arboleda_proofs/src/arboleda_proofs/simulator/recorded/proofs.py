@@ -10,11 +10,11 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import cast
 
-from arboleda.kinds.joints import Jointed, MoveJoints
-from arboleda.kinds.mobile import FollowPath
-from arboleda.model.commands import Home, Motion, Query, Switch
-from arboleda.model.messages import Failure, MotionState, Reason, Report
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.drivers import FollowPath, Home, MotionState, MoveJoints, Report, Robot
+from arboleda.kinds.joints import Jointed
+from arboleda.model.commands import Motion, Query, Switch
+from arboleda.model.messages import Failure, Reason
+from arboleda.model.plant_model import Evidence
 
 from .commands import SentCommand
 from .robots import KnownRobot

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import Any
 
-from arboleda.model.messages import MotionState, Report
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.drivers import MotionState, Report, Robot
+from arboleda.model.plant_model import Evidence
 from arboleda.wire.transport import Delivery
 
 from .board_link import KnownLink

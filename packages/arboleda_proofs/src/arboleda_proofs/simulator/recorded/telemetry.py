@@ -7,8 +7,7 @@ import math
 from functools import cache
 from typing import Any
 
-from arboleda.model.messages import Report
-from arboleda.model.plant_model import Robot
+from arboleda.drivers import Report, Robot
 
 from .boards import parts
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from arboleda.drivers import Command
 from arboleda.engine import Act
 from arboleda.model.cell_states import CellState
-from arboleda.model.commands import Command
 from arboleda.rig.world import World
 
 from .cells import LOOK_S, KnownCell

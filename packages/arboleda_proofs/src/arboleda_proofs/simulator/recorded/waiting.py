@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 
+from arboleda.drivers import MoveJoints
 from arboleda.engine import Plant
-from arboleda.kinds.joints import MoveJoints
 from arboleda.model.cell_states import CellState
 
 from .cells import KnownCell

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from arboleda.model.messages import MotionState, Report
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.drivers import MotionState, Report, Robot
+from arboleda.model.plant_model import Evidence
 
 from .robot import RobotTruth
 

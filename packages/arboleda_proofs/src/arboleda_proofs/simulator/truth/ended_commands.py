@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from arboleda.drivers import Command
 from arboleda.engine import Entry, State
-from arboleda.model.commands import Command
 from arboleda.model.plant_model import APART_S
 from arboleda.rig.world import BRIDGE, World
 

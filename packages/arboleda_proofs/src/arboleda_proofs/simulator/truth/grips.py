@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
-from arboleda.model.commands import Command, Motion, Switch
-from arboleda.model.messages import MotionState, Report
+from arboleda.drivers import Command, MotionState, Report
+from arboleda.model.commands import Motion, Switch
 from arboleda.model.plant_model import Cell
 from arboleda.rig.world import World
 from arboleda.wire.payloads import EffectorGoal

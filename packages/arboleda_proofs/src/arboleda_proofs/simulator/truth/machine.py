@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from arboleda.model.commands import Command, Switch, needs_clear
+from arboleda.drivers import Command, Robot
+from arboleda.model.commands import Switch, needs_clear
 from arboleda.model.facts import Value
-from arboleda.model.plant_model import Cell, Interlock, Robot
+from arboleda.model.plant_model import Cell, Interlock
 from arboleda.rig.network import Client
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import Goal, OrderGoal

@@ -7,15 +7,16 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+from arboleda.drivers import Command, Robot
 from arboleda.engine import Entry, State
 from arboleda.engine.inspection import EMPTY, trouble_in
 from arboleda.kinds.declared import makes_parts
 from arboleda.model import text
-from arboleda.model.commands import Command, Position, Switch
+from arboleda.model.commands import Position, Switch
 from arboleda.model.common_places import with_common_places
 from arboleda.model.grips import Grip
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskState, Verb
-from arboleda.model.plant_model import Cell, Evidence, Place, Robot, Workspace
+from arboleda.model.plant_model import Cell, Evidence, Place, Workspace
 from arboleda.model.recipe import Recipe
 from arboleda.rig.world import World
 

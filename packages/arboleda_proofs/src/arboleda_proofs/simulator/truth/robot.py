@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
-from arboleda.model.commands import Command, Position, StopMode
-from arboleda.model.plant_model import Cell, Evidence, Interlock, Robot
+from arboleda.drivers import Command, Robot, StopMode
+from arboleda.model.commands import Position
+from arboleda.model.plant_model import Cell, Evidence, Interlock
 from arboleda.rig.network import Client
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal

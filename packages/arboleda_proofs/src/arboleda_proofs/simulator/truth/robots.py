@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from arboleda.drivers import Command, Report, Robot
 from arboleda.kinds.declared import Device
 from arboleda.kinds.joints import Jointed
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.by_class import nearest
-from arboleda.model.commands import Command
-from arboleda.model.messages import CellRevised, Fact, OperatorAnswer, Remember, Report, Verb
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.model.messages import CellRevised, Fact, OperatorAnswer, Remember, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.model.whole_cells import whole_cell
 from arboleda.rig.world import World
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 
-from arboleda.model.commands import Command, Motion, Query
+from arboleda.drivers import Command, Report
+from arboleda.model.commands import Motion, Query
 from arboleda.model.facts import Value
-from arboleda.model.messages import ENDED, Check, Fact, OperatorAnswer, Report, TaskChanged, TaskState, Verb
+from arboleda.model.messages import ENDED, Check, Fact, OperatorAnswer, TaskChanged, TaskState, Verb
 from arboleda.model.whole_cells import whole_cell
 from arboleda.rig.world import World
 from arboleda.wire.hop import FromPlant
