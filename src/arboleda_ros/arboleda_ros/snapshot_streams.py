@@ -19,8 +19,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from unique_identifier_msgs.msg import UUID
 
-from arboleda.viewers import py_trees_tree
-from arboleda_ros import qos
+from arboleda_ros import py_trees_tree, qos
 
 MOST = 20  # streams at a time
 DESERTED_S = 60.0  # life of a stream without listeners

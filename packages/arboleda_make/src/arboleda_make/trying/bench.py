@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.drivers import Robot
-from arboleda.drivers.address import address
 from arboleda.model.outside import plain
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.robot_models import pose_at_home
@@ -18,6 +17,7 @@ from arboleda.web.languages import spoken, texts
 from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.drafts.draft import draft_of
 from arboleda_make.editing.operations import Operation
+from arboleda_make.trying.address import address
 from arboleda_make.trying.api import MakeApi, Row
 
 from ..drafts.desk import DraftDesk

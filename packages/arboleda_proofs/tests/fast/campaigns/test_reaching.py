@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.drivers.address import address
 from arboleda.model.errors import ArboledaError
 from arboleda.plant_file.loader import load
+from arboleda_make.trying.address import address
 from arboleda_make.trying.processes import reaching
 
 EXAMPLE = Path(__file__).parents[5] / "examples/plc_conveyor/plant.yaml"

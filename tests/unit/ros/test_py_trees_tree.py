@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.viewers.py_trees_tree import (
+from arboleda_ros.py_trees_tree import (
     BEHAVIOUR,
     DECORATOR,
     NOBODY,
