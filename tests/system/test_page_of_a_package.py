@@ -6,15 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from ..added_package import install
-from ..chromium import browsers
+from ..added_package import install, register
+from ..chromium import browsers, people
 from .page import connected, running, show
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 
 CODE = """
 from arboleda.dashboard.asset_files import Assets
-from arboleda.dashboard.page_part import Act, PagePart, Place, Section
+from arboleda.dashboard.page_part import PageAct, PagePart, Place, Section
 from arboleda.dashboard.tags import live, tag
 
 
@@ -30,7 +30,7 @@ async def take(request):
 PAGE = PagePart(
     assets=Assets(package="{name}", script="shelf.js", styles=("shelf",)),
     sections=(Section(place=Place.TAB, name="{name}", build=shelf),),
-    acts={{"fetch": Act(name="Fetch", take=take)}},
+    acts={{"fetch": PageAct(name="Fetch", take=take)}},
     face=lambda moment: {{"text/{name}": [f"{{len(moment.snapshot['cells'])}} cells", ""]}},
 )
 """
@@ -76,3 +76,100 @@ def test_the_script_of_a_package_asks_its_own_code(tmp_path: Path, monkeypatch: 
         assert colour == "rgb(1, 2, 3)"
         page.click("#stop")
         page.wait_for_selector(".stop-state[data-s=stopped]")
+
+
+ORDERS = """
+from arboleda.extension import Act, Chart, Field, Page, Part, Rows, Tab, Value
+
+
+class Orders(Part):
+    def start(self):
+        self.keep([{"id": "a", "customer": "<b>ana</b>", "amount": 2}])
+
+    def keep(self, open):
+        self.open = open
+        amounts = {row["customer"]: row["amount"] for row in open}
+        self.plant.show(open=open, amounts=amounts, count={"sis_a": len(open)})
+
+
+def add(asked):
+    part = asked.part(Orders)
+    part.keep([*part.open, {"id": asked.values["customer"], **asked.values}])
+
+
+def cancel(asked):
+    part = asked.part(Orders)
+    part.keep([row for row in part.open if row["id"] != asked.of])
+    return f"{asked.of} is cancelled"
+
+
+FIELDS = [Field("customer"), Field("amount", lower=1, upper=20), Field("way", choices=["road", "rail"])]
+CANCEL = Act("cancel", "Cancel", cancel, asks="Cancel the order of {of}?")
+PAGE = Page(
+    tabs=[
+        Tab("orders", "Orders", [
+            Act("add", "Order", add, fields=FIELDS),
+            Rows("open", "Open", columns=["customer", "amount"], acts=[CANCEL], empty="None is open."),
+            Chart("amounts", "Amounts", kind="bars"),
+        ])
+    ],
+    card=[Value("count", "open orders")],
+    settings=[Act("drop", "Drop all", lambda asked: asked.part(Orders).keep([]))],
+    script="orders.js",
+)
+"""
+ORDERS_SCRIPT = """
+import { changed, send, value } from "../arboleda.js";
+
+export function start() {
+  const seen = document.documentElement.dataset;
+  changed("orders/open", (open) => (seen.open = `${open.length} ${value("orders/count").sis_a}`));
+  window.cancel = async (of) => {
+    const { sentence, good } = await send("orders.cancel", of);
+    seen.said = `${sentence} ${good}`;
+  };
+}
+"""
+
+
+def test_a_page_that_is_declared_takes_orders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    site = tmp_path / "site"
+    (site / "orders/assets").mkdir(parents=True)
+    (site / "orders/__init__.py").write_text(ORDERS, "utf-8")
+    (site / "orders/assets/orders.js").write_text(ORDERS_SCRIPT, "utf-8")
+    points = {"arboleda.page": ["orders = orders:PAGE"], "arboleda.parts": ["orders = orders:Orders"]}
+    register(site, "orders", points)
+    monkeypatch.syspath_prepend(site)
+    with running(tmp_path / "state") as address, browsers() as launch, people(launch()) as new:
+        page = new()
+        page.goto(address)
+        connected(page)
+        page.wait_for_selector("[data-live='orders:count:sis_a']:text('1')", state="attached")
+        show(page, "orders")
+        orders = page.locator("#part-orders")
+        assert orders.locator(".column-0").all_inner_texts() == ["<b>ana</b>"]
+        page.fill("[name=customer]", "eva")
+        page.fill("[name=amount]", "7")
+        page.click("#part-orders [type=submit]")
+        page.wait_for_selector("#part-orders .outcome:text('Done: Order.')")
+        page.wait_for_selector("#part-orders [data-row=eva]:has-text('7')")
+        page.wait_for_function("document.documentElement.dataset.open === '2 2'")
+        assert page.input_value("[name=customer]") == ""
+        assert orders.locator("rect").count() == 2
+        assert orders.locator("[data-live='orders:amounts.about']").inner_text().startswith("Last 7 (eva)")
+        page.evaluate("document.querySelector('#part-orders form').noValidate = true")
+        page.fill("[name=customer]", "eva")
+        page.fill("[name=amount]", "70")
+        page.press("[name=amount]", "Enter")
+        page.wait_for_selector(".outcome[data-s=bad]:text('amount is a whole number from 1 to 20, not')")
+        assert page.input_value("[name=amount]") == "70"
+        page.click("[data-row=eva] .act")
+        page.click("dialog button:text('Yes')")
+        page.wait_for_selector("#answer:text('eva is cancelled')")
+        page.evaluate("void cancel('a')")
+        page.click("dialog:has-text('Cancel the order of a?') button:text('Yes')")
+        page.wait_for_function("document.documentElement.dataset.said?.startsWith('a is cancelled true')")
+        page.wait_for_selector("#part-orders .empty:text('None is open.')")
+        page.click(".tabs [data-tab=settings]")
+        page.click("#part-settings [type=submit]")
+        page.wait_for_selector("#part-settings .outcome:text('Done: Drop all.')")

@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from arboleda.client.answers.tasks import Done as Done, Task as Task
     from arboleda.dashboard.asset_files import Assets as Assets
     from arboleda.dashboard.faces.moment import Moment as Moment
-    from arboleda.dashboard.page_part import Act as Act, PagePart as PagePart, Place as Place
+    from arboleda.dashboard.package_page import Act as Act, Asked as Asked, Chart as Chart, Field as Field
+    from arboleda.dashboard.package_page import Page as Page, Rows as Rows, Tab as Tab, Value as Value
+    from arboleda.dashboard.page_part import PageAct as PageAct, PagePart as PagePart, Place as Place
     from arboleda.dashboard.page_part import Request as Request, Section as Section, Spot as Spot
     from arboleda.dashboard.tags import act_button as act_button, live as live, rows as rows, tag as tag
     from arboleda.host.distributions import API as API
@@ -42,7 +44,8 @@ HOMES = {
     "client.answers.tasks": ("Done", "Task"),
     "dashboard.asset_files": ("Assets",),
     "dashboard.faces.moment": ("Moment",),
-    "dashboard.page_part": ("Act", "PagePart", "Place", "Request", "Section", "Spot"),
+    "dashboard.package_page": ("Act", "Asked", "Chart", "Field", "Page", "Rows", "Tab", "Value"),
+    "dashboard.page_part": ("PageAct", "PagePart", "Place", "Request", "Section", "Spot"),
     "dashboard.tags": ("act_button", "live", "rows", "tag"),
     "model.errors": ("ArboledaError", "Refused", "StartError"),
     "model.sentence": ("Phrase", "Sentence"),

@@ -31,8 +31,9 @@ from arboleda.web.package_routes import PackageRoute
 
 CODE = """
 from arboleda.dashboard.asset_files import Assets
-from arboleda.dashboard.page_part import Act, OtherRecord, PagePart, Place, Section
+from arboleda.dashboard.page_part import OtherRecord, PageAct, PagePart, Place, Section
 from arboleda.dashboard.tags import live, tag
+from arboleda.web.access.auth import Role
 
 HEARD = []
 
@@ -61,9 +62,9 @@ def serve(server, plant):
 PAGE = PagePart(
     sections=(
         Section(place=Place.CARD, build=card),
-        Section(place=Place.TAB, name="zones", build=panel, for_operators=True),
+        Section(place=Place.TAB, name="zones", build=panel, role=Role.OPERATOR),
     ),
-    acts={"fetch": Act(name="zones.title", take=take)},
+    acts={"fetch": PageAct(name="zones.title", take=take)},
     face=face,
     serve=serve,
 )
@@ -167,7 +168,7 @@ def test_its_script_asks_its_own_code(put: Install) -> None:
     ("code", "piece", "why"),
     [
         ("import no_such_library", "the part of the page", "No module named"),
-        ("PAGE = 7", "the part of the page", "acme:PAGE is no PagePart"),
+        ("PAGE = 7", "the part of the page", "acme:PAGE is no Page and no PagePart"),
         (
             CODE.replace("PagePart(\n", 'PagePart(assets=Assets(package="acme"),\n'),
             "the part of the page",

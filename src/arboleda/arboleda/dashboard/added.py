@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import replace
 from functools import partial
 from importlib.metadata import EntryPoint
@@ -15,16 +15,17 @@ from arboleda.host.packages import package_of, registered
 from arboleda.host.pieces import Piece, Pieces, piece_of
 from arboleda.model.errors import ArboledaError
 from arboleda.model.verbs import Verb
-from arboleda.web.access.auth import SUBMIT, Role
+from arboleda.web.access.auth import SUBMIT
 from arboleda.web.package_routes import addresses, guarded
 
+from .added_sections import Drawing, Placed
 from .asset_files import Assets
-from .body import Parts
 from .desk import DOWNLOAD
 from .faces import Face
 from .faces.moment import Moment
+from .package_page.page import Page, part_of
 from .page_api import Layout, PageApi
-from .page_part import GROUP, Act, OtherRecord, PagePart, Place, Section, Spot
+from .page_part import GROUP, OtherRecord, PageAct, PagePart, Place, Request, Section, Spot
 from .wording import Words
 
 SECTION, ACT, RECORD = "section", "act", "record"
@@ -34,10 +35,6 @@ TAKEN = "another {kind} has this name"
 def installed() -> set[str]:
     """The packages that add to the page."""
     return {package_of(each) for each in registered(GROUP)}
-
-
-class LeftOut(Exception):
-    """A section broke while it was drawn, and is left out now: the page is drawn anew."""
 
 
 class _Added(NamedTuple):
@@ -55,22 +52,18 @@ class AddedParts:
         self._parts: list[_Added] = []
         for point in self._pieces.registered(GROUP):
             with self._pieces.calling(piece_of(point, "the part of the page")):
-                part = point.load()
-                if not isinstance(part, PagePart):
-                    raise TypeError(f"{point.value} is no PagePart")
+                part = _loaded(point)
                 _ = part.assets and part.assets.address  # its files are read
                 self._parts.append(_Added(point, self._free(point, part)))
+        self._sections = [*self._placed()]
 
     def _free(self, point: EntryPoint, part: PagePart) -> PagePart:
         """The part without what has a name that is taken."""
-        sections = (
-            each
-            for each in part.sections
-            if each.place is not Place.TAB or self._is_free(point, SECTION, each.name)
-        )
+        tabs = {each.name for each in part.sections if each.place is Place.TAB}
+        taken = {name for name in tabs if not self._is_free(point, SECTION, name)}
         return replace(
             part,
-            sections=tuple(sections),
+            sections=tuple(each for each in part.sections if _tab_of(each) not in taken),
             acts={word: act for word, act in part.acts.items() if self._is_free(point, ACT, word)},
             records={name: each for name, each in part.records.items() if self._is_free(point, RECORD, name)},
         )
@@ -93,9 +86,27 @@ class AddedParts:
         return [part.assets for _, part in self._parts if part.assets is not None]
 
     @property
-    def acts(self) -> dict[str, Act]:
+    def acts(self) -> dict[str, PageAct]:
         """The acts by their words."""
-        return {word: act for _, part in self._parts for word, act in part.acts.items()}
+        return {
+            word: replace(act, take=partial(self._take, piece_of(point, f"the act {word}"), act))
+            for point, part in self._parts
+            for word, act in part.acts.items()
+        }
+
+    async def _take(self, piece: Piece, act: PageAct, request: Request) -> None:
+        """Have a package do its act; one that breaks is left out, also where it was shown before."""
+        if piece in self._pieces:
+            with self._pieces.sparing(piece):
+                await act.take(request)
+        if piece not in self._pieces:
+            name = request.words.say(act.name)
+            broke = request.words("page.act_broke", act=request.words.flat.get(name, name))
+            request.say(broke, good=False)
+
+    def asks(self, words: Words) -> dict[str, str]:
+        """The questions before acts, by their words."""
+        return {word: words.say(act.asks) for word, act in self.acts.items() if act.asks}
 
     @property
     def records(self) -> dict[str, OtherRecord]:
@@ -115,24 +126,28 @@ class AddedParts:
     def face(self, moment: Moment) -> Face:
         """The changes over time in the sections of packages."""
         found: Face = {}
+        for piece, face in self._faces():
+            with self._pieces.sparing(piece):
+                found |= face(moment)
+        return found
+
+    def _faces(self) -> Iterator[tuple[Piece, Callable[[Moment], Face]]]:
+        """What tells the changes, each as a piece that is not left out."""
         for point, part in self._parts:
             piece = piece_of(point, "the face of the page")
             if part.face is not None and piece in self._pieces:
-                with self._pieces.sparing(piece):
-                    found |= part.face(moment)
-        return found
+                yield piece, part.face
+        for each in self._sections:
+            if each.section.face is not None and each.is_in(self._pieces):
+                yield each.piece, each.section.face
 
     def drawing(self, plant: PageApi, layout: Layout, words: Words, role: str | None) -> Drawing:
         """The sections for somebody of this role; None is who needs none."""
-        seen = [
-            each
-            for each in self._sections()
-            if role in (None, Role.OPERATOR.value) or not each[1].for_operators
-        ]
-        return Drawing(seen, Spot(plant=plant, layout=layout, words=words), self._pieces)
+        sections = [each for each in self._sections if each.is_in(self._pieces) and each.is_for(role)]
+        return Drawing(sections, Spot(plant=plant, layout=layout, words=words), self._pieces)
 
-    def _sections(self) -> Iterator[tuple[Piece, Section]]:
-        """The sections that are not left out, each as a piece; several in one place are numbered."""
+    def _placed(self) -> Iterator[Placed]:
+        """The sections, each as a piece; several in one place are numbered."""
         count = Counter[Piece]()
         for point, part in self._parts:
             for section in part.sections:
@@ -140,40 +155,20 @@ class AddedParts:
                 count[piece] += 1
                 if count[piece] > 1:
                     piece = replace(piece, what=f"{piece.what} {count[piece]}")
-                if piece in self._pieces:
-                    yield piece, section
+                act = piece_of(point, f"the act {section.act}") if section.act else piece
+                yield Placed(package_of(point), piece, act, section)
 
 
-class Drawing:
-    """Drawing of the sections of packages, each as a piece, on one page; what breaks raises LeftOut."""
+def _tab_of(section: Section) -> str:
+    """The name of the part of its own that a section is, or is inside; "" for one that stands elsewhere."""
+    return {Place.TAB: section.name, Place.INSIDE: section.within}.get(section.place, "")
 
-    def __init__(self, sections: list[tuple[Piece, Section]], spot: Spot, pieces: Pieces) -> None:
-        self._sections = sections
-        self._spot = spot
-        self._pieces = pieces
 
-    @property
-    def parts(self) -> Parts:
-        """The sections that are parts of their own, by their names."""
-        own = [each for each in self._sections if each[1].place is Place.TAB]
-        return {each[1].name: partial(self._draw_part, *each) for each in own}
-
-    @property
-    def within(self) -> dict[str, str]:
-        """The places of those that share one with others, by their names."""
-        return {section.name: section.within for _, section in self._sections if section.within}
-
-    def put(self, place: Place, cell: str = "") -> None:
-        """Draw the sections of a place."""
-        for piece, section in self._sections:
-            if section.place is place:
-                self._draw(piece, section, replace(self._spot, cell=cell))
-
-    def _draw_part(self, piece: Piece, section: Section, _layout: Layout, _words: Words) -> None:
-        self._draw(piece, section, self._spot)
-
-    def _draw(self, piece: Piece, section: Section, spot: Spot) -> None:
-        with self._pieces.calling(piece):
-            section.build(spot)
-        if piece not in self._pieces:
-            raise LeftOut
+def _loaded(point: EntryPoint) -> PagePart:
+    """The part of the page that a package registers; TypeError for anything else."""
+    part = point.load()
+    if isinstance(part, Page):
+        return part_of(part, package_of(point), point.module)
+    if not isinstance(part, PagePart):
+        raise TypeError(f"{point.value} is no Page and no PagePart")
+    return part

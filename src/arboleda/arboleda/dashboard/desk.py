@@ -16,13 +16,14 @@ from arboleda.model.messages import Outcome, Verb
 from arboleda.model.sentence import in_json
 from arboleda.store.task_rows import PAGE
 from arboleda.web.access.auth import SUBMIT, allowed
+from arboleda.web.access.needs import reaches
 
 from . import outcomes
 from .feed import Feed
 from .open_page import OpenPage
 from .outcomes import Said
 from .page_api import PageApi
-from .page_part import Act, Request
+from .page_part import PageAct, Request
 from .toolkit import Client
 from .wording import Words
 
@@ -38,7 +39,12 @@ class Desk(OpenPage):
     """Desk: the only way from the events of a page to the plant."""
 
     def __init__(
-        self, client: Client, plant: PageApi, feed: Feed, words: Words, acts: Mapping[str, Act] | None = None
+        self,
+        client: Client,
+        plant: PageApi,
+        feed: Feed,
+        words: Words,
+        acts: Mapping[str, PageAct] | None = None,
     ) -> None:
         super().__init__(client, words, feed.note_shown)
         self._acts = acts or {}  # of packages
@@ -51,20 +57,35 @@ class Desk(OpenPage):
             self._download()
         elif act not in self._acts and act != SUBMIT and act not in VERBS:
             return
-        elif not allowed(self.role, act):
+        elif not self._may(act):
             self.say(self._words("page.not_allowed", act=self._name(act)), good=False)
         elif act == SUBMIT:
             await self._submit(of)
         elif act not in VERBS:
-            words, plant = self._words, self._plant
-            request = Request(act=act, of=of, more=more, plant=plant, words=words, say=self.say)
-            await self._acts[act].take(request)
+            await self._acts[act].take(self._request(act, of, more))
         elif act != Verb.STOP or not self._is_stopped(of):
             await self._operate(Verb(act), of, more)
 
+    def _may(self, act: str) -> bool:
+        added = self._added(act)
+        return allowed(self.role, act) if added is None else reaches(self.role, added.role)
+
+    def _added(self, act: str) -> PageAct | None:
+        """The act of a package that has this word; None for one of the runner."""
+        return None if act in (*VERBS, SUBMIT) else self._acts.get(act)
+
+    def _request(self, act: str, of: str, more: object) -> Request:
+        assert self.role is not None  # one that may do nothing asks for nothing
+        return Request(
+            act=act, of=of, more=more, role=self.role, plant=self._plant, words=self._words, say=self.say
+        )
+
     def _name(self, act: str) -> str:
-        added = None if act in VERBS else self._acts.get(act)
-        return self._words.of("verb", act) if added is None else self._words.flat.get(added.name, act)
+        added = self._added(act)
+        if added is None:
+            return self._words.of("verb", act)
+        name = self._words.say(added.name)
+        return self._words.flat.get(name, name)
 
     async def _submit(self, text: str) -> None:
         # The plant may look its id up in the history, and a stop must not wait for that.

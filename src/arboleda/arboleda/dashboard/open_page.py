@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from contextvars import ContextVar
 
 from arboleda.web.access.auth import Role
 
@@ -12,6 +13,7 @@ from .wording import Words
 
 LONGEST = 300  # characters of a name that a browser sends
 SEEN = "seen"
+_asked: ContextVar[int | None] = ContextVar("number of the request that is taken", default=None)
 
 
 class OpenPage:
@@ -39,13 +41,18 @@ class OpenPage:
         self._client.run_javascript(f"arboleda.live({number}, {patch})")
 
     async def hear(self, event: GenericEventArguments) -> None:
-        """Take one event of the page: [act, of, more]; anything else is ignored."""
+        """Take one event of the page: [act, of, more, number]; anything else is ignored.
+
+        What is said meanwhile has the number, if there is one, by which a script finds its request.
+        """
         args = event.args if isinstance(event.args, list) else [event.args]
-        act, of, more = [*args, None, None, None][:3]
+        act, of, more, number = [*args, None, None, None, None][:4]
         if act == SEEN and isinstance(of, int):
             self._note_shown(self, of)
         elif isinstance(act, str) and isinstance(of, str) and len(of) <= LONGEST:
+            _asked.set(number if isinstance(number, int) else None)
             await self.take(act, of, more)
+            self._end()
 
     async def take(self, act: str, of: str, more: object) -> None:
         """Take a request of the page."""
@@ -53,4 +60,11 @@ class OpenPage:
 
     def say(self, sentence: str, *, good: bool | None) -> None:
         """Show an answer; `good` is None while the outcome is unknown."""
-        self._client.run_javascript(f"arboleda.answer({json.dumps(sentence)}, {json.dumps(good)})")
+        number = _asked.get()
+        of = "" if number is None else f", {number}"
+        self._client.run_javascript(f"arboleda.answer({json.dumps(sentence)}, {json.dumps(good)}{of})")
+
+    def _end(self) -> None:
+        """Tell the script that nothing more is said to its request."""
+        if _asked.get() is not None:
+            self._client.run_javascript(f"arboleda.over({_asked.get()})")

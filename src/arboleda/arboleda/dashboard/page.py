@@ -16,7 +16,8 @@ from arboleda.store.task_rows import TaskQuery
 from arboleda.web.request import HISTORY, TASK
 
 from . import header, links, menu, missing_packages, settings, shell, tasks, timeline, told, trees
-from .added import AddedParts, LeftOut
+from .added import AddedParts
+from .added_sections import LeftOut
 from .asset_files import own
 from .body import WITHIN, Parts, Places, body
 from .desk import Desk
@@ -72,7 +73,7 @@ def mount(
         window.open_window(client, show)
         open_page(client, Desk(client, plant, feed, wording, added.acts), feed)
         html = made(layout, wording.language, role_shown(request))
-        shell.fill(layout, wording, script=own("page.js"), added=added.assets)
+        shell.fill(layout, wording, script=own("page.js"), added=added.assets, asks=added.asks(wording))
         return html
 
     scenes = {
@@ -88,6 +89,7 @@ def mount(
 def drawn(added: AddedParts, plant: PageApi, layout: Layout, wording: Words, role: str | None) -> str:
     """The HTML of the page for a role, without a package that breaks."""
     drawing = added.drawing(plant, layout, wording, role)
+    wording = wording.also(drawing.labels)
     parts = all_parts(drawing.parts, role, drawing.put)
 
     def top(places: Places) -> None:

@@ -11,12 +11,14 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING, Protocol
 
+from arboleda.web.access.auth import Role
+
 from .asset_files import Assets
 from .faces import Face
 from .faces.moment import Moment
 from .page_api import Layout, PageApi
 from .past.side import PastSide
-from .wording import Words
+from .wording import Text, Words
 
 if TYPE_CHECKING:
     from fastapi import FastAPI  # a page without a server needs none
@@ -36,6 +38,7 @@ class Place(Enum):
     CELL_MENU = "in the menu of each cell, below the verbs of operators"
     PLANT_MENU = "in the menu of the whole plant, below those"
     SETTINGS = "among the settings"
+    INSIDE = "inside a part of its own of the same package"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,15 +55,20 @@ class Spot:
 class Section:
     """Section of the page. `build` draws it with `tags`, or nothing where this plant has no use for it.
 
-    `name` is for parts of their own. The tab says `tab.<name>`, or the name where it has no words; the
-    element is `part-<name>`. `within` is the name of another part, in whose place it stands.
+    `name` is for parts of their own. The tab says `label`, else `tab.<name>`, or the name where it has no
+    words; the element is `part-<name>`. `within` is the name of another part, in whose place it stands, or
+    inside which it is drawn. `role` is the least that sees it. One that needs an `act` is left out with
+    that. `face` is what changes in it over time.
     """
 
     place: Place
     build: Callable[[Spot], None]
     name: str = ""
+    label: Text = ""
     within: str = ""
-    for_operators: bool = False
+    role: Role = Role.VIEWER
+    act: str = ""
+    face: Callable[[Moment], Face] | None = None
 
 
 class Say(Protocol):
@@ -76,17 +84,24 @@ class Request:
     act: str
     of: str
     more: object
+    role: Role
     plant: PageApi
     words: Words
     say: Say
 
 
 @dataclass(frozen=True, kw_only=True)
-class Act:
-    """Request of a page: `name` is the key of its words, `take` does it, in the server's event loop."""
+class PageAct:
+    """Request of a page: `take` does it, in the server's event loop.
 
-    name: str
+    `name` is the key of its words, or its text. `role` is the least that may ask for it. The page asks
+    `asks` first.
+    """
+
+    name: Text
     take: Callable[[Request], Awaitable[None]]
+    role: Role = Role.OPERATOR
+    asks: Text = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +127,7 @@ class PagePart:
 
     assets: Assets | None = None
     sections: tuple[Section, ...] = ()
-    acts: Mapping[str, Act] = field(default_factory=dict)
+    acts: Mapping[str, PageAct] = field(default_factory=dict)
     face: Callable[[Moment], Face] | None = None
     serve: Callable[[FastAPI, PageApi], None] | None = None
     records: Mapping[str, OtherRecord] = field(default_factory=dict)

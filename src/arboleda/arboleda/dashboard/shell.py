@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 
 from fastapi import FastAPI, Request
@@ -84,10 +84,17 @@ def is_operator(request: Request) -> bool:
     return bool(request.scope["arboleda.role"] is Role.OPERATOR)
 
 
-def fill(layout: Layout, wording: Words, *, script: str, added: Sequence[Assets] = ()) -> None:
+def fill(
+    layout: Layout,
+    wording: Words,
+    *,
+    script: str,
+    added: Sequence[Assets] = (),
+    asks: Mapping[str, str] | None = None,
+) -> None:
     """Fill the page of one browser, but for the HTML of its parts; `script` is its entry's address."""
     drawn = [own("twin.js")] if layout["places"]["robots"] else []
-    ui.add_head_html(head(wording, script, *drawn, added=added))
+    ui.add_head_html(head(wording, script, *drawn, added=added, asks=asks))
     ui.html(PARTS_HERE, sanitize=False).classes("app")
 
 
@@ -106,13 +113,15 @@ def in_page(parts: str) -> bytes:
     return json.dumps(parts, ensure_ascii=False)[1:-1].translate(HTML_ESCAPE_TABLE).encode()
 
 
-def head(wording: Words, *scripts: str, added: Sequence[Assets] = ()) -> str:
-    """The page's head: its styles, its scripts, and the few words that these use themselves."""
+def head(
+    wording: Words, *scripts: str, added: Sequence[Assets] = (), asks: Mapping[str, str] | None = None
+) -> str:
+    """The page's head: its styles, its scripts, and the few words that these use themselves; `asks` has the
+    questions before acts of packages."""
     loaded = [each.of(each.script) for each in added if each.script]
     scripts_of = [each.package for each in added if each.script]
-    data = json.dumps(script_data(wording) | {"added": [*zip(loaded, scripts_of, strict=True)]}).replace(
-        "<", "\\u003c"
-    )
+    more = {"added": [*zip(loaded, scripts_of, strict=True)], "asks": asks or {}}
+    data = json.dumps(script_data(wording) | more).replace("<", "\\u003c")
     sheets = [own(f"{name}.css") for name in STYLES]
     sheets += [each.of(f"{name}.css") for each in added for name in each.styles]
     styles = "".join(f'<link rel="stylesheet" href="{sheet}">' for sheet in sheets)

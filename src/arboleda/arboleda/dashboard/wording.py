@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from copy import copy
 from functools import cache, cached_property
 from typing import Any
 
@@ -15,6 +17,8 @@ from arboleda.web.languages.templates import Templates
 PACKML = frozenset(CellState)
 ENDS = ("cell_state", "reason", "task_state")  # of a name in two of them the last one says it
 REASONS = "reasons"  # of drivers, which are words and no phrases
+Text = Phrase | Sentence | str
+"""Text of a package: in each language by a phrase, or plain English, which is shown as it is."""
 SENTENCES = "sentences"  # the plant's sentences by key; English ones are in its phrases
 
 
@@ -32,6 +36,12 @@ class Words:
     def __call__(self, key: str, **values: Any) -> str:
         """The text of a key, with values put in; KeyError if there is no such key."""
         return self.flat[key].format(**values) if values else self.flat[key]
+
+    def also(self, texts: Mapping[str, str]) -> Words:
+        """These words, with further texts by their keys."""
+        made = copy(self)
+        made.flat = {**self.flat, **texts}
+        return made
 
     def asks(self, name: str) -> list[str]:
         """The questions that a person must answer before this verb, one after the other."""
@@ -67,10 +77,12 @@ class Words:
             **contents(self.language, "findings").get("ends", {}),
         }
 
-    def say(self, sentence: Sentence | str) -> str:
+    def say(self, sentence: Text) -> str:
         """A sentence of the plant in this language; any other text, as of a user's own step, unchanged."""
         if isinstance(sentence, str):
             return sentence
+        if isinstance(sentence, Phrase):
+            sentence = sentence()
         text = self._known.get(sentence)
         if text is None:
             if len(self._known) > 2000:

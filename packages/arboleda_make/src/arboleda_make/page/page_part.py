@@ -10,7 +10,7 @@ from fastapi import FastAPI
 from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.page_part import OtherRecord
 from arboleda.dashboard.past.side import PastSide
-from arboleda.extension import Assets, PagePart, Place, Section
+from arboleda.extension import Assets, PagePart, Place, Role, Section
 from arboleda_make.trying.api import MakeApi
 
 from . import findings_route, make_panel, proof, teach_panel, tree_editor, versions
@@ -41,9 +41,9 @@ def _tried() -> TriedPlants:
 PAGE = PagePart(
     assets=Assets(package=__package__, script="part.js", styles=("draw", "teach", "make")),
     sections=(
-        Section(place=Place.TAB, name="make", build=make_panel.build, for_operators=True),
+        Section(place=Place.TAB, name="make", build=make_panel.build, role=Role.OPERATOR),
         Section(place=Place.TAB, name="draw", within="make", build=tree_editor.build),
-        Section(place=Place.TAB, name="teach", within="make", build=teach_panel.build, for_operators=True),
+        Section(place=Place.TAB, name="teach", within="make", build=teach_panel.build, role=Role.OPERATOR),
         Section(place=Place.TREE, build=teach_panel.way_from_tree),
         Section(place=Place.SETTINGS, build=versions.build),
     ),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from arboleda.dashboard.faces import Face
-from arboleda.extension import Act, Assets, Moment, PagePart, Place, Section
+from arboleda.extension import Assets, Moment, PageAct, PagePart, Place, Role, Section
 
 from . import demo, fault_acts, fault_form, fault_rows, reports
 
@@ -17,16 +17,16 @@ PAGE = PagePart(
     assets=Assets(package=__package__, script="part.js", styles=("proofs",)),
     sections=(
         Section(place=Place.TOP, build=demo.welcome),
-        Section(place=Place.TOP, build=fault_form.going_on, for_operators=True),
-        Section(place=Place.CELL_MENU, build=fault_form.drawer, for_operators=True),
+        Section(place=Place.TOP, build=fault_form.going_on, role=Role.OPERATOR),
+        Section(place=Place.CELL_MENU, build=fault_form.drawer, role=Role.OPERATOR),
         Section(place=Place.PLANT_MENU, build=demo.end_of_it),
         Section(place=Place.CARD, build=reports.way_from_cell),
         Section(place=Place.TASK, build=reports.way_from_task),
     ),
     acts={
-        demo.END: Act(name="demo.end", take=demo.end),
-        fault_acts.BEGIN: Act(name="faults.title", take=fault_acts.begin),
-        fault_acts.END: Act(name="faults.end", take=fault_acts.end),
+        demo.END: PageAct(name="demo.end", take=demo.end),
+        fault_acts.BEGIN: PageAct(name="faults.title", take=fault_acts.begin),
+        fault_acts.END: PageAct(name="faults.end", take=fault_acts.end),
     },
     face=face,
     serve=reports.serve,

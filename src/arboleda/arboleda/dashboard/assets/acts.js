@@ -26,6 +26,7 @@ export function start(stops = stopOf) {
     const button = event.target.closest("[data-act]");
     if (button) press(button);
   });
+  window.socket.on("disconnect", lost);
 }
 
 // A second way to stop, for whom no pointer is at hand: Escape, held. It works from every field and every question.
@@ -51,8 +52,14 @@ async function press(button) {
   const of = button.dataset.of === "$scope" ? scope : button.dataset.of;
   if (act === "stop") return stop(of);
   if (act === "ready") return ready.begin(of);
-  for (const asked of JSON.parse(button.dataset.asks ?? "[]")) if (!(await question.confirmed(asked.replaceAll("{of}", ready.named(of))))) return;
-  send(act, of, told ? JSON.parse(told) : byHand === "true");
+  if (await sure(act, of, JSON.parse(button.dataset.asks ?? "[]"))) send(act, of, told ? JSON.parse(told) : byHand === "true");
+}
+
+// Whether a person has answered all questions before this act with yes: those of its button, and the one of its package.
+async function sure(act, of, asked = []) {
+  const own = window.arboledaPage.asks?.[act];
+  for (const each of own ? [...asked, own] : asked) if (!(await question.confirmed(each.replaceAll("{of}", ready.named(of))))) return false;
+  return true;
 }
 
 // A request that could not leave now is not kept for later: the plant may have changed by then.
@@ -61,6 +68,36 @@ export function send(act, of, more = false) {
   if (!connected()) return answer(words.not_sent, false);
   window.emitEvent("arboleda", act, of, more);
   return true;
+}
+
+const open = new Map(); // requests without an outcome: number -> what takes the outcome
+let count = 0;
+
+// The outcome of a request: {sentence, good}. `good` is null for one that a person did not want after all.
+export async function outcome(act, of, more) {
+  if (!(await sure(act, of))) return { sentence: "", good: null };
+  if (!connected()) return { sentence: words.not_sent, good: false };
+  const number = ++count;
+  window.emitEvent("arboleda", act, of, more, number);
+  return new Promise((resolve) => open.set(number, resolve));
+}
+
+// An answer of the plant, to the request of that number if there is one. While its outcome is unknown all see it.
+export function hear(sentence, good, number) {
+  if (good === null || !open.has(number)) return answer(sentence, good);
+  end(number, { sentence, good });
+}
+
+// Nothing more is said to a request.
+export const over = (number) => end(number, { sentence: "", good: true });
+
+function lost() {
+  for (const number of [...open.keys()]) end(number, { sentence: words.no_outcome, good: false });
+}
+
+function end(number, told) {
+  open.get(number)?.(told);
+  open.delete(number);
 }
 
 // Over HTTP, which no stuck socket holds up; through the socket as well where that has no answer at once.

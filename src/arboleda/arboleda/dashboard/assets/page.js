@@ -1,7 +1,9 @@
 // The behaviour of a running plant's page: where one may be, scopes, and whether news still comes.
 
 import * as acts from "./acts.js";
+import * as chart from "./chart.js";
 import * as form from "./form.js";
+import * as forms from "./forms.js";
 import * as history from "./history.js";
 import * as frames from "./frames.js";
 import { onChange } from "./live.js";
@@ -18,7 +20,8 @@ window.arboleda = {
     begin();
     frames.hear(number, patch);
   },
-  answer: shell.answer,
+  answer: acts.hear,
+  over: acts.over,
 };
 
 function arrive(there) {
@@ -37,11 +40,14 @@ function arrive(there) {
 }
 
 // Modules of packages, in the order of their names. They begin after the page itself: a stop does not wait for them.
-const loading = window.arboledaPage.added.map(async ([address, name]) => [await attempt(name, () => import(address)), name]);
+// One that cannot be loaded is told of then, as there may be no page yet to tell it on.
+const loading = window.arboledaPage.added.map(([address, name]) => [import(address), name]);
+for (const [module] of loading) module.catch(() => {});
 let added = [];
 
 async function add() {
-  added = (await Promise.all(loading)).filter(([each]) => each);
+  const loaded = loading.map(async ([module, name]) => [await attempt(name, () => module), name]);
+  added = (await Promise.all(loaded)).filter(([each]) => each);
   for (const [each, name] of added) attempt(name, () => each.start()), attempt(name, () => each.arrive?.(place.here()));
 }
 
@@ -64,6 +70,8 @@ function begin() {
   shell.start();
   acts.start();
   form.start();
+  forms.start();
+  chart.start();
   task.start();
   history.start();
   tree.start();

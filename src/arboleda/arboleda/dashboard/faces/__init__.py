@@ -6,6 +6,8 @@
 | `bar/<name>` | share from 0 to 1 | how full a bar is |
 | `rows/<list>` | [row, ...] | which rows a list has, in order |
 | `row/<list>/<row>` | {state, cell, texts, acts} | one row |
+| `chart/<name>` | [[label, number], ...] | a chart |
+| `shown/<package>/<key>` | plain data | what a package's script shows when it has to |
 | `list/<name>` | [...] | what a script shows when it has to |
 | `tree/<cell>` | a drawing | a tree, drawn once per task |
 | `node/<cell>/<path>` | {state, ...} | one node of it |

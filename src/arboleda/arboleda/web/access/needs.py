@@ -20,6 +20,11 @@ LOOKED = (
 )
 
 
+def reaches(role: Role | None, least: Role) -> bool:
+    """True if a role may do what this one may."""
+    return RANKS.index(role) >= RANKS.index(least)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)  # FastAPI asks equal dependencies once
 class Need:
     """The least role that may ask for a route; `act` says in English what others may not."""
@@ -39,7 +44,7 @@ class Need:
     def check(self, scope: Scope) -> None:
         """Raise Forbidden where the role of who asks is not enough."""
         role: Role | None = scope["arboleda.role"]
-        if RANKS.index(role) < RANKS.index(self.role):
+        if not reaches(role, self.role):
             act = self.act or f"{method_of(scope)} {plain(scope['path'], 80)}"
             raise Forbidden(MAY[role].format(act=act))
 
