@@ -116,6 +116,27 @@ def test_it_sees_the_devices(made: Made) -> None:
     assert [(each.driver, each.settings) for each in devices.values()] == [("", None)] * len(devices)
 
 
+def test_it_asks_and_tells_people_under_the_name_of_its_package(
+    made: Made, caplog: pytest.LogCaptureFixture
+) -> None:
+    app, part = made()
+    alarm = part.plant.alarm("the shelf is full", cell="sis_a", level="error")
+    answer, heard = part.plant.ask("Is the lot good?", ("good", "bad")), []
+    answer.add_done_callback(lambda done: heard.append(done.result()))
+    turn(app)
+    seen = part.plant.snapshot()
+    assert [(each["package"], each["level"]) for each in seen["alarms"]] == [("orders", "error")]
+    assert [(each["package"], each["text"]) for each in seen["questions"]] == [("orders", "Is the lot good?")]
+    alarm.end()
+    part.plant.operate("answer", "orders", answer="good")
+    app.plant.loop.turn()
+    assert answer.result(0) == "good" and heard == []
+    turn(app)
+    assert heard == ["good"] and part.plant.snapshot()["alarms"] == []
+    part.plant.report("lot", "Seen", "sharp")
+    assert "orders writes into the reports of tasks; this plant writes no record" in caplog.text
+
+
 def test_its_routes_are_in_the_api(made: Made) -> None:
     app, part = made()
     part.plant.submit("sis_a 0B 7 #lot")

@@ -65,6 +65,7 @@ WAITING = Phrase("cli.status.waiting", "waiting")
 HELD_BY = Phrase("cli.status.held_by", "held by {cell}")
 NODE = Phrase("cli.status.node", "node {node}")
 IS_ASKED = Phrase("cli.status.is_asked", "{person} is asked, {seconds} s left: {question}")
+PACKAGE_ASKS = Phrase("cli.status.package_asks", "{package} asks: {question}")
 HEARD = Phrase("cli.status.heard", "{cell} heard: {answers}")
 LATCHED = Phrase("cli.status.stop_latched", "stop (software) latched: {robots}; clear, then reset")
 STANDS = Phrase("cli.status.stands", "{cell} is {state}; {advice}")
@@ -145,6 +146,11 @@ class Screen:
                 for line in _question(robot):
                     self.say(_words(line), at)
             self._question_ids[robot["name"]] = question_id
+        for asked in snapshot.get("questions", ()):
+            if asked["id"] not in self._question_ids:
+                self._question_ids[asked["id"]] = asked["id"]
+                for line in _asks(asked):
+                    self.say(_words(line), at)
 
 
 def logged(line: logging.LogRecord) -> Text:
@@ -182,6 +188,7 @@ def table(snapshot: dict[str, Any]) -> Group:
     others = [] if columns else [_devices(snapshot["cells"], robots)]
     zones = [_zones(snapshot["zones"])] if snapshot.get("zones") else []
     questions = [_words(line, "cyan") for robot in snapshot["robots"] for line in _question(robot)]
+    questions += [_words(line, "cyan") for each in snapshot.get("questions", ()) for line in _asks(each)]
     answers = [_words(line) for cell in snapshot["cells"] for line in _answers(cell)]
     troubles = [_words(line, "yellow") for line in _in_the_way(snapshot)]
     alarms = [_words(line, "yellow") for line in _alarms(snapshot)]
@@ -335,6 +342,15 @@ def _question(robot: dict[str, Any]) -> list[str]:
     return [
         say(line),
         *(f"  {_command(robot['name'], question['id'], answer)}" for answer in question["answers"]),
+    ]
+
+
+def _asks(question: dict[str, Any]) -> list[str]:
+    """What a package asks, and how to answer it."""
+    package = question["package"]
+    return [
+        say(PACKAGE_ASKS(package=package, question=question["text"])),
+        *(f"  {_command(package, question['id'], answer)}" for answer in question["answers"]),
     ]
 
 

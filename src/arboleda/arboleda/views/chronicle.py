@@ -31,6 +31,7 @@ class Chronicle:
         self._count = 0
         self._known: dict[tuple[str, str], str] = {}
         self._last_act = self._last_interference = self._last_fault = 0
+        self._answered: deque[int] = deque(maxlen=EVENTS)  # numbers of questions of packages
         self._alarms: dict[int, Row] = {}  # of packages, that stand
         self._awaited: set[int] = set()  # the acts whose end is still to come
         for act in past_acts:
@@ -49,6 +50,10 @@ class Chronicle:
                     self._ended(unix_s - (snapshot["at"] - act["ended_at"]), act)
         self._provoked(snapshot, unix_s)
         self._raised(snapshot, unix_s)
+        for act in snapshot.get("answered", ()):  # questions of packages
+            if act["number"] not in self._answered:
+                self._answered.append(act["number"])
+                self._did(unix_s - (snapshot["at"] - act["at"]), act)
         news = (*self._interference(snapshot), *_states(snapshot, self._known))
         for cell, kind, subject, what, sentence in news:
             if kind == "foreign" or self._known.get((kind, subject)) != what:

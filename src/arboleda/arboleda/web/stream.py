@@ -51,7 +51,7 @@ ROWS = {
     "zones": ("zone", "zone", ("state", "robot", "waiting")),
 }
 PLANT = ("plant", "epoch", "ending")
-TOLD = ("alarms",)  # in the row of the plant, where packages tell something
+TOLD = ("alarms", "questions")  # in the row of the plant, where packages tell something
 
 
 @dataclass(frozen=True, kw_only=True)

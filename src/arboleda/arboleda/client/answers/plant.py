@@ -144,6 +144,16 @@ class PackageAlarm:
 
 
 @dataclass(frozen=True, kw_only=True)
+class PackageQuestion:
+    """Open question of a package; `POST /api/cells/<package>/answer` with `{"answer": "yes"}` answers it."""
+
+    id: str
+    package: str
+    text: str
+    answers: list[str]
+
+
+@dataclass(frozen=True, kw_only=True)
 class Snapshot:
     """The plant as of its last step."""
 
@@ -160,3 +170,4 @@ class Snapshot:
     ]
     acts: Annotated[list[Act], "What operators did last, oldest first."] = field(default_factory=list)
     alarms: Annotated[list[PackageAlarm], "Alarms of packages."] = field(default_factory=list)
+    questions: Annotated[list[PackageQuestion], "What packages ask."] = field(default_factory=list)

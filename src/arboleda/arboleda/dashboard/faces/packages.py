@@ -25,6 +25,11 @@ def alarms_of(moment: Moment) -> list[Row]:
     return list(moment.snapshot.get("alarms", ()))
 
 
+def questions_of(moment: Moment) -> list[Row]:
+    """The open questions of packages."""
+    return list(moment.snapshot.get("questions", ()))
+
+
 def loud(moment: Moment) -> list[Row]:
     """The alarms for which somebody is needed."""
     return [each for each in alarms_of(moment) if each["level"] == "error"]

@@ -1,4 +1,4 @@
-"""Questions to people: the text, the time that is left, and a button for each answer."""
+"""Questions of tasks and of packages to people: the text, the time left, and a button for each answer."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from arboleda.model.messages import Verb
 from arboleda.views.view import devices_once
 
 from ..wording import Words
-from . import Face
+from . import Face, packages
 from .moment import Moment, seconds
 
 Row = dict[str, Any]
@@ -21,6 +21,16 @@ def face(moment: Moment) -> Face:
     for _, device in devices_once(moment.snapshot["cells"]):
         if device["asked"]:
             found.update(_of(moment.words, device["name"], robots[device["name"]]["question"]))
+    return found | _of_packages(moment)
+
+
+def _of_packages(moment: Moment) -> Face:
+    asked = packages.questions_of(moment)
+    found: Face = {"rows/asks": [each["id"] for each in asked]}
+    for each in asked:
+        offers = [_offer(moment.words, each["package"], each, answer) for answer in each["answers"]]
+        texts = [each["package"], each["text"]]
+        found[f"row/asks/{each['id']}"] = {"state": ASKED, "texts": texts, "acts": offers}
     return found
 
 

@@ -67,9 +67,11 @@ def _waits(moment: Moment, people: list[str]) -> str:
 
 
 def _needs(moment: Moment) -> list[str]:
-    """The names of the cells that wait for somebody, and the loud alarms of packages, for the sound."""
+    """The names of the cells that wait for somebody, loud alarms of packages and their questions, for the
+    sound."""
     loud = {f"alarm/{each['id']}" for each in packages.loud(moment)}
-    bad = loud | {cell["name"] for cell in moment.snapshot["cells"] if standing(cell) not in WELL}
+    asked = {f"question/{each['id']}" for each in packages.questions_of(moment)}
+    bad = loud | asked | {cell["name"] for cell in moment.snapshot["cells"] if standing(cell) not in WELL}
     return [" ".join(sorted(bad | waited_for(moment.snapshot).keys())), ""]
 
 
@@ -80,6 +82,7 @@ def _title(moment: Moment) -> list[str]:
     bad = {name: moment.words.cell(state) for name, state in states.items() if state not in WELL}
     bad |= {each["package"]: moment.words.say(each["sentence"]) for each in packages.loud(moment)}
     waits = {name: _waits(moment, people) for name, people in waited_for(moment.snapshot).items()}
+    waits |= {each["package"]: each["text"] for each in packages.questions_of(moment)}
     causes = "; ".join(f"{name}: {word}" for name, word in (*bad.items(), *waits.items()))
     plant = moment.snapshot["plant"]
     if bad:

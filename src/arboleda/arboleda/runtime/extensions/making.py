@@ -17,8 +17,11 @@ from ..parts.local_plant import LocalPlant
 from ..parts.orchestrator import Orchestrator
 from ..parts.part import Part as Started
 from ..registry import OF_RUNNER, Assembly, Factory, NameTaken, Phase
+from .alarms import PackageAlarms
+from .chapters import Chapters
 from .part import Part
 from .plant import Plant, Uses
+from .questions import Questions
 from .table import Table, Writes
 from .telling import Telling
 
@@ -42,8 +45,12 @@ def _make(made_by: type[Part], point: EntryPoint, assembly: Assembly) -> Iterato
     plant = Plant(
         point.name,
         Uses(
+            package=package_of(point),
             side=assembly.need(LocalPlant),
             telling=telling,
+            alarms=assembly.need(PackageAlarms),
+            questions=assembly.need(Questions),
+            chapters=assembly.need(Chapters),
             tell_tasks=running.listeners.append,
             tell_views=running.screens.watchers.append,
             table=lambda name: Table(PackageTable(memory, name), writes),
@@ -57,6 +64,7 @@ def _make(made_by: type[Part], point: EntryPoint, assembly: Assembly) -> Iterato
     _routes(assembly).append((point, part.routes))
     yield part
     yield telling
+    yield assembly.need(Questions)  # ends first: a part may wait for an answer
 
 
 def _writes(assembly: Assembly, running: Orchestrator) -> Writes:

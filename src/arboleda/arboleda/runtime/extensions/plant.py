@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass
 from functools import partial
@@ -17,11 +17,15 @@ from arboleda.model.errors import Refused
 from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, TaskChanged
 from arboleda.model.plant_model import Robot
-from arboleda.model.sentence import explained
+from arboleda.model.sentence import Sentence, explained
 from arboleda.model.verbs import Verb
 from arboleda.views import view
+from arboleda.views.alarms import AlarmLevel
 from arboleda.web.plant_api import PlantApi
 
+from .alarms import PackageAlarms, RaisedAlarm
+from .chapters import Chapters
+from .questions import Questions
 from .table import Table
 from .telling import Telling
 
@@ -51,12 +55,16 @@ class Device:
 class Uses:
     """Uses that a part makes of the plant it is in, by the functions that do it.
 
-    `tell_tasks` and `tell_views` have a function called with what is new. `table` makes the table of a name,
-    `folder` the folder of the package.
+    `package` is the name of the package, which people see. `tell_tasks` and `tell_views` have a function
+    called with what is new. `table` makes the table of a name, `folder` the folder of the package.
     """
 
+    package: str
     side: PlantApi
     telling: Telling
+    alarms: PackageAlarms
+    questions: Questions
+    chapters: Chapters
     tell_tasks: Callable[[Callable[[TaskChanged], None]], object]
     tell_views: Callable[[Callable[[Snapshot], None]], object]
     table: Callable[[str], Table]
@@ -153,6 +161,42 @@ class Plant:
     def on_change(self, listener: Callable[[Snapshot], object]) -> None:
         """Have a function called with snapshots, in the same thread; a slow one gets the latest."""
         self._uses.tell_views(self._uses.telling.latest(listener))
+
+    def alarm(
+        self, sentence: str | Sentence, *, cell: str = "", level: AlarmLevel | str = AlarmLevel.WARNING
+    ) -> RaisedAlarm:
+        """Tell people of something until `end` of what this returns; a restart ends it, too.
+
+        `level` is `warning`, or `error` where somebody is needed. The same alarm is not raised twice. Raises
+        ValueError without a sentence, and for another level.
+        """
+        return self._uses.alarms.add(self._uses.package, sentence, cell=cell, level=level)
+
+    def ask(self, question: str, answers: Iterable[str] = ("yes", "no")) -> Future[str]:
+        """Ask people, who answer on the page, by `arboleda answer` or over HTTP.
+
+        The future has one of the answers. It waits as long as nobody answers: `cancel` takes the question
+        back, and the end of the plant does. Its callbacks are called in the thread of this part. Raises
+        ValueError without a text, or without answers that differ, and ArboledaError where 20 questions of the
+        package are open.
+        """
+        return self._uses.questions.ask(self._uses.package, question, answers, self._uses.telling.each)
+
+    def report(
+        self,
+        task: str,
+        title: str,
+        text: str = "",
+        rows: Iterable[Iterable[object]] = (),
+        picture: bytes | None = None,
+    ) -> None:
+        """Write a chapter into the report of a task, by its id: a text, rows of a small table, a picture.
+
+        It is kept in the flight record, and waits for nothing: where the disk is full or the plant writes no
+        record, the log says that it is lost. A text is cut at 10,000 letters, a table at 200 rows. Raises
+        ValueError without a title, and for a picture that is no PNG, JPEG or SVG of at most 2 MB.
+        """
+        self._uses.chapters.add(self._uses.package, task, title, text, rows, picture)
 
     def table(self, name: str = "") -> Table:
         """A table of this part in the memory of the plant; a part that has several gives each a name."""

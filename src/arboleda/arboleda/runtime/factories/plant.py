@@ -16,6 +16,7 @@ from arboleda.recorder.preamble import Beginning
 from ..alarm_options import AlarmOptions
 from ..extensions.alarms import PackageAlarms
 from ..extensions.chapters import Chapters
+from ..extensions.questions import Questions
 from ..parts.alarms import alarms_part
 from ..parts.bridge import BridgePart
 from ..parts.drivers import DriversPart
@@ -48,17 +49,24 @@ def plant(assembly: Assembly) -> Iterable[Part]:
             leave_out_raiser=assembly.leave_out_raiser,
         )
         made.screens.diagnoses.append(held.pace.diagnosis)
-        packages = PackageAlarms()
-        made.screens.diagnoses.append(packages.diagnosis)
-        made.screens.beside = packages.rows
-        assembly.offer(PackageAlarms, packages)
-        assembly.offer(Chapters, Chapters(lambda: made.screens.recorder))
+        _people(assembly, made)
         assembly.offer(Orchestrator, made)
         assembly.offer(LocalPlant, LocalPlant(made, held.history, assembly))
         assembly.links.add(lambda: {"memory": asdict(held.pace.pace)})
         _record(assembly, made)
     _join(assembly)
     return ()
+
+
+def _people(assembly: Assembly, made: Orchestrator) -> None:
+    """Join what packages tell people and ask them with the plant, and its screens."""
+    alarms, questions = PackageAlarms(), Questions(made, assembly.epoch)
+    made.screens.diagnoses.append(alarms.diagnosis)
+    made.screens.beside = lambda: {**alarms.rows(), **questions.rows()}
+    made.observers.append(questions.stepped)
+    assembly.offer(PackageAlarms, alarms)
+    assembly.offer(Questions, questions)
+    assembly.offer(Chapters, Chapters(lambda: made.screens.recorder))
 
 
 def the_record(assembly: Assembly) -> Iterator[Part]:
@@ -90,8 +98,14 @@ def alarms(assembly: Assembly) -> Iterator[Part]:
         page = assembly.ask(PageAddress)
         return None if page is None else page.address_of(cell, task)
 
-    raised = assembly.need(PackageAlarms)
-    part = alarms_part(assembly.model, options, assembly.need(Broker), address_of, lambda: raised.standing)
+    raised, questions = assembly.need(PackageAlarms), assembly.need(Questions)
+    part = alarms_part(
+        assembly.model,
+        options,
+        assembly.need(Broker),
+        address_of,
+        lambda: (*raised.standing, *(each.alarm for each in questions.open)),
+    )
     if part is not None:
         assembly.notes.append(lambda: part.notes)
         running.listeners.append(part.changed)

@@ -18,6 +18,7 @@ from arboleda.views import view
 from arboleda.web.offers import Offers, Thing
 from arboleda.web.plant_api import Found, PlantApi, Snapshot
 
+from ..extensions.questions import Questions as PackageQuestions
 from .orchestrator import Orchestrator
 from .screens import GLANCE_S
 
@@ -70,6 +71,9 @@ class LocalPlant(PlantApi):
     def operate(
         self, verb: Verb, scope: str, *, by_hand: bool = False, arguments: Arguments = ()
     ) -> Future[OperatorAnswer]:
+        questions = self._offers.ask(PackageQuestions) if verb is Verb.ANSWER else None
+        if questions is not None and questions.has(scope, arguments):
+            return questions.give(scope, arguments)
         return self._plant.operate(verb, scope, by_hand=by_hand, arguments=arguments)
 
     def watch(self, callback: Callable[[Snapshot], None]) -> Callable[[], None]:

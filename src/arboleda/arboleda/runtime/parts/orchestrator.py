@@ -273,6 +273,12 @@ class Orchestrator:
         if self.loop.busy and self.keeping.leads_for_certain:
             self.stops.leave_beside(request)
 
+    def tell(self, *messages: Journal | OperatorAnswer) -> None:
+        """Keep and tell what is of no step; from an observer, in the plant's thread."""
+        for message in messages:
+            self._send(message)
+        self.keeping.durability.wake()
+
     def halt(self) -> None:
         """Halt whatever moves, accept nothing more, and wait for nothing."""
         self.loop.post(Shutdown(at=clock.seconds(), drops_waiting=self._drops_waiting))
