@@ -35,8 +35,8 @@ class Hand:
         assert self.plant.sleepers() == []
         return out
 
-    def submit(self, text: str) -> list[Any]:
-        return self._step([TaskRequest(at=self.now, text=text)])
+    def submit(self, text: str, **asked: Any) -> list[Any]:
+        return self._step([TaskRequest(at=self.now, text=text, **asked)])
 
     def operate(self, verb: Verb, scope: str, *, by_hand: bool = False) -> list[Any]:
         return self._step([OperatorRequest(at=self.now, verb=verb, scope=scope, by_hand=by_hand)])
