@@ -157,8 +157,8 @@ def test_an_extension_is_installed_beside_it(
         )
 
     for count, language, said in (
-        (1, "en", "sis_a: tasks that ended here: 1"),
-        (2, "es", "sis_a: tareas que terminaron aquí: 2"),
+        (1, "en", "sis_a: 1 tasks that ended here"),
+        (2, "es", "sis_a: 2 tareas que terminaron aquí"),
     ):
         plant = arboleda("up", "--no-ros", "--rate", "10")
         plant.wait_for("HTTP API")
@@ -167,6 +167,6 @@ def test_an_extension_is_installed_beside_it(
         assert asked.wait() == 0 and said in asked.lines, asked.output
         page = next(line.split()[-1] for line in plant.lines if line.startswith("Page:"))
         assert httpx.get(f"{page}/api/ended").json()["sis_a"] == count
-        assert "sis_a.ended" in httpx.get(page).text
+        assert "ended:counts:sis_a" in httpx.get(page).text
         assert plant.interrupt() == 0, plant.output
         assert "left out" not in plant.output and "Traceback" not in plant.output, plant.output

@@ -2,4 +2,4 @@
 
 from arboleda.extension import Phrase
 
-ENDED = Phrase("ended.count", "tasks that ended here: {count}")
+ENDED = Phrase("ended.here", "tasks that ended here")

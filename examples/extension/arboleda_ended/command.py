@@ -12,4 +12,4 @@ def add_to(cli):
 def ended(plant: RunningPlant = None, state: StateFolder = None):
     """Show how many tasks ended in each cell."""
     for cell, count in client(plant, state).get("/api/ended").items():
-        print(f"{cell}: {say(ENDED(count=count))}")
+        print(f"{cell}: {count} {say(ENDED())}")

@@ -393,7 +393,7 @@ class Orders:
 @pytest.mark.usefixtures("put")
 def test_the_example_of_the_documentation_works(page: str, tmp_path: Path, told: list[str]) -> None:
     text = (HOW_TO / page).read_text("utf-8")
-    (code,) = (each for each in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "PAGE = Page(" in each)
+    (code,) = (each for each in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "tabs=[" in each)
     (script,) = re.findall(r"```js\n(.*?)```", text, re.DOTALL)
     files = {"__init__.py": "", "part.py": PART, "page.py": code, "assets/orders.js": script}
     for name, content in files.items():

@@ -140,24 +140,25 @@ def test_its_table_is_there_after_a_restart(app: App, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("language", "said"), [("en", "tasks that ended here: 1"), ("es", "tareas que terminaron aquí: 1")]
+    ("language", "said"), [("en", "tasks that ended here"), ("es", "tareas que terminaron aquí")]
 )
 def test_its_card_is_on_the_page(app: App, language: str, said: str) -> None:
     end_a_task(app)
     plant: Any = app.offers.need(LocalPlant)
     layout, told = view.layout(shipped("sis_a")), list[Any]()
     parts = AddedParts(Pieces(tell=told.append))
-    assert 'data-live="sis_a.ended"' in page.drawn(parts, plant, layout, words(language), None)
+    drawn = page.drawn(parts, plant, layout, words(language), None)
     snapshot = {"cells": [{"name": "sis_a", "teaching": None, "state": "idle", "not_ready": None}]}
     now: Any = SimpleNamespace(snapshot=snapshot, links=app.links(), words=words(language))
-    assert parts.face(now)["text/sis_a.ended"] == [said, ""] and told == []
+    assert said in drawn and 'data-live="ended:counts:sis_a"' in drawn
+    assert parts.face(now)["text/ended:counts:sis_a"] == ["1", ""] and told == []
 
 
 @pytest.mark.parametrize(
     ("language", "said", "brief"),
     [
-        ("en", "sis_a: tasks that ended here: 1", "Show how many tasks ended in each cell."),
-        ("es", "sis_a: tareas que terminaron aquí: 1", "Muestra cuántas tareas terminaron en cada celda."),
+        ("en", "sis_a: 1 tasks that ended here", "Show how many tasks ended in each cell."),
+        ("es", "sis_a: 1 tareas que terminaron aquí", "Muestra cuántas tareas terminaron en cada celda."),
     ],
 )
 def test_its_command_asks_the_plant(

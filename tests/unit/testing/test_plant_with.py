@@ -72,6 +72,20 @@ def test_a_route_refuses_who_may_not(plant_with: MakePlantWith) -> None:
         orders(plant_with).post("/api/orders?text=x", role=Role.VIEWER)
 
 
+def test_what_parts_tell_and_ask_people_is_seen(plant_with: MakePlantWith) -> None:
+    plant = orders(plant_with)
+    part = plant.part(Orders)
+    part.plant.alarm("the shelf is full")
+    part.plant.report("lot", "Invoice", "3 pieces")
+    answer = part.plant.ask("Ship it?")
+    assert (plant.alarms, plant.questions) == (["the shelf is full"], ["Ship it?"])
+    assert [each.title for each in plant.chapters] == ["Invoice"]
+    plant.answer("yes")
+    assert answer.result(0) == "yes" and plant.questions == []
+    with pytest.raises(ArboledaError, match="no part asks"):
+        plant.answer("yes")
+
+
 def test_what_a_part_raises_ends_the_test(plant_with: MakePlantWith) -> None:
     plant = orders(plant_with)
     plant.part(Orders).table = None

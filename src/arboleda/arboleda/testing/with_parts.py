@@ -11,15 +11,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from arboleda.engine import Plant as Core
-from arboleda.host.packages import registered
+from arboleda.host.packages import package_of, registered
 from arboleda.host.pieces import Piece, Pieces, piece_of
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskRequest, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.verbs import Arguments
+from arboleda.recorder.chapter import Chapter
 from arboleda.rig.rig import Rig
+from arboleda.runtime.extensions.alarms import PackageAlarms
+from arboleda.runtime.extensions.chapters import Chapters
 from arboleda.runtime.extensions.part import Part
 from arboleda.runtime.extensions.plant import Plant, Uses
+from arboleda.runtime.extensions.questions import Questions
 from arboleda.runtime.extensions.table import Table, Writes
 from arboleda.runtime.extensions.telling import Telling
 from arboleda.store.package_table import PackageTable
@@ -98,6 +102,13 @@ class Side(PlantApi):
         return next(each for each in self.rig.sent[before:] if isinstance(each, kind))
 
 
+class KeptChapters(list[Chapter]):
+    """Chapters that parts have written into reports, as a record keeps them."""
+
+    def add(self, chapter: Chapter) -> None:
+        self.append(chapter)
+
+
 class PlantWith:
     """A plant with parts of packages and virtual boards; `plant_with` makes it.
 
@@ -114,6 +125,7 @@ class PlantWith:
         self._memory = Store(IN_MEMORY)
         self._memory.open()
         self._seen = 0
+        self._kept = KeptChapters()
         self._begin()
 
     def part(self, kind: type[Kind]) -> Kind:
@@ -126,6 +138,29 @@ class PlantWith:
     def shown(self, kind: type[Part]) -> Mapping[str, Any]:
         """The values that the part of this class shows."""
         return self.part(kind).plant.shown
+
+    @property
+    def alarms(self) -> list[str]:
+        """The alarms of parts that stand."""
+        return [str(each.sentence) for each in self._alarms.standing]
+
+    @property
+    def questions(self) -> list[str]:
+        """The questions of parts to people that wait for an answer."""
+        return [each.text for each in self._questions.open]
+
+    @property
+    def chapters(self) -> list[Chapter]:
+        """What parts have written into the reports of tasks."""
+        return [*self._kept]
+
+    def answer(self, word: str) -> None:
+        """Answer the oldest question of a part; raises ArboledaError where this is no answer to one."""
+        asked = next((each for each in self._questions.open if word in each.answers), None)
+        if asked is None:
+            raise ArboledaError(f"no part asks anything to which {word} is an answer")
+        asked.answer.set_result(word)
+        self._tell()
 
     def submit(self, text: str) -> str:
         """Ask for a task as a person; its state: queued, or the sentence of a refusal."""
@@ -184,6 +219,8 @@ class PlantWith:
         self._routes = PartRoutes()
         self._side.things.offer(PartRoutes, self._routes)
         self._writes = Writes(lambda: None, lambda: False)
+        self._alarms = PackageAlarms()
+        self._questions = Questions(None, self.rig.plant.epoch)
         self._parts = [self._made(each) for each in self._classes]
         for part in self._parts:
             part.start()
@@ -193,8 +230,12 @@ class PlantWith:
         point = _point(kind)
         telling = Telling(point.name, Raised(), partial(piece_of, point))
         uses = Uses(
+            package=package_of(point),
             side=self._side,
             telling=telling,
+            alarms=self._alarms,
+            questions=self._questions,
+            chapters=Chapters(lambda: self._kept),
             tell_tasks=self._listeners.append,
             tell_views=self._side.watchers.append,
             table=self._table,

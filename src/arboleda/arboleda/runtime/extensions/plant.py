@@ -208,7 +208,7 @@ class Plant:
         return self._uses.folder()
 
     def show(self, **values: object) -> None:
-        """Show these values on the page, besides those shown before: they are in `links` of a `Moment`.
+        """Show these values on the page, besides those shown before: by name, as items of a `Page` have it.
 
         They are plain data, as JSON has it; raises ValueError or TypeError for anything else.
         """
