@@ -220,7 +220,8 @@ class PlantWith:
         self._side.things.offer(PartRoutes, self._routes)
         self._writes = Writes(lambda: None, lambda: False)
         self._alarms = PackageAlarms()
-        self._questions = Questions(None, self.rig.plant.epoch)
+        running: Any = None  # `answer` below answers, and no plant
+        self._questions = Questions(running, self.rig.plant.epoch)
         self._parts = [self._made(each) for each in self._classes]
         for part in self._parts:
             part.start()

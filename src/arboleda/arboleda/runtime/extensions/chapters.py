@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterable
+from typing import Protocol
 
-from arboleda.recorder.chapter import chapter
-
-from ..parts.screens import FlightRecorder
+from arboleda.recorder.chapter import Chapter, chapter
 
 LOG = logging.getLogger(__name__)
+
+
+class Keeps(Protocol):
+    """Keeper of chapters: the writer of a record."""
+
+    def add(self, chapter: Chapter) -> None: ...
 
 
 class Chapters:
@@ -18,7 +23,7 @@ class Chapters:
     `recorder` gives its writer, None where the plant writes no record: then nothing is kept.
     """
 
-    def __init__(self, recorder: Callable[[], FlightRecorder | None]) -> None:
+    def __init__(self, recorder: Callable[[], Keeps | None]) -> None:
         self._recorder = recorder
         self._is_said = False
 
