@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from arboleda.model import text
 from arboleda.model.facts import Value, shown
-from arboleda.model.messages import Fact
+from arboleda.model.messages import Check, Fact
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import nearest
 
@@ -52,10 +52,10 @@ def books_of_parts_are_true(look: Look) -> Iterator[str]:
 @invariant(Trigger.DONE_TASKS)
 def done_tasks_leave_nothing_behind(look: Look) -> Iterator[str]:
     """A task that is called done leaves no part in a hand, and none in a device where there was none before,
-    unless its recipe says so or people fill and empty that place; in a cell without places, and in a device
-    that is no hand of one, as long as nothing has gone wrong: an alternative may leave it closed. What a
-    device holds that cells share is left by the cell that commanded it last, and a hand that closes late, on
-    a command of before the task, by nobody.
+    unless its recipe says so, people fill and empty that place, or the task says that nobody checked the
+    grip; in a cell without places, and in a device that is no hand of one, as long as nothing has gone wrong:
+    an alternative may leave it closed. What a device holds that cells share is left by the cell that commanded
+    it last, and a hand that closes late, on a command of before the task, by nobody.
     """
     for cell, task, began in look.truth.done_tasks:
         model = look.world.model.cell(cell)
@@ -70,7 +70,8 @@ def done_tasks_leave_nothing_behind(look: Look) -> Iterator[str]:
                 continue
             if robot is not None and robot.body.true_facts.get(robot.robot.held_fact):
                 yield f"{task} is called done, and {name} still holds a part"
-        yield from _left_in_devices(look, model, task, wanted)
+        if Check.GRIP not in look.world.plant.intake.tasks[task].unchecked:
+            yield from _left_in_devices(look, model, task, wanted)
 
 
 def _was_commanded(look: Look, robot: str, cell: str, *, since: float) -> bool:
