@@ -183,5 +183,6 @@ def test_where_its_part_breaks_the_plant_goes_on(app: App, monkeypatch: pytest.M
     for id in ("lot", "next"):
         end_a_task(app, id)
     assert left_out(app) == [
-        "Arboleda goes on without the listener count of arboleda_ended 1: OSError: the disk is full"
+        "Arboleda goes on without the listener EndedTasks.count of arboleda_ended 1: "
+        "OSError: the disk is full"
     ]

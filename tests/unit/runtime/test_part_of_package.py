@@ -100,11 +100,35 @@ def test_a_task_says_which_package_gave_it(made: Made) -> None:
     assert row.asked_by == "extension orders"
 
 
+def test_who_asks_again_for_a_task_is_answered_and_nobody_is_told(made: Made) -> None:
+    app, part = made()
+    for _ in range(2):
+        part.plant.submit("sis_a 0B 7 #lot")
+        turn(app)
+    part.plant.cancel("lot")
+    turn(app)
+    again = part.plant.submit("sis_a 0B 7 #lot")
+    turn(app)
+    assert again.result(0).state == "cancelled"
+    assert part.told == [("lot", "queued"), ("lot", "cancelled")]
+
+
+def test_callbacks_of_answers_are_called_outside_of_the_threads_of_the_plant(made: Made) -> None:
+    app, part = made()
+    answers: list[Any] = []
+    part.plant.submit("sis_a 0B 7 #lot").add_done_callback(lambda done: answers.append(done.result()))
+    app.plant.loop.turn()
+    assert answers == []
+    turn(app)
+    assert [each.id for each in answers] == ["lot"]
+
+
 def test_what_is_refused_says_why(made: Made) -> None:
     app, part = made()
-    no_task, no_act = part.plant.submit("sis_z 0B 7"), part.plant.cancel("lot")
+    no_task, no_act = part.plant.submit("sis_z 0B 7 #mine"), part.plant.cancel("lot")
     turn(app)
     assert "sis_z" in no_task.result(0).sentence and no_task.result(0).state == "refused"
+    assert no_task.result(0).id == "mine" and ("mine", "refused") in part.told
     with pytest.raises(Refused, match="lot"):
         no_act.result(0)
 
@@ -161,7 +185,7 @@ def test_a_listener_that_breaks_is_left_out_alone(made: Made) -> None:
         part.plant.submit(f"sis_a 0B 7 #{id}")
         turn(app)
     assert left_out(app) == [
-        "Arboleda goes on without the listener follow of orders 1: ValueError: the shelf is full"
+        "Arboleda goes on without the listener Orders.follow of orders 1: ValueError: the shelf is full"
     ]
     assert Caller(make_app(app.offers.need(LocalPlant))).get("/api/orders").json() == []
 

@@ -48,7 +48,7 @@ class PartList:
         factories = [*((None, each) for each in own), *packaged(self.pieces)]
         for point, factory in sorted(factories, key=lambda each: each[1].phase):
             spared = None if factory.is_needed else point
-            with self._calling(_piece(spared, "the factory", factory.make)):
+            with self._calling(_piece(spared, "the factory", factory.make, factory.what)):
                 parts = [*factory.make(assembly)]
                 self._made += [_Made(part, _piece(spared, "the part", type(part))) for part in parts]
 
@@ -71,6 +71,6 @@ class PartList:
         return nullcontext() if piece is None else self.pieces.calling(piece)
 
 
-def _piece(point: EntryPoint | None, what: str, named: object) -> Piece | None:
+def _piece(point: EntryPoint | None, what: str, named: object, said: str = "") -> Piece | None:
     name = getattr(named, "__name__", type(named).__name__)
-    return None if point is None else piece_of(point, f"{what} {name}")
+    return None if point is None else piece_of(point, said or f"{what} {name}")

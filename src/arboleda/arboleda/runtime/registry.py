@@ -54,6 +54,7 @@ class Factory:
     phase: Phase
     make: Callable[[Assembly], Iterable[Part]]
     is_needed: bool = False
+    what: str = ""  # as people are told of it; "": the factory, by the name of `make`
 
 
 Source = Callable[[], Mapping[str, Any]]

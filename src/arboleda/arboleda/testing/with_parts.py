@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Future
+from contextlib import suppress
 from functools import partial
 from importlib.metadata import EntryPoint
 from pathlib import Path
@@ -31,6 +32,7 @@ from arboleda.store.sqlite import IN_MEMORY, Store
 from arboleda.store.task_rows import TaskQuery, TaskRow
 from arboleda.views import view
 from arboleda.web.access.auth import Role
+from arboleda.web.api import make_app
 from arboleda.web.offers import Offers, Thing
 from arboleda.web.part_routes import PartRoutes
 from arboleda.web.plant_api import Found, PlantApi, Snapshot
@@ -200,7 +202,8 @@ class PlantWith:
         self._tell()
         if answer.is_error:
             raise ArboledaError(answer.json()["sentence"])
-        return answer.json() if answer.content else None
+        is_json = answer.headers.get("content-type", "").startswith("application/json")
+        return answer.json() if is_json else answer.content
 
     def restart(self) -> None:
         """Kill the plant and start it again, with what it and its parts have kept."""
@@ -225,6 +228,7 @@ class PlantWith:
         self._parts = [self._made(each) for each in self._classes]
         for part in self._parts:
             part.start()
+        self._app = make_app(self._side, pieces=Raised())
         self._tell()
 
     def _made(self, kind: type[Part]) -> Part:
@@ -253,6 +257,8 @@ class PlantWith:
         if kind.settings_type is None:
             return None
         if kind.settings_type not in self._settings:
+            with suppress(TypeError):  # it has no value that must be given
+                return kind.settings_type()
             raise ArboledaError(NO_SETTINGS.format(part=kind.__name__, settings=kind.settings_type.__name__))
         return self._settings[kind.settings_type]
 
@@ -278,12 +284,8 @@ class PlantWith:
     async def _asked(self, method: str, path: str, body: object, role: Role) -> httpx.Response:
         import httpx
 
-        from arboleda.web.api import make_app
-
-        app = make_app(self._side, pieces=Raised())
-
         async def asked(scope: Any, receive: Any, send: Any) -> None:
-            await app({**scope, "arboleda.role": role}, receive, send)
+            await self._app({**scope, "arboleda.role": role}, receive, send)
 
         async with httpx.AsyncClient(transport=httpx.ASGITransport(asked), base_url=AT) as http:
             return await http.request(method, path, json=body)

@@ -30,7 +30,8 @@ FOLDER = "extensions"  # in the state directory
 
 def factory_of(made_by: type[Part], point: EntryPoint) -> Factory:
     """The factory of a part that a package registers as a class."""
-    return Factory(phase=Phase.RECORD, make=partial(_make, made_by, point))
+    make = partial(_make, made_by, point)
+    return Factory(phase=Phase.RECORD, make=make, what=f"the part {made_by.__name__}")
 
 
 def _make(made_by: type[Part], point: EntryPoint, assembly: Assembly) -> Iterator[Started]:

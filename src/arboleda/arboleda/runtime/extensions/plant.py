@@ -15,7 +15,7 @@ from arboleda.client.answers.tasks import Done, Task
 from arboleda.client.reading import read
 from arboleda.model.errors import Refused
 from arboleda.model.facts import Value
-from arboleda.model.messages import OperatorAnswer, TaskChanged
+from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState
 from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import Sentence, explained
 from arboleda.model.verbs import Verb
@@ -27,7 +27,7 @@ from .alarms import PackageAlarms, RaisedAlarm
 from .chapters import Chapters
 from .questions import Questions
 from .table import Table
-from .telling import Telling
+from .telling import Answer, Telling
 
 Found = TypeVar("Found")
 Given = TypeVar("Given")
@@ -101,7 +101,7 @@ class Plant:
         ArboledaError where the plant does not take it now, as while its queue is full. Two tasks of one id
         are one task.
         """
-        return _then(self._uses.side.submit(text, f"extension {self.extension}"), _task)
+        return self._then(self._uses.side.submit(text, f"extension {self.extension}"), _task)
 
     def submit_form(
         self, *, cell: str, recipe: str, values: Mapping[str, Value] | None = None, id: str = ""
@@ -124,7 +124,7 @@ class Plant:
         answer = self._uses.side.operate(
             Verb(verb), scope, by_hand=by_hand, arguments=tuple(arguments.items())
         )
-        return _then(answer, _done)
+        return self._then(answer, _done)
 
     def tasks(self) -> list[Task]:
         """The open tasks and those that ended last, in the order of their acceptance; waits for the disk."""
@@ -136,7 +136,7 @@ class Plant:
         return None if found is None else _task(found)
 
     def snapshot(self) -> Snapshot:
-        """The whole plant as `GET /api/plant` has it, without `links`; waits for the disk."""
+        """The whole plant as `GET /api/plant` has it; waits for the disk."""
         return self._uses.side.latest()
 
     def devices(self) -> dict[str, Device]:
@@ -153,10 +153,17 @@ class Plant:
     def on_task(self, listener: Callable[[Task], object]) -> None:
         """Have a function called with each change of a task, in order, in a thread of this part.
 
-        What is told is kept for good. A listener that raises is left out.
+        What is told is kept for good, and told once: a part that is killed before it hears of something is
+        not told of it after the restart. A task that is refused is told, too. A listener that raises is left
+        out.
         """
-        tell = self._uses.telling.each(listener)
-        self._uses.tell_tasks(lambda changed: tell(_task(view.change(changed))))
+        tell, waiting = self._uses.telling.each(listener), set[str]()
+
+        def changed(change: TaskChanged) -> None:
+            if not _is_repeated(change, waiting):
+                tell(_task(view.change(change)))
+
+        self._uses.tell_tasks(changed)
 
     def on_change(self, listener: Callable[[Snapshot], object]) -> None:
         """Have a function called with snapshots, in the same thread; a slow one gets the latest."""
@@ -198,6 +205,12 @@ class Plant:
         """
         self._uses.chapters.add(self._uses.package, task, title, text, rows, picture)
 
+    def _then(self, first: Future[Given], made: Callable[[Given], Found]) -> Future[Found]:
+        """A future of what is made of another one's result."""
+        following: Future[Found] = Answer(self._uses.telling.each)
+        first.add_done_callback(partial(_pass_on, made=made, following=following))
+        return following
+
     def table(self, name: str = "") -> Table:
         """A table of this part in the memory of the plant; a part that has several gives each a name."""
         return self._uses.table(f"{self.extension}.{name}" if name else self.extension)
@@ -222,9 +235,21 @@ class Plant:
         return self._shown
 
 
+def _is_repeated(change: TaskChanged, waiting: set[str]) -> bool:
+    """True for the answer to somebody who asks again for a task that the plant has; `waiting` are the tasks
+    that were told to wait."""
+    if change.state is not TaskState.QUEUED:
+        waiting.discard(change.task)
+        return change.request is not None and change.state is not TaskState.REFUSED
+    is_known = change.task in waiting
+    waiting.add(change.task)
+    return is_known
+
+
 def _task(row: Mapping[str, Any]) -> Task:
     texts = {key: str(row[key]) for key in ("sentence", "choice") if row.get(key) is not None}
-    found: Task = read(Task, {**explained(row), **texts})
+    id = row["id"] or row["text"].partition("#")[2]  # the plant knows none of a task that it refuses
+    found: Task = read(Task, {**explained(row), **texts, "id": id})
     return found
 
 
@@ -246,13 +271,6 @@ def _device(robot: Robot, cells: tuple[str, ...], facts: Any) -> Device:
         settings=None if driver is None else driver.settings,
         facts=facts,
     )
-
-
-def _then(first: Future[Given], made: Callable[[Given], Found]) -> Future[Found]:
-    """A future of what is made of another one's result."""
-    following: Future[Found] = Future()
-    first.add_done_callback(partial(_pass_on, made=made, following=following))
-    return following
 
 
 def _pass_on(first: Future[Given], *, made: Callable[[Given], Found], following: Future[Found]) -> None:

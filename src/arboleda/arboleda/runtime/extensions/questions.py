@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from typing import Any
@@ -23,6 +23,7 @@ from arboleda.views.alarms import AlarmLevel, PackageAlarm
 
 from ..parts.orchestrator import Orchestrator
 from .alarms import in_one_line
+from .telling import Answer, Tell
 
 MOST = 20  # questions of one package that are open
 TOLD = 20  # answers that screens see
@@ -33,20 +34,6 @@ NO_ANSWER = Phrase(
     "package_question.no_answer", "{word} is no answer to what {package} asks; answers: {known}"
 )
 TOO_MANY = Phrase("package_question.too_many", "{package} has {most} open questions; no more can be asked")
-Tell = Callable[[Callable[[Any], object]], Callable[[Any], None]]
-"""Has a function called later, in a thread of the part, as `Telling.each` does."""
-
-
-class Answer(Future[str]):
-    """Answer to a question; `cancel` takes the question back. The part's thread calls its callbacks."""
-
-    def __init__(self, tell: Tell) -> None:
-        super().__init__()
-        self._tell = tell
-
-    def add_done_callback(self, fn: Callable[[Future[str]], object]) -> None:
-        """Have a function called with this future once it is done."""
-        super().add_done_callback(self._tell(fn))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +45,7 @@ class PackageQuestion:
     package: str
     text: str
     answers: tuple[str, ...]
-    answer: Answer
+    answer: Answer[str]
 
     @property
     def alarm(self) -> PackageAlarm:
@@ -172,7 +159,7 @@ def _refusal(scope: str, asked: PackageQuestion | None, given: dict[str, Any]) -
     return NO_ANSWER(word=word, package=asked.package, known=asked.answers)
 
 
-def _pass_on(told: Future[OperatorAnswer], answer: Answer, word: str) -> None:
+def _pass_on(told: Future[OperatorAnswer], answer: Answer[str], word: str) -> None:
     """Give a package its answer. One that cannot be kept is none: the plant ends."""
     if told.exception() is None and told.result().refusal is None:
         answer.set_result(word)

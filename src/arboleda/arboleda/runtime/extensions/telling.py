@@ -5,11 +5,29 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from concurrent.futures import Future
+from typing import Any, NamedTuple, TypeVar
 
 from arboleda.host.pieces import Piece, Pieces
 
+Given = TypeVar("Given")
 ENDS_S = 2.0  # what is left is told within that at the end
+
+
+Tell = Callable[[Callable[[Any], object]], Callable[[Any], None]]
+"""Has a function called later, in a thread of the part, as `Telling.each` does."""
+
+
+class Answer(Future[Given]):
+    """Answer that comes later; the thread of the part calls its callbacks."""
+
+    def __init__(self, tell: Tell) -> None:
+        super().__init__()
+        self._tell = tell
+
+    def add_done_callback(self, fn: Callable[[Future[Given]], object]) -> None:
+        """Have a function called with this future once it is done."""
+        super().add_done_callback(self._tell(fn))
 
 
 class _News(NamedTuple):
@@ -90,5 +108,5 @@ class Telling:
 
 
 def named(listener: object) -> str:
-    """The name of a listener, for people."""
-    return str(getattr(listener, "__name__", type(listener).__name__))
+    """The name of a listener, for people, as `Orders.follow`."""
+    return str(getattr(listener, "__qualname__", type(listener).__name__)).rpartition("<locals>.")[2]
