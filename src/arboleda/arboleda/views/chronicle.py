@@ -53,7 +53,8 @@ class Chronicle:
         for act in snapshot.get("answered", ()):  # questions of packages
             if act["number"] not in self._answered:
                 self._answered.append(act["number"])
-                self._did(unix_s - (snapshot["at"] - act["at"]), act)
+                age_s = snapshot["at"] - act["at"]
+                self._did(unix_s - age_s, act)
         news = (*self._interference(snapshot), *_states(snapshot, self._known))
         for cell, kind, subject, what, sentence in news:
             if kind == "foreign" or self._known.get((kind, subject)) != what:

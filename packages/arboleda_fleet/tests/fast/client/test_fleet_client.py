@@ -12,6 +12,7 @@ from tests.web_plant import plant as plant
 
 from arboleda.client import Plant as Client
 from arboleda_fleet.client import Fleet
+from arboleda_fleet.oee.api import OeeApi
 
 ROUTES = routes_of_package("fleet")
 METHODS = methods_of(Fleet)
@@ -19,6 +20,7 @@ METHODS = methods_of(Fleet)
 
 @pytest.fixture
 def client(machine: Machine, plant: Plant) -> Client:
+    plant.offered[OeeApi] = plant
     machine.listen(8080, guarded(plant).app)
     return Client(ORIGIN, patience_s=0.0)
 

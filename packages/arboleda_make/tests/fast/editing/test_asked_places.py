@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.unit.kinds.test_asked_places import PLANT, RECIPES, ends, written
+from tests.unit.kinds.test_asked_places import PLANT, RECIPES, written
 
 from arboleda.bt_xml import leaves
 from arboleda.cli.nodes import of_plant
@@ -27,6 +27,12 @@ GIVE = f"""<root BTCPP_format="4"><BehaviorTree ID="Give">
 TAKE = f"""<root BTCPP_format="4"><BehaviorTree ID="Take"><Sequence>
 <place_gets_part place="pass" at_most_s="8"/>{CARRY.format(source="pass", goal="out_1")}
 </Sequence></BehaviorTree></root>"""
+
+
+def ends(watched: JudgedWorld) -> list[tuple[str, str]]:
+    """How the tasks stand, each with the sentence of its failure."""
+    tasks = watched.world.plant.intake.tasks.values()
+    return [(each.state.value, "" if each.failure is None else str(each.failure.sentence)) for each in tasks]
 
 
 def plant(folder: Path, give: str = GIVE, take: str = TAKE) -> Path:

@@ -26,7 +26,7 @@ MOVED = {  # there; from here with a warning, for one minor version
 
 def __getattr__(name: str) -> Any:
     if name in MOVED:
-        from arboleda.client import moved
+        from arboleda.host.packages import moved
         from arboleda.model.packages import CLASS
 
         return moved(name, name, MOVED[name], CLASS)

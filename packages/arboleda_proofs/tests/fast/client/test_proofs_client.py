@@ -15,6 +15,7 @@ from tests.web_plant import plant as plant
 from arboleda.client import NotFound
 from arboleda.client import Plant as Client
 from arboleda_proofs.client import Proofs
+from arboleda_proofs.running.reports_api import ReportsApi
 
 ROUTES = routes_of_package("proofs")
 METHODS = methods_of(Proofs)
@@ -22,6 +23,7 @@ METHODS = methods_of(Proofs)
 
 @pytest.fixture
 def client(machine: Machine, plant: Plant) -> Client:
+    plant.offered[ReportsApi] = plant
     machine.listen(8080, guarded(plant).app)
     return Client(ORIGIN, patience_s=0.0)
 

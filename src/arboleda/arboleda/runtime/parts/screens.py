@@ -220,8 +220,8 @@ class Screens:
 
     def _publication(self) -> Generator[None, None, None]:
         """Make a snapshot and show it to all who watch, in parts between which the plant may be stepped."""
-        plant_view = yield from view.in_parts(self._plant, self._resting.part)
-        snapshot = {**plant_view, **self.beside()}
+        snapshot = yield from view.in_parts(self._plant, self._resting.part)
+        snapshot.update(self.beside())
         self._shown_from = self._durability.hurry()
         while self._waits_to_show and not self._plant.intake.closed:
             yield  # this slice ends soon, and the next one waits

@@ -53,9 +53,9 @@ def books_of_parts_are_true(look: Look) -> Iterator[str]:
 def done_tasks_leave_nothing_behind(look: Look) -> Iterator[str]:
     """A task that is called done leaves no part in a hand, and none in a device where there was none before,
     unless its recipe says so, people fill and empty that place, or the task says that nobody checked the
-    grip; in a cell without places, and in a device that is no hand of one, as long as nothing has gone wrong:
-    an alternative may leave it closed. What a device holds that cells share is left by the cell that commanded
-    it last, and a hand that closes late, on a command of before the task, by nobody.
+    grip; in a cell without places, and in a device that is no hand of one, as long as nothing has gone
+    wrong: an alternative may leave it closed. What a device holds that cells share is left by the cell that
+    commanded it last, and a hand that closes late, on a command of before the task, by nobody.
     """
     for cell, task, began in look.truth.done_tasks:
         model = look.world.model.cell(cell)
