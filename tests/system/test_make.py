@@ -259,6 +259,8 @@ def test_a_new_device_with_a_driver_is_reached_before_it_is_added(
     me.press("[data-make=reach]")
     me.sees("#make-reach-state", "port must be a whole number, is 'far'")
     me.write("[data-setting=port]", str(wire.port))
+    me.press("[data-make=reach]")
+    me.sees("label:has(> [data-setting=facts]) .make-wrong", "guard of a gate is missing")
     me.write("[data-setting=facts]", "guard: {discrete: 0, words: {open: 0, closed: 1}}")
     me.write("[data-setting=verbs]", "open: {write: [{holding: 0, value: 1}]}")
     me.write("[data-setting=sequence]", "write: {holding: 2}\naccepted: {input: 2}\ndone: {input: 3}")

@@ -163,9 +163,9 @@ async function add() {
 
 // Have its driver listen for a moment, in a process of its own; the draft stays as it is.
 async function reach() {
-  const device = await right();
-  if (!device) return;
   const says = (sentence) => (box("reach-state").textContent = sentence);
+  const device = await right(says);
+  if (!device) return;
   says(words.make_reaching);
   if (!(await ask("/api/make/runs/reach", device, says))) return;
   const found = await ended("reach", () => {}, says);
@@ -197,16 +197,16 @@ function keys(kind) {
 
 const MADE_UP = "new";
 let asked = 0; // the last question about it
-const shownFields = () => [...box("device").querySelectorAll("input, select")].filter((each) => each.offsetParent && !each.dataset.setting);
+const shownFields = () => [...box("device").querySelectorAll("input, select, textarea")].filter((each) => each.offsetParent);
 
 // The device that is right; null where it is not, and then the first wrong field has the focus.
-async function right() {
-  const wrong = await objections();
+async function right(says = say) {
+  const wrong = await objections(says);
   if (!wrong) return null;
   for (const field of shownFields()) mark(field, wrong.get(field));
   const first = shownFields().find((field) => wrong.has(field));
-  if (first) return say(wrong.get(first)), first.focus(), null;
-  if (wrong.size) return say([...wrong.values()].join(" ")), null;
+  if (first) return says(wrong.get(first)), first.focus(), null;
+  if (wrong.size) return says([...wrong.values()].join(" ")), null;
   return written();
 }
 
@@ -223,10 +223,10 @@ async function judge(left) {
 
 // What is wrong by field: what `check` would refuse, and names that are there already. What it says of no field here
 // has a key of its own.
-async function objections() {
+async function objections(says = say) {
   const needed = shownFields().filter((field) => NAMES[field.id] && !field.value.trim());
   const device = written(MADE_UP);
-  const found = await ask("/api/make/objections", device);
+  const found = await ask("/api/make/objections", device, says);
   if (!found) return null;
   const said = await inWords(found.map(({ sentence }) => sentence));
   const wrong = new Map();
@@ -240,10 +240,11 @@ async function objections() {
 }
 
 // The field whose place in the plant file is the nearest to that of an objection.
-function fieldAt({ place, sentence }, { cell: at, role, kind }) {
+function fieldAt({ place, sentence }, { cell: at, role, kind, driver }) {
   const device = `cells.${at}.devices.${role}`;
   const own = { new_cell: `cells.${at}`, role: device, kind: `${device}.kind`, new_kind: `kinds.${kind}`, x_m: `${device}.base`, driver: `${device}.driver` };
-  const all = [...Object.entries({ ...own, ...Object.fromEntries(["model", "tool_of", "answers"].map((key) => [key, `${device}.${key}`])) }).map(([id, at]) => [box(id), at]), ...kinds.fields(kind)];
+  const ofDriver = [...box("settings").querySelectorAll("[data-setting]")].map((field) => [field, `${device}.driver.${driver}.${field.dataset.setting}`]);
+  const all = [...ofDriver, ...Object.entries({ ...own, ...Object.fromEntries(["model", "tool_of", "answers"].map((key) => [key, `${device}.${key}`])) }).map(([id, at]) => [box(id), at]), ...kinds.fields(kind)];
   const named = sentence.startsWith(`${place}: the name `);
   const near = all.filter(([field, at]) => field.offsetParent && (place === at || place.startsWith(`${at}.`) || place.startsWith(`${at}[`)) && !(field.dataset.key === "fact" && !named) && !(field.dataset.key === "type" && named));
   return near.sort(([, one], [, other]) => other.length - one.length)[0]?.[0];
