@@ -130,7 +130,7 @@ def extended(clone: Path, wheel: Path, tmp_path: Path) -> Path:
     """The command of an environment that has libraries, the wheel of the runner, and beside it that of
     examples/extension."""
     extension = built(clone / "examples/extension", tmp_path / "extension")
-    venv.create(tmp_path / "environment")
+    venv.create(tmp_path / "environment", with_pip=True)
     python = tmp_path / "environment/bin/python"
     libraries = tmp_path / "libraries"
     libraries.mkdir()
@@ -140,7 +140,7 @@ def extended(clone: Path, wheel: Path, tmp_path: Path) -> Path:
     site = "import sysconfig; print(sysconfig.get_path('purelib'))"
     folder = subprocess.run([python, "-c", site], check=True, capture_output=True, text=True).stdout.strip()
     (Path(folder) / "libraries.pth").write_text(f"{libraries}\n", "utf-8")
-    pip = (sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--no-index", "--no-deps")
+    pip = (python, "-m", "pip", "install", "--quiet", "--no-index", "--no-deps")
     subprocess.run([*pip, wheel, extension], check=True)
     return python.with_name("arboleda")
 
