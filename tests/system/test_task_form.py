@@ -15,6 +15,10 @@ from .page import connected, running, show
 
 BENCH = Path(__file__).parents[2] / "examples" / "lab_bench" / "plant.yaml"
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
+ACCEPTED = """before => {
+  const answer = document.getElementById("answer").innerText;
+  return answer !== before && answer.startsWith("Aceptada");
+}"""
 
 
 @contextmanager
@@ -35,9 +39,10 @@ def pressed(page: Any) -> list[str]:
 
 
 def sent(page: Any) -> str:
-    """The id of the task that was sent."""
+    """The id of the task that was sent; the answer to the one before stays until the next comes."""
+    before = page.inner_text("#answer")
     page.click("#task-send")
-    page.wait_for_function("document.getElementById('answer').textContent.startsWith('Aceptada')")
+    page.wait_for_function(ACCEPTED, arg=before)
     found = re.search(r"#([\w.-]+)\)", page.inner_text("#answer"))
     assert found is not None
     return found[1]
