@@ -23,7 +23,7 @@ OF_A_PLANT = (PARTS, "arboleda.page", "arboleda.routes")  # what a plant can lea
 OFF = ("off", False)
 NOBODY = "no installed package is called {name}{nearest}; there are {known}"
 FORM = "must be off, or a mapping of its settings, is {value}"
-NEEDS = "the plant file gives {name} no {keys}; write extensions: {{{name}: {{{key}: ...}}}}"
+NEEDS = "the plant file gives {name} no {keys}; write extensions: {given}"
 
 
 def named(document: Document) -> Iterator[str]:
@@ -63,7 +63,8 @@ def settings_of(plant: PlantModel, name: str, declared: type) -> Any:
         return plant.extensions[name]
     fits = shape(f"Extension_{name}", declared)
     if missing := required(fits):
-        raise ArboledaError(NEEDS.format(name=name, keys=", ".join(missing), key=missing[0]))
+        form = f"{{{name}: {{{missing[0]}: ...}}}}"
+        raise ArboledaError(NEEDS.format(name=name, keys=", ".join(missing), given=form))
     return declared(**dict(fits()))
 
 

@@ -36,18 +36,19 @@ class Taker:
 
 def given(document: Document, place: Place, taker: Taker) -> Any:
     """The settings at `place`, all defaults where no mapping is there; FAULTY, with the problems kept."""
+    whom = f"the {taker.what} {taker.name}"
     has = document.has(place) and not isinstance(document.value(place), str)
     if taker.settings is None:
         if has and document.value(place):
-            document.problem(place, f"the {taker.what} {taker.name} has no settings")
+            document.problem(place, f"{whom} has no settings")
             return FAULTY
         return None
     fits = _shape(taker, taker.settings)
     if fits is None:
         return FAULTY
     if not has and (missing := required(fits)):
-        needs = f"the {taker.what} {taker.name} needs {', '.join(missing)}"
-        document.problem(place, f"{needs}; write {taker.form.format(missing[0])}")
+        keys = ", ".join(missing)
+        document.problem(place, f"{whom} needs {keys}; write {taker.form.format(missing[0])}")
         return FAULTY
     try:
         if not has:
