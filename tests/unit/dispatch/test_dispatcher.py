@@ -14,7 +14,7 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Stop, StopMode, Switch
-from arboleda.model.messages import Failure, MotionState, Reason, Report
+from arboleda.model.messages import MotionState, Reason, Report
 from arboleda.model.plant_model import DriverUse, Evidence
 from arboleda.testing import shipped
 
@@ -48,26 +48,6 @@ def test_a_halt_is_proven_only_by_what_is_said_after_it(dispatcher: Dispatcher) 
         dispatcher.report(Report(at=at, **STILL), at)
         states.append(move.state)
     assert states == [State.CANCELLING, State.CANCELLED]
-
-
-@pytest.mark.parametrize("cancelled", [False, True])
-def test_what_nobody_can_judge_any_more_has_failed(dispatcher: Dispatcher, *, cancelled: bool) -> None:
-    move = dispatcher.send(partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0)), "sis_a", "moving", 100.1)
-    if cancelled:
-        dispatcher.cancel(move, 100.2)
-    dispatcher.booking.give_up("sis_a", Failure(reason=Reason.INTERNAL, sentence="it broke"), 100.3)
-    assert move.state is State.FAILED and move.failure and move.failure.reason is Reason.INTERNAL
-
-
-@pytest.mark.parametrize("cancelled", [False, True])
-def test_what_did_not_leave_has_failed_or_has_ended_as_it_was_told_to(
-    dispatcher: Dispatcher, *, cancelled: bool
-) -> None:
-    move = dispatcher.send(partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0)), "sis_a", "moving", 100.1)
-    if cancelled:
-        dispatcher.cancel(move, 100.1)
-    dispatcher.booking.undelivered(move.command.id, "ra1", "a stop left before it", 100.2)
-    assert move.state is (State.CANCELLED if cancelled else State.FAILED)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What is judged of a command is its base: a class that nobody here knows is judged like its nearest one."""
+"""What reports prove of a command: it is judged as its nearest base, also where its class is from outside."""
 
 from __future__ import annotations
 
@@ -93,3 +93,40 @@ def test_a_command_of_no_known_base_is_proven_by_no_report() -> None:
     told = [{"state": MOVING}, {"state": STOPPED, "accepted": "1-1", "done": "1-1"}]
     for level in Evidence:
         assert proven(Stop(id="1-1", robot="ra1", mode=StopMode.HALT), level, *told) == []
+
+
+MOVE = MoveJoints(id="1-1", robot="ra1", q=THERE)
+
+
+@pytest.mark.parametrize(
+    ("word", "reason"),
+    [
+        ("no_link", Reason.LINK_LOST),
+        ("tarde", Reason.LINK_LOST),
+        ("paro", Reason.STOPPED),
+        ("sin_ref", Reason.NOT_HOMED),
+        ("condicion", Reason.PRECONDITION),
+        ("viejo", Reason.REJECTED),
+    ],
+)
+def test_a_refusal_has_its_reason_and_is_of_the_command_that_it_names(word: str, reason: Reason) -> None:
+    refused = {"state": STOPPED, "refusal": word}
+    assert proven(MOVE, Evidence.IDS, {**refused, "rejected": "1-1"}) == [(Feed.REJECTED, reason)]
+    assert proven(MOVE, Evidence.IDS, {**refused, "rejected": "1-0"}) == []
+
+
+@pytest.mark.parametrize("level", Evidence, ids=lambda level: level.value)
+def test_a_command_ends_with_the_link(level: Evidence) -> None:
+    assert proven(MOVE, level, {"state": MotionState.NO_LINK}) == [(Feed.FAILED, Reason.LINK_LOST)]
+
+
+def test_a_command_ends_with_the_boot_of_its_board_and_with_its_bridge() -> None:
+    first = {"state": STOPPED, "q": HERE, "boot_id": 1, "epoch": 1}
+    assert proven(MOVE, Evidence.IDS, first, first) == []
+    assert proven(MOVE, Evidence.IDS, first, {**first, "boot_id": 2}) == [(Feed.FAILED, Reason.REBOOTED)]
+    assert proven(MOVE, Evidence.IDS, first, {**first, "epoch": 2}) == [(Feed.FAILED, Reason.LINK_LOST)]
+
+
+def test_a_jump_that_no_robot_can_make_is_a_boot_where_boots_are_not_told() -> None:
+    jumped = {"state": STOPPED, "q": tuple(50.0 * q for q in THERE)}
+    assert proven(MOVE, Evidence.JOINTS, jumped) == [(Feed.FAILED, Reason.REBOOTED)]

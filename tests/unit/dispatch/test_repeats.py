@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
@@ -99,14 +98,14 @@ class Desk:
         self.now += 0.1
         if not self.knows:
             for belief in self.dispatcher.beliefs.values():
-                belief._last_words = ()
+                belief._last = None
         self.dispatcher.report(Report(at=self.now, **self.last), self.now)
 
     def shown(self) -> list[Any]:
         """All that came of it."""
         desk, ledger = self.dispatcher, self.dispatcher.ledger
         beliefs = [
-            {**vars(belief), "robot": None, "_last_words": (), "repeats": 0}
+            {**vars(belief), "robot": None, "_last": None, "repeats": 0}
             | {"stillness": vars(belief.stillness) | {"_robot": None}, "rate": vars(belief.rate)}
             | {"pauses": vars(belief.pauses)}
             for belief in desk.beliefs.values()
@@ -128,29 +127,3 @@ def test_who_knows_repeats_believes_and_sends_what_one_that_merges_all_does(
         quick.do(verb, *rest)
         thorough.do(verb, *rest)
         assert quick.shown() == thorough.shown()
-
-
-@pytest.fixture
-def belief() -> Belief:
-    model = shipped("sis_a")
-    belief = Belief(model.robots["ra1"], model.timing.stale_after_s, EPOCH)
-    belief.merge(Report(at=1.0, robot="ra1", state=MotionState.STOPPED, q=HERE))
-    return belief
-
-
-def test_a_repeat_counts_as_heard(belief: Belief) -> None:
-    assert belief.hear_again(Report(at=2.0, robot="ra1", state=MotionState.STOPPED, q=HERE))
-    assert (belief.heard_at, belief.stillness.position_at) == (2.0, 2.0)
-    assert (belief.reports, belief.stillness.is_still) == (2, True)
-
-
-@pytest.mark.parametrize("other", [{"q": THERE}, {"homed": True}, {"rejected": "7-1"}, {"at": 0.5}])
-def test_anything_else_is_no_repeat(belief: Belief, other: dict[str, Any]) -> None:
-    said = {"at": 2.0, "robot": "ra1", "state": MotionState.STOPPED, "q": HERE, **other}
-    assert not belief.hear_again(Report(**said))
-    assert belief.reports == 1
-
-
-def test_who_fell_silent_does_not_repeat_itself_but_is_back(belief: Belief) -> None:
-    belief.fall_silent()
-    assert not belief.hear_again(Report(at=2.0, robot="ra1", state=MotionState.STOPPED, q=HERE))
