@@ -14,7 +14,6 @@ from arboleda.web.languages import contents
 from arboleda.web.languages.templates import Templates
 
 SENTENCES: dict[str, str] = contents("es", "findings")["sentences"]
-FEWER = {"  faults     {0} of {1} {2} enough:"}  # the value is a verb, of which Spanish needs no second form
 
 
 def slots(text: str) -> list[str]:
@@ -22,31 +21,12 @@ def slots(text: str) -> list[str]:
 
 
 def test_each_sentence_has_the_values_of_its_english() -> None:
-    unlike = {english for english, other in SENTENCES.items() if slots(english) != slots(other)}
-    assert unlike == FEWER
+    assert {english for english, other in SENTENCES.items() if slots(english) != slots(other)} == set()
 
 
 @pytest.mark.parametrize(
     ("english", "spanish"),
     [
-        (
-            "  bench fill: jaw: It restarts and forgets: the place of arm is (1.0, 0.0), not (2.0, 0.0); "
-            "4 runs, e.g. just before arm: moving to nest (3.200 s)",
-            "  bench fill: jaw: Se reinicia y olvida: el lugar de arm es (1.0, 0.0), no (2.0, 0.0); "
-            "4 ejecuciones, como justo antes de arm: yendo a nest (3.200 s)",
-        ),
-        (
-            "  begins     in the middle after arm: moving to nest (3.200 s)",
-            "  empieza        a mitad de camino tras arm: yendo a nest (3.200 s)",
-        ),
-        (
-            "  begins     just before the request (2.000 s)",
-            "  empieza        justo antes de la petición (2.000 s)",
-        ),
-        (
-            "    26.358  ra1: Messages are lost (up, 0.13), for 2.706 s",
-            "    26.358  ra1: Se pierden mensajes (up, 0.13), durante 2.706 s",
-        ),
         (
             "0 of 2 seeds, 2 min, 16 cycles, 1/s, 65 faults",
             "0 de 2 semillas, 2 min, 16 ciclos, 1/s, 65 fallos",
@@ -76,12 +56,6 @@ def test_each_sentence_has_the_values_of_its_english() -> None:
             "in cell lab: home lies in zone centre",
             "en la celda lab: home está en la zona centre",
         ),
-        (
-            "lab weigh: failed: rejected without any fault: no",
-            "lab weigh: falló: rechazada sin ningún fallo: no",
-        ),
-        ("FAULT: gives_up jaw rejected for 3.000 s", "FALLO: gives_up jaw rejected durante 3.000 s"),
-        ("    a question may: wheel.gauge()", "    una pregunta puede notarlo: wheel.gauge()"),
         ("Page: http://127.0.0.1:8080", "Página: http://127.0.0.1:8080"),
         (
             "HTTP API: http://127.0.0.1:41/api/plant (port 8080 is taken)",
@@ -100,31 +74,7 @@ def test_each_sentence_has_the_values_of_its_english() -> None:
             'table.turn.needs: there is no fact "clmp"; did you mean "clamp"?; facts: angle, clamp',
             'table.turn.needs: no hay ningún dato "clmp"; ¿quiso decir "clamp"?; datos: angle, clamp',
         ),
-        (
-            "2 seeds (1 to 2), 38 cycles, 0 faults, 203 s of plant time in 2 s (a, b)",
-            "2 semillas (1 a 2), 38 ciclos, 0 fallos, 203 s de tiempo de la planta en 2 s (a, b)",
-        ),
-        (
-            'it should refuse {"paro": 0, "seq": 3} with viejo; it says nothing about it',
-            'debería rechazar {"paro": 0, "seq": 3} con viejo; su respuesta: ninguna',
-        ),
-        (
-            "  was seen   MoveJoints 1-7 of ra1 was sent while SetEffector 1-6 of ra1 was open",
-            "  se vio         se envió MoveJoints 1-7 de ra1 mientras SetEffector 1-6 de ra1 estaba abierta",
-        ),
-        (
-            "  was seen   ra1 is not online by what the plant believes",
-            "  se vio         según cree la planta, ra1 no está en línea",
-        ),
-        (
-            "  was seen   ra1 begins to move unasked",
-            "  se vio         ra1 empieza a moverse sin que nadie lo pida",
-        ),
         ("836 runs", "836 ejecuciones"),
-        (
-            "afterwards it was not seen standing still within 30 s",
-            "después, no se la vio quieta en 30 s",
-        ),
     ],
 )
 def test_a_finding_is_said_in_spanish(english: str, spanish: str) -> None:

@@ -38,10 +38,9 @@ def faults(console: Console, result: Result, injected: int) -> None:
     if not needed:
         _say(console, f"  faults     none of {injected:,} is needed")
         return
-    _say(
-        console,
-        f"  faults     {needed:,} of {counted(injected, 'fault')} {'is' if needed == 1 else 'are'} enough:",
-    )
+    all_of_them = counted(injected, "fault")
+    one = f"  faults     1 of {all_of_them} is enough:"
+    _say(console, one if needed == 1 else f"  faults     {needed:,} of {all_of_them} are enough:")
     for fault in result.faults:
         _say(console, f"{fault.at:10.3f}  {fault_said(fault)}", "yellow")
 
