@@ -21,7 +21,6 @@ from arboleda.web.access.auth import Door
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import names_for
 from arboleda.web.server import Server
-from arboleda_fleet.oee.api import OeeApi, OeeQuery
 
 EVIL = sys.argv[1]
 SAID = {
@@ -88,9 +87,9 @@ class Side:
         return [TaskRow(number=1, state="failed", reason="deadline", **said, **times)]
 
     def ask(self, kind: type) -> Any:
-        return self if kind is OeeApi else None
+        return self if kind.__name__ == "OeeApi" else None  # of arboleda_fleet, where it is installed
 
-    def oee(self, query: OeeQuery) -> list[Oee]:
+    def oee(self, query: Any) -> list[Oee]:
         return [oee(EVIL, PastTimes(works=[], runs=[], downs=[], shortest={}), 0.0, 1.0)]
 
     def submit(self, text: str, _asked_by: str) -> Future[dict[str, Any]]:

@@ -11,13 +11,12 @@ from typing import Any
 import httpx
 import pytest
 import yaml
+from tests.chromium import people
+from tests.patience import PATIENCE_S
+from tests.system.page import connected, running, until
+from tests.system.test_accessible import Eye
 
 from arboleda.cli.new import write
-
-from ..chromium import people
-from ..patience import PATIENCE_S
-from .page import connected, running, until
-from .test_accessible import Eye
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 

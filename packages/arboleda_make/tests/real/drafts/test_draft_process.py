@@ -17,7 +17,7 @@ from arboleda.plant_file.draft_check import DraftCheck
 from arboleda_make.drafts import process as draft_process
 from arboleda_make.drafts.process import CheckProcess
 
-FOLDER = Path(__file__).parents[2] / "examples/own_tree"
+FOLDER = Path(__file__).parents[5] / "examples/own_tree"
 CONTENTS = {name: (FOLDER / name).read_bytes() for name in ("plant.yaml", "tend.xml")}
 FILES = PlantFiles(plant="plant.yaml", contents=CONTENTS)
 

@@ -9,17 +9,16 @@ from typing import Any
 import httpx
 import pytest
 from packages.arboleda_drivers.tests.real.modbus.bench import ModbusWire
+from tests.chromium import leave
+from tests.lengths import sample
+from tests.patience import PATIENCE_MS, PATIENCE_S
+from tests.ports import unused_port
+from tests.system.page import PLACES, connected, running
+from tests.system.test_accessible import Eye
 
 from arboleda.cli.new import write
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.versions import Versions
-
-from ..chromium import leave
-from ..lengths import sample
-from ..patience import PATIENCE_MS, PATIENCE_S
-from ..ports import unused_port
-from .page import PLACES, connected, running
-from .test_accessible import Eye
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 

@@ -8,13 +8,13 @@ from typing import Any
 
 import httpx
 import pytest
+from tests.patience import PATIENCE_MS, PATIENCE_S
+from tests.system.page import running, until
 
 from arboleda.cli.new import write
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.versions import Versions
 
-from ..patience import PATIENCE_MS, PATIENCE_S
-from .page import running, until
 from .test_make import LONG_MS, Person
 from .test_teach_page import NOTE, device, hold
 

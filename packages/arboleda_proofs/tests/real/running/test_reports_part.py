@@ -9,12 +9,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from tests.patience import until
 
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda_proofs.running import reports_part as reports
 from arboleda_proofs.running.reports_part import MOST_KEPT, MOST_WAITING, NoReport, ReportsPart
-
-from ..patience import until
 
 
 def ended(task: str, state: TaskState = TaskState.FAILED, request: str | None = None) -> TaskChanged:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.unit.store.memory_samples import FOUND, ODD, ended, queued, tell_of_four
 
 from arboleda.model.messages import (
     Course,
@@ -33,8 +34,6 @@ from arboleda_fleet.oee.api import OeeQuery
 from arboleda_fleet.oee.rows import figures
 from arboleda_fleet.postgres.history import PostgresHistory
 from arboleda_fleet.postgres.memory import PostgresMemory
-
-from ..unit.store.memory_samples import FOUND, ODD, ended, queued, tell_of_four
 
 Deed = Callable[[PlantMemory], object]
 

@@ -8,9 +8,8 @@ from typing import Any
 
 import httpx
 import pytest
-
-from ..patience import PATIENCE_MS, PATIENCE_S
-from .page import connected, operate, running, show, until
+from tests.patience import PATIENCE_MS, PATIENCE_S
+from tests.system.page import connected, operate, running, show, until
 
 pytestmark = pytest.mark.system
 

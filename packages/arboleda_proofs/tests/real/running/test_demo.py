@@ -8,12 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.chromium import browsers
+from tests.system.conftest import Process, paths
+from tests.system.page import operate, running, until
 
 from arboleda.cli.client import PlantClient
-
-from ..chromium import browsers
-from .conftest import Process, paths
-from .page import operate, running, until
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 

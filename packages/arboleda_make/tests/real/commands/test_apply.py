@@ -9,14 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.system.page import until
 
 from arboleda.runtime.state import find_running
 
-from .page import until
-
 pytestmark = pytest.mark.system
 
-EXAMPLE = Path(__file__).parents[2] / "examples/own_tree"
+EXAMPLE = Path(__file__).parents[5] / "examples/own_tree"
 Typed = Callable[..., tuple[int, str]]
 
 

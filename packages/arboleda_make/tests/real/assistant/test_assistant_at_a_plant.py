@@ -11,11 +11,10 @@ from typing import Any
 
 import pytest
 from mcp import Client, StdioServerParameters, stdio_client
+from tests.system.conftest import paths
 
 from arboleda.client import Plant
 from arboleda.plant_file.loader import load
-
-from .conftest import paths
 
 pytestmark = pytest.mark.system
 ASKED_EVERY_S = 0.2  # who asks all the time has too many requests

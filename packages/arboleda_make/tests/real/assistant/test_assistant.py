@@ -17,13 +17,12 @@ from mcp import Client, StdioServerParameters, stdio_client
 from mcp.client.streamable_http import streamable_http_client
 from packages.arboleda_make.tests.fast.assistant.asking import in_process, replied
 from packages.arboleda_make.tests.fast.assistant.asking import read as read
+from tests.contract.web.conftest import Web
 from tests.web_plant import TOKENS, Plant
 
 from arboleda.model.messages import Verb
 from arboleda.web.access.auth import Role
 from arboleda_make.assistant.bench import Bench
-
-from .conftest import Web
 
 PROGRAM = "from arboleda.cli.main import main; main()"
 ENVIRON = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}

@@ -9,17 +9,16 @@ from typing import Any
 
 import httpx
 import pytest
+from tests.chromium import people
+from tests.patience import PATIENCE_S
+from tests.system.page import connected, running
+from tests.system.test_accessible import Eye
 
 from arboleda_make.editing.tree_text import TreeText, walk
 
-from ..chromium import people
-from ..patience import PATIENCE_S
-from .page import connected, running
-from .test_accessible import Eye
-
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 
-OWN_TREE = Path(__file__).parents[2] / "examples/own_tree/plant.yaml"
+OWN_TREE = Path(__file__).parents[5] / "examples/own_tree/plant.yaml"
 LAB_BENCH = OWN_TREE.parents[1] / "lab_bench/plant.yaml"
 TEXT = OWN_TREE.with_name("tend.xml").read_text()
 LAPTOP = {"viewport": {"width": 1366, "height": 900}, "locale": "en"}

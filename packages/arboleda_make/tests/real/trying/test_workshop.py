@@ -20,7 +20,7 @@ from arboleda_make.trying.bench import MakeBench
 from arboleda_make.trying.workshop import ENDING, Workshop
 
 Processes: TypeAlias = "SimpleQueue[subprocess.Popen[bytes]]"
-OWN_TREE = Path(__file__).parents[2] / "examples/own_tree/plant.yaml"
+OWN_TREE = Path(__file__).parents[5] / "examples/own_tree/plant.yaml"
 BASE = PlantFiles(
     plant="plant.yaml",
     contents={"plant.yaml": OWN_TREE.read_bytes(), "tend.xml": OWN_TREE.with_name("tend.xml").read_bytes()},

@@ -16,15 +16,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.patience import PATIENCE_S
+from tests.system.conftest import paths
 
 from arboleda_proofs.campaigns.request import Request
 
-from ..patience import PATIENCE_S
-from .conftest import paths
-
 pytestmark = pytest.mark.system
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[5]
 SUPPORTED = ("3.10", "3.11", "3.12")
 PURE = ("py_trees", "pydot", "pyparsing")  # all that a simulation imports besides Arboleda, and no binary
 SEEDS = (1, 2)

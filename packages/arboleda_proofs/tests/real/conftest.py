@@ -1,0 +1,5 @@
+"""A command line, processes and a browser, as tests of the whole system have them."""
+
+from tests.system.conftest import browser, start, typed
+
+__all__ = ["browser", "start", "typed"]
