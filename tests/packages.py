@@ -13,8 +13,12 @@ PACKAGES = {each.parent.name: each.parent for each in sorted(ROOT.glob("packages
 
 def leave_out(patch: pytest.MonkeyPatch, folder: Path, *packages: str) -> None:
     """Have nobody find what these packages register, as where they are not installed; `folder` is empty."""
-    found = metadata.entry_points()
-    points = (each for group in found.groups for each in found.select(group=group))
-    left = metadata.EntryPoints(each for each in points if each.value.partition(".")[0] not in packages)
-    patch.setattr(metadata, "entry_points", lambda: left)
+    entry_points = metadata.entry_points
+
+    def left() -> metadata.EntryPoints:
+        found = entry_points()
+        points = (each for group in found.groups for each in found.select(group=group))
+        return metadata.EntryPoints(each for each in points if each.value.partition(".")[0] not in packages)
+
+    patch.setattr(metadata, "entry_points", left)
     patch.syspath_prepend(folder)  # what is installed is read anew

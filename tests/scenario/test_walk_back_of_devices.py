@@ -22,9 +22,9 @@ from arboleda.views import view
 from arboleda.wire.transport import Publication
 
 from ..lengths import sample
+from ..unit.kinds.example_trials import EXAMPLES
 from ..unit.kinds.lab import model as bench
 from ..unit.kinds.tending import plant
-from ..unit.kinds.test_examples import EXAMPLES
 from ..unit.kinds.test_interlocks import with_mill
 from ..unit.kinds.test_numbers_as_answers import BY_WEIGHT, line
 from ..unit.kinds.test_people import attended

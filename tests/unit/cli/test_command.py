@@ -29,11 +29,6 @@ def test_a_command_of_a_package_that_is_not_installed_is_named_with_the_line_tha
         LoadedCommands()[name]
 
 
-def test_every_package_that_is_missed_is_one_of_this_repository() -> None:
-    installed = {name: each.module.split(".")[0] for name, each in commands().items() if "." in each.module}
-    assert installed == {name: f"arboleda_{package}" for name, package in OF_PACKAGES.items()}
-
-
 def test_of_two_commands_with_one_name_ours_is_taken_and_the_other_one_named(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

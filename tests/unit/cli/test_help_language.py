@@ -103,7 +103,7 @@ def test_no_english_is_left_in_the_help_of_a_command(
         (["up", "--port", "x"], "Valor no válido para '--port': se espera un número entero"),
         (["up", "--port", "0"], "Valor no válido para '--port': el mínimo es 1"),
         (["up", "--port", "70000"], "Valor no válido para '--port': el máximo es 65535"),
-        (["record", "replay", "--speed", "x"], "Valor no válido para '--speed': se espera un número"),
+        (["up", "--rate", "x"], "Valor no válido para '--rate': se espera un número"),
         (
             ["tree", "storage", "--format", "gif"],
             "Valor no válido para '--format': 'gif' no es uno de estos: 'ascii', 'svg', 'png', 'dot', 'xml'.",

@@ -90,27 +90,9 @@ def test_the_firmwares_boards_are_refused_where_the_own_broker_speaks_tls(
     assert status == 1 and "the firmware's boards speak no TLS" in said
 
 
-@pytest.mark.parametrize(
-    ("words", "status", "sentence"),
-    [
-        (("up", "--no-ros", "--standby"), 1, "--standby needs a memory that both hosts reach"),
-        (("handover",), 1, "give it a database"),
-        (
-            ("up", "--no-ros", "--demo", "--boards", "real"),
-            2,
-            "--demo has boards fail, so it is for virtual ones alone",
-        ),
-        (("conformance", "--robot", "rm_sis_a", "--yes"), 2, "there are ra1, ra2, ra3, ra_1, ra_2, ra_3"),
-        (("simulate", "--worker"), 2, "--worker needs --store"),
-        (("virtual", "dobot", "--fault", "mut"), 2, "no fault 'mut'"),
-    ],
-    ids=["standby", "handover", "demo", "conformance", "worker", "virtual"],
-)
-def test_what_cannot_be_is_refused_with_what_would_be_needed(
-    typed: Typed, words: tuple[str, ...], status: int, sentence: str
-) -> None:
-    ended, said = typed(*words)
-    assert ended == status and sentence in said
+def test_a_demonstration_beside_real_boards_is_refused(typed: Typed) -> None:
+    status, said = typed("up", "--no-ros", "--demo", "--boards", "real")
+    assert status == 2 and "--demo has boards fail, so it is for virtual ones alone" in said
 
 
 def test_a_png_is_not_poured_into_a_terminal(typed: Typed, monkeypatch: pytest.MonkeyPatch) -> None:

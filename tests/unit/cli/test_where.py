@@ -11,6 +11,7 @@ from types import SimpleNamespace
 
 import pytest
 import yaml
+from tests.added_package import install
 
 from arboleda.cli import remote_plant
 from arboleda.cli import submit as command
@@ -19,6 +20,7 @@ from arboleda.cli.main import main
 from arboleda.cli.plant_options import located
 from arboleda.model.errors import ArboledaError
 from arboleda.runtime.state import StateDir, default_state, running_plants
+from arboleda.store import schemes
 
 Typed = Callable[..., tuple[int, str, str]]
 SHIPPED = files("arboleda").joinpath("plants/plant.yaml")
@@ -114,7 +116,7 @@ class Others:
     [
         ((), ("postgresql://last", "greenhouse")),
         (("--store", "postgresql://named"), ("postgresql://named", "greenhouse")),
-        (("--plant", "FILE"), ("postgresql://file", "attic")),
+        (("--plant", "FILE"), ("shelf://file", "attic")),
     ],
 )
 def test_the_database_is_the_one_that_is_named_else_of_the_file_else_of_the_last_start(
@@ -125,10 +127,12 @@ def test_the_database_is_the_one_that_is_named_else_of_the_file_else_of_the_last
     options: tuple[str, ...],
     asked: tuple[str, str],
 ) -> None:
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    install(tmp_path / "site", "shelf", "class Shelf: ...", group=schemes.GROUP, what="Shelf")
     state = left_behind(default_state("greenhouse"), "postgresql://last")
     file = tmp_path / "plant.yaml"
     shipped = yaml.safe_load(SHIPPED.read_text())
-    file.write_text(yaml.safe_dump(shipped | {"name": "attic", "store": "postgresql://file"}))
+    file.write_text(yaml.safe_dump(shipped | {"name": "attic", "store": "shelf://file"}))
     found: list[tuple[str, str]] = []
     monkeypatch.setattr(remote_plant, "leadership_of", lambda *which: found.append(which) or Others())
     chosen = [str(file) if word == "FILE" else word for word in options]
@@ -254,11 +258,3 @@ def test_the_plant_of_the_environment_is_checked_where_none_is_named(lab: Path, 
     for words, file in (((), str(lab)), ((other,), other), (("--plant", other), other)):
         status, out, complaint = typed("check", *words)
         assert (status, out.split(": good")[0]) == (0, file), complaint
-
-
-def test_an_option_is_no_second_plant_file_beside_that_of_the_environment(lab: Path, typed: Typed) -> None:
-    for words in (("--plant", "nowhere.yaml"), ("nowhere.yaml",)):
-        _, _, complaint = typed("prove", *words, "--budget", "1s")
-        assert "nowhere.yaml: there is no such file" in complaint
-    status, _, complaint = typed("prove", "nowhere.yaml", "--plant", str(lab))
-    assert status == 2 and "nowhere.yaml" in complaint

@@ -15,13 +15,6 @@ def test_a_type_is_found_with_a_warning_that_says_where_it_is() -> None:
         assert answers.Cell is Cell
 
 
-def test_a_type_of_a_package_is_found_there() -> None:
-    with pytest.warns(
-        DeprecationWarning, match=r"use `from arboleda_make\.answers\.drafts import DraftState`"
-    ):
-        assert answers.DraftState.__name__ == "DraftState"
-
-
 def test_where_its_package_is_missing_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(packages, "import_module", missing)
     with (

@@ -15,10 +15,10 @@ from fastapi import FastAPI
 from nicegui import json
 from nicegui.client import HTML_ESCAPE_TABLE
 from tests.added_package import install
+from tests.packages import PACKAGES, leave_out
 
 from arboleda.dashboard import added, page, shell
 from arboleda.dashboard.added import AddedParts
-from arboleda.dashboard.asset_files import own
 from arboleda.dashboard.desk import Desk
 from arboleda.dashboard.feed import Feed
 from arboleda.dashboard.page_part import GROUP
@@ -73,7 +73,6 @@ LAYOUT = view.layout(shipped())
 IN_ORDER = {
     "cells": ["cells"],
     "tasks": ["tasks"],
-    "make": ["make", "draw", "teach"],
     "log": ["events", "links"],
     "settings": ["settings"],
 }
@@ -121,16 +120,22 @@ def loaded(told: Told | None = None) -> AddedParts:
     return AddedParts(Pieces(tell=([] if told is None else told).append), page.OWN)
 
 
-def test_the_page_has_five_places_with_their_parts() -> None:
-    tabs = re.findall(r'data-tab="(\w+)" data-parts="([\w ]+)"', html(loaded()).partition("<section")[0])
-    places = {tab: parts.split() for tab, parts in tabs[: len(IN_ORDER)]}
-    assert places == IN_ORDER
-    assert sorted(tab for tab, _ in tabs[len(IN_ORDER) :]) == ["draw", "events", "links", "make", "teach"]
+def tabs(shown: str) -> list[tuple[str, list[str]]]:
+    """The tabs of a page in their order, each with its parts; places of several come first."""
+    found = re.findall(r'data-tab="(\w+)" data-parts="([\w ]+)"', shown.partition("<section")[0])
+    return [(tab, parts.split()) for tab, parts in found]
 
 
-def test_a_viewer_sees_no_part_that_is_for_operators() -> None:
-    viewed = html(loaded(), Role.VIEWER.value)
-    assert "part-draw" in viewed and "part-make" not in viewed and "part-teach" not in viewed
+def test_the_page_has_its_places_with_their_parts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    leave_out(monkeypatch, tmp_path / "site", *PACKAGES)
+    places = tabs(html(loaded()))
+    assert dict(places[: len(IN_ORDER)]) == IN_ORDER
+    assert sorted(tab for tab, _ in places[len(IN_ORDER) :]) == ["events", "links"]
+
+
+def test_a_viewer_sees_no_part_that_is_for_operators(put: Install) -> None:
+    put()
+    assert "part-zones" in html(loaded()) and "part-zones" not in html(loaded(), Role.VIEWER.value)
 
 
 def test_what_a_package_adds_is_drawn_in_its_place(put: Install) -> None:
@@ -197,7 +202,7 @@ def test_a_piece_of_a_package_that_breaks_is_left_out_and_named(
     whole = piece.startswith("the part of")
     assert ("fetch" in parts.acts) is not whole
     assert ("part-zones" in shown) is not (whole or "section" in piece)
-    assert (".ended" in shown) is not whole and "part-make" in shown
+    assert (".ended" in shown) is not whole and "part-events" in shown
 
 
 @pytest.mark.parametrize("act", ["home", "download"])
@@ -251,12 +256,6 @@ def test_of_two_sections_in_one_place_only_the_one_that_breaks_is_left_out(put: 
 def test_a_package_is_loaded_only_when_a_page_is_made(put: Install) -> None:
     put()
     assert "acme" in added.installed() and "acme" not in sys.modules
-
-
-def test_files_of_packages_lie_below_those_of_the_page() -> None:
-    head = shell.head(words("en"), own("page.js"), added=loaded().assets)
-    below = own("").rstrip("/")
-    assert f'"{below}/arboleda_make.page-' in head and "/part.js" in head and "/draw.css" in head
 
 
 def test_parts_are_written_into_the_page_as_nicegui_would_write_them() -> None:

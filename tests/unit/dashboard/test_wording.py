@@ -9,7 +9,6 @@ import pytest
 from arboleda.dashboard.wording import LANGUAGES, REASONS, SENTENCES, flat, tree_of, words
 from arboleda.dispatch import belief, dispatcher, evidence, zones
 from arboleda.dispatch.ledger import State
-from arboleda.drivers.supervisor import FAILED, NOT_SENT
 from arboleda.model import text
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Reason, TaskState, Verb
@@ -107,19 +106,6 @@ def test_what_is_no_sentence_stays_as_it_is() -> None:
 @pytest.mark.parametrize(
     ("said", "spanish"),
     [
-        (
-            FAILED(driver="pylabrobot", error="its setup has not come back for 30 s"),
-            "su driver pylabrobot falló (su setup no ha vuelto en 30 s) y se inicia de nuevo",
-        ),
-        (
-            NOT_SENT(driver="vda5050", error=OWN(text="the vehicle is still at its order a-1")),
-            "su driver vda5050 no pudo enviar una orden (el vehículo sigue con su orden a-1)",
-        ),
-        (
-            OWN(text="10.0.0.7: its feedback has stood still for 1 s"),
-            "10.0.0.7: sus datos no cambian desde hace 1 s",
-        ),
-        (OWN(text="10.0.0.7:502 is not there"), "10.0.0.7:502 no está"),
         (OWN(text="the plate is not there"), "the plate is not there"),
         (
             OWN(text="10.0.0.7: port 29999: [Errno 111] Connection refused"),

@@ -9,8 +9,8 @@ from tests.readying import make_ready
 from arboleda.model.messages import Outcome, Verb
 from arboleda.rig.hands import do
 
+from .example_trials import load
 from .lab import Bench
-from .test_examples import load
 
 TASK = "tending mill slot_2 1002"
 

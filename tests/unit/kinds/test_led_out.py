@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,7 +16,8 @@ from arboleda.model.plant_model import Link
 from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 
-from .test_examples import OF_STORAGE, PLAIN, Case, Shop
+from .example_trials import OF_STORAGE, Case, Shop
+from .test_examples import CASES, PLAIN
 
 BOOTS_S = 5.0
 STORED = Case(folder=OF_STORAGE, task="sis_a 0B 7")
@@ -36,9 +38,9 @@ class Middle:
 class Timed(Shop):
     """An example whose people answer as the case says, up to any moment."""
 
-    def __init__(self, case: Case) -> None:
+    def __init__(self, case: Case, cases: Sequence[Case]) -> None:
         self.last: list[tuple[float, tuple[str, str]]] = []
-        super().__init__(case)
+        super().__init__(case, cases)
         self.watchers.append(self._note)
 
     def go(self, at: float) -> None:
@@ -62,9 +64,9 @@ class Timed(Shop):
                 self.last.append((self.now, (each.robot, each.word)))
 
 
-def stuck(case: Case, middle: Middle, device: str | None) -> str | None:
+def stuck(case: Case, cases: Sequence[Case], middle: Middle, device: str | None) -> str | None:
     """What was pressed after a stop in a verb and a reboot, and what is due still; None where all is well."""
-    shop = Timed(case)
+    shop = Timed(case, cases)
     shop.go(middle.at)
     shop.operate(Verb.STOP, case.cell)
     shop.wait(1.0)
@@ -77,17 +79,19 @@ def stuck(case: Case, middle: Middle, device: str | None) -> str | None:
     return f"{middle}, {device} booted: {acts}, then {due(shop)}"
 
 
-def devices(case: Case) -> list[str | None]:
-    robots = Shop(case).model.robots.values()
-    return [None, *(robot.name for robot in robots if robot.link is not Link.SCREEN)]
+def assert_led_out(case: Case, cases: Sequence[Case]) -> None:
+    """A stop in any verb, and a reboot of any device or of none, are led out of by buttons alone."""
+    shop = Timed(case, cases)
+    devices = [None, *(each.name for each in shop.model.robots.values() if each.link is not Link.SCREEN)]
+    found = [stuck(case, cases, middle, device) for middle in shop.middles() for device in devices]
+    assert [each for each in found if each] == []
 
 
 @pytest.mark.long
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("case", [*PLAIN, STORED], ids=str)
 def test_a_stop_in_any_verb_and_a_reboot_are_led_out_of_by_buttons_alone(case: Case) -> None:
-    found = [stuck(case, middle, device) for middle in Timed(case).middles() for device in devices(case)]
-    assert [each for each in found if each] == []
+    assert_led_out(case, CASES)
 
 
 APART = """

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from unicodedata import normalize
 
 import pytest
-from typer.testing import CliRunner
 
-from arboleda.cli.main import cli, main
 from arboleda.dashboard.page_state import PageState
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ConfigError, PayloadError
@@ -50,17 +47,6 @@ def cocer(cell: Kit, con: Choice["leña", "炭"]):
     hay = horno.mirar()
     cocido = [horno.cargar(con=con), horno.vaciar()]
     return work(hay, cell.choose(hay, {"sí": cocido, "no": cell.fail("no hay")}))
-"""
-WIRING = """\
-inputs: {llena: {pin: 34}, fria: {pin: 35}}
-outputs: {vacio: {pin: 25, safe: off, on_stop: safe}, brasa: {pin: 26, safe: off, on_stop: safe}}
-facts:
-  puerta: told
-  carga: {vacía: {fria: on}, 炭: {llena: on}, else: leña}
-verbs:
-  cargar: {start: {brasa: {$con: {leña: on, 炭: off}}}}
-  vaciar: {start: {vacio: on}}
-  mirar:  {answers: {sí: {llena: on}, else: no}}
 """
 
 
@@ -176,37 +162,3 @@ def test_a_word_that_no_message_takes_is_refused_at_its_place(
         plant(folder, PLANT.replace(old, new))
     assert [each for each in refused.value.problems if each.startswith(f"plant.yaml:{sentence}")]
     assert not [each for each in refused.value.problems if "\\x" in each or "cells.taller" in each]
-
-
-def test_the_firmwares_header_has_them_as_they_are(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (folder / "horno.wiring.yaml").write_text(WIRING, encoding="utf-8")
-    words = ["firmware-config", "horno", "horno.wiring.yaml", "--plant", "plant.yaml", "-o", "made.h"]
-    monkeypatch.chdir(folder)
-    run = CliRunner().invoke(cli, words)
-    assert run.exit_code == 0, run.output
-    written = (folder / "made.h").read_text(encoding="utf-8")
-    assert all(f'{{"{word}", 0.0}}' in written for word in ("vacía", "leña", "炭", "sí"))
-
-
-@pytest.mark.long
-def test_a_plant_with_them_holds_in_a_simulation(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    words = [
-        "simulate",
-        "--plant",
-        str(folder / "plant.yaml"),
-        "--seed",
-        "1",
-        "--seeds",
-        "1",
-        "--cycles",
-        "2",
-        "--jobs",
-        "1",
-    ]
-    monkeypatch.setattr(sys, "argv", ["arboleda", *words])
-    with pytest.raises(SystemExit) as end:
-        main()
-    assert end.value.code == 0
-    assert "HELD" in capsys.readouterr().out

@@ -6,11 +6,13 @@ import math
 from pathlib import Path
 
 import pytest
+from tests.added_package import install
 from tests.packages import leave_out
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, MqttVersion, PlantModel, Timing
 from arboleda.plant_file import loader
+from arboleda.store import schemes
 from arboleda.testing.storage_layout import StorageLayout
 from arboleda_bench.cost.counter import count
 
@@ -133,7 +135,11 @@ def test_a_board_without_stop_is_a_warning(tmp_path: Path, shipped: PlantModel) 
     assert loader.warnings(shipped) == ()
 
 
-def test_a_store_is_the_address_of_a_database_without_its_password() -> None:
+def test_a_store_is_the_address_of_a_database_without_its_password(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(tmp_path)
+    install(tmp_path, "shelf", "class Shelf: ...", group=schemes.GROUP, what="Shelf")
     content = (EXAMPLES / "by_hand.yaml").read_bytes()
 
     def parsed(store: str) -> PlantModel:
@@ -141,14 +147,14 @@ def test_a_store_is_the_address_of_a_database_without_its_password() -> None:
             "plant.yaml", content.replace(b"\ncells:", f"\nstore: {store}\ncells:".encode(), 1)
         )
 
-    assert parsed("postgresql://me@db.example/plants").store == "postgresql://me@db.example/plants"
+    assert parsed("shelf://me@db.example/plants").store == "shelf://me@db.example/plants"
     assert loader.parse("plant.yaml", content).store == ""
     with pytest.raises(ConfigError, match="store: must be postgresql://USER@HOST:PORT/DATABASE"):
         parsed("plants.sqlite")
-    with pytest.raises(ConfigError, match="keeps a memory at shelf://; there are postgres, postgresql"):
-        parsed("shelf://me@db.example/plants")
+    with pytest.raises(ConfigError, match=r"keeps a memory at attic://; there are .*shelf"):
+        parsed("attic://me@db.example/plants")
     with pytest.raises(ConfigError, match="store: has a password in it; leave it to PGPASSWORD") as refused:
-        parsed("postgresql://me:hidden@db.example/plants")
+        parsed("shelf://me:hidden@db.example/plants")
     assert "hidden" not in str(refused.value)
 
 
@@ -164,7 +170,6 @@ def test_a_key_whose_package_is_missing_is_named_with_the_line_that_installs_it(
 ) -> None:
     content = (EXAMPLES / "by_hand.yaml").read_bytes()
     content = content.replace(b"\ncells:", f"\n{key}\ncells:".encode(), 1)
-    loader.parse("plant.yaml", content)
     leave_out(monkeypatch, tmp_path, "arboleda_fleet")
     with pytest.raises(
         ConfigError, match=rf"{what} needs the package fleet, .* pip install 'arboleda\[fleet\]'"

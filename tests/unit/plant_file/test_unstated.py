@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from arboleda.cli.main import cli
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import draft_check, loader, unstated
 from arboleda.plant_file.mend import edited
@@ -124,21 +121,3 @@ def test_no_edit_is_offered_for_what_is_to_stand_in_another_file(tmp_path: Path)
     assert [each.sentence for each in found] == [PLACES, GUARD]
     of_draft = draft_check.check(PlantFiles(plant=file.name, contents={file.name: file.read_bytes()}), file)
     assert [each.unknown for each in of_draft.unstated] == [PLACES, GUARD]
-
-
-def test_a_simulation_says_of_what_nothing_is_known(tmp_path: Path) -> None:
-    words = [
-        "--seeds",
-        "1",
-        "--cycles",
-        "1",
-        "--faults",
-        "none",
-        "--jobs",
-        "1",
-        "--json",
-        str(tmp_path / "out.json"),
-    ]
-    said = CliRunner().invoke(cli, ["simulate", "--plant", str(written(tmp_path, PLANT)), *words])
-    assert PLACES in said.output
-    assert json.loads((tmp_path / "out.json").read_text())["unknown"] == [PLACES, GUARD, NEEDS]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -18,7 +17,6 @@ READS = {
     "check": lambda file: ["check", file],
     "plant": lambda file: ["up", "--once", "sis_a 0B 7", "--no-ros", "--plant", file],
     "users": lambda file: ["up", "--no-ros", "--broker-host", "127.0.0.1", "--broker-users", file],
-    "faults": lambda file: ["simulate", "--faults", file],
 }
 
 
@@ -63,38 +61,12 @@ def test_a_strange_file_is_refused_at_once(
     assert sentence in str(answer.exception) and len(answer.exception.problems) == 1
 
 
-def test_anchors_do_not_make_hundreds_of_millions_of_faults(tmp_path: Path) -> None:
-    lines = ["faults:", "  - kind: reboot", "    at: 1", "    word:", "      a: &a [x]"]
-    for before, name in pairwise("abcdefghij"):
-        lines.append(f"      {name}: &{name} [{', '.join([f'*{before}'] * 9)}]")
-    file = tmp_path / "faults.yaml"
-    file.write_text("\n".join(lines))
-    answer = CliRunner().invoke(cli, ["simulate", "--faults", str(file)])
-    assert "repeat more than 5000 values" in str(answer.exception)
-
-
-@pytest.mark.parametrize("option", ["--json", "--record"])
-@pytest.mark.parametrize(
-    ("make", "sentence"),
-    [(pipe, "No such device"), (directory, "Is a directory"), (lambda path: str(path / "x"), "No such file")],
-    ids=["pipe without reader", "directory", "no directory"],
-)
-def test_a_target_that_cannot_be_written_is_refused_before_the_work(
-    tmp_path: Path, option: str, make: Callable[[Path], str], sentence: str
-) -> None:
-    answer = CliRunner().invoke(cli, ["simulate", "--seed", "1", option, make(tmp_path / "target")])
-    assert isinstance(answer.exception, ConfigError), answer.output
-    assert f"cannot be written: {sentence}" in str(answer.exception)
-
-
 def test_a_name_that_no_file_can_have_is_refused(tmp_path: Path) -> None:
     for name in ("x" * 300, "a\0b"):
         with pytest.raises(ConfigError):
             user_file.read_bytes(tmp_path / name, 10)
         with pytest.raises(ConfigError):
             user_file.check_writable(tmp_path / name)
-    answer = CliRunner().invoke(cli, ["simulate", "--faults", "x" * 300])
-    assert "is neither a file nor a level" in str(answer.exception)
 
 
 def test_the_largest_file_is_read_and_a_target_is_made(tmp_path: Path) -> None:

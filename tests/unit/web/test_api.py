@@ -87,20 +87,6 @@ def test_a_wrong_query_is_refused_with_what_is_wrong(web, plant, query, sentence
     assert plant.queries == []
 
 
-@pytest.mark.parametrize(
-    ("query", "sentence"),
-    [
-        ("since=monday", "'since' is 'monday': input should be a valid number"),
-        ("since=nan", "'since' is 'nan': input should be a finite number"),
-        ("state=done", "'state' is nothing to ask for; there are cell, since, until."),
-    ],
-)
-def test_a_wrong_time_of_the_oee_is_refused(web, plant, query, sentence):
-    answer = web.get(f"/api/oee?{query}")
-    assert answer.status_code == 422 and answer.json()["sentence"].startswith(sentence)
-    assert plant.oee_queries == []
-
-
 def test_what_cells_promise_is_told(web):
     rows = web.get("/api/promises", params={"text": "sis_a,sis_b 0b 7"}).json()
     assert [(row["cell"], row["text"]) for row in rows] == [("sis_a", "sis_a 0B 7"), ("sis_b", "sis_b 0B 7")]
@@ -399,7 +385,6 @@ def test_a_page_that_takes_every_path_takes_none_of_the_api(beside_a_page: Calle
     ("path", "sentence"),
     [
         ("acts/x", "'number' is 'x': input should be a valid integer, unable to parse string as an integer."),
-        ("draft/trees", "'file' is missing; /api/docs says what to give."),
         ("promises", "'text' is missing; /api/docs says what to give."),
     ],
 )

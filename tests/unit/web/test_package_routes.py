@@ -15,7 +15,6 @@ from tests.in_process import Caller
 from tests.packages import PACKAGES, leave_out
 from tests.web_plant import Plant
 
-from arboleda.host.packages import package_of, registered
 from arboleda.host.pieces import Pieces
 from arboleda.web import missing, routes
 from arboleda.web.api import make_app
@@ -186,18 +185,8 @@ def test_what_is_not_installed_is_named_with_the_line_that_installs_it(
     assert answer.json()["sentence"] == f"{said} type pip install 'arboleda[{package}]'"
 
 
-def test_a_path_that_nobody_knows_is_no_missing_package(bare: Caller, web: Caller) -> None:
+def test_a_path_that_nobody_knows_is_no_missing_package(bare: Caller) -> None:
     assert bare.get("/api/draughts").status_code == 404
-    assert web.get("/api/draft/nothing").status_code == 404
-
-
-def test_every_path_of_a_package_is_known_as_its_own() -> None:
-    brought: dict[str, list[str]] = {}
-    for point in registered(routes.GROUP):
-        brought.setdefault(package_of(point), []).extend(paths(point.load()(None)))
-    assert brought.keys() == missing.PATHS.keys()
-    for package, mine in brought.items():
-        assert mine and all(missing.PATHS[package].fullmatch(path) for path in mine), mine
 
 
 def test_no_path_of_the_runner_is_a_package_s(bare: Caller) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ from fastapi import FastAPI
 from tests.added_package import install
 from tests.guarded_plant import guarded
 from tests.in_process import ORIGIN
+from tests.packages import PACKAGES, leave_out
 from tests.web_plant import TOKENS, Plant
 
 from arboleda.dashboard.added import AddedParts
@@ -25,31 +26,6 @@ from arboleda.web.api import answer_in_sentences, make_app
 from arboleda.web.package_routes import leaves
 
 ALL = {**TOKENS, Role.ASSISTANT: "a" * 32}
-ASSISTANTS = {  # and operators; none of them moves a robot by itself
-    "GET /api/proposals",
-    "GET /api/proposals/base",
-    "GET /api/proposals/{hash}",
-    "POST /api/assistants/tasks",
-    "POST /api/proposals",
-    "POST /api/proposals/{hash}/prove",
-    "POST /api/proposals/{hash}/simulate",
-    "POST /api/proposals/{hash}/withdraw",
-    "POST /api/trees/check",
-    "POST /api/trees/copy",
-    "POST /api/trees/edit",
-}
-READ_BY_OPERATORS = {
-    "GET /api/draft",
-    "GET /api/draft/trees",
-    "GET /api/make/cells",
-    "GET /api/make/drivers",
-    "GET /api/make/palette",
-    "GET /api/make/recipe",
-    "GET /api/make/runs/{what}",
-    "GET /api/make/runs/{what}/result",
-    "GET /api/teach/{cell}",
-    "GET /proof",
-}
 FILLED = {"{hash}": "0" * 64, "{number}": "1", "{what}": "try", "{cell}": "saw", "{task_id}": "t-1"}
 STRANGE = """
 from fastapi import APIRouter, Depends, FastAPI
@@ -161,9 +137,12 @@ def requests_of(routes_: Any) -> set[str]:
     return {f"{method} {each.path}" for each in leaves(routes_) for method in each.methods or ()}
 
 
-@pytest.fixture(scope="module")
-def installed() -> tuple[FastAPI, set[str]]:
-    """The application with the routes of all packages, and of their pages; what they can be asked for."""
+Made = tuple[FastAPI, set[str]]
+
+
+def of_package(name: str, folder: Path, patch: pytest.MonkeyPatch) -> Made:
+    """The application with the routes of a package, and of its page; what they can be asked for."""
+    leave_out(patch, folder, *(each for each in PACKAGES if each != name))
     plant = Plant()
     app, page = make_app(plant), FastAPI(openapi_url=None)
     requests = {each for point in registered(routes.GROUP) for each in requests_of(point.load()(None).routes)}
@@ -173,13 +152,16 @@ def installed() -> tuple[FastAPI, set[str]]:
     return app, requests
 
 
-def test_each_route_of_each_package_is_asked_by_whom_it_is_for(installed: tuple[FastAPI, set[str]]) -> None:
-    app, requests = installed
-    others = {each for each in requests if not each.startswith("GET ")} | READ_BY_OPERATORS
-    assert requests > ASSISTANTS | READ_BY_OPERATORS and len(requests) > 50
+def assert_for(
+    made: Made, *, assistants: Collection[str] = (), read_by_operators: Collection[str] = ()
+) -> None:
+    """All requests are refused to strangers, and each is answered to those who may."""
+    app, requests = made
+    others = {each for each in requests if not each.startswith("GET ")} | {*read_by_operators}
+    assert requests > {*assistants, *read_by_operators}
     assert refused(app, requests, None) == requests
-    assert refused(app, requests, Role.VIEWER) == others | ASSISTANTS
-    assert refused(app, requests, Role.ASSISTANT) == others - ASSISTANTS
+    assert refused(app, requests, Role.VIEWER) == others | {*assistants}
+    assert refused(app, requests, Role.ASSISTANT) == others - {*assistants}
     assert refused(app, requests, Role.OPERATOR) == set()
 
 

@@ -6,7 +6,8 @@ import pytest
 
 from arboleda.drivers.port import GROUP, spec_of
 from arboleda.host.packages import entry_points
-from arboleda.plant_file import package_drivers
+from arboleda.plant_file import driver_forms, package_drivers
+from arboleda.web.languages import texts
 from arboleda_drivers.pylabrobot.adapter import machine
 
 OURS = [each for each in entry_points(GROUP) if each.module.startswith("arboleda_drivers.")]
@@ -27,3 +28,8 @@ def test_files_of_plants_that_import_a_machine_of_pylabrobot_as_before_go_on_wor
     with pytest.warns(DeprecationWarning, match="is arboleda_drivers"):
         from arboleda.adapters.pylabrobot import machine as before
     assert before is machine
+
+
+def test_each_is_offered_with_its_keys() -> None:
+    rows = {each["name"]: each for each in driver_forms.forms({}, texts("en", "drivers"))}
+    assert [name for name in package_drivers.OF_DEVICES if rows[name]["why_not"]] == []

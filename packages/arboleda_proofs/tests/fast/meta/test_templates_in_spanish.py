@@ -1,4 +1,4 @@
-"""Names of faults and mishaps in Spanish."""
+"""Names of faults and mishaps, and sentences with them, in Spanish."""
 
 from __future__ import annotations
 
@@ -24,3 +24,30 @@ def test_a_mishap_has_the_name_of_its_fault_in_both_languages() -> None:
     assert [words("es").say(each.sentence) for each in named] == [
         spanish(str(each.sentence)) for each in named
     ]
+
+
+@pytest.mark.parametrize(
+    ("english", "spanish"),
+    [
+        (
+            "HELD: all 12 runs, every single fault of 3 kinds at every instant",
+            "SE CUMPLE en 12 ejecuciones: cada fallo suelto de 3 tipos en cada instante",
+        ),
+        (
+            "BROKEN: 2 breaches and 1 task without any fault; 3 of 40 runs",
+            "NO SE CUMPLE: 2 incumplimientos y 1 tarea sin ningún fallo; 3 de 40 ejecuciones",
+        ),
+        (
+            "  the fault  ra_1: Cut its link (up, lost), for 3.000 s, then oven: It jams at 2.000 s",
+            "  el fallo       ra_1: Cortar su enlace (up, lost), durante 3.000 s, después oven: Se atasca "
+            "a los 2.000 s",
+        ),
+        (
+            "bench shine: ra_1: It jams, for 3.000 s; just after the end of lamp: shining (2.100 s)",
+            "bench shine: ra_1: Se atasca, durante 3.000 s; justo después del final de lamp: shining "
+            "(2.100 s)",
+        ),
+    ],
+)
+def test_a_sentence_of_several_templates_is_whole(english: str, spanish: str) -> None:
+    assert findings("es")(english) == spanish

@@ -6,11 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.lengths import length
+from tests.scripts import load
 
 from arboleda.bt_xml import script
-
-from ..lengths import length
-from ..scripts import load
 
 RUNS = length(150, whole=1500)
 ENOUGH, SEED = 100, 13  # to find what is planted

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from tests.unit.cli.test_complaints import EVIL, complained, is_told_the_option
 from typer.testing import CliRunner, Result
 
 from arboleda.cli.main import cli
@@ -15,7 +16,7 @@ from arboleda.plant_file.versions import FOLDER
 from arboleda.runtime import at_work
 from arboleda.runtime.state import StateDir
 
-SOURCE = Path(__file__).parents[3] / "examples/own_tree"
+SOURCE = Path(__file__).parents[5] / "examples/own_tree"
 AT = "2026-11-25T20:00:00+00:00"
 
 
@@ -121,3 +122,11 @@ def test_a_running_plant_is_what_is_compared_with_and_it_can_be_gone_back_to(sta
 def test_the_shipped_plant_is_not_changed() -> None:
     refused = CliRunner().invoke(cli, ["apply", "--yes"])
     assert isinstance(refused.exception, ConfigError) and "arboleda new" in str(refused.exception)
+
+
+def test_a_plant_file_without_its_option_is_taken_and_told_the_option(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    said = complained(["apply", f"my{EVIL}.yaml"], monkeypatch, capsys)
+    assert is_told_the_option(said), said

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
 
-PAGE = (Path(__file__).parents[2] / "docs/how-to/add-a-moving-robot.md").read_text("utf-8")
+PAGE = (Path(__file__).parents[5] / "docs/how-to/add-a-moving-robot.md").read_text("utf-8")
 PYTHON = PAGE.split("```python\n")[1].partition("```")[0]
 PLANT = PAGE.split("```yaml\n")[1].partition("```")[0]
 PUBLIC = {"arboleda.kinds", "arboleda.drivers", "arboleda.recipes"}

@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from tests.scripts import load
 
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import Robot
-
-from ..scripts import load
 
 RUNS = 4000
 

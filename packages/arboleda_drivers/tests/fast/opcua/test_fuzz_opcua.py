@@ -6,9 +6,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-
-from ..lengths import length
-from ..scripts import load
+from tests.lengths import length
+from tests.scripts import load
 
 pytestmark = pytest.mark.requires("asyncua")
 
