@@ -10,7 +10,6 @@ INTEGRATION_ARGS ?= -n 4 --dist worksteal # more than cores: most of the time, t
 SMOKE_ARGS ?= -n 2 --dist worksteal
 REAL = scripts/with-messages $(BIN)/python -m pytest -p tests.second_tries
 TESTS ?= tests/unit tests/scenario tests/meta $(wildcard packages/*/tests/fast)
-ALONE_TESTS ?= $(addprefix tests/unit/,core departures dispatch geometry model resume rig sim testing trees wire)
 INTEGRATION_TESTS ?= tests/processes tests/contract tests/system tests/tutorial $(wildcard packages/*/tests/real)
 KILTED_TESTS ?= tests/unit/ros $(addprefix tests/system/test_ros_,tools.py link.py log.py)
 NEWEST_TESTS ?= packages/arboleda_drivers/tests/fast tests/unit/adapters $(addprefix packages/arboleda_drivers/tests/real/,contract modbus opcua s7 serial_arm) packages/arboleda_fleet/tests/real/opcua_view tests/contract/test_mqtt.py
@@ -62,8 +61,8 @@ integration-test:  ## run the tests with threads and processes: our own, adapter
 test-tools:  ## install the programs of others, too large for everybody, that some tests try what we write with: rerun
 	@scripts/install tools
 
-alone-test:  ## run tests of the cell runner in a clone without packages/, in an environment of its own; ALONE_TESTS=... for others
-	@scripts/without-packages make test TESTS="$(ALONE_TESTS)"
+alone-test:  ## run what `make test` runs in a clone without packages/, in an environment of its own; TESTS=... for others
+	@scripts/without-packages make test
 
 judge-test:  ## plant a bug for each invariant of the simulator, which has to find it; tests/mutants
 	@scripts/install test

@@ -18,7 +18,9 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from functools import lru_cache
 from importlib import import_module
+from itertools import groupby
 from multiprocessing.process import BaseProcess
+from operator import attrgetter
 from pathlib import Path
 from typing import NoReturn
 from unittest import mock
@@ -83,6 +85,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--about", metavar="WORD", help="only tests that have this word in their names: a driver"
     )
+    parser.addoption(
+        "--one-in",
+        metavar="N",
+        type=int,
+        default=1,
+        help="only the first of each N tests of a file: a sample",
+    )
 
 
 def folder(item: pytest.Item | pytest.Module) -> str:
@@ -120,6 +129,12 @@ def about(word: str, items: list[pytest.Item]) -> list[pytest.Item]:
     return [item for item in items if found.search(item.nodeid)]
 
 
+def one_in(count: int, items: list[pytest.Item]) -> list[pytest.Item]:
+    """The first of each `count` tests of a file: some of every file that there is."""
+    files = groupby(items, key=attrgetter("path"))
+    return [item for _, tests in files for item in [*tests][::count]]
+
+
 def mark_long(items: list[pytest.Item]) -> None:
     """Mark the cases of tests that are `sampled`, but for each so manieth of a test."""
     seen: Counter[tuple[Path, str]] = Counter()
@@ -137,8 +152,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Leave out what is not asked for; several workers get the rest in an order that keeps all cores busy."""
     mark_long(items)
     yield
+    wanted = one_in(config.getoption("--one-in"), items)
     if word := config.getoption("--about"):
-        wanted = about(word, items)
+        wanted = about(word, wanted)
+    if len(wanted) < len(items):
         config.hook.pytest_deselected(items=[item for item in items if item not in set(wanted)])
         items[:] = wanted
     workers = getattr(config, "workerinput", {}).get("workercount", 1)

@@ -6,6 +6,8 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
+from .conftest import OF_THE_WHOLE
+
 TESTS = Path(__file__).parents[1]
 PACKAGES = {
     "packages",
@@ -31,3 +33,8 @@ def test_what_tests_of_the_runner_import_is_there_without_packages() -> None:
     }
     assert len(files) > 400
     assert [name for name, packages in files.items() if packages] == []
+
+
+def test_what_is_left_out_without_packages_is_there_with_them() -> None:
+    named = [Path(__file__).with_name(f"test_{name}.py") for name in OF_THE_WHOLE]
+    assert [file.name for file in named if not file.exists()] == []
