@@ -21,6 +21,7 @@ from arboleda.dashboard import settings
 from arboleda.dashboard.shell import language_of
 from arboleda.dashboard.tags import markup
 from arboleda.dashboard.wording import words
+from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import OWN
 from arboleda_proofs.playback.report.page import Report, page
 from arboleda_proofs.playback.report.tries import ForkTrial
@@ -44,7 +45,9 @@ def ask(app, method, path, **headers):
     return asyncio.run(go(app, method, path, headers))
 
 fork = ForkTrial(what="without", value=0.0, end="", done=True, alike=True, options="")
-report = Report(incident=Incident(task="t-1"), cause=Cause(kind="", robot=None, sentence=OWN(text="why")),
+failure = Failure(reason=Reason.REJECTED, sentence=OWN(text="no"))
+incident = Incident(task="t-1", failure=failure, failed_at=1.0)
+report = Report(incident=incident, cause=Cause(kind="", robot=None, sentence=OWN(text="why")),
                 model=shipped(), tries=[fork], case="", command="")
 browser = types.SimpleNamespace(headers={"accept-language": "fr-CA, en"}, query_params={}, cookies={})
 print(json.dumps({

@@ -24,7 +24,7 @@ def install(
     for each in (*ROOT.glob("packages/*/setup.py"), ROOT / "tools/bench/setup.py"):
         (folder / each.parent.relative_to(ROOT)).mkdir(parents=True)
         shutil.copy(each, folder / each.relative_to(ROOT))
-    path = folder / "tools"
+    path = folder / "programs"
     path.mkdir()
     for name in ("sh", "dirname", "cat", "chmod", "cksum", "mkdir", "rm", "tail"):
         (path / name).symlink_to(str(shutil.which(name)))

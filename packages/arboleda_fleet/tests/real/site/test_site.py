@@ -22,6 +22,7 @@ from arboleda.web.access.auth import Door, Role
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import names_for
 from arboleda.web.server import Server
+from arboleda_fleet.oee.api import OeeApi
 from arboleda_fleet.site.side import LastSeenPlant, RequestOutcome
 from arboleda_fleet.site.watch import NOT_STOPPED, Site
 
@@ -55,6 +56,7 @@ def called(name: str, seconds: float = 60.0) -> Plant:
     plant = Plant()
     plant.view = VIEW | {"plant": name}
     plant.seconds = seconds
+    plant.offered[OeeApi] = plant
     return plant
 
 
