@@ -46,6 +46,11 @@ def test_every_plant_opens(plant: str) -> None:
     assert ('id="twin"' in answer["html"]) is bool(ask(tab, "scene")["scene"])
 
 
+def test_the_files_of_the_starter_are_those_of_a_plant_with_its_name() -> None:
+    name, texts = plants.texts(plants.STARTER)
+    assert f"name: {plants.STARTER}\n" in texts[name]
+
+
 def test_a_plant_that_is_not_there_is_refused_with_those_that_are() -> None:
     _, answer = opened(plant="nowhere")
     assert "nowhere" in answer["sentence"] and "kitting" in answer["sentence"]

@@ -72,7 +72,7 @@ ABOUT = Phrase("cli.certs.about", "{file} {why}")
 NO_LIBRARY = Phrase(
     "cli.certs.no_library",
     "certificates are made with the library {library}, which is not installed here; type "
-    "`{python} -m pip install 'arboleda[certs]'`",
+    "`{install} 'arboleda[certs]'`",
 )
 SIGNS = Phrase(
     "cli.certs.signs", "{file} signs: who has it is believed by all of them. Keep it off the network."
@@ -332,7 +332,7 @@ def _library() -> Iterator[None]:
     try:
         yield
     except ModuleNotFoundError as error:
-        raise StartError(NO_LIBRARY(library=str(error.name), python=invocation.python())) from error
+        raise StartError(NO_LIBRARY(library=str(error.name), install=invocation.pip_install())) from error
 
 
 def _next(folder: Path, boards: Sequence[str]) -> list[str]:

@@ -17,7 +17,7 @@ from arboleda.runtime import invocation
 NO_LIBRARY = Phrase(
     "cli.draw.no_library",
     "the library Pillow is not installed, which a PNG needs: type "
-    "`{python} -m pip install 'arboleda[pictures]'`, or take --format svg",
+    "`{install} 'arboleda[pictures]'`, or take --format svg",
 )
 Rows = Sequence[dict[str, Any]]
 
@@ -41,7 +41,7 @@ def _png(rows: Rows, _statuses: bool) -> bytes:
     try:
         from arboleda.adapters.png import png  # Pillow takes a while to load, and only this format needs it
     except ModuleNotFoundError as error:
-        raise StartError(NO_LIBRARY(python=invocation.python())) from error
+        raise StartError(NO_LIBRARY(install=invocation.pip_install())) from error
     return png(picture(rows))
 
 

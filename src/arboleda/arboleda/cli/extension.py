@@ -14,13 +14,14 @@ from arboleda.host.distributions import OFF, Added, added, called, kept_off, off
 from arboleda.model.errors import ArboledaError, ConfigError, StartError
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase, Value
+from arboleda.plant_file.examples import NAMED
 from arboleda.plant_file.shapes import NAME_RULE as RULE
 from arboleda.plant_file.shapes import is_name
 from arboleda.runtime import invocation
 from arboleda.runtime.state import replace_file
 
 from .language import allowed, finding, say
-from .new import NAMED, NOT_WRITTEN, WROTE, write_started
+from .new import NOT_WRITTEN, WROTE, write_started
 from .overview import WholeSentences
 
 cli = typer.Typer(
@@ -63,10 +64,10 @@ NEXT = Phrase(
     "cli.extension.next",
     """
 Install it beside Arboleda; what it counts is shown by a plant that starts after that, at /api/{name}:
-  {python} -m pip install -e {folder}
+  {install} -e {folder}
   {command} up
 Its test; the first line once, for pytest has to be beside Arboleda:
-  {python} -m pip install pytest
+  {install} pytest
   {python} -m pytest {folder}
 
 A plant file may set what Settings in {name}.py has: extensions: {{{name}: {{counts: failed}}}}""",
@@ -117,6 +118,7 @@ def new(
     for file in write_started(folder, WRITTEN):
         typer.echo(say(WROTE(file=str(file))))
     told = {"command": invocation.command(), "python": invocation.python(), "name": name}
+    told["install"] = invocation.pip_install()
     typer.echo(say(NEXT(**told, folder=shlex.quote(str(folder)))))
 
 

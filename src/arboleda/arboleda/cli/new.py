@@ -13,7 +13,7 @@ import typer
 from arboleda.model.errors import ConfigError, StartError
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase
-from arboleda.plant_file.examples import PLANT, folders
+from arboleda.plant_file.examples import NAMED, PLANT, folders
 from arboleda.plant_file.examples import texts as texts_of
 from arboleda.plant_file.shapes import PLANT_NAME_RULE, is_plant_name
 from arboleda.runtime import invocation
@@ -35,14 +35,13 @@ What is wrong with it, line by line:
 On virtual devices, with a page:
   {command} up "cell press feed 3" --plant {plant}
 With faults; the first line once, for pytest has to be beside Arboleda:
-  {python} -m pip install pytest
+  {install} pytest
   {python} -m pytest {folder}
 
 What the devices can do is in plant.yaml, what they do together in recipes.py. Change them, check again.""",
 )
 NO_EXAMPLE = Phrase("cli.examples.none", "there is no example {name}; {others}")
 RUN_IT = Phrase("cli.examples.run_it", "On virtual devices, with a page:")
-NAMED = "NAME"  # stands for the name of the plant, or of the package, in what is written
 
 
 def add_to(cli: typer.Typer) -> None:
@@ -72,7 +71,8 @@ def new(
     for file in written:
         typer.echo(say(WROTE(file=str(file))))
     python, named = invocation.python(), shlex.quote(str(folder))
-    typer.echo(say(NEXT(command=command, plant=plant, python=python, folder=named)))
+    install = invocation.pip_install()
+    typer.echo(say(NEXT(command=command, plant=plant, python=python, install=install, folder=named)))
 
 
 def copy_example(name: str, folder: Path) -> None:

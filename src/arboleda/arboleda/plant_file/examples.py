@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from importlib.abc import Traversable  # where Python 3.10 has it, and 3.14 no more
 
 PLANT = "plant.yaml"
+NAMED = "NAME"  # in the files of the starter, for the name of the plant or package that is written
 
 
 def folders() -> dict[str, Traversable]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+from importlib.util import find_spec
 from typing import NoReturn
 
 RESTARTED = "ARBOLEDA_RESTARTED"  # the port of the page before, in the environment of a restarted process
@@ -18,6 +19,13 @@ def command() -> str:
 def python() -> str:
     """The Python that Arboleda is installed in."""
     return "python" if shutil.which("arboleda") else sys.executable
+
+
+def pip_install() -> str:
+    """The command that installs beside Arboleda; an environment that uv has made is without pip."""
+    if find_spec("pip") is None and shutil.which("uv"):
+        return f"uv pip install --python {sys.executable}"
+    return f"{python()} -m pip install"
 
 
 def restart(port: int) -> NoReturn:

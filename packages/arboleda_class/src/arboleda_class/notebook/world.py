@@ -9,7 +9,7 @@ from traceback import format_exception
 
 from arboleda.dashboard.wording import words
 from arboleda.model.plant_model import PlantModel
-from arboleda.plant_file.examples import PLANT, folders
+from arboleda.plant_file import examples
 from arboleda.web.languages import FIRST, LANGUAGES, texts
 from arboleda_proofs.campaigns.from_above import FloorPlan
 from arboleda_proofs.simulator.judged_world import JudgedWorld
@@ -55,8 +55,8 @@ class World(Sim):
     def plant(self, plant: PlantModel | Path | str | None = None) -> PlantModel:
         """Choose the plant by its file, by the name of an example or as a model, before anything happens."""
         if isinstance(plant, str) and plant.isidentifier() and not Path(plant).exists():
-            examples = folders()
-            plant = Path(str(examples[known("an example, and no file", plant, examples)])) / PLANT
+            shipped = examples.folders()
+            plant = Path(str(shipped[known("an example, and no file", plant, shipped)])) / examples.PLANT
         return super().plant(plant)
 
     def step(self, cell: str | None = None, *, at_most: float = STEP_AT_MOST_S) -> Table:

@@ -8,11 +8,10 @@ from tempfile import TemporaryDirectory
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
-from arboleda.plant_file import loader
+from arboleda.plant_file import examples, loader
 from arboleda_proofs.campaigns.plants import Plant
 
 STARTER = "starter"
-NAMED = b"PLANT"  # in the files of the starter, for the name that a person gives
 FILES = {
     "arboleda": "plants/plant.yaml",
     "shared": "plants/shared.yaml",
@@ -43,7 +42,8 @@ def texts(name: str) -> tuple[str, dict[str, str]]:
         path = file
         if name == STARTER:
             for each in file.parent.glob("*.*"):
-                Path(made, each.name).write_bytes(each.read_bytes().replace(NAMED, STARTER.encode()))
+                text = each.read_text("utf-8").replace(examples.NAMED, STARTER)
+                Path(made, each.name).write_text(text, "utf-8")
             path = Path(made, file.name)
         return texts_of(path)
 
@@ -61,5 +61,5 @@ def model(name: str) -> PlantModel:
     with as_file(files("arboleda").joinpath(FILES[name].rpartition("/")[0])) as folder:
         content = folder.joinpath(FILES[name].rpartition("/")[2]).read_bytes()
         if name == STARTER:
-            content = content.replace(NAMED, STARTER.encode())
+            content = content.replace(examples.NAMED.encode(), STARTER.encode())
         return Plant(declared=loader.parse(FILES[name], content, folder)).model

@@ -15,7 +15,7 @@ from arboleda.cli.new import BAD_NAME, NAME_RULE
 from arboleda.extension import Phrase, StartError, say
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import quoted
-from arboleda.plant_file.examples import PLANT
+from arboleda.plant_file import examples
 from arboleda.plant_file.shapes import is_plant_name
 from arboleda.runtime import invocation
 from arboleda.web.access.names import other_address, public_origin
@@ -93,8 +93,8 @@ def _problems(names: Sequence[str], folder: Path, port: int) -> Iterator[str]:
             yield say(BAD_NAME(name=quoted(name), rule=NAME_RULE()))
         elif times > 1:
             yield say(TWICE(name=name, times=times))
-        elif (folder / name).exists() and not (folder / name / PLANT).is_file():
-            yield say(NO_PLANT(folder=str(folder / name), plant=PLANT))
+        elif (folder / name).exists() and not (folder / name / examples.PLANT).is_file():
+            yield say(NO_PLANT(folder=str(folder / name), plant=examples.PLANT))
     if port + len(names) - 1 > LAST_PORT:
         yield say(TOO_MANY(port=port, count=len(names)))
 

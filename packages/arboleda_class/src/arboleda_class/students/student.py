@@ -9,7 +9,7 @@ from pathlib import Path
 
 from arboleda.cli.new import write
 from arboleda.extension import Role
-from arboleda.plant_file.examples import PLANT
+from arboleda.plant_file import examples
 from arboleda.runtime import tokens
 from arboleda.runtime.state import replace_file
 
@@ -39,7 +39,7 @@ def written(
     ports = (each for each in count(port) if f"{origin}:{each}" not in addresses.values())
     students = []
     for name in names:
-        plant, state = folder / name / PLANT, folder / name / STATE
+        plant, state = folder / name / examples.PLANT, folder / name / STATE
         if not plant.exists():
             write(folder / name)
         shown = tokens.read(state)

@@ -50,5 +50,5 @@ def refuse_without_library() -> None:
     except ImportError as error:
         raise StartError(
             "A store in PostgreSQL needs the library psycopg: type"
-            f" `{invocation.python()} -m pip install 'arboleda[postgres]'` ({error})"
+            f" `{invocation.pip_install()} 'arboleda[postgres]'` ({error})"
         ) from error

@@ -22,7 +22,7 @@ plant where the plant wants one, and has its role."""
 HOST = "127.0.0.1"
 NO_LIBRARY = Phrase(
     "cli.mcp.no_library",
-    "The library mcp is not installed, which it needs: `{python} -m pip install 'arboleda[mcp]'`",
+    "The library mcp is not installed, which it needs: `{install} 'arboleda[mcp]'`",
 )
 NONE_RUNS = Phrase(
     "cli.mcp.none_runs", "No plant is running on {folder}; a person can start one with `arboleda up`."
@@ -58,7 +58,7 @@ def mcp(
     except ImportError as error:
         if (error.name or "").partition(".")[0] not in ("mcp", "mcp_types"):
             raise
-        raise StartError(NO_LIBRARY(python=invocation.python())) from error
+        raise StartError(NO_LIBRARY(install=invocation.pip_install())) from error
 
     def place() -> Place:
         return _named(url, tokens) if url else _here(located(plant, state), role)
