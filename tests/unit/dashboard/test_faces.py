@@ -14,6 +14,7 @@ from arboleda.dashboard.wording import words
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import Evidence
 from arboleda.rig import faults
+from arboleda.views import view
 from arboleda.views.changes import changed
 
 
@@ -109,6 +110,15 @@ def test_a_task_shows_how_it_stands_and_how_it_ended(told: Callable[..., Any]) -
     leaf = next(node["path"] for node in face["tree/#task"]["nodes"] if node["name"] == "drive path 0B")
     assert face[f"node/#task/{leaf}"]["state"] == "failure"
     assert "Falló el paso" in rig.story.task_face(first, "es")["text/task.cause"][0]
+
+
+def test_a_task_that_a_package_wrote_about_leads_to_its_report(told: Callable[..., Any]) -> None:
+    rig = told()
+    task = rig.submit("sis_a 0B 7").task
+    assert rig.story.task_face(task, "en")["text/task.report"] == ["", ""]
+    rig.story.see({**view.snapshot(rig.plant), "chapters": [task]}, 1000.0 + rig.plant.now)
+    label = "What packages wrote about it (report)"
+    assert rig.story.task_face(task, "en")["text/task.report"] == [label, task]
 
 
 def test_a_task_that_never_ran_or_is_not_known_says_so(told: Callable[..., Any]) -> None:

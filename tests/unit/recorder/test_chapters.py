@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from tests.threads import AtTheEnd, stand_in
@@ -107,6 +108,15 @@ def test_a_plant_without_a_record_says_once_that_nothing_is_kept(caplog: pytest.
     chapters.add("camera", "lot", "Seen")
     chapters.add("camera", "lot", "Seen")
     assert len(caplog.records) == 1 and "writes no record" in caplog.text
+    assert chapters.rows() == {"chapters": []}
+
+
+def test_screens_know_the_tasks_that_chapters_were_written_about() -> None:
+    written: list[Chapter] = []
+    chapters = Chapters(lambda: SimpleNamespace(add=written.append))
+    for task in ("lot", "next", "lot"):
+        chapters.add("camera", task, "Seen")
+    assert chapters.rows() == {"chapters": ["lot", "next"]} and len(written) == 3
 
 
 @pytest.mark.parametrize(

@@ -171,3 +171,6 @@ class Snapshot:
     acts: Annotated[list[Act], "What operators did last, oldest first."] = field(default_factory=list)
     alarms: Annotated[list[PackageAlarm], "Alarms of packages."] = field(default_factory=list)
     questions: Annotated[list[PackageQuestion], "What packages ask."] = field(default_factory=list)
+    chapters: Annotated[list[str], "Tasks that packages wrote about: the last 200 of this start."] = field(
+        default_factory=list
+    )

@@ -29,6 +29,8 @@ def face(moment: Moment, id: str, tree: EndedTree | None, kept: TaskRow | None =
         title, state = f"{task['text']} #{id}", [words.of("task_state", task["state"]), task["state"]]
         when, cause = _when(moment, task), _cause(moment, task, tree)
         tone = "warning" if remark(words, task) else task["state"]
+    is_chaptered = id in moment.snapshot.get("chapters", ())
+    report = "report.link" if state[1] == "failed" else "report.chapters" if is_chaptered else ""
     return {
         "text/task.title": [title, ""],
         "text/task.state": state,
@@ -37,7 +39,7 @@ def face(moment: Moment, id: str, tree: EndedTree | None, kept: TaskRow | None =
         "text/task.choice": [_choice(moment, task), ""],
         "text/task.note": [words("task.past") if is_past else _note(moment, task, tree), ""],
         "text/task.record": [words("record.look") if _ended_here(task, kept=is_past) else "", ""],
-        "text/task.report": [words("report.link"), id] if state[1] == "failed" else ["", ""],
+        "text/task.report": [words(report), id] if report else ["", ""],
         **answers.rows(words, "task.heard", task["answers"] if task else []),
         **tree_face(words, TREE, tree or EndedTree(task=id, rows=[], statuses={}), title=title),
     }

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import logging
+from collections import deque
 from collections.abc import Callable, Iterable
-from typing import Protocol
+from typing import Any, Protocol
 
 from arboleda.recorder.chapter import Chapter, chapter
 
 LOG = logging.getLogger(__name__)
+SHOWN = 200  # tasks of which screens know that something was written about them
 
 
 class Keeps(Protocol):
@@ -26,6 +28,7 @@ class Chapters:
     def __init__(self, recorder: Callable[[], Keeps | None]) -> None:
         self._recorder = recorder
         self._is_said = False
+        self._tasks: deque[str] = deque(maxlen=SHOWN)
 
     def add(
         self,
@@ -42,8 +45,14 @@ class Chapters:
         recorder = self._recorder()
         if recorder is not None:
             recorder.add(made)
+            if task not in self._tasks:
+                self._tasks.append(task)
         elif not self._is_said:
             self._is_said = True
             LOG.warning(
                 "%s writes into the reports of tasks; this plant writes no record to keep it", package
             )
+
+    def rows(self) -> dict[str, Any]:
+        """The tasks that chapters were written about, as a snapshot has them."""
+        return {"chapters": [*self._tasks]}

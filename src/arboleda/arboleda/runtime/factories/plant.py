@@ -61,12 +61,13 @@ def plant(assembly: Assembly) -> Iterable[Part]:
 def _people(assembly: Assembly, made: Orchestrator) -> None:
     """Join what packages tell people and ask them with the plant, and its screens."""
     alarms, questions = PackageAlarms(), Questions(made, assembly.epoch)
+    chapters = Chapters(lambda: made.screens.recorder)
     made.screens.diagnoses.append(alarms.diagnosis)
-    made.screens.beside = lambda: {**alarms.rows(), **questions.rows()}
+    made.screens.beside = lambda: {**alarms.rows(), **questions.rows(), **chapters.rows()}
     made.observers.append(questions.stepped)
     assembly.offer(PackageAlarms, alarms)
     assembly.offer(Questions, questions)
-    assembly.offer(Chapters, Chapters(lambda: made.screens.recorder))
+    assembly.offer(Chapters, chapters)
 
 
 def the_record(assembly: Assembly) -> Iterator[Part]:
