@@ -7,6 +7,7 @@ import json
 import re
 import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -25,6 +26,7 @@ from arboleda.dashboard.page_part import GROUP
 from arboleda.dashboard.wording import words
 from arboleda.host.pieces import Pieces
 from arboleda.testing import shipped
+from arboleda.testing.plugin import MakePlantWith
 from arboleda.views import view
 from arboleda.web.access.auth import Role
 
@@ -162,9 +164,10 @@ def answers(
     of: str = "",
     role: Role = Role.OPERATOR,
     language: str = "en",
+    part: object = None,
 ) -> list[tuple[Any, ...]]:
-    """What somebody is answered who asks for an act: (sentence, good)."""
-    plant: Any = Plant(sys.modules.get("orders.part", sys.modules["orders"]).Orders())
+    """What somebody is answered who asks for an act of a part: (sentence, good)."""
+    plant: Any = Plant(part or sys.modules["orders"].Orders())
     browser: Any = Browser(role)
     asyncio.run(
         Desk(browser, plant, Feed(plant), words(language), parts.acts).take(f"orders.{act}", of, more)
@@ -374,36 +377,40 @@ def test_a_page_that_contradicts_itself_is_left_out(put: Put, told: list[str], c
 
 def test_what_is_inside_a_tab_whose_name_is_taken_is_left_out_with_it(put: Put, told: list[str]) -> None:
     shown = html(put(CODE.replace('Tab("orders"', 'Tab("links"')))
-    assert told == ["Arboleda goes on without the section links of orders 1: another section has this name"]
+    assert told == ["Arboleda goes on without the section links of orders 1: Arboleda has this name already"]
     assert "orders.add" not in shown and 'data-live="orders:price"' in shown
 
 
 HOW_TO = Path(__file__).parents[3] / "docs/how-to"
-PART = """
-class Orders:
-    def add(self, customer, amount):
-        assert (customer, amount) == ("ana", 2)
-
-    def cancel(self, id):
-        assert id == "o-1"
-"""
 
 
 @pytest.mark.parametrize("page", ["write-an-extension.md", "write-an-extension.es.md"])
 @pytest.mark.usefixtures("put")
-def test_the_example_of_the_documentation_works(page: str, tmp_path: Path, told: list[str]) -> None:
+def test_the_example_of_the_documentation_works(
+    page: str, tmp_path: Path, told: list[str], plant_with: MakePlantWith
+) -> None:
     text = (HOW_TO / page).read_text("utf-8")
-    (code,) = (each for each in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "tabs=[" in each)
+    codes = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    (part,), (code,) = ([each for each in codes if has in each] for has in ("Counter", "tabs=["))
     (script,) = re.findall(r"```js\n(.*?)```", text, re.DOTALL)
-    files = {"__init__.py": "", "part.py": PART, "page.py": code, "assets/orders.js": script}
+    files = {"__init__.py": "", "part.py": part, "page.py": code, "assets/orders.js": script}
     for name, content in files.items():
         (tmp_path / "site/orders" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "site/orders" / name).write_text(content, "utf-8")
     register(tmp_path / "site", "orders", {GROUP: ["orders = orders.page:PAGE"]})
     parts = AddedParts(Pieces(tell=told.append), whole_page.OWN)
-    assert face(parts)["row/orders:open/o-1"]["texts"] == ["<b>", "2"]
-    assert answers(parts, "add", TYPED) == [("Ordered for ana.", True)]
-    assert answers(parts, "cancel", False, of="o-1") == [("Done: Cancel.", True)]
+    orders: Any = sys.modules["orders.part"].Orders
+    plant = plant_with(orders)
+    by_hand = partial(answers, parts, part=plant.part(orders))
+    assert by_hand("add", TYPED) == [("Ordered for ana.", True)]
+    assert face(parts, plant.shown(orders))["row/orders:open/1"]["texts"] == ["ana", "2"]
+    plant.restart()
+    by_hand = partial(answers, parts, part=plant.part(orders))
+    assert by_hand("limit", {"most": "1"}) == [("Done: Set the limit.", True)]
+    assert by_hand("add", TYPED) == [("an order has at most 1", False)]
+    assert plant.shown(orders)["ordered"] == {"ana": 2}
+    assert by_hand("cancel", False, of="1") == [("Done: Cancel.", True)]
+    assert plant.shown(orders) == {"open": [], "count": 0, "ordered": {}}
     shown = html(parts)
     assert all(f'data-takes="orders.{act}"' in shown for act in ("add", "limit")) and told == []
     own = (asset_files.own_folder() / "arboleda.js").read_text("utf-8")
