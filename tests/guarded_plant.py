@@ -12,6 +12,7 @@ from arboleda.web.access.auth import Door, Role
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import names_for
 from arboleda.web.api import make_app
+from arboleda.web.package_routes import taking
 
 from .in_process import ORIGIN, Caller
 from .web_plant import TOKENS, Plant
@@ -71,4 +72,6 @@ def guarded(
     PRESENT.plant = plant
     door = Door((lambda: tokens) if tokens else None)
     bound = "0.0.0.0" if tokens and not public_url else "127.0.0.1"
-    return Web(Guard(behind or shared_app(), names_for(bound, public_url), door, plant=name), door)
+    app, names = behind or shared_app(), names_for(bound, public_url)
+    takes = {"takes": taking(app)} if isinstance(app, FastAPI) else {}
+    return Web(Guard(app, names, door, plant=name, **takes), door)

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from arboleda.runtime.extensions.table import Table as Table
     from arboleda.web.access.auth import Role as Role
     from arboleda.web.access.needs import needs as needs
+    from arboleda.web.access.takes import takes as takes
 
 HOMES = {
     "host.distributions": ("API",),
@@ -54,6 +55,7 @@ HOMES = {
     "runtime.extensions.table": ("Table",),
     "web.access.auth": ("Role",),
     "web.access.needs": ("needs",),
+    "web.access.takes": ("takes",),
 }
 """The modules that have the names, which load once somebody asks for one: a command needs no page."""
 

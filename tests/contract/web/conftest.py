@@ -22,6 +22,7 @@ from arboleda.web.access.auth import Door, Role
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import names_for
 from arboleda.web.api import make_app
+from arboleda.web.package_routes import taking
 from arboleda.web.second_loop import SecondLoop
 from arboleda.web.server import Server
 
@@ -98,7 +99,7 @@ def running(
     mount(app)
     bound = "0.0.0.0" if tokens and not public_url else "127.0.0.1"
     names = names_for(bound, public_url, scheme="https" if tls else "http")
-    guarded = Guard(SecondLoop(app), names, door, sockets=sockets, plant=name)
+    guarded = Guard(SecondLoop(app), names, door, sockets=sockets, plant=name, takes=taking(app))
     server = Server(guarded, **{"port": 0, **options}, tls=tls)
     web = Web(server, door, tls)
     try:

@@ -34,6 +34,6 @@ def test_an_error_of_ours_is_one_sentence_and_one_line(web, plant, caplog, capfd
         "The plant could not answer: internal error.",
     )
     assert [record.getMessage() for record in caplog.records if record.name.startswith("arboleda")] == [
-        "GET /api/plant failed: RuntimeError('boom')"
+        "GET /api/plant failed: RuntimeError: boom"
     ]
     assert "Traceback" not in capfd.readouterr().err

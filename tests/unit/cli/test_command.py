@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
 import arboleda.cli.commands as command_table
 from arboleda.cli.commands import OF_PACKAGES, Command, LoadedCommands, commands
+from arboleda.cli.main import main
 from arboleda.model.packages import PackageMissing
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.shipped import shipped_name
@@ -38,10 +41,32 @@ def test_of_two_commands_with_one_name_ours_is_taken_and_the_other_one_named(
     found = command_table.commands.__wrapped__()
     assert (found["up"].module, found["lift"].section) == ("up", "Lifts")
     said = [
-        f"Arboleda goes on without the command {each} of acme: another command has this name"
-        for each in ("up", "lift")
+        f"Arboleda goes on without the command {each} of acme: {whose} has this name already"
+        for each, whose in (("up", "Arboleda"), ("lift", "acme"))
     ]
     assert capsys.readouterr().err.splitlines() == said
+
+
+@pytest.mark.parametrize(("name", "loads"), [("lift", True), ("drop", False)])
+def test_a_command_of_a_package_that_breaks_is_named_with_the_line(
+    name: str,
+    loads: bool,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    code = f"def {name}():\n    1 / 0\n\ndef add_to(cli):\n    cli.command()({name})\n"
+    file = tmp_path / f"acme_{name}/act.py"
+    file.parent.mkdir()
+    file.write_text(code if loads else f"\n1 / 0\n{code}")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(command_table, "commands", lambda: {name: Command(f"acme_{name}.act", "Acts.")})
+    monkeypatch.setattr(sys, "argv", ["arboleda", name])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    why = f"ZeroDivisionError: division by zero ({file}, line 2)"
+    said = f"arboleda: the command {name} of acme_{name} broke: {why}"
+    assert (ended.value.code, capsys.readouterr().err.split()) == (1, said.split())
 
 
 def test_a_package_that_does_not_load_is_named_and_the_other_commands_are_there(

@@ -212,8 +212,8 @@ def test_a_package_takes_no_part_of_the_runner(put: Install, act: str) -> None:
     parts = loaded(told)
     assert "Shelf of" not in html(parts) and act not in parts.acts
     assert told == [
-        f"Arboleda goes on without {each} of acme 1: another {what} has this name"
-        for each, what in (("the section links", "section"), (f"the act {act}", "act"))
+        f"Arboleda goes on without {each} of acme 1: Arboleda has this name already"
+        for each in ("the section links", f"the act {act}")
     ]
 
 
@@ -226,7 +226,7 @@ def test_a_package_takes_no_address_of_the_page(put: Install, address: str) -> N
     assert address not in served(server)
     taken = address.replace("{path:path}", "")
     assert told == [
-        f"Arboleda goes on without the route GET {taken} of acme 1: another route has this address"
+        f"Arboleda goes on without the route GET {taken} of acme 1: Arboleda has this address already"
     ]
 
 
@@ -238,7 +238,7 @@ def test_of_two_packages_that_serve_one_address_the_first_does(put: Install) -> 
     loaded(told).serve(server, Plant())  # type: ignore[arg-type]
     assert served(server).count("/shelf.json") == 1
     assert told == [
-        "Arboleda goes on without the route GET /shelf.json of bolt 1: another route has this address"
+        "Arboleda goes on without the route GET /shelf.json of bolt 1: acme has this address already"
     ]
 
 

@@ -15,7 +15,7 @@ from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.revision import obstacle
 from arboleda.plant_file import loader
-from arboleda.plant_file.extensions import settings_of
+from arboleda.plant_file.extensions import notes, settings_of
 from arboleda.runtime.build import Options, build
 from arboleda.testing import shipped
 
@@ -53,7 +53,9 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]
     (site / "shop.py").write_text(CODE, "utf-8")
     (site / "broken.py").write_text("raise RuntimeError('no luck')", "utf-8")
     parts = ["orders.desk = shop:Orders", "plain = shop:Plain", "broken = broken"]
-    register(site, "shop", {"arboleda.parts": parts, "arboleda.routes": ["views = shop:Plain"]})
+    routes = ["views = shop:Plain"]
+    register(site, "shop", {"arboleda.api": ["1 = shop"], "arboleda.parts": parts, "arboleda.routes": routes})
+    register(site, "old", {"arboleda.api": ["0 = old"], "arboleda.parts": ["old = old:Parts"]})
     monkeypatch.syspath_prepend(site)
     yield
     sys.modules.pop("shop", None)
@@ -142,6 +144,25 @@ def test_a_package_that_is_not_named_has_its_defaults_or_is_told_what_to_write(l
     with pytest.raises(ArboledaError, match=told):
         settings_of(plant, "orders", OrderSettings)
     assert settings_of(load("{orders: {cell: lab, most: 2}}"), "orders", OrderSettings).most == 2
+
+
+def test_what_a_plant_goes_on_without_is_noted(load: Load) -> None:
+    why = "the plant file gives orders no cell; write extensions: {orders: {cell: ...}}"
+    assert notes(load("{broken: off}")) == [f"Arboleda goes on without the parts of shop 1: {why}"]
+    assert (
+        notes(load("{orders: {cell: lab}, broken: off}")) == notes(load("{orders: off, broken: off}")) == []
+    )
+
+
+def test_a_package_of_another_api_may_be_off(load: Load) -> None:
+    assert load("{old: off}").extensions_off == {"old"}
+    with pytest.raises(ConfigError, match="it is written for API 0"):
+        load("{old: {}}")
+
+
+def test_settings_of_another_class_are_refused_in_words(load: Load) -> None:
+    with pytest.raises(ArboledaError, match="gives orders other settings than Plant"):
+        settings_of(load("{orders: {cell: lab}}"), "orders", PlantModel)
 
 
 @pytest.mark.parametrize("other", ["{orders: {cell: lab, most: 3}}", "{orders: off}"])

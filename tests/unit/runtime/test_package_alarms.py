@@ -61,10 +61,10 @@ def test_the_same_alarm_is_not_raised_twice_and_any_of_its_raisers_ends_it(alarm
 def test_of_a_package_that_ends_none_the_last_ones_stand(alarms: PackageAlarms) -> None:
     alarms.add("camera", "no picture")
     for number in range(MOST + 5):
-        alarms.add("orders", f"alarm {number}")
+        alarms.add("orders", f"alarm {number}", part="orders.late")
     assert said(alarms)[:2] == ["camera: no picture", "orders: alarm 5"]
     assert len(alarms.standing) == MOST + 1
-    alarms.end_all("orders")
+    alarms.end_all("orders.late")
     assert said(alarms) == ["camera: no picture"]
 
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 from tests.added_package import install
 from tests.in_process import Caller
 
 from arboleda.extension import ArboledaError, Refused
+from arboleda.host.packages import registered
+from arboleda.host.pieces import piece_of
 from arboleda.runtime.build import App, Options, build
 from arboleda.runtime.extensions import table
 from arboleda.runtime.extensions.telling import Telling
@@ -188,6 +190,24 @@ def test_a_listener_that_breaks_is_left_out_alone(made: Made) -> None:
         "Arboleda goes on without the listener Orders.follow of orders 1: ValueError: the shelf is full"
     ]
     assert Caller(make_app(app.offers.need(LocalPlant))).get("/api/orders").json() == []
+
+
+def test_a_part_that_is_left_out_leaves_no_question_and_its_routes_say_why(made: Made) -> None:
+    app, part = made()
+    part.plant.alarm("the shelf is full")
+    asked, assembly = part.plant.ask("Go on?"), cast(Any, app.offers)
+    (point,) = (each for each in registered("arboleda.parts") if each.name == "orders")
+    with assembly.pieces.calling(piece_of(point, "the part Orders")):
+        raise ValueError("no shelf")
+    why = ["Arboleda goes on without the part Orders of orders 1: ValueError: no shelf"]
+    turn(app)
+    assert left_out(app) == why and asked.cancelled()
+    assert part.plant.snapshot()["alarms"] == part.plant.snapshot()["questions"] == []
+    part.plant.submit("sis_a 0B 7 #lot")
+    turn(app)
+    assert part.told == []
+    answer = Caller(make_app(assembly.need(LocalPlant), pieces=assembly.pieces)).get("/api/orders")
+    assert (answer.status_code, answer.json()) == (503, {"sentence": why[0]})
 
 
 def test_it_is_told_outside_of_the_steps_of_the_plant(made: Made) -> None:

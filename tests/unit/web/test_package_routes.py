@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from textwrap import indent
 from typing import Any
 
 import pytest
@@ -15,6 +16,7 @@ from tests.in_process import Caller
 from tests.packages import PACKAGES, leave_out
 from tests.web_plant import Plant
 
+from arboleda.extension import takes
 from arboleda.host.pieces import Pieces
 from arboleda.web import missing, routes
 from arboleda.web.api import make_app
@@ -96,15 +98,15 @@ def test_a_package_takes_no_path_of_the_runner(plant: Plant, put: Install) -> No
     assert Caller(app).get("/api/ended").json() == "mine"
     assert Caller(app).get("/anything").status_code == 404
     assert told == [
-        f"Arboleda goes on without the route GET {each} of acme 1: another route has this address"
-        for each in (
-            "/api/plant",
-            "/api/events",
-            "/login",
-            "/api/ended",
-            "/",
-            "/task.json",
-            "/twin/scene.json",
+        f"Arboleda goes on without the route GET {each} of acme 1: {whose} has this address already"
+        for each, whose in (
+            ("/api/plant", "Arboleda"),
+            ("/api/events", "Arboleda"),
+            ("/login", "Arboleda"),
+            ("/api/ended", "acme"),
+            ("/", "Arboleda"),
+            ("/task.json", "Arboleda"),
+            ("/twin/scene.json", "Arboleda"),
         )
     ]
 
@@ -123,7 +125,8 @@ def test_a_package_takes_no_address_of_a_stop(plant: Plant, put: Install, path: 
     told: list[str] = []
     put(STOPS.replace("PATH", path))
     make_app(plant, pieces=Pieces(tell=told.append))
-    assert told == [f"Arboleda goes on without the route POST {taken} of acme 1: {TAKEN}"]
+    why = TAKEN.format(whose="Arboleda")
+    assert told == [f"Arboleda goes on without the route POST {taken} of acme 1: {why}"]
 
 
 def test_no_route_of_a_package_is_asked_for_a_stop(plant: Plant, put: Install) -> None:
@@ -151,6 +154,68 @@ def test_a_package_whose_routes_break_is_left_out_and_named(
     (said,) = told
     assert said.startswith("Arboleda goes on without the routes of acme 1: ") and why in said
     assert Caller(app).get("/api/plant").status_code == 200
+
+
+BREAKS = """
+@api.post("/orders")
+async def order(body: dict):
+    raise ValueError("the shelf is full")
+"""
+
+
+def test_a_route_that_breaks_is_named_with_its_package(
+    plant: Plant, put: Install, caplog: pytest.LogCaptureFixture
+) -> None:
+    put(CODE.format(more=indent(BREAKS, "    ")))
+    answer = guarded(plant, behind=make_app(plant)).client().post("/api/orders", json={})
+    whose = "the route POST /api/orders of acme 1"
+    assert answer.json() == {"sentence": f"The plant could not answer: internal error in {whose}."}
+    assert f"{whose} failed: ValueError: the shelf is full" in caplog.messages
+
+
+def test_a_body_that_is_no_json_is_refused_in_words(plant: Plant, put: Install) -> None:
+    put(CODE.format(more=indent(BREAKS, "    ")))
+    head = {"content-type": "application/json"}
+    web = guarded(plant, behind=make_app(plant)).client(**head)
+    answer = web.post("/api/orders", content=b'{"amount": 3 "of": 7}')
+    said = "The body is no JSON: expecting ',' delimiter, at character 13."
+    assert (answer.status_code, answer.json()) == (422, {"sentence": said})
+
+
+LARGE = """
+from fastapi import APIRouter, Request
+from arboleda.extension import takes
+
+
+async def size(request: Request):
+    return len(await request.body())
+
+
+def routes(side):
+    api = APIRouter(dependencies=[takes(kilobytes=8)])
+    api.add_api_route("/api/photos/{name}", size, methods=["POST"])
+    api.add_api_route("/api/films", size, methods=["POST"], dependencies=[takes(kilobytes=16)])
+    return api
+"""
+
+
+@pytest.mark.parametrize(("path", "most"), [("photos/a", 8), ("films", 16), ("tasks", 4)])
+def test_a_body_is_as_large_as_its_route_says(plant: Plant, put: Install, path: str, most: int) -> None:
+    put(LARGE)
+    web = guarded(plant, behind=make_app(plant)).client()
+    fits, too_large = (
+        web.post(f"/api/{path}", content=b" " * size) for size in (most * 1024, most * 1024 + 1)
+    )
+    assert fits.status_code != 413
+    assert (too_large.status_code, too_large.json()["sentence"]) == (
+        413,
+        f"The body may have {most * 1024} bytes.",
+    )
+
+
+def test_a_route_takes_no_more_than_there_is_room_for() -> None:
+    with pytest.raises(ValueError, match="it may take 4096"):
+        takes(kilobytes=4097)
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.packages import MAKE
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase
-from arboleda.plant_file import advance_check, loader, plant_check, tree_file, unstated
+from arboleda.plant_file import advance_check, extensions, loader, plant_check, tree_file, unstated
 from arboleda.plant_file.check_answer import check_answer
 from arboleda.plant_file.findings import Source
 from arboleda.plant_file.user_file import check_writable
@@ -161,7 +161,7 @@ def _in_words(file: Path, *, ends: bool) -> None:
     """Print what the plant is, and what it is warned of; ConfigError with every problem."""
     with working():
         model, missed = loader.load_with_offers(file)
-    for note in (*loader.notes(model), *unstated.notes(model)):
+    for note in (*loader.notes(model), *unstated.notes(model), *extensions.notes(model)):
         print(say(NOTE(file=str(file), note=finding(note))))
     for warning in plant_check.warnings(model):
         print(say(WARNING(file=str(file), warning=finding(warning))))

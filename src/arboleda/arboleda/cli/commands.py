@@ -7,17 +7,21 @@ command to its `Command`. No package is loaded for a command of the runner: a st
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from functools import cache
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import cache, partial
 from importlib import import_module
+from traceback import extract_tb
 from typing import Any, NamedTuple
 
 import typer
 
 from arboleda.host.packages import left_out, registered
-from arboleda.host.pieces import Pieces, piece_of
+from arboleda.host.pieces import LONGEST, RUNNER, Pieces, piece_of
 from arboleda.model.errors import ArboledaError
+from arboleda.model.outside import plain
 from arboleda.model.packages import BOARDS, CLASS, DRIVERS, FLEET, MAKE, MISSING, PROOFS, PackageMissing
+from arboleda.model.sentence import Phrase
 from arboleda.model.verbs import Verb
 from arboleda.views.verb_words import ABOUT
 
@@ -25,7 +29,9 @@ from .language import finding
 from .loading import loading
 
 GROUP = "arboleda.commands"
-TAKEN = "another command has this name"
+SAYS_WHY = typer.BadParameter.__mro__[2]  # what typer raises to end with a sentence
+TOLD: tuple[type[BaseException], ...] = (ArboledaError, SAYS_WHY, typer.Exit, typer.Abort, BrokenPipeError)
+BROKE = Phrase("cli.commands.broke", "the command {name} of {package} broke: {why} ({file}, line {line})")
 OF_PACKAGES = {  # extras of `arboleda`, by command
     "apply": MAKE,
     "class": CLASS,
@@ -129,7 +135,8 @@ def commands() -> Mapping[str, Command]:
         with pieces.calling(piece_of(each, "the commands")):
             for name, command in each.load().items():
                 if name in OURS or name in found:
-                    pieces.leave_out(piece_of(each, f"the command {name}"), ArboledaError(TAKEN))
+                    whose = found[name].module.partition(".")[0] if name in found else RUNNER
+                    pieces.leave_out_taken(piece_of(each, f"the command {name}"), whose)
                 else:
                     found[name] = command
     return {**found, **OURS}
@@ -161,7 +168,7 @@ class LoadedCommands(Mapping[str, Any]):
         whole = f"{self._before}{name}"
         if whole not in self._loaded:
             group = whole.rpartition(" ")[0]
-            added = _commands_of(_known(whole).module)
+            added = _commands_of(_known(whole).module, whole)
             self._loaded |= {f"{group} {each}".lstrip(): command for each, command in added.items()}
         return self._loaded[whole]
 
@@ -189,19 +196,44 @@ def _known(name: str) -> Command:
     return commands()[name]
 
 
-def _commands_of(module: str) -> Mapping[str, Any]:
-    """All commands that a module adds."""
+def _commands_of(module: str, name: str) -> Mapping[str, Any]:
+    """All commands that a module adds, asked for by the name of one."""
     cli = typer.Typer(add_completion=False, rich_markup_mode=None)
     cli.callback()(_nothing)  # typer makes a group only of what has one, or several commands
-    with loading():
+    with _sparing_people(module, name), loading():
         loaded = import_module(module if "." in module else f".{module}", __package__)
-    loaded.add_to(cli)
+        loaded.add_to(cli)
     group: Any = typer.main.get_command(cli)
     for name, each in group.commands.items():
         if hasattr(each, "commands"):
             each.commands = LoadedCommands(name, each.commands)
+        each.invoke = partial(_invoked, each.invoke, module, name)
     found: Mapping[str, Any] = group.commands
     return found
+
+
+def _invoked(invoke: Callable[[Any], Any], module: str, name: str, context: Any) -> Any:
+    with _sparing_people(module, name):
+        return invoke(context)
+
+
+@contextmanager
+def _sparing_people(module: str, name: str) -> Iterator[None]:
+    """Time in which a command runs; where one of a package breaks, a sentence says so, and where."""
+    try:
+        yield
+    except TOLD:
+        raise
+    except Exception as error:
+        if "." not in module:
+            raise
+        from arboleda.plant_file.python_uses import error_text  # no command waits for it that works
+
+        *_, last = extract_tb(error.__traceback__)
+        package, why = module.partition(".")[0], plain(error_text(error), LONGEST)
+        raise ArboledaError(
+            BROKE(name=name, package=package, why=why, file=last.filename, line=last.lineno or 0)
+        ) from error
 
 
 def _nothing() -> None:

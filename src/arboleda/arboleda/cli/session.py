@@ -88,6 +88,7 @@ class Session:
         )
         self._screen = Screen(console, app.plant.screens.snapshot, app.log_file)
         self._stopping = False
+        self._noted: list[str] = []
 
     def run(self) -> int:
         """Run the plant, without `stay` until the tasks have ended; 0, or 1 if one was not done."""
@@ -121,7 +122,12 @@ class Session:
 
     def _say(self, line: logging.LogRecord) -> None:
         if line.levelno >= logging.INFO:
-            self._later(self._screen.say, logged(line), line.created)
+            self._later(self._show_line, line)
+
+    def _show_line(self, line: logging.LogRecord) -> None:
+        """A line of the log, which a note about the start may have said."""
+        if line.getMessage() not in self._noted:
+            self._screen.say(logged(line), line.created)
 
     def _later(self, show: Callable[..., None], *what: Any) -> None:
         self._news.put(partial(show, *what))
@@ -135,7 +141,8 @@ class Session:
             self._app.start()
 
     def _tell_notes(self) -> None:
-        for line in self._app.notes:
+        self._noted = self._app.notes
+        for line in self._noted:
             self._console.print(Text(finding(line), style="dim"))
 
     def _finished(self) -> None:

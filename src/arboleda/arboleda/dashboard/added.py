@@ -12,8 +12,7 @@ from typing import NamedTuple
 from fastapi import FastAPI
 
 from arboleda.host.packages import package_of, registered
-from arboleda.host.pieces import Piece, Pieces, piece_of
-from arboleda.model.errors import ArboledaError
+from arboleda.host.pieces import RUNNER, Piece, Pieces, piece_of
 from arboleda.model.verbs import Verb
 from arboleda.web.access.auth import SUBMIT
 from arboleda.web.package_routes import addresses, guarded
@@ -29,7 +28,6 @@ from .page_part import GROUP, OtherRecord, PageAct, PagePart, Place, Request, Se
 from .wording import Words
 
 SECTION, ACT, RECORD = "section", "act", "record"
-TAKEN = "another {kind} has this name"
 
 
 def installed() -> set[str]:
@@ -48,7 +46,8 @@ class AddedParts:
     def __init__(self, pieces: Pieces | None = None, own: Collection[str] = ()) -> None:
         self._pieces = pieces or Pieces()
         acts = (SUBMIT, DOWNLOAD, *(each.value for each in Verb))
-        self._taken = {(SECTION, each) for each in own} | {(ACT, each) for each in acts}
+        runners = (*((SECTION, each) for each in own), *((ACT, each) for each in acts))
+        self._taken = dict.fromkeys(runners, RUNNER)
         self._parts: list[_Added] = []
         for point in self._pieces.registered(GROUP):
             with self._pieces.calling(piece_of(point, "the part of the page")):
@@ -69,11 +68,10 @@ class AddedParts:
         )
 
     def _is_free(self, point: EntryPoint, kind: str, name: str) -> bool:
-        if (kind, name) in self._taken:
-            taken = ArboledaError(TAKEN.format(kind=kind))
-            self._pieces.leave_out(piece_of(point, f"the {kind} {name}"), taken)
+        if whose := self._taken.get((kind, name)):
+            self._pieces.leave_out_taken(piece_of(point, f"the {kind} {name}"), whose)
             return False
-        self._taken.add((kind, name))
+        self._taken[kind, name] = package_of(point)
         return True
 
     @property
@@ -115,13 +113,14 @@ class AddedParts:
 
     def serve(self, server: FastAPI, plant: PageApi) -> None:
         """Add the addresses of packages to the server."""
-        taken = addresses(server.router.routes)
+        taken = dict.fromkeys(addresses(server.router.routes), RUNNER)
         for point, part in self._parts:
-            with self._pieces.calling(piece_of(point, "the addresses of the page")):
+            mine = piece_of(point, "the addresses of the page")
+            with self._pieces.calling(mine):
                 if part.serve is not None:
                     beside = FastAPI(openapi_url=None)
                     part.serve(beside, plant)
-                    server.router.routes += guarded(beside.router.routes, point, taken, self._pieces)
+                    server.router.routes += guarded(beside.router.routes, point, taken, self._pieces, mine)
 
     def face(self, moment: Moment) -> Face:
         """The changes over time in the sections of packages."""

@@ -6,6 +6,7 @@ Every call of a package goes through `Pieces`, so one that breaks takes nothing 
 from __future__ import annotations
 
 import logging
+from collections import defaultdict
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -24,6 +25,8 @@ SLOW_S, ENDS_S = 5.0, 3.0
 LEFT_OUT = "Arboleda goes on without {piece}: {why}"
 SLOW = "Arboleda has waited for {piece} for more than {seconds:g} s"
 HANGS = "it does not end within {seconds:g} s"
+NAME_TAKEN = "{whose} has this name already"
+RUNNER = "Arboleda"  # has what is of no package
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +62,7 @@ def short(error: BaseException) -> str:
 
 
 class Pieces:
-    """Pieces: calls those of one process; `notes` has a line for each that is left out.
+    """Pieces: calls those of one process, and says which of them are left out.
 
     Nothing of the packages in `off` is among them.
     """
@@ -70,15 +73,28 @@ class Pieces:
         tell: Callable[[str], None] | None = None,
         off: Collection[str] = (),
     ) -> None:
-        self.notes: list[str] = []
         self._text_of = text_of
         self._tell = tell or partial(LOG.warning, "%s")
         self._off = off
-        self._left_out: set[Piece] = set()
+        self._left_out: dict[Piece, str] = {}
+        self._behind = defaultdict[Piece, list[Callable[[], object]]](list)
 
     def __contains__(self, piece: Piece) -> bool:
         """True unless the piece is left out."""
         return piece not in self._left_out
+
+    @property
+    def notes(self) -> list[str]:
+        """A line for each piece that is left out, in the order of time."""
+        return [*self._left_out.values()]
+
+    def why_not(self, piece: Piece) -> str:
+        """The line that a piece is left out; "" where it is not."""
+        return self._left_out.get(piece, "")
+
+    def take_along(self, piece: Piece, end: Callable[[], object]) -> None:
+        """Have `end` called once the piece is left out: what it has begun ends with it."""
+        self._behind[piece].append(end)
 
     def registered(self, group: str) -> list[EntryPoint]:
         """The entry points of a group, in the order of their names, of packages that are not off."""
@@ -115,10 +131,16 @@ class Pieces:
         LOG.debug("%s broke", piece, exc_info=error)
         if piece in self._left_out:
             return
-        self._left_out.add(piece)
         why = str(error) if isinstance(error, Hangs) else self._text_of(error)
-        self.notes.append(LEFT_OUT.format(piece=piece, why=plain(why, LONGEST)))
-        self._tell(self.notes[-1])
+        line = LEFT_OUT.format(piece=piece, why=plain(why, LONGEST))
+        self._left_out[piece] = line
+        self._tell(line)
+        for end in self._behind.pop(piece, ()):
+            end()
+
+    def leave_out_taken(self, piece: Piece, whose: str, sentence: str = NAME_TAKEN) -> None:
+        """Leave out a piece whose name, or address, is of another package or of the runner."""
+        self.leave_out(piece, ArboledaError(sentence.format(whose=whose)))
 
 
 def _give_up() -> None:

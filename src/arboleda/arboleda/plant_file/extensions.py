@@ -7,14 +7,16 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from arboleda.host.packages import package_of, registered
+from arboleda.host.distributions import APIS
+from arboleda.host.packages import entry_points, package_of, registered, why_left_out
+from arboleda.host.pieces import Pieces, piece_of
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 
 from .document import Document, Place, choice, nearest, shown
 from .given_settings import FAULTY, Taker, given, loaded, required
 from .not_installed import why_nobody
-from .python_uses import PythonUses
+from .python_uses import PythonUses, error_text
 from .settings import shape
 
 SECTION = "extensions"
@@ -23,6 +25,9 @@ OF_A_PLANT = (PARTS, "arboleda.page", "arboleda.routes")  # what a plant can lea
 OFF = ("off", False)
 NOBODY = "no installed package is called {name}{nearest}; there are {known}"
 FORM = "must be off, or a mapping of its settings, is {value}"
+OTHERS = (
+    "the plant file gives {name} other settings than {wanted}: one class of settings is for all its parts"
+)
 NEEDS = "the plant file gives {name} no {keys}; write extensions: {given}"
 
 
@@ -49,7 +54,8 @@ def settings_given(document: Document, used: PythonUses) -> dict[str, object]:
         document.problem((SECTION,), f"must be a mapping (key: value), is {shown(value)}")
     known = sorted({package_of(point) for group in OF_A_PLANT for point in registered(group)})
     for name in document.keys((SECTION,)):
-        if name not in known:
+        is_off = document.value((SECTION, name)) in OFF and bool(why_left_out(PARTS, name))
+        if name not in known and not is_off:
             _nobody(document, name, known)
     read = {name: _settings(document, name, used) for name in named(document) if name in known}
     return {name: each for name, each in read.items() if each is not None and each is not FAULTY}
@@ -60,12 +66,27 @@ def settings_of(plant: PlantModel, name: str, declared: type) -> Any:
     to write, where the plant file lacks some that it needs.
     """
     if name in plant.extensions:
-        return plant.extensions[name]
+        found = plant.extensions[name]
+        if not isinstance(found, declared):
+            raise ArboledaError(OTHERS.format(name=name, wanted=declared.__name__))
+        return found
     fits = shape(f"Extension_{name}", declared)
     if missing := required(fits):
         form = f"{{{name}: {{{missing[0]}: ...}}}}"
         raise ArboledaError(NEEDS.format(name=name, keys=", ".join(missing), given=form))
     return declared(**dict(fits()))
+
+
+def notes(plant: PlantModel) -> list[str]:
+    """A line for each part of a package that the plant goes on without, as it lacks settings or breaks."""
+    pieces = Pieces(error_text, tell=lambda _: None, off=plant.extensions_off)
+    of_the_door = {each.dist for each in entry_points(APIS)}
+    for point in pieces.registered(PARTS):
+        with pieces.calling(piece_of(point, "the parts")):
+            declared = getattr(point.load(), "settings_type", None) if point.dist in of_the_door else None
+            if declared is not None:
+                settings_of(plant, package_of(point), declared)
+    return pieces.notes
 
 
 def _nobody(document: Document, name: str, known: list[str]) -> None:

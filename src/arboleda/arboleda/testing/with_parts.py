@@ -34,7 +34,7 @@ from arboleda.views import view
 from arboleda.web.access.auth import Role
 from arboleda.web.api import make_app
 from arboleda.web.offers import Offers, Thing
-from arboleda.web.part_routes import PartRoutes
+from arboleda.web.part_routes import PartRoute, PartRoutes
 from arboleda.web.plant_api import Found, PlantApi, Snapshot
 
 if TYPE_CHECKING:
@@ -250,7 +250,7 @@ class PlantWith:
         part = kind(plant, self._settings_of(kind))
         self._side.things.offer(kind, part)
         self._tellings.append(telling)
-        self._routes.append((point, part.routes))
+        self._routes.append(PartRoute(point, piece_of(point, f"the part {kind.__name__}"), part.routes))
         return part
 
     def _settings_of(self, kind: type[Part]) -> object:

@@ -55,13 +55,17 @@ class AlarmLevel(str, Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class PackageAlarm:
-    """Alarm of a package, which stands until the package ends it; `cell` is "" where it is about none."""
+    """Alarm of a package, which stands until the package ends it; `cell` is "" where it is about none.
+
+    `part` is the part of the package that has raised it.
+    """
 
     id: int
     package: str
     sentence: Sentence
     cell: str = ""
     level: AlarmLevel = AlarmLevel.WARNING
+    part: str = ""
 
     @property
     def said(self) -> Sentence:
@@ -70,7 +74,8 @@ class PackageAlarm:
 
     def row(self) -> dict[str, Any]:
         """The alarm as plain data."""
-        return {**vars(self), "level": self.level.value}
+        told = {key: each for key, each in vars(self).items() if key != "part"}
+        return {**told, "level": self.level.value}
 
 
 def need_of(run: CellRun) -> Need | None:

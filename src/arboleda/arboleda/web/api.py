@@ -26,7 +26,7 @@ from arboleda.client.answers.plant import Snapshot
 from arboleda.client.answers.tasks import Act, Done, KeptTask, Task
 from arboleda.client.protocol import COMMAND_LINE
 from arboleda.departures.leaving import Unkept
-from arboleda.host.pieces import Pieces
+from arboleda.host.pieces import Pieces, short
 from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, Refused, TextError
 from arboleda.model.messages import Outcome, Verb
 from arboleda.model.outside import plain, quoted
@@ -40,6 +40,7 @@ from .access import login
 from .access.auth import SUBMIT, Forbidden, require
 from .limits import LATER_S
 from .missing import missing, package_missing
+from .package_routes import ASKED
 from .plant_api import PlantApi
 from .request import METRICS, is_api
 from .routes import installed, packaged
@@ -359,11 +360,13 @@ async def own_up(request: Request, error: Exception) -> JSONResponse:
 
     Starlette raises one, too, where the caller has gone before anything was sent; it is not logged.
     """
+    asked = str(request.scope.get(ASKED, f"{request.method} {quote(request.url.path)}"))
     if str(error) != NOTHING_SENT or not await request.is_disconnected():
-        log.error(
-            "%s %s failed: %s", plain(request.method), plain(quote(request.url.path)), plain(repr(error))
-        )
-    return JSONResponse({"sentence": "The plant could not answer: internal error."}, status_code=500)
+        log.error("%s failed: %s", plain(asked), plain(short(error)))
+        log.debug("the error of %s, whole", plain(asked), exc_info=error)
+    whose = f" in {asked}" if ASKED in request.scope else ""
+    sentence = f"The plant could not answer: internal error{whose}."
+    return JSONResponse({"sentence": sentence}, status_code=500)
 
 
 def _kept(row: TaskRow) -> dict[str, Any]:

@@ -10,7 +10,6 @@ from arboleda.client.protocol import BEAT_S as BEAT_S
 
 API_BODY_BYTES = 4096
 PAGE_BODY_BYTES = 65536
-TREE_BODY_BYTES = 512 * 1024  # a file of trees, of a recipe with its 2,000 nodes, as JSON
 HEADER_BYTES = 16384
 MESSAGE_BYTES = 65536  # of a websocket
 BODY_S = 10.0
@@ -20,7 +19,7 @@ READ = (50.0, 400)  # per second, at once
 PAGE = (300.0, 6000)  # one page is a hundred small files, and twenty browsers may sit behind one address
 OPEN = (2.0, 40)  # a page itself, the largest of all answers
 CHANGE = (10.0, 50)
-HOLD = (40.0, 80)  # a button of a teacher, said again every 50 ms
+HOLD = (40.0, 80)  # a button that is held, said again every 50 ms
 GUESS = (0.1, 5)
 MESSAGE = (50.0, 200)
 

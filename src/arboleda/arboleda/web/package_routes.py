@@ -2,29 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from importlib.metadata import EntryPoint
 from typing import Any
 
-from fastapi import routing
+from fastapi import FastAPI, routing
 from starlette.routing import BaseRoute, Match
 from starlette.types import Receive, Scope, Send
 
 from arboleda.host.packages import package_of
-from arboleda.host.pieces import Pieces, piece_of
+from arboleda.host.pieces import RUNNER, Piece, Pieces, piece_of
 from arboleda.model.errors import ArboledaError
 
 from .access.needs import LOOKED, OPERATORS, Need, declared, method_of
+from .access.takes import Takes
 from .request import HISTORY, PAGE, READS, SCENE, TASK, is_stop
 
 NEEDS = "arboleda.needs"  # in the scope of a request for a route of a package, the last one counts
+ASKED = "arboleda.asked"  # in the scope of such a request: the route, as people are told of it
 APART = "arboleda.apart"  # in the scope of each request: what runs an application in the loop of a package
 STOPS = ("plant", "cells/x", "plants", "plants/x")
 KEPT = (
     *(f"GET {each}" for each in (PAGE, TASK, HISTORY, SCENE)),  # of the page, which is asked after all routes
     *(f"POST /api/{each}/stop" for each in STOPS),
 )
-TAKEN = "another route has this address"
+TAKEN = "{whose} has this address already"
 
 
 def leaves(routes: Sequence[BaseRoute]) -> tuple[Any, ...]:
@@ -44,13 +46,19 @@ def addresses(routes: Sequence[BaseRoute]) -> set[str]:
 
 
 class PackageRoute(BaseRoute):
-    """Route of a package, or router that it has included, for those whose role is enough."""
+    """Route of a package, or router that it has included, for those whose role is enough.
 
-    def __init__(self, route: BaseRoute, package: str) -> None:
+    It answers nothing but why where `part`, which it belongs to, is left out.
+    """
+
+    def __init__(self, route: BaseRoute, point: EntryPoint, pieces: Pieces, part: Piece) -> None:
         self.behind = route
-        self._package = package
+        self._point = point
+        self._pieces = pieces
+        self._part = part
         self.methods = getattr(route, "methods", None)
         self._leaves = leaves([route])
+        self._taking = [(each, found) for each in self._leaves if (found := _takes(each)) is not None]
 
     def matches(self, scope: Scope) -> tuple[Match, Scope]:
         if is_stop(method_of(scope), scope["path"]):  # made in the server's loop, in which nothing may hang
@@ -61,14 +69,21 @@ class PackageRoute(BaseRoute):
         return match, {**found, NEEDS: self._needs(scope)}  # what is found changes the scope
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
+        scope[ASKED] = piece_of(self._point, f"the route {method_of(scope)} {scope['path']}")
         scope[LOOKED] = scope.pop(NEEDS, (OPERATORS,))
         for need in scope[LOOKED][-1:]:
             need.check(scope)
+        if why := self._pieces.why_not(self._part):
+            raise ArboledaError(why)
         apart = scope.get(APART)
         if apart is None:  # in a process without a server there is one loop
             await self.behind.handle(scope, receive, send)
         else:
-            await apart(self._package, self.behind.handle, scope, receive, send)
+            await apart(package_of(self._point), self.behind.handle, scope, receive, send)
+
+    def takes(self, scope: Scope) -> Takes | None:
+        """What it takes beyond the usual, of this request; None where it is another one's."""
+        return next((found for each, found in self._taking if each.matches(scope)[0] is Match.FULL), None)
 
     def _needs(self, scope: Scope) -> tuple[Need, ...]:
         """The needs of this request, the last of which counts; none where whoever is logged in may ask."""
@@ -79,20 +94,32 @@ class PackageRoute(BaseRoute):
         return (OPERATORS,) if not found and method_of(scope) not in READS else found
 
 
+def taking(app: FastAPI) -> Callable[[Scope], Takes | None]:
+    """A function that tells what the package's route for a request takes beyond the usual, if anything."""
+
+    def taken(scope: Scope) -> Takes | None:
+        mine = (each.takes(scope) for each in app.router.routes if isinstance(each, PackageRoute))
+        return next((each for each in mine if each is not None), None)
+
+    return taken
+
+
 def guarded(
-    routes: Iterable[BaseRoute], point: EntryPoint, taken: set[str], pieces: Pieces
+    routes: Iterable[BaseRoute], point: EntryPoint, taken: dict[str, str], pieces: Pieces, part: Piece
 ) -> list[BaseRoute]:
-    """The routes of a package, each behind a look at who asks, without those with an address of the page,
-    of a stop, or one that is `taken`. What the others have is taken then."""
+    """The routes of a package's part, each behind a look at who asks, without those with an address of the
+    page, of a stop, or one that is `taken`: these, each with whose it is. What the others have is taken then.
+    """
     found: list[BaseRoute] = []
     for route in routes:
         mine = addresses([route])
         stops = {each for each in mine if is_stop(*each.split(" ", 1))}
-        if doubled := mine & taken | stops | {each for each in KEPT if _answers(route, each)}:
-            pieces.leave_out(piece_of(point, f"the route {min(doubled)}"), ArboledaError(TAKEN))
+        if doubled := mine & taken.keys() | stops | {each for each in KEPT if _answers(route, each)}:
+            first = min(doubled)
+            pieces.leave_out_taken(piece_of(point, f"the route {first}"), taken.get(first, RUNNER), TAKEN)
             continue
-        taken |= mine
-        found.append(PackageRoute(route, package_of(point)))
+        taken |= dict.fromkeys(mine, package_of(point))
+        found.append(PackageRoute(route, point, pieces, part))
     return found
 
 
@@ -101,3 +128,9 @@ def _answers(route: BaseRoute, request: str) -> bool:
     method, path = request.split()
     scope = {"type": "http", "method": method, "path": path, "root_path": "", "headers": []}
     return route.matches(scope)[0] is Match.FULL
+
+
+def _takes(route: Any) -> Takes | None:
+    """The last declaration of what it takes: its router's stands before its own."""
+    found = (each.dependency for each in reversed(getattr(route, "dependencies", ())))
+    return next((each for each in found if isinstance(each, Takes)), None)

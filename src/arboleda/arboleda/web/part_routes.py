@@ -4,8 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from importlib.metadata import EntryPoint
-from typing import Any
+from typing import Any, NamedTuple
+
+from arboleda.host.pieces import Piece
 
 
-class PartRoutes(list[tuple[EntryPoint, Callable[[], Any]]]):
-    """PartRoutes: the functions that make an APIRouter, or None, each with the entry point of its part."""
+class PartRoute(NamedTuple):
+    """Routes of a part: `make` makes an APIRouter."""
+
+    point: EntryPoint
+    part: Piece
+    make: Callable[[], Any]
+
+
+class PartRoutes(list[PartRoute]):
+    """PartRoutes: what makes the routes of each part."""

@@ -13,11 +13,7 @@ from .access.names import is_loopback
 
 API, LOGIN, LOGOUT, METRICS = "/api/", "/login", "/logout", "/metrics"
 PAGE, TASK, HISTORY, SCENE = "/", "/task.json", "/history.json", "/twin/scene.json"  # of the page
-DRAFT_TREES = "/api/draft/set_trees"
-OF_DEVICES = ("/api/make/device", "/api/make/objections", "/api/make/runs/reach")
-TREES = ("/api/trees/", "/api/make/drawn/", *OF_DEVICES, "/api/proposals")
 STOP = re.compile(r"/api/(plant|cells/[^/]+|plants(/[^/]+)?)/stop")
-JOG = re.compile(r"/api/teach/[^/]+/jog")
 READS = {"GET", "HEAD"}
 ONLY_ONE = {"host", "origin", "authorization", "cookie", "content-length", "transfer-encoding"}
 FORWARDED = {"forwarded", "via", "x-forwarded-for", "x-forwarded-host", "x-forwarded-proto", "x-real-ip"}
@@ -89,16 +85,6 @@ class RequestHead:
     @property
     def for_page(self) -> bool:
         return not is_api(self.path) and self.path not in (LOGIN, LOGOUT)
-
-    @property
-    def has_tree(self) -> bool:
-        """True if the body has files of trees."""
-        return not self.socket and (self.path.startswith(TREES) or self.path == DRAFT_TREES)
-
-    @property
-    def holds(self) -> bool:
-        """True if a button of a teacher is held, or let go of."""
-        return not self.socket and self.scope["method"] == "POST" and bool(JOG.fullmatch(self.path))
 
     @property
     def opens_page(self) -> bool:

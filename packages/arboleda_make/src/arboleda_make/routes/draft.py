@@ -12,7 +12,7 @@ from pydantic import Field
 from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
-from arboleda.extension import Role, needs
+from arboleda.extension import Role, needs, takes
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
@@ -21,6 +21,7 @@ from arboleda_make.answers.drafts import AppliedDraft, CheckedDraft, DraftState,
 from arboleda_make.drafts.api import DraftApi, State
 
 MAY = "editing a draft"
+TREES = takes(kilobytes=512)  # a file of trees, of a recipe with its 2,000 nodes, as JSON
 SHIPPED = "This plant has no file that could be changed; `arboleda new` writes one of your own."
 REFUSED: Answers = {
     403: {"model": Sentence, "description": "Only operators may."},
@@ -106,7 +107,9 @@ def _look(api: APIRouter, side: PlantApi) -> None:
 
 
 def _edit(api: APIRouter, side: PlantApi) -> None:
-    def route(path: str, model: type[Body], about: str, act: Callable[[DraftApi, Body], State]) -> None:
+    def route(
+        path: str, model: type[Body], about: str, act: Callable[[DraftApi, Body], State], *needed: Any
+    ) -> None:
         async def step(request: Request) -> JSONResponse:
             draft = _draft(side)
             body = read_body(await request.body(), model)
@@ -114,7 +117,7 @@ def _edit(api: APIRouter, side: PlantApi) -> None:
 
         step.__doc__ = about
         taken = answering(DraftState, REFUSED, described_body(model))
-        api.post(path, name=path.strip("/"), **taken)(step)
+        api.post(path, name=path.strip("/"), dependencies=needed, **taken)(step)
 
     route("/take", Taking, "Begin to edit, or take over.", lambda each, to: each.take(to.editor, to.name))
     route(
@@ -129,6 +132,7 @@ def _edit(api: APIRouter, side: PlantApi) -> None:
         TreesSetting,
         "Give a file of trees another text.",
         lambda each, to: each.set_trees(to.editor, to.file, to.text),
+        TREES,
     )
     route(
         "/remove_trees",

@@ -20,7 +20,7 @@ from arboleda_make.answers.drafts import DraftCells, DraftState, DriverRow, Obje
 from arboleda_make.answers.trees import Drawn, Nodes
 from arboleda_make.trying.api import MakeApi
 
-from .draft import MAY, REFUSED, SHIPPED, RecipeName, Step
+from .draft import MAY, REFUSED, SHIPPED, TREES, RecipeName, Step
 from .tree_answers import EditForm, TreeForm, operation_of
 
 What = Literal["try", "prove", "notice", "reach"]
@@ -107,7 +107,7 @@ class Wanted(RequestModel):
 
 def routes(side: PlantApi) -> APIRouter:
     """Register the routes."""
-    api = APIRouter(prefix="/api/make", dependencies=[needs(Role.OPERATOR, MAY)])
+    api = APIRouter(prefix="/api/make", dependencies=[needs(Role.OPERATOR, MAY), TREES])
     _look(api, side)
     _draw(api, side)
     _device(api, side)

@@ -28,9 +28,9 @@ from arboleda_make.answers.proposals import (
 )
 from arboleda_make.proposals.api import ProposalsApi
 
-from .draft import REFUSED, SHIPPED, Key
+from .draft import REFUSED, SHIPPED, TREES, Key
 
-PROPOSE = [needs(Role.ASSISTANT, "proposing")]
+PROPOSE = [needs(Role.ASSISTANT, "proposing"), TREES]
 GIVE = [needs(Role.ASSISTANT, "giving a task as an assistant")]
 DECIDE = [needs(Role.OPERATOR, "deciding on a proposal")]
 Hash = Annotated[str, Path(pattern="^[0-9a-f]{64}$")]

@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from starlette.exceptions import HTTPException
 
 from arboleda.client.answers.plant import Teaching
-from arboleda.extension import Role, needs
+from arboleda.extension import Role, needs, takes
 from arboleda.model.sentence import explained
 from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel, Sentence
@@ -118,7 +118,11 @@ def routes(side: PlantApi) -> APIRouter:
         desk = _desk(side)
         return await _answered(lambda: desk.state(cell))
 
-    @api.post("/{cell}/jog", **answering(Pressed, REFUSED, described_body(ButtonState)))
+    @api.post(
+        "/{cell}/jog",
+        dependencies=[takes(held=True)],
+        **answering(Pressed, REFUSED, described_body(ButtonState)),
+    )
     async def jog(cell: str, request: Request) -> JSONResponse:
         """Hold a button of a cell that is taught, or let go of it."""
         desk = _desk(side)

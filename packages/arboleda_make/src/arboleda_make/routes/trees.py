@@ -25,9 +25,10 @@ from arboleda.web.schema.queries import (
 from arboleda_make.answers.trees import Drawn, Nodes, TreeCopy, TreeFile
 from arboleda_make.editing import desk
 
+from .draft import TREES
 from .tree_answers import CopyForm, EditForm, TreeForm, operation_of
 
-ASSISTANTS = [needs(Role.ASSISTANT, "drawing a tree")]
+ASSISTANTS = [needs(Role.ASSISTANT, "drawing a tree"), TREES]
 REFUSED: Answers = {
     403: {"model": Sentence, "description": "The role is not enough."},
     422: {"model": Sentence, "description": "The text cannot be read, or the operation cannot be done."},

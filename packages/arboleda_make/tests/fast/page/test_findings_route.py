@@ -10,9 +10,12 @@ from fastapi import FastAPI
 from starlette.types import Receive, Scope, Send
 from tests.in_process import Caller, without_threads
 
+from arboleda.dashboard.page_part import GROUP
+from arboleda.host.packages import registered
+from arboleda.host.pieces import Pieces, piece_of
 from arboleda.web.access.auth import Role
 from arboleda.web.api import answer_in_sentences
-from arboleda.web.package_routes import PackageRoute
+from arboleda.web.package_routes import guarded
 from arboleda_make.page import findings_route
 
 FOUND = {"lines": ['the key "a" is missing', "cells.b: there is nothing to undo"]}
@@ -34,7 +37,8 @@ def page(role: Role, make: Make | None) -> Caller:
     answer_in_sentences(app)
     side: Any = SimpleNamespace(ask=lambda _kind: make)
     findings_route.serve(beside, side)
-    app.router.routes += [PackageRoute(each, "make") for each in beside.router.routes]
+    (point,) = (each for each in registered(GROUP) if each.name == "make")
+    app.router.routes += guarded(beside.router.routes, point, {}, Pieces(), piece_of(point, "its page"))
 
     async def as_role(scope: Scope, receive: Receive, send: Send) -> None:
         await app({**scope, "arboleda.role": role}, receive, send)

@@ -137,4 +137,4 @@ def test_a_viewer_looks_and_only_an_operator_draws(open_to_all: Any, text: str) 
 def test_a_file_may_be_large_and_has_a_limit(web: Caller, text: str) -> None:
     large = f"{text}<!-- {'x' * limits.API_BODY_BYTES} -->"
     assert post(web, "check", cell="cell", text=large).status_code == 200
-    assert post(web, "check", cell="cell", text=" " * limits.TREE_BODY_BYTES).status_code == 413
+    assert post(web, "check", cell="cell", text=" " * 512 * 1024).status_code == 413

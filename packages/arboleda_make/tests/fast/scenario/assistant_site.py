@@ -41,6 +41,7 @@ from arboleda.web.access.auth import Door, Role
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import names_for
 from arboleda.web.api import make_app
+from arboleda.web.package_routes import taking
 from arboleda.web.plant_api import PlantApi, Snapshot
 from arboleda_make.drafts.plant_folder import PlantFolder
 from arboleda_make.proposals.api import ProposalsApi
@@ -198,7 +199,8 @@ class Caller:
     def __init__(self, site: Site) -> None:
         door = Door(lambda: TOKENS)
         self._door = door
-        self._app = Guard(make_app(site), names_for(HOST, None), door)
+        app = make_app(site)
+        self._app = Guard(app, names_for(HOST, None), door, takes=taking(app))
         self.sent = 0
 
     async def send(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
+from dataclasses import replace
 from itertools import count
 from typing import Any
 
@@ -48,6 +49,7 @@ class PackageAlarms:
         *,
         cell: str = "",
         level: AlarmLevel | str = AlarmLevel.WARNING,
+        part: str = "",
     ) -> RaisedAlarm:
         """Raise an alarm; the same one that stands already is not raised again. ValueError for an empty
         sentence, and for a level that there is not.
@@ -57,9 +59,19 @@ class PackageAlarms:
         said = OWN(text=in_one_line(sentence)) if isinstance(sentence, str) else sentence
         if not str(said):
             raise ValueError("an alarm needs a sentence: what happened, and what people are to do")
+        wanted = PackageAlarm(
+            id=next(self._numbers),
+            package=package,
+            sentence=said,
+            cell=cell,
+            level=AlarmLevel(level),
+            part=part,
+        )
         with self._changing:
-            found = self._equal(package, said, cell, AlarmLevel(level))
-            raised = found or self._raised(package, said, cell, AlarmLevel(level))
+            raised = next((each for each in self.standing if _is_same(each, wanted)), None)
+            if raised is None:
+                raised = wanted
+                self._raise(wanted)
         return RaisedAlarm(self, raised)
 
     def end(self, *ended: PackageAlarm) -> None:
@@ -67,9 +79,9 @@ class PackageAlarms:
         with self._changing:
             self._drop(*ended)
 
-    def end_all(self, package: str) -> None:
-        """End all alarms of a package."""
-        self.end(*self._of(package))
+    def end_all(self, part: str) -> None:
+        """End all alarms of a part of a package."""
+        self.end(*(each for each in self.standing if each.part == part))
 
     def rows(self) -> dict[str, Any]:
         """The alarms that stand as a snapshot has them."""
@@ -79,21 +91,11 @@ class PackageAlarms:
         """The alarms as a diagnosis for /diagnostics."""
         return diagnostics.packages(self.standing)
 
-    def _equal(self, package: str, sentence: Sentence, cell: str, level: AlarmLevel) -> PackageAlarm | None:
-        there = (each for each in self._of(package) if (each.cell, each.level) == (cell, level))
-        return next((each for each in there if each.sentence == sentence), None)
-
-    def _raised(self, package: str, sentence: Sentence, cell: str, level: AlarmLevel) -> PackageAlarm:
-        raised = PackageAlarm(
-            id=next(self._numbers), package=package, sentence=sentence, cell=cell, level=level
-        )
-        self._drop(*self._of(package)[: 1 - MOST])
+    def _raise(self, raised: PackageAlarm) -> None:
+        mine = [each for each in self.standing if each.package == raised.package]
+        self._drop(*mine[: 1 - MOST])
         self.standing = (*self.standing, raised)
         LOG.warning("%s", raised.said, extra={"sentence": raised.said})
-        return raised
-
-    def _of(self, package: str) -> list[PackageAlarm]:
-        return [each for each in self.standing if each.package == package]
 
     def _drop(self, *ended: PackageAlarm) -> None:
         for each in ended:
@@ -101,3 +103,7 @@ class PackageAlarms:
                 over = OVER(said=each.said)
                 LOG.info("%s", over, extra={"sentence": over})
         self.standing = tuple(each for each in self.standing if each not in ended)
+
+
+def _is_same(alarm: PackageAlarm, other: PackageAlarm) -> bool:
+    return replace(alarm, id=other.id) == other

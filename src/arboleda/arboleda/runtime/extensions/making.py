@@ -11,7 +11,7 @@ from arboleda.host.packages import package_of
 from arboleda.host.pieces import piece_of
 from arboleda.plant_file.extensions import settings_of
 from arboleda.store.package_table import PackageTable
-from arboleda.web.part_routes import PartRoutes
+from arboleda.web.part_routes import PartRoute, PartRoutes
 
 from ..parts.local_plant import LocalPlant
 from ..parts.orchestrator import Orchestrator
@@ -31,7 +31,7 @@ FOLDER = "extensions"  # in the state directory
 def factory_of(made_by: type[Part], point: EntryPoint) -> Factory:
     """The factory of a part that a package registers as a class."""
     make = partial(_make, made_by, point)
-    return Factory(phase=Phase.RECORD, make=make, what=f"the part {made_by.__name__}")
+    return Factory(phase=Phase.RECORD, make=make, what=_called(made_by))
 
 
 def _make(made_by: type[Part], point: EntryPoint, assembly: Assembly) -> Iterator[Started]:
@@ -60,12 +60,23 @@ def _make(made_by: type[Part], point: EntryPoint, assembly: Assembly) -> Iterato
     )
     declared = made_by.settings_type
     part = made_by(plant, declared and settings_of(assembly.model, package_of(point), declared))
+    piece = piece_of(point, _called(made_by))
     assembly.offer(made_by, part)
     assembly.links.add(lambda: {point.name: plant.shown} if plant.shown else {})
-    _routes(assembly).append((point, part.routes))
+    _routes(assembly).append(PartRoute(point, piece, part.routes))
+    for end in (
+        telling.leave,
+        partial(assembly.need(PackageAlarms).end_all, point.name),
+        partial(assembly.need(Questions).take_back, point.name),
+    ):
+        assembly.pieces.take_along(piece, end)
     yield part
     yield telling
     yield assembly.need(Questions)  # ends first: a part may wait for an answer
+
+
+def _called(made_by: type[Part]) -> str:
+    return f"the part {made_by.__name__}"
 
 
 def _writes(assembly: Assembly, running: Orchestrator) -> Writes:

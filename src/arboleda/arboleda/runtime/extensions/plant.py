@@ -177,7 +177,9 @@ class Plant:
         `level` is `warning`, or `error` where somebody is needed. The same alarm is not raised twice. Raises
         ValueError without a sentence, and for another level.
         """
-        return self._uses.alarms.add(self._uses.package, sentence, cell=cell, level=level)
+        return self._uses.alarms.add(
+            self._uses.package, sentence, cell=cell, level=level, part=self.extension
+        )
 
     def ask(self, question: str, answers: Iterable[str] = ("yes", "no")) -> Future[str]:
         """Ask people, who answer on the page, by `arboleda answer` or over HTTP.
@@ -187,7 +189,8 @@ class Plant:
         ValueError without a text, or without answers that differ, and ArboledaError where 20 questions of the
         package are open.
         """
-        return self._uses.questions.ask(self._uses.package, question, answers, self._uses.telling.each)
+        tell = self._uses.telling.each
+        return self._uses.questions.ask(self._uses.package, question, answers, tell, self.extension)
 
     def report(
         self,

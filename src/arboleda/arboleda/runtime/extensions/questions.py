@@ -46,6 +46,7 @@ class PackageQuestion:
     text: str
     answers: tuple[str, ...]
     answer: Answer[str]
+    part: str
 
     @property
     def alarm(self) -> PackageAlarm:
@@ -84,7 +85,13 @@ class Questions:
         for each in self.open:
             each.answer.cancel()
 
-    def ask(self, package: str, text: str, answers: Iterable[str], tell: Tell) -> Future[str]:
+    def take_back(self, part: str) -> None:
+        """Take back the questions of a part of a package."""
+        for each in self.open:
+            if each.part == part:
+                each.answer.cancel()
+
+    def ask(self, package: str, text: str, answers: Iterable[str], tell: Tell, part: str = "") -> Future[str]:
         """Ask people, and return at once. ValueError without a text, or without different answers;
         ArboledaError where a package has asked too much."""
         text, choices = in_one_line(text), tuple(in_one_line(each) for each in answers)
@@ -102,6 +109,7 @@ class Questions:
                 text=text,
                 answers=choices,
                 answer=Answer(tell),
+                part=part,
             )
             self._packages.add(package)
             self._asked.append(asked)

@@ -48,7 +48,7 @@ class Telling:
         self._news: deque[_News] = deque()
         self._latest: dict[Piece, _News] = {}
         self._changed = threading.Condition()
-        self._ends = False
+        self._ends = self._is_left = False
         self._thread = threading.Thread(target=self._run, name=f"extension {name}", daemon=True)
 
     def each(self, listener: Callable[[Any], object]) -> Callable[[Any], None]:
@@ -63,6 +63,13 @@ class Telling:
 
     def start(self) -> None:
         self._thread.start()
+
+    def leave(self) -> None:
+        """Tell nothing more, for good; from any thread."""
+        with self._changed:
+            self._is_left = True
+            self._news.clear()
+            self._latest.clear()
 
     def stop(self) -> None:
         """Tell what is left, and end; a listener that hangs is not waited for longer than ENDS_S."""
@@ -90,6 +97,8 @@ class Telling:
         if news.piece not in self._pieces:
             return
         with self._changed:
+            if self._is_left:
+                return
             if is_latest:
                 self._latest[news.piece] = news
             else:

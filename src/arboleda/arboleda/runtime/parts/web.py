@@ -15,6 +15,7 @@ from arboleda.web import limits
 from arboleda.web.access.guard import Guard
 from arboleda.web.access.names import DEFAULT_PORT, is_loopback, names_for
 from arboleda.web.api import make_app
+from arboleda.web.package_routes import taking
 from arboleda.web.second_loop import SecondLoop
 from arboleda.web.server import Server
 
@@ -60,7 +61,14 @@ class WebPart:
             mount(app)
         sockets = limits.lasting(limits.SOCKETS, connections)
         names = names_for(options.address, options.public_url, scheme=options.scheme)
-        guarded = Guard(SecondLoop(app), names, options.door_of(state), sockets=sockets, plant=name)
+        guarded = Guard(
+            SecondLoop(app),
+            names,
+            options.door_of(state),
+            sockets=sockets,
+            plant=name,
+            takes=taking(app),
+        )
         self._server = Server(
             guarded,
             host=options.address,

@@ -18,12 +18,13 @@ from ..limits import Buckets
 from ..request import LOGIN, ClientGone, HttpError, RequestHead, with_headers
 from .auth import LOCAL, Door, Login
 from .names import Names
+from .takes import Takes
 
 
-async def whole_body(head: RequestHead, receive: Receive) -> Receive:
-    """A `receive` with the whole body; HttpError if it is too long or slow, ClientGone if it ends early."""
-    most = limits.PAGE_BODY_BYTES if head.for_page else limits.API_BODY_BYTES
-    most = limits.TREE_BODY_BYTES if head.has_tree else most
+async def whole_body(head: RequestHead, receive: Receive, declared: int = 0) -> Receive:
+    """A `receive` with the whole body; HttpError if it is too long or slow, ClientGone if it ends early. It
+    may have the usual number of bytes, or what its route has `declared` if that is more."""
+    most = max(declared, limits.PAGE_BODY_BYTES if head.for_page else limits.API_BODY_BYTES)
     try:
         body = await asyncio.wait_for(_read(receive, most), limits.BODY_S)
     except asyncio.TimeoutError:
@@ -166,13 +167,22 @@ class Guard:
 
     What is let in carries `scope["arboleda.login"]`, `["arboleda.role"]` and `["arboleda.door"]`. A stop of
     somebody who is logged in has no rate. At most so many `sockets` are open at a time. `plant` is the name
-    of the plant that answers, "" where there are several.
+    of the plant that answers, "" where there are several. `takes` tells of a request what its route takes
+    beyond the usual.
     """
 
     def __init__(
-        self, app: ASGIApp, names: Names, door: Door, *, sockets: int = limits.SOCKETS, plant: str = ""
+        self,
+        app: ASGIApp,
+        names: Names,
+        door: Door,
+        *,
+        sockets: int = limits.SOCKETS,
+        plant: str = "",
+        takes: Callable[[Scope], Takes | None] = lambda _: None,
     ) -> None:
         self._app = app
+        self._takes = takes
         self._plant = plant
         self._names = names
         self._door = door
@@ -199,8 +209,10 @@ class Guard:
         peer = head.peer(proxied=self._names.public is not None)
         login = self._login(head, peer)
         self._check_origin(head, login)
+        more = None if head.socket or head.reads else self._takes(head.scope)
         if login is None or not head.stops:
-            self._check_rate(head, peer if login in (None, LOCAL) else login.key)
+            rate = self._holds if more is not None and more.held else self._rate(head)
+            self._check_rate(rate, peer if login in (None, LOCAL) else login.key)
         if login is None and not head.logs_in:
             raise _unknown(head)
         self._check_plant(head)
@@ -210,7 +222,7 @@ class Guard:
             return await self._sockets.run(scope, receive, send, login)
         if head.logs_in:
             send = self._counting_guesses(peer, send)
-        body = await whole_body(head, receive)
+        body = await whole_body(head, receive, 0 if more is None else more.body_bytes)
         if head.opens_page:
             return await self._pages.run(scope, body, send, receive)
         return await self._app(scope, body, send)
@@ -277,13 +289,11 @@ class Guard:
 
         return counting
 
-    def _check_rate(self, head: RequestHead, key: str) -> None:
-        if not self._rate(head).take(key):
+    def _check_rate(self, rate: Buckets, key: str) -> None:
+        if not rate.take(key):
             raise HttpError(429, "Too many requests; wait a second.", retry_after="1")
 
     def _rate(self, head: RequestHead) -> Buckets:
-        if head.holds:
-            return self._holds
         if not head.reads:
             return self._changes
         if head.opens_page:

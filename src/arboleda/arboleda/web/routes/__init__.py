@@ -7,19 +7,23 @@ asks for what the package's parts offer. `access.needs` has who may ask for its 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import partial
 from importlib import import_module
+from importlib.metadata import EntryPoint
+from typing import Any
 
 from fastapi import APIRouter
 
 from arboleda.host.packages import package_of, registered
-from arboleda.host.pieces import Pieces, piece_of
+from arboleda.host.pieces import RUNNER, Pieces, piece_of
 
 from ..package_routes import addresses, guarded
-from ..part_routes import PartRoutes
+from ..part_routes import PartRoute, PartRoutes
 from ..plant_api import PlantApi
 
 GROUP = "arboleda.routes"
+ROUTES = "the routes"
 OWN = ("assistants", "promises", "recipes")
 
 
@@ -35,14 +39,23 @@ def installed() -> set[str]:
 
 def packaged(side: PlantApi, before: Sequence[APIRouter], pieces: Pieces) -> list[APIRouter]:
     """The routers of packages, without a route that `before`, the page or another package has."""
-    taken = {each for router in before for each in addresses(router.routes)}
+    taken = {each: RUNNER for router in before for each in addresses(router.routes)}
     found: list[APIRouter] = []
-    makers = [(point, lambda point=point: point.load()(side)) for point in pieces.registered(GROUP)]
-    for point, make in (*makers, *(side.ask(PartRoutes) or ())):
-        with pieces.calling(piece_of(point, "the routes")):
-            router = make()
+    for each in (*_registered(side, pieces), *(side.ask(PartRoutes) or ())):
+        with pieces.calling(piece_of(each.point, ROUTES)):
+            router = each.make()
             if not isinstance(router, APIRouter):
-                raise TypeError(f"{point.value} makes no APIRouter")
+                raise TypeError(f"{each.point.value} makes no APIRouter")
             found.append(APIRouter())
-            found[-1].routes += guarded(router.routes, point, taken, pieces)
+            found[-1].routes += guarded(router.routes, each.point, taken, pieces, each.part)
     return found
+
+
+def _registered(side: PlantApi, pieces: Pieces) -> Iterator[PartRoute]:
+    """What packages register as functions of a plant."""
+    for point in pieces.registered(GROUP):
+        yield PartRoute(point, piece_of(point, ROUTES), partial(_router, point, side))
+
+
+def _router(point: EntryPoint, side: PlantApi) -> Any:
+    return point.load()(side)

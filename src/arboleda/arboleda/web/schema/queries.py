@@ -56,6 +56,9 @@ def query_of(request: Request, model: type[Query]) -> Query:
 
 def wrong_parameter(found: Mapping[str, Any]) -> PayloadError:
     """The refusal of a part of an address, by what pydantic found wrong with it."""
+    if found["type"] == "json_invalid":
+        why, at = _begun(found["ctx"]["error"]), found["loc"][-1]
+        return PayloadError(f"The body is no JSON: {why}, at character {at}.")
     name = quoted(str(found["loc"][-1]), 80)
     if found["type"] == "missing":
         return PayloadError(f"{name} is missing; /api/docs says what to give.")
