@@ -10,6 +10,11 @@ from typing import Any
 
 import httpx
 import pytest
+from tests.chromium import people
+from tests.patience import PATIENCE_S
+from tests.system.conftest import Process, paths
+from tests.system.page import connected, running, show, until
+from tests.system.test_accessible import Eye, eye, views_from
 
 from arboleda.cli.client import PlantClient
 from arboleda.model.messages import Verb
@@ -17,12 +22,6 @@ from arboleda.recorder import reader
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import FOLDER, parts_in
 from arboleda.recorder.views import Views
-
-from ..chromium import people
-from ..patience import PATIENCE_S
-from .conftest import Process, paths
-from .page import connected, running, show, until
-from .test_accessible import Eye, eye, views_from
 
 __all__ = ["eye"]  # a fixture
 

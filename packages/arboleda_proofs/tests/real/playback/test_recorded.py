@@ -6,13 +6,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from tests.system.test_walk_back import Site
 from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
 from arboleda.recorder import reader
 from arboleda.recorder.files import FOLDER, parts_in
-
-from .test_walk_back import Site
 
 pytestmark = pytest.mark.system
 TASKS = "/api/tasks"
