@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.engine import reasons
+from arboleda.engine import why_waiting
 from arboleda.model.advice import Advice, Hand, in_words
 from arboleda.model.cell_states import CellState
 from arboleda.rig.hands import do
@@ -28,8 +28,8 @@ def follow(rig: Rig, cell: str) -> list[str]:
     done: list[str] = []
     while not _comes_to_work(rig, cell):
         ways = rig.plant.advice(cell)
-        assert ways, f"after {done} nothing is advised: {reasons.of_waiting(rig.plant.cells[cell])}"
-        assert len(done) < ENOUGH, f"{done} lead nowhere: {reasons.of_waiting(rig.plant.cells[cell])}"
+        assert ways, f"after {done} nothing is advised: {why_waiting(rig.plant.cells[cell])}"
+        assert len(done) < ENOUGH, f"{done} lead nowhere: {why_waiting(rig.plant.cells[cell])}"
         for each in _next_steps(ways):
             done.append(str(in_words(each)))
             assert each.refusal is None, f"{done[-1]} is advised first and refused: {each.refusal}"

@@ -10,7 +10,7 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.engine import Act, steps
+from arboleda.engine import RECOVERY, Act
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import Heartbeat, OperatorAnswer, Report, TaskChanged, TaskState, Verb
 from arboleda.rig.world import BRIDGE, World
@@ -114,7 +114,7 @@ def _step(node: Behaviour) -> Iterator[str]:
         yield "step: tried again"
     if node.name.startswith("try ") and node.name != "try 1":
         yield "step: gripped again"
-    if node.parent is not None and node.parent.name in (steps.RECOVERY, "carry back", "part back"):
+    if node.parent is not None and node.parent.name in (RECOVERY, "carry back", "part back"):
         yield f"recovery: {node.name}"
 
 

@@ -44,7 +44,8 @@ FILES = (
     *_files(OF_CLASS, "exercises/trial_run.py", "playground/*.py"),
     *_files(OF_PROOFS, "campaigns/*.py", "campaigns/proof/*.py", "simulator/findings.py"),
     *_files(OF_PROOFS, *(f"simulator/{folder}/*.py" for folder in SEEING)),
-    *_files(OF_MAKING, "drafts/*.py", "versions/desk.py", "trying/*.py", "proposals/*.py"),
+    *_files(OF_MAKING, "drafts/*.py", "trying/*.py", "proposals/*.py"),
+    *_files(OF_MAKING, *(f"versions/{name}.py" for name in ("change", "desk", "restart"))),
     *(
         file
         for file in _files(OF_MAKERS, "*/*.py")

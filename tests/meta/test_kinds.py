@@ -47,6 +47,7 @@ NAMED_AS_ROLES = {
     "dashboard/twin/parts.py",  # the twin of a cell of storage
     "dashboard/twin/scene.py",
     "dashboard/twin/twin.py",
+    "playback/incident.py",  # slots of sentences
     "simulator/invariants/rows.py",  # what only storage knows
     "simulator/invariants/screens.py",
 }

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from arboleda import extension
+
 from ..scripts import printed
 
 ROOT = Path(__file__).parents[2]
@@ -21,6 +23,7 @@ MODULES = [
         "arboleda.recipes",
         "arboleda.kinds",
         "arboleda.drivers",
+        "arboleda.engine",
         "arboleda.testing",
         "arboleda_fleet.client",
         "arboleda_make.client",
@@ -29,6 +32,10 @@ MODULES = [
     )
     if find_spec(name) and hasattr(importlib.import_module(name), "__all__")
 ]
+
+
+def test_the_door_for_packages_stays_small() -> None:
+    assert len(extension.__all__) <= 60
 
 
 def test_the_page_is_what_the_script_prints() -> None:

@@ -147,7 +147,7 @@ RECIPE_BUGS = (
     bug(
         HANDLES,
         "A command that gets in the way of a zone asks for none.",
-        "return steps.sequence(act.title, *zones, act) if zones else act",
+        "return sequence(act.title, *zones, act) if zones else act",
         "return act",
     ),
     bug(
@@ -165,7 +165,7 @@ RECIPE_BUGS = (
     bug(
         HOLDING,
         "Shared devices are not given back.",
-        "    return [*late, *steps.leave_devices(context, devices)]",
+        "    return [*late, *leave_devices(context, devices)]",
         "    return late",
     ),
     bug(

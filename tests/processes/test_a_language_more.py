@@ -25,8 +25,8 @@ from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import OWN
 from arboleda_proofs.playback.report.page import Report, page
 from arboleda_proofs.playback.report.tries import ForkTrial
-from arboleda.recorder.cause import Cause
-from arboleda.recorder.incident import Incident
+from arboleda_proofs.playback.cause import Cause
+from arboleda_proofs.playback.incident import Incident
 from arboleda_fleet.standby.waiting_room import waiting_page
 from arboleda.testing.plants import shipped
 from arboleda.web.access import login

@@ -17,7 +17,7 @@ from std_msgs.msg import String, UInt32
 
 from arboleda.adapters.rate_limit import RateLimit
 from arboleda.drivers import Command, Report, Robot
-from arboleda.model.errors import PayloadError
+from arboleda.extension import PayloadError
 from arboleda.model.messages import Heartbeat
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.wire import epochs, rejections

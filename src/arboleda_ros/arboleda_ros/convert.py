@@ -11,17 +11,27 @@ from typing import cast
 
 from std_msgs.msg import Float32MultiArray, MultiArrayDimension, String, UInt8
 
-from arboleda.drivers import Command, FollowPath, Home, MoveJoints, Robot, SetEffector, Stop, StopMode
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.declared import Device, VerbCall
-from arboleda.kinds.joints import Jointed
-from arboleda.kinds.mobile import Mobile
+from arboleda.drivers import (
+    Arm,
+    Command,
+    Device,
+    FollowPath,
+    Home,
+    Jointed,
+    Mobile,
+    MoveJoints,
+    Robot,
+    SetEffector,
+    Stop,
+    StopMode,
+    VerbCommand,
+)
+from arboleda.extension import PayloadError
 from arboleda.model.by_class import nearest
 from arboleda.model.counting import counted
-from arboleda.model.errors import PayloadError
-from arboleda.wire import order
 from arboleda.wire.hop import COMMAND, ORDER, PLAIN, kind_of, loses_its_id
-from arboleda.wire.status import (
+from arboleda_ros import order
+from arboleda_ros.labels import (
     from_heard_labels,
     from_label,
     from_token_labels,
@@ -34,7 +44,7 @@ COPY = "copy"  # the label of what the topic `command` carries, too; there, of w
 
 
 COMMANDS: dict[type[Robot], tuple[type[Command], ...]] = {
-    Device: (VerbCall, Stop),
+    Device: (VerbCommand, Stop),
     Jointed: (MoveJoints, Stop, Home),
     Arm: (MoveJoints, SetEffector, Stop, Home),
     Mobile: (FollowPath, Stop, Home),
@@ -58,7 +68,7 @@ def _topics(kind: type[Robot]) -> dict[str, type[Command]]:
 
 def message_type(kind: type[Command]) -> type:
     """The ROS 2 type of a plain command topic."""
-    if kind is VerbCall:
+    if kind is VerbCommand:
         return cast(type, String)
     return cast(type, Float32MultiArray if kind in (MoveJoints, FollowPath) else UInt8)
 
@@ -77,7 +87,7 @@ def command_message(
 
     `into`: an array of before that has been published, which is filled anew instead of making another.
     """
-    if isinstance(command, VerbCall):
+    if isinstance(command, VerbCommand):
         return String(data=order.write(command))
     if not loses_its_id(command):
         return _labelled(command.id, _values(command), *((COPY,) if copy else ()), into=into)
@@ -140,7 +150,7 @@ def command(kind: type[Command], robot: Robot, message: Float32MultiArray | UInt
     if isinstance(robot, Mobile) and kind is FollowPath:
         id, values = _unlabelled(message, robot.name)
         return FollowPath(id=id, robot=robot.name, nodes=_nodes(robot, values))
-    if isinstance(robot, Device) and kind is VerbCall:
+    if isinstance(robot, Device) and kind is VerbCommand:
         return order.read(robot, message.data)[0]
     if kind is SetEffector:
         return SetEffector(id="", robot=robot.name, on=bool(_one_of(message, (0, 1))))

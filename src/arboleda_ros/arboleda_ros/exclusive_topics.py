@@ -9,8 +9,8 @@ from typing import Any
 
 from rclpy.node import Node
 
+from arboleda.drivers import plain
 from arboleda.extension import StartError
-from arboleda.model.outside import plain
 
 _POLL_S = 0.02
 # Fast DDS answers a new node once, often too early, and announces itself again after 3 s

@@ -13,7 +13,7 @@ from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
 from arboleda.adapters.rate_limit import RateLimit
-from arboleda.model.errors import PayloadError
+from arboleda.extension import PayloadError
 from arboleda_ros import qos
 from arboleda_ros.exclusive_topics import ExclusiveTopics
 from arboleda_ros.speakers import Speakers

@@ -14,10 +14,8 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, String, UInt8, UInt32
 
-from arboleda.drivers import Command, Report, Robot
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.declared import Device
-from arboleda.model.errors import PayloadError
+from arboleda.drivers import Arm, Command, Device, Evidence, Report, Robot
+from arboleda.extension import PayloadError
 from arboleda.model.messages import (
     Event,
     Heartbeat,
@@ -27,12 +25,11 @@ from arboleda.model.messages import (
     TaskChanged,
     TaskRequest,
 )
-from arboleda.model.plant_model import Evidence, Link, PlantModel
+from arboleda.model.plant_model import Link, PlantModel
 from arboleda.model.sentence import in_json
-from arboleda.runtime import view_text
 from arboleda.views import view
 from arboleda.wire.hop import HEARTBEAT
-from arboleda_ros import qos, statuses
+from arboleda_ros import qos, statuses, view_text
 from arboleda_ros.command_topics import CommandTopics
 from arboleda_ros.diagnostics import Diagnostic, Diagnostics
 from arboleda_ros.plain_reports import PlainReports

@@ -7,10 +7,9 @@ import math
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, UInt8
 
-from arboleda.drivers import MotionState, Report, Robot
-from arboleda.kinds.mobile import Mobile
+from arboleda.drivers import Mobile, MotionState, Report, Robot
+from arboleda.extension import PayloadError
 from arboleda.model.counting import counted
-from arboleda.model.errors import PayloadError
 
 _AT_NODE = 0.125  # share of the pitch: a mobile farther from every node is between nodes
 

@@ -14,8 +14,7 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, UInt8
 
-from arboleda.drivers import MotionState, Report, Robot
-from arboleda.kinds.arm import Arm
+from arboleda.drivers import Arm, MotionState, Report, Robot
 from arboleda.wire.status import NUMBER, to_status, written_number
 
 Speak = Callable[..., Publisher]  # (type, topic), `alone` where nobody else may publish there

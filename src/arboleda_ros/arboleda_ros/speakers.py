@@ -1,4 +1,4 @@
-"""Publishers of each robot's reports, from the middleware, for the rule of `wire.speaker`."""
+"""Publishers of each robot's reports, from the middleware, for the rule of `speaker`."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from std_msgs.msg import UInt8
 from arboleda.drivers import MotionState, Report
 from arboleda.extension import Sentence
 from arboleda.model.messages import Event, Interference, Uncontested
-from arboleda.wire.speaker import Speaker
 from arboleda_ros import qos
 from arboleda_ros.exclusive_topics import UNNAMED, full_name
+from arboleda_ros.speaker import Speaker
 
 LOG = logging.getLogger("arboleda.ros.speakers")
 Handle = Callable[[Any], None]

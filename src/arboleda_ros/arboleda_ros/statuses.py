@@ -8,7 +8,7 @@ from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.serialization import deserialize_message
 
 from arboleda.drivers import Report, Robot
-from arboleda.model.errors import PayloadError
+from arboleda.extension import PayloadError
 from arboleda.wire.status import NUMBER, NUMBER_DIGITS, Status, from_status
 from arboleda.wire.strict import UINT32
 

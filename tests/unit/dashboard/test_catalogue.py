@@ -38,6 +38,7 @@ TOLD_BY = (
 
 
 def modules() -> Iterator[ModuleType]:
+    yield importlib.import_module("arboleda_ros.speaker")  # the one there with phrases; others need rclpy
     for name in (*(f"arboleda.{room}" for room in TOLD_BY), *PACKAGES):
         package = importlib.import_module(name)
         for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):

@@ -8,13 +8,13 @@ from typing import Any
 import pytest
 
 from arboleda.dispatch.belief import Belief
-from arboleda.dispatch.evidence import QUIET_S, Before, judge, strayed
+from arboleda.dispatch.evidence import Before, judge, strayed
 from arboleda.dispatch.ledger import Entry, Feed
 from arboleda.dispatch.stillness import ReportMoment
 from arboleda.kinds.joints import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import MotionState, Reason, Report
-from arboleda.model.plant_model import APART_S, Evidence
+from arboleda.model.plant_model import APART_S, QUIET_S, Evidence
 from arboleda.testing import shipped
 from arboleda.testing.storage_layout import StorageLayout
 

@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from arboleda.dispatch.belief import Belief
-from arboleda.dispatch.evidence import QUIET_S, Before, CommandVerdict, judge
+from arboleda.dispatch.evidence import Before, CommandVerdict, judge
 from arboleda.dispatch.ledger import Entry, Feed
 from arboleda.model.commands import Command, Motion, Process, Query, Switch
 from arboleda.model.facts import Facts, Value
 from arboleda.model.messages import MotionState, Reason, Report
-from arboleda.model.plant_model import Evidence, Link, Robot
+from arboleda.model.plant_model import QUIET_S, Evidence, Link, Robot
 
 MOVING, STOPPED = MotionState.MOVING, MotionState.STOPPED
 ID = "1-1"

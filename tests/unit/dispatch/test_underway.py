@@ -6,13 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.dispatch.evidence import QUIET_S
 from arboleda.dispatch.underway import PATIENCE_S, UnderWay, Unfinished, UnnamedCommands
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Switch
 from arboleda.model.messages import Report
-from arboleda.model.plant_model import Evidence
+from arboleda.model.plant_model import QUIET_S, Evidence
 from arboleda.testing import shipped
 from arboleda.testing.plants import shared
 from arboleda.testing.storage_layout import StorageLayout

@@ -15,10 +15,10 @@ from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.views import view
-from arboleda.wire import order
 from arboleda.wire.payloads import DEVICE, decode
 from arboleda.wire.status import from_status, to_status
 from arboleda.wire.topics import Channel
+from arboleda_ros import order
 
 from ..dashboard.conftest import LINKS
 from .lab import Bench

@@ -10,8 +10,8 @@ import pytest
 from std_msgs.msg import UInt8
 
 from arboleda.model.messages import MotionState, Uncontested
-from arboleda.wire.speaker import HOLD_S
 from arboleda_ros import speakers
+from arboleda_ros.speaker import HOLD_S
 
 TOPIC = "ra1/status"
 

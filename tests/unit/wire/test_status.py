@@ -17,16 +17,7 @@ from arboleda.model.sentence import OWN
 from arboleda.testing import shipped
 from arboleda.wire import rejections
 from arboleda.wire.board import DENIED
-from arboleda.wire.status import (
-    STALE,
-    Status,
-    from_label,
-    from_status,
-    from_token_labels,
-    to_label,
-    to_status,
-    to_token_label,
-)
+from arboleda.wire.status import STALE, Status, from_status, to_status
 
 ROBOTS = shipped("sis_a").robots
 UINT = st.integers(0, 2**32 - 1)
@@ -152,22 +143,6 @@ def test_whatever_the_values_the_answer_is_a_report_or_a_payload_error(values: d
     assert sentence.isprintable()
 
 
-def test_a_label_carries_a_command_id() -> None:
-    assert to_label("7-1") == "id=7-1"
-    assert from_label("id=7-1") == "7-1"
-
-
-@pytest.mark.parametrize("label", ["", "rows", "ID=7-1"])
-def test_a_label_of_somebody_else_is_no_id(label: str) -> None:
-    assert from_label(label) == ""
-
-
-@pytest.mark.parametrize("label", ["id=", "id=7 1", "id=" + "7" * 65])
-def test_a_broken_label_is_refused(label: str) -> None:
-    with pytest.raises(PayloadError, match="label"):
-        from_label(label)
-
-
 @pytest.mark.parametrize(
     "made_of",
     [
@@ -203,10 +178,3 @@ def test_what_a_sentence_is_made_of_is_read_up_to_2000_characters(characters: in
     values = {**status.values, "foreign_said": json.dumps(OBEYED.data()).ljust(characters)}
     report = from_status(0.0, ROBOTS["ra1"], replace(status, values=values))
     assert report.foreign == (OBEYED if read else OWN(text=str(OBEYED)))
-
-
-def test_a_token_is_one_of_the_further_labels_of_a_command() -> None:
-    assert from_token_labels(["copied", "heard=7", to_token_label("0a3f9x001a01")]) == "0a3f9x001a01"
-    assert from_token_labels(["heard=7"]) is None
-    with pytest.raises(PayloadError, match="token"):
-        from_token_labels(["token=of thirteen"])

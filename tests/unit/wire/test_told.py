@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from arboleda.model.errors import PayloadError
 from arboleda.testing import shipped
 from arboleda.wire.bridge import Bridge
-from arboleda.wire.status import Status, from_label, from_status
+from arboleda.wire.status import Status, from_status
 from arboleda.wire.transport import Delivery
 
 MODEL = shipped()
@@ -43,15 +43,5 @@ def test_of_a_status_on_ros(key: str, word: str, name: str) -> None:
             from_status(
                 0.0, robot, Status(name=said, hardware_id="ra_1", level=0, message="", values={key: word})
             )
-        except PayloadError as error:
-            assert plain(str(error))
-
-
-@given(word=ANY)
-@example(word="a" * 100_000)
-def test_of_a_label_on_ros(word: str) -> None:
-    for label in (word, f"id={word}"):
-        try:
-            assert plain(from_label(label))
         except PayloadError as error:
             assert plain(str(error))

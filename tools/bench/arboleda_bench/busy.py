@@ -17,9 +17,9 @@ from typing import Any
 from arboleda.extension import ArboledaError
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.plant_file.loader import load
-from arboleda.runtime import view_text
 from arboleda.runtime.build import App, Options, build
 from arboleda.views.diagnostics import Diagnostic
+from arboleda_ros import view_text
 
 from .played import Crew
 from .processes import own_memory

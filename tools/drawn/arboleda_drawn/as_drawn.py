@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 
 from arboleda.drivers import Command
+from arboleda.engine.inspection import tasks_of
 from arboleda.kinds.declared import VerbCall
 from arboleda.model.messages import OperatorRequest, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Cell
@@ -65,7 +66,7 @@ class DrawnTasks:
                 continue
             if look.truth.released(sent.robot):
                 continue  # an operator has it let go of what it holds
-            cell, tasks = look.world.model.cell(sent.entry.cell), look.world.plant.intake.tasks
+            cell, tasks = look.world.model.cell(sent.entry.cell), tasks_of(look.world.plant)
             task = tasks.get(look.record.tasks.running.get(cell.name, ""))
             if task is None or task.order.recipe not in self._names or sent.robot in _tools(cell):
                 continue
@@ -76,7 +77,7 @@ class DrawnTasks:
                 yield f"{task.id} tells {role} {verb} {values}, which no recipe has"
 
     def _ended(self, look: Look, change: TaskChanged) -> Iterator[str]:
-        cell, task = look.world.model.cell(change.cell or ""), look.world.plant.intake.tasks.get(change.task)
+        cell, task = look.world.model.cell(change.cell or ""), tasks_of(look.world.plant).get(change.task)
         sent = self._sent.pop(cell.name, [])
         if cell.name in look.record.tasks.running:  # the next one has begun in this step
             self._sent[cell.name] = [each for each in sent if each in look.record.commands.new]

@@ -13,8 +13,8 @@ from tests.patience import LONG_MS
 from tests.system.page import show
 from tests.system.test_accessible import SCREENS, VIEWS, Eye
 
+from arboleda.dashboard.lone_page import PARTS
 from arboleda.web.languages import contents
-from arboleda_class.playground.markup import PARTS
 from arboleda_class.playground.tab import Tab
 
 pytestmark = [

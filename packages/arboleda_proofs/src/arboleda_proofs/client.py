@@ -3,8 +3,7 @@ types, `Proofs(plant)`."""
 
 from __future__ import annotations
 
-from arboleda.client import Awaiting, Blocking, Routes, route
-from arboleda.client.calls import flow
+from arboleda.client import Awaiting, Blocking, Routes, flow, route
 from arboleda.client.line import LOOK_S
 
 from .answers import FaultList, ProvokedFault, TaskReport

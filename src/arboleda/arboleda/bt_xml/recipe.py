@@ -9,7 +9,7 @@ from itertools import chain
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.engine import Context, steps
+from arboleda.engine import Context, task
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Parameter, Recipe
@@ -158,7 +158,7 @@ def _built(name: str, forest: Forest, main: str, order: Order, devices: Devices)
             why = "which the tree changes while it runs; its way has to be known before"
             raise TreeError(f"{node.kind} is given the variable {quoted(key)}, {why}", node.place)
     work = held(context, Main(name, tree, context.failures, causes))
-    return steps.task(name, [work], context, notes_origins=True)
+    return task(name, [work], context, notes_origins=True)
 
 
 def _variable(value: object) -> float | int | str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from arboleda.model.packages import MAKE
 
-from .answers.plant import Snapshot
+from .answers.plant import Cell, Robot, Snapshot, Teaching
 from .answers.rows import Rows
 from .answers.tasks import KeptTask, Task
 from .errors import (
@@ -28,18 +28,23 @@ from .errors import (
 )
 
 if TYPE_CHECKING:
-    from .calls import Awaiting, Blocking, Routes, route
+    from .calls import Awaiting, Blocking, Route, Routes, flow, read_answer, route
+    from .line import Call, Line
+    from .methods import new_id
     from .plant import AsyncPlant, Plant
 
 __all__ = [
     "AsyncPlant",
     "Awaiting",
     "Blocking",
+    "Call",
+    "Cell",
     "Conflict",
     "Forbidden",
     "KeptTask",
     "Later",
     "LibraryMissing",
+    "Line",
     "MethodMissing",
     "NoAnswer",
     "NotFound",
@@ -47,16 +52,28 @@ __all__ = [
     "Plant",
     "PlantError",
     "Refusal",
+    "Robot",
+    "Route",
     "Routes",
     "Rows",
     "Snapshot",
     "StillRunning",
     "Task",
+    "Teaching",
     "Unauthorized",
     "WrongRequest",
+    "flow",
+    "new_id",
+    "read_answer",
     "route",
 ]
-CALLS = ("Awaiting", "Blocking", "Routes", "route")
+HOMES = {
+    "calls": ("Awaiting", "Blocking", "Route", "Routes", "flow", "read_answer", "route"),
+    "line": ("Call", "Line"),
+    "methods": ("new_id",),
+    "plant": ("AsyncPlant", "Plant"),
+}
+"""The modules that load once somebody asks for one of their names."""
 
 
 def __getattr__(name: str) -> Any:
@@ -65,6 +82,7 @@ def __getattr__(name: str) -> Any:
         from arboleda.host.packages import moved  # slow to load, and only needed here
 
         return moved(name, f"{__name__}.{name}", "arboleda_make.client", MAKE)
-    if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{'calls' if name in CALLS else 'plant'}"), name)
+    for home, names in HOMES.items():
+        if name in names:
+            return getattr(import_module(f"{__name__}.{home}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

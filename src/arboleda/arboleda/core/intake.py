@@ -28,7 +28,8 @@ CUT_OFF = Phrase(
 )
 Choose = Callable[[Sequence[Order]], tuple[Order, Sentence]]
 """Chooses one of the orders that a text allows, and says why."""
-HISTORY = 1000  # tasks remembered by id; more where more wait, since only ended tasks are forgotten
+HISTORY = 1000
+"""Tasks that a plant remembers by id; more where more wait, since it forgets only ended tasks."""
 
 
 class Intake:

@@ -13,6 +13,7 @@ from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Journal, OperatorRequest, Outcome, Verb
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.verb_scopes import PLANT, scope_of, whole
 from arboleda.model.verbs import Arguments, as_text, lasting
 
 from .acts import ENDED, Acts, OperatorAct, outcome_of
@@ -36,7 +37,7 @@ from .verbs.homing import Homing
 from .verbs.overriding import Overriding
 from .verbs.part_counts import PartCounts
 from .verbs.releasing import Releasing
-from .verbs.scopes import PLANT, Scopes, VerbRefusal, scope_of, whole
+from .verbs.scopes import Scopes, VerbRefusal
 from .verbs.stops import Stops, not_resettable
 from .verbs.taught_cells import BY_VERB, TEACHING_ENDED, TaughtCells, not_taught
 

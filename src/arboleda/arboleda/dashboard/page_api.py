@@ -12,6 +12,7 @@ if TYPE_CHECKING:  # without a record, the libraries that read one are not neede
 
 
 Layout = dict[str, Any]
+"""What never changes of a plant while it runs, as plain data: its cells, robots and recipes."""
 Links = dict[str, Any]
 Seen = tuple[float, dict[str, Any]]  # Unix time in seconds, and the snapshot that came then
 WAITING = 200  # snapshots that wait for a page, or between two frames; past that the oldest are dropped
@@ -37,10 +38,13 @@ class PageApi(PlantApi, Protocol):
         """The starts of which there are records, the last first; it waits for the disk, too."""
 
     def links(self) -> Links:
-        """`broker` {address, connected} or None, `ros` {notes} or None, `refused` {robot: {count, last}},
-        `standbys` [{host, url}], whose url is "" where it leads there from no other host, `demo`: whether a
-        demonstration gives tasks now, `memory` {typical_s, worst_s, is_slow}: how long commits take,
-        `faults` that were provoked and go on {number, robot, kind, about, left_s}."""
+        """The connections of the plant, and what goes on beside its tasks.
+
+        `broker` is {address, connected} or None, `ros` is {notes} or None, `refused` {robot: {count, last}}.
+        `standbys` are [{host, url}]; a url is "" where it leads there from no other host. `demo` is True
+        while a demonstration gives tasks. `memory` is {typical_s, worst_s, is_slow}, of its commits. `faults`
+        were provoked and go on: [{number, robot, kind, about, left_s}].
+        """
 
     def past_acts(self) -> list[dict[str, Any]]:
         """The acts of operators before this start, oldest first: {at (unix s), scope, sentence}."""

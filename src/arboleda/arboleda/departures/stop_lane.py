@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from arboleda.engine import UNSENT, scope_of, scopes
+from arboleda.engine import UNSENT
 from arboleda.model.commands import Stop, StopMode
 from arboleda.model.messages import OperatorAnswer, OperatorRequest
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.verb_scopes import scope_of, scopes
 
 from .leaving import STILL_WAITS, Unkept, done_unkept, stop_left, taken_up_later
 

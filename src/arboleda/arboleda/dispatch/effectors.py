@@ -14,7 +14,7 @@ from arboleda.model.sentence import BOTH, Phrase, Sentence
 from . import evidence
 from .belief import Belief
 from .evidence import Before
-from .fact_memory import FactMemory, Memory
+from .fact_memory import EMPTIED, FactMemory, Memory
 from .interference import Interferences
 from .ledger import Ledger
 
@@ -22,7 +22,6 @@ OPENED = Phrase("effector.opened", "{arm}: the effector opened while it held a p
 DEVICE_OPENED = Phrase("device.let_go", "{device} let go of the part that it held, {how}")
 UNBIDDEN = Phrase("effector.unbidden", "not commanded by this plant")
 AS_REBOOTED = Phrase("effector.as_rebooted", "as its board rebooted")
-EMPTIED = "true"
 
 
 class HandlingStep(Enum):

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from arboleda.model.commands import Command, Home, Motion, Position, Process, Query, Switch
 from arboleda.model.facts import Facts, Value, shown
 from arboleda.model.messages import Failure, MotionState, Reason, Report
-from arboleda.model.plant_model import APART_S, Evidence
+from arboleda.model.plant_model import APART_S, QUIET_S, Evidence
 from arboleda.model.sentence import Phrase, Sentence
 
 from .belief import Belief
@@ -28,7 +28,6 @@ REFUSALS: dict[str, Reason] = {
     "sin_ref": Reason.NOT_HOMED,
     "condicion": Reason.PRECONDITION,
 }
-QUIET_S = 0.3  # a telemetry period, in which a command gets to its robot, and APART_S for the answer
 OBJECTIONS = frozenset({MotionState.FAULT, MotionState.NOT_HOMED, MotionState.STOP_LATCHED})
 JITTER_S = APART_S  # two positions may arrive closer together by this than they were made
 

@@ -5,9 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from arboleda.model.commands import Command
+from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Notice, Remember
 
 Memory = Mapping[Fact, Mapping[str, str]]
+LATCHED, CLEARED = "on", "cleared"  # a stop: until it is cleared, then until its cell is reset
+DISPLACED = EMPTIED = "true"
+FACT_VALUES = {
+    Fact.LATCH: frozenset({LATCHED, CLEARED}),
+    Fact.EFFECTOR: frozenset(grip.value for grip in Grip),
+    Fact.DISPLACED: frozenset({DISPLACED}),
+    Fact.EMPTIED: frozenset({EMPTIED}),
+}
+"""The values that a fact may have. A quarantined zone has the name of a robot, which may be none of the plant
+file any more."""
 
 
 class FactMemory:

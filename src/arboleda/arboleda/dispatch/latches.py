@@ -6,10 +6,8 @@ from arboleda.model.commands import StopMode
 from arboleda.model.messages import Fact, MotionState
 
 from .belief import Belief
-from .fact_memory import FactMemory, Memory
+from .fact_memory import CLEARED, LATCHED, FactMemory, Memory
 from .outlet import Outlet
-
-LATCHED, CLEARED = "on", "cleared"  # a stop in the memory: until it is cleared, then until its cell is reset
 
 
 class Latches:

@@ -40,6 +40,7 @@ class Feed(str, Enum):
 
 
 OPEN = frozenset({State.SENT, State.RUNNING, State.CANCELLING})
+"""The states of a command that has not ended."""
 TABLE: dict[tuple[State, Feed], State] = {
     (State.SENT, Feed.ACCEPTED): State.RUNNING,
     (State.SENT, Feed.REJECTED): State.FAILED,

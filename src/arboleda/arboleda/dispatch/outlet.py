@@ -11,7 +11,8 @@ from arboleda.model.plant_model import Link
 from .belief import Belief
 from .underway import UnderWay, UnnamedCommands
 
-UNSENT = (Link.NONE, Link.SCREEN)  # nothing leaves the plant for these
+UNSENT = (Link.NONE, Link.SCREEN)
+"""The links over which nothing leaves the plant."""
 
 
 class Outlet:

@@ -6,9 +6,7 @@ from collections.abc import Callable, Collection
 
 from arboleda.model.commands import Command, Switch, Work
 from arboleda.model.messages import MotionState, Report
-from arboleda.model.plant_model import Cell, Evidence, PlantModel, Robot
-
-from .evidence import QUIET_S
+from arboleda.model.plant_model import QUIET_S, Cell, Evidence, PlantModel, Robot
 
 PATIENCE_S = 1.0  # an arm that is heard, and hears the plant, names the plant's last command within this
 MOST = 64  # commands per arm; whatever settles a later command settles those before it

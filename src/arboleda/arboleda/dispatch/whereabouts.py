@@ -8,11 +8,9 @@ from arboleda.model.plant_model import Pose, Workspace
 
 from .belief import Belief
 from .evidence import Before, came_back_at_zero, strayed
-from .fact_memory import FactMemory, Memory
+from .fact_memory import DISPLACED, FactMemory, Memory
 from .ledger import Ledger
 from .underway import UnderWay
-
-DISPLACED = "true"
 
 
 class Whereabouts:

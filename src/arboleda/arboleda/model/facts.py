@@ -9,6 +9,7 @@ Facts = tuple[tuple[str, Value], ...]
 HEALTH = "health"
 """The fact, a word, by which a robot's hardware reports what keeps it from moving; WELL for nothing."""
 WELL = "ok"
+"""The value of HEALTH of a robot that nothing keeps from moving."""
 
 
 def shown(value: Value) -> str:

@@ -28,6 +28,8 @@ PieceCheck = bool | Literal["auto"]
 
 APART_S = 0.2
 """Two telemetry periods: by how much a state and a position of one instant may come apart."""
+QUIET_S = 0.3
+"""A telemetry period, in which a command gets to its robot, and APART_S for the answer."""
 
 
 class Evidence(str, Enum):

@@ -114,9 +114,9 @@ class Recipe:
     cell works. `alone_called`: that role in sentences, where they exist in several languages. `part_from`:
     the group of targets at whose first one the part of a task waits; None where a robot brings it.
     `ends_with`: what is so once a task is done: the number of parts at a place, which a parameter may name,
-    the value of a fact, as ("reader.lid", "open"), or what a device answered last in this task, as
-    ("camera.look", "bad"). Of several such ends one is so. `source`: the hash of all files that it was
-    written in, by which a task that is kept finds the recipe changed; "" where nobody knows them.
+    or the value of a fact, as ("reader.lid", "open"). It may also be what a device answered last in this
+    task, as ("camera.look", "bad"). Of several such ends one is so. `source`: the hash of all files that it
+    was written in, by which a task that is kept finds the recipe changed; "" where nobody knows them.
     """
 
     name: str

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from arboleda.engine import QUIET_S
-from arboleda.model.plant_model import APART_S, Cell, Evidence, Robot, Timing
+from arboleda.model.plant_model import APART_S, QUIET_S, Cell, Evidence, Robot, Timing
 
 from .document import Document, Place
 

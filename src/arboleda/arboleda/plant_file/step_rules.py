@@ -14,7 +14,6 @@ from py_trees.common import ParallelPolicy
 from py_trees.decorators import Decorator
 
 from arboleda.engine import (
-    HOME_AGAIN,
     Act,
     Approach,
     Await,
@@ -22,7 +21,6 @@ from arboleda.engine import (
     Require,
     TakeDevices,
     Unless,
-    steps,
     title_of,
 )
 from arboleda.kinds.ranges import Range, Wanted, apart, is_so
@@ -46,6 +44,7 @@ from .walkthrough import (
     last_answer_key,
 )
 
+HOME_AGAIN, LEAVE_DEVICES = "step.home_again", "step.leave_devices"  # keys of titles
 MOST_MERGED = 64  # scenes of a parallel that are put together one by one
 
 
@@ -83,7 +82,7 @@ def _unless(walk: Walkthrough, node: Unless, scenes: Sequence[Scene]) -> Outcome
 
 def _await(walk: Walkthrough, node: Await, scenes: Sequence[Scene]) -> Outcome:
     title = title_of(node)
-    if title.key != steps.LEAVE_DEVICES.key:
+    if title.key != LEAVE_DEVICES:
         return _leaf(walk, node, scenes)
     return walk.given_back(cast("tuple[str, ...]", title.values["devices"]), scenes)
 
@@ -142,7 +141,7 @@ def _selector(walk: Walkthrough, node: composites.Selector, scenes: Sequence[Sce
     if question is not None:
         return _chosen(walk, node, question, scenes)
     title = title_of(node)
-    if title.key == HOME_AGAIN.key:
+    if title.key == HOME_AGAIN:
         (robot,) = map(str, title.values.values())
         return _gone_home(walk, node, robot, scenes)
     if not node.memory:

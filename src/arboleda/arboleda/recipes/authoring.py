@@ -20,7 +20,7 @@ from typing import Any
 
 from py_trees import common, composites
 
-from arboleda.engine import Context, Dwell, Require, Unless, steps, titled
+from arboleda.engine import Context, Dwell, Require, Unless, framed, selector, sequence, task, titled
 from arboleda.kinds.ranges import Wanted
 from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Failure, Reason
@@ -152,7 +152,7 @@ def _build(
     step = usable(function(Kit(context, making), **order.values), f"{name} returns", RETURNS)
     check_choices(step, making)
     called = title() if title else name
-    return steps.task(called, flat([held(context, step)]), context, notes_origins=True)
+    return task(called, flat([held(context, step)]), context, notes_origins=True)
 
 
 def _ends(name: str, ends_with: Mapping[str, Value] | Sequence[Mapping[str, Value]]) -> tuple[End, ...]:
@@ -269,7 +269,7 @@ def parallel(*parts: Step) -> Step:
     check_at_once(branches)
     policy = common.ParallelPolicy.SuccessOnAll(synchronise=True)  # else what is done would be done again
     node = composites.Parallel(str(PARALLEL()), policy=policy, children=branches)
-    return steps.framed(titled(node, PARALLEL()))
+    return framed(titled(node, PARALLEL()))
 
 
 class Kit(Offers):
@@ -371,11 +371,11 @@ class Kit(Offers):
 
         def branch(value: Wanted, way: Step | Sequence[Step]) -> Step:
             chosen = Unless(IS(answer=value_text(value)), partial(answers, value))
-            return steps.framed(steps.sequence(value_text(value), chosen, *flat([way], "choose")))
+            return framed(sequence(value_text(value), chosen, *flat([way], "choose")))
 
         branches = [branch(value, way) for value, way in wanted.items()]
         other_way = Require(NO_OTHER(), self._context.failures, other)
-        node = steps.framed(steps.selector(CHOOSE(), *branches, other_way))
+        node = framed(selector(CHOOSE(), *branches, other_way))
         node.asked = question  # type: ignore[attr-defined]
         if question.number is not None:
             node.ranges = tuple(wanted)  # type: ignore[attr-defined]
@@ -421,7 +421,7 @@ class Kit(Offers):
         """The steps in order until one does not fail; where all do, the failure of the last one counts."""
         *others, last = _several(parts, "fallback")
         forgiven = [Forgiven(each, self._context.failures) for each in others]
-        return steps.framed(steps.selector(FALLBACK(), *forgiven, last))
+        return framed(selector(FALLBACK(), *forgiven, last))
 
     def recover(self, work: Step | Sequence[Step], rescue: Step | Sequence[Step]) -> Step:
         """The work, and the rescue after work that fails.
@@ -430,7 +430,7 @@ class Kit(Offers):
         """
         tried = _one(work, "recover")
         rescued = Rescue(_one(rescue, "recover"), self._context.failures)
-        return steps.framed(steps.selector(RECOVER(), tried, rescued))
+        return framed(selector(RECOVER(), tried, rescued))
 
     def invert(self, step: Step) -> Step:
         """The step, which succeeds if it fails, and fails if it succeeds."""

@@ -19,11 +19,10 @@ from arboleda.engine import (
     Context,
     Failures,
     Keeps,
-    failure_kept,
-    read_failure,
     title_of,
     titled,
 )
+from arboleda.model.kept_failures import failure_kept, read_failure
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase, Sentence
 

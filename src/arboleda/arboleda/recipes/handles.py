@@ -11,7 +11,23 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.engine import Act, Await, Context, Leaf, Require, paths, steps, titled
+from arboleda.engine import (
+    Act,
+    Await,
+    Context,
+    Leaf,
+    Require,
+    follow,
+    go_home,
+    grip,
+    interlocked,
+    let_go,
+    sequence,
+    titled,
+    tour,
+    unchecked_grip,
+    visit_from_anywhere,
+)
 from arboleda.kinds.declared import Device, FactType, QueryCall, UseError
 from arboleda.kinds.person import PATIENCE_S, AskPerson, Person
 from arboleda.kinds.ranges import Range, Wanted, fact_wanted, is_so
@@ -29,6 +45,7 @@ from .errors import Offers, RecipeError
 from .sharing import check_holds_none
 
 Step = Behaviour
+"""A step of a recipe, which is a node of py_trees."""
 StepOf = TypeVar("StepOf", bound=Behaviour)
 Way = TypeVar("Way")
 LONGEST_QUESTION, LONGEST_ANSWER = 300, 60
@@ -222,11 +239,11 @@ class DeviceHandle(Handle):
                 return kind.command(id=id, robot=name, verb=verb, values=given)
 
             order = make("")  # raises UseError for wrong values at once
-            zones = steps.interlocked(self._context, order)
+            zones = interlocked(self._context, order)
             words = " ".join([verb, *map(shown, given.values())])
             if not isinstance(order, QueryCall):
                 act = self._of(Act(f"{name} {words}", self._context, make, DOING(order=words)))
-                return steps.sequence(act.title, *zones, act) if zones else act
+                return sequence(act.title, *zones, act) if zones else act
             question = Ask(f"{name} {words}", self._context, make, DOING(order=words))
             question.answers, question.by, question.asked = order.definition.answers, name, words
             if order.definition.number is not None:
@@ -300,8 +317,8 @@ class RobotHandle(Handle):
         pose = self._pose(target)
         there = flat(work, "visit")
         check_holds_none("a visit", there)
-        parts = steps.visit_from_anywhere(self._context, self._device.name, pose, there)
-        return self._of(steps.sequence(VISIT(pose=pose.sentence), *parts))
+        parts = visit_from_anywhere(self._context, self._device.name, pose, there)
+        return self._of(sequence(VISIT(pose=pose.sentence), *parts))
 
     def tour(self, *stops: str | Pick | Place) -> Step:
         """Go from target to target, take hold and let go there, and stay at the last target.
@@ -315,15 +332,15 @@ class RobotHandle(Handle):
             why = f"{zone_plan.lying(poses[-1])}; it waits there" if poses else "it has no stops"
             raise RecipeError(f"{name}: a tour has to end outside all zones, and {why}")
         visits = [(pose, self._work(stop, pose)) for stop, pose in zip(stops, poses, strict=True)]
-        return self._of(chain(TOUR(), steps.tour(self._context, name, visits)))
+        return self._of(chain(TOUR(), tour(self._context, name, visits)))
 
     def _work(self, stop: str | Pick | Place, pose: Pose) -> list[Step]:
         if isinstance(stop, str):
             return []
         check = self._context.cell.piece_check if stop.check is None else stop.check
         if isinstance(stop, Pick):
-            return steps.grip(self._context, self._device.name, pose, check=check)
-        return steps.let_go(self._context, self._device.name, check=check)
+            return grip(self._context, self._device.name, pose, check=check)
+        return let_go(self._context, self._device.name, check=check)
 
     def follow(self, path: str) -> Step:
         """Drive over a path of the cell, by its code; before that to its start, where the cell allows it."""
@@ -331,24 +348,22 @@ class RobotHandle(Handle):
         codes = [each.code for each in space.paths]
         if path not in codes:
             raise RecipeError(f"{self._device.name} has no path {quoted(path)}; {among(path, codes)}")
-        follow = paths.follow(self._context, self._device.name, space.path(path))
-        return self._of(chain(FOLLOW(path=path), follow))
+        return self._of(chain(FOLLOW(path=path), follow(self._context, self._device.name, space.path(path))))
 
     def home(self) -> Step:
         """Go to the target where the robot waits."""
-        home = self._context.cell.reach[self._device.name].home
-        parts = steps.visit_from_anywhere(self._context, self._device.name, home, [])
-        return self._of(steps.sequence(steps.GO_HOME(), *parts))
+        return self._of(go_home(self._context, self._device.name))
 
     def grip(self) -> Step:
         """Take hold of a part."""
         hand = self._context.cell.workspaces[self._device.name].hand
         hand.grip(id="")  # raises an error at once if the hand cannot grip
-        return self._of(steps.unchecked_grip(self._context, self._device.name))
+        return self._of(unchecked_grip(self._context, self._device.name))
 
     def let_go(self) -> Step:
         """Let go of the part."""
-        return self._of(steps.effector(self._context, self._device.name, on=False))
+        (off,) = let_go(self._context, self._device.name, check=False)
+        return self._of(off)
 
     def brings_back_to(self, target: str) -> None:
         """Have a recovery bring the robot's part to this target, and not to where the part was taken."""

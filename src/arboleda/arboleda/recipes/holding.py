@@ -11,7 +11,16 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.decorators import Decorator
 
-from arboleda.engine import Context, TakeDevices, TakeZones, steps
+from arboleda.engine import (
+    Context,
+    TakeDevices,
+    TakeZones,
+    framed,
+    is_frame,
+    leave_devices,
+    sequence,
+    take_devices,
+)
 from arboleda.model.sentence import Phrase
 
 from .decorators import Again, Forgiven, Inverted
@@ -46,7 +55,7 @@ def held(context: Context, step: Behaviour) -> Behaviour:
     if _is_work(step):
         _hold_in(context, step)
         return step
-    return steps.framed(steps.sequence(WORK(), *_hold(context, outside, [step])))
+    return framed(sequence(WORK(), *_hold(context, outside, [step])))
 
 
 def _take_late(step: Behaviour, take: Take) -> bool:
@@ -98,8 +107,8 @@ def _hold_in(context: Context, work: Behaviour) -> None:
 
 def _hold(context: Context, devices: frozenset[str], parts: Sequence[Behaviour]) -> list[Behaviour]:
     """The steps, with the devices taken before the first use among them and given back after all of them."""
-    late, _ = _late(parts, partial(steps.take_devices, context, devices))
-    return [*late, *steps.leave_devices(context, devices)]
+    late, _ = _late(parts, partial(take_devices, context, devices))
+    return [*late, *leave_devices(context, devices)]
 
 
 def _groups(context: Context, parts: Sequence[Behaviour]) -> list[_Group]:
@@ -157,7 +166,7 @@ def _may_stay_in_zones(step: Behaviour) -> bool:
 
 def _goes_on_after_failure(step: Behaviour) -> bool:
     if isinstance(step, Again):  # the next try may take another branch
-        return any(isinstance(each, composites.Selector) and steps.is_frame(each) for each in step.iterate())
+        return any(isinstance(each, composites.Selector) and is_frame(each) for each in step.iterate())
     return isinstance(step, Forgiven | Inverted)
 
 
@@ -166,17 +175,17 @@ def _takes_zones(step: Behaviour) -> bool:
 
 
 def _is_work(step: Behaviour) -> bool:
-    return isinstance(step, composites.Sequence) and steps.is_frame(step)
+    return isinstance(step, composites.Sequence) and is_frame(step)
 
 
 def _is_open(step: Behaviour) -> bool:
     """True for a step between whose parts another step may be inserted."""
     several = composites.Sequence | composites.Selector | composites.Parallel | Decorator
-    return isinstance(step, several) and steps.is_frame(step)
+    return isinstance(step, several) and is_frame(step)
 
 
 def _one(parts: Sequence[Behaviour]) -> Behaviour:
-    return parts[0] if len(parts) == 1 else steps.framed(steps.sequence(WORK(), *parts))
+    return parts[0] if len(parts) == 1 else framed(sequence(WORK(), *parts))
 
 
 def _replace(step: Behaviour, parts: Collection[Behaviour]) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.engine import Context, TakeDevices, steps
+from arboleda.engine import Context, TakeDevices, framed, leave_devices, sequence, take_devices
 from arboleda.model.sentence import Phrase
 
 from .errors import RecipeError
@@ -22,8 +22,8 @@ def using(context: Context, devices: frozenset[str], parts: Sequence[Behaviour])
         those = ", ".join(sorted(devices))
         raise RecipeError(f"using({those}) tells {missing[0]} something; name it there, too")
     check_holds_none("another using", parts)
-    within = steps.with_devices(context, devices, parts)
-    return steps.framed(steps.sequence(USING(devices=tuple(sorted(devices))), *within))
+    within = (take_devices(context, devices), *parts, *leave_devices(context, devices))
+    return framed(sequence(USING(devices=tuple(sorted(devices))), *within))
 
 
 def check_holds_none(where: str, parts: Sequence[Behaviour]) -> None:

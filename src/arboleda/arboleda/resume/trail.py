@@ -17,10 +17,11 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.model.commands import Position
+from arboleda.model.kept_failures import failure_kept, read_failure
 from arboleda.model.messages import Check, Failure, Receipt, TaskAnswer
 from arboleda.model.sentence import Sentence, retold
 from arboleda.trees.cell_robots import Planned
-from arboleda.trees.node_state import Keeps, failure_kept, read_failure
+from arboleda.trees.node_state import Keeps
 
 VERSION = 3
 STATUS_WORD, FIRST = attrgetter("status._value_"), itemgetter(0)  # `value` takes several times as long

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.engine import CLEARED, DISPLACED, EMPTIED, HISTORY, LATCHED, unsettled
+from arboleda.engine import FACT_VALUES, HISTORY, unsettled
 from arboleda.model.errors import StartError
-from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Failure, KeptTask, Reason, TaskState
 from arboleda.model.outside import quoted
 from arboleda.store.plant_memory import PlantMemory
@@ -21,18 +20,11 @@ from arboleda.store.task_rows import (
     unchecked_of,
 )
 
-MEANS = {  # a quarantined zone has the name of a robot, which may be none of the plant file any more
-    Fact.LATCH: frozenset({LATCHED, CLEARED}),
-    Fact.EFFECTOR: frozenset(grip.value for grip in Grip),
-    Fact.DISPLACED: frozenset({DISPLACED}),
-    Fact.EMPTIED: frozenset({EMPTIED}),
-}
-
 
 def remembered(store: PlantMemory) -> dict[Fact, dict[str, str]]:
     """Name to value by kind of fact; StartError if a value is unreadable: it may have been a latch."""
     facts = {fact: store.facts(fact) for fact in Fact}
-    for fact, allowed in MEANS.items():
+    for fact, allowed in FACT_VALUES.items():
         for name, value in facts[fact].items():
             if value not in allowed:
                 what = f"{quoted(value)} as {fact.value} of {quoted(name)}, which means nothing"

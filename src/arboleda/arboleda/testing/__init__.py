@@ -18,13 +18,16 @@ if TYPE_CHECKING:
     from arboleda.rig.rig import Rig
 
     from .plants import shipped, slowed
+    from .storage_layout import Palletizing, StorageLayout
     from .with_parts import PlantWith
 
-__all__ = ["PlantWith", "Rig", "faults", "shipped", "slowed"]
+__all__ = ["Palletizing", "PlantWith", "Rig", "StorageLayout", "faults", "shipped", "slowed"]
 
 HOMES = {
+    "Palletizing": f"{__name__}.storage_layout",
     "PlantWith": f"{__name__}.with_parts",
     "Rig": "arboleda.rig.rig",
+    "StorageLayout": f"{__name__}.storage_layout",
     "shipped": f"{__name__}.plants",
     "slowed": f"{__name__}.plants",
 }

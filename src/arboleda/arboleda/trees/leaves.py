@@ -61,6 +61,7 @@ Guard = Callable[[], "Failure | None"]
 RETRYABLE = frozenset(
     {Reason.LINK_LOST, Reason.REJECTED, Reason.DEADLINE, Reason.STOPPED_SHORT, Reason.NOT_REACHED}
 )
+"""The reasons after which a command may be given once more."""
 
 
 def titled(node: Behaviour, title: Sentence | str) -> Behaviour:

@@ -1,4 +1,4 @@
-"""State of a tree's nodes that is kept for the next start, with their last commands and failures."""
+"""State of a tree's nodes that is kept for the next start, with their last commands."""
 
 from __future__ import annotations
 
@@ -10,8 +10,6 @@ from py_trees.common import Status
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.by_class import nearest
 from arboleda.model.commands import Command, Motion, Query, Switch, Work
-from arboleda.model.messages import Failure, Reason
-from arboleda.model.sentence import retold
 
 MOTION, PROCESS, SWITCH, QUERY, OTHER = "motion", "process", "switch", "query", "other"
 EFFECTS = {Motion: MOTION, Work: PROCESS, Switch: SWITCH, Query: QUERY, Command: OTHER}
@@ -52,13 +50,3 @@ def command_kept(entry: Entry | None) -> dict[str, Any] | None:
         "number": entry.number,
         "done": entry.state is State.DONE,
     }
-
-
-def failure_kept(failure: Failure) -> Any:
-    """A failure as it is kept."""
-    return [failure.reason.value, str(failure.sentence), failure.sentence.data()]
-
-
-def read_failure(reason: str, english: str, data: Any) -> Failure:
-    """A failure as it was kept."""
-    return Failure(reason=Reason(reason), sentence=retold(english, data))

@@ -39,6 +39,7 @@ from .leaves import (
 )
 
 MAIN, RECOVERY = PHASES = ("main", "recovery")
+"""The name of a part of a task's tree: its work, and its recovery."""
 TITLES = {name: Phrase(f"step.{name}", name) for name in PHASES}
 ANNOUNCE = Phrase("step.announce", "announce")
 SYSTEM_START = Phrase("step.system_start", "system start")
@@ -130,10 +131,12 @@ def recovery(context: Context, *, notes_origins: bool = False) -> Behaviour:
 
 
 def sequence(title: Sentence | str, *children: Behaviour) -> Behaviour:
+    """The steps one after the other, until one fails; where it was is kept from tick to tick."""
     return titled(composites.Sequence(str(title), memory=True, children=list(children)), title)
 
 
 def selector(title: Sentence | str, *children: Behaviour) -> Behaviour:
+    """The steps one after the other, until one succeeds; where it was is kept from tick to tick."""
     return titled(composites.Selector(str(title), memory=True, children=list(children)), title)
 
 
@@ -144,6 +147,7 @@ def framed(node: Behaviour) -> Behaviour:
 
 
 def is_frame(node: Behaviour) -> bool:
+    """True for a node of `framed`."""
     return getattr(node, "frame", False)
 
 
@@ -210,17 +214,17 @@ def interlocked(context: Context, command: Command) -> list[Behaviour]:
     return [_take(context, command.robot, zones)] if zones else []
 
 
-def with_devices(context: Context, devices: frozenset[str], parts: Sequence[Behaviour]) -> list[Behaviour]:
-    """The steps, with shared devices held from before the first of them until after the last.
+def go_home(context: Context, robot: str) -> Behaviour:
+    """Go to the pose where a robot waits, planned when the step begins."""
+    return sequence(GO_HOME(), *visit_from_anywhere(context, robot, context.cell.reach[robot].home, []))
+
+
+def take_devices(context: Context, devices: frozenset[str]) -> Behaviour:
+    """Wait until the cell has these shared devices, all at once.
 
     Devices are taken before any zone. So a cell that waits for a device has no robot in a zone, a cell whose
     robots hold zones asks for no device, and nobody waits in a ring.
     """
-    return [take_devices(context, devices), *parts, *leave_devices(context, devices)]
-
-
-def take_devices(context: Context, devices: frozenset[str]) -> Behaviour:
-    """Wait until the cell has these shared devices, all at once."""
     return TakeDevices(TAKE_DEVICES(devices=tuple(sorted(devices))), context, devices)
 
 
@@ -236,8 +240,7 @@ def leave_devices(context: Context, devices: frozenset[str]) -> list[Behaviour]:
 
     def home(robot: str) -> Behaviour:
         there = Unless(AT_HOME(), lambda: not access.holds(robot) or access.hand_over.is_home(robot))
-        steps_home = visit_from_anywhere(context, robot, context.cell.reach[robot].home, [])
-        return selector(HOME_AGAIN(arm=robot), there, sequence(GO_HOME(), *steps_home))
+        return selector(HOME_AGAIN(arm=robot), there, go_home(context, robot))
 
     homes = [home(robot) for robot in named if robot in context.cell.reach]
     holders = [robot.name for robot in context.cell.robots if robot.held_fact is not None]

@@ -7,7 +7,7 @@ from enum import Enum
 from functools import reduce
 from typing import Any
 
-from arboleda.engine import AWAY, CellRun, Plant, reasons
+from arboleda.engine import AWAY, CellRun, Plant, why_waiting
 from arboleda.model.advice import in_words
 from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Question
@@ -148,7 +148,7 @@ def _why(run: CellRun) -> Sentence:
         ASKED(person=each.robot, cell=run.cell.name, question=OWN(text=each.text)) for each in _questions(run)
     ]
     if not questions:
-        return reasons.of_waiting(run) or NOTHING
+        return why_waiting(run) or NOTHING
     return reduce(lambda first, second: BOTH(first=first, second=second), questions)
 
 

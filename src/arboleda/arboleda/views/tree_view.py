@@ -11,7 +11,7 @@ from py_trees.common import Status
 
 from arboleda.engine import (
     MAIN,
-    PHASES,
+    RECOVERY,
     Act,
     Announce,
     Await,
@@ -90,7 +90,7 @@ def _add(node: Behaviour, path: str, now: float, found: Rows) -> None:
         {
             "path": path or ROOT,
             "name": title_of(node),
-            "phase": node.name if node.name in PHASES else None,
+            "phase": node.name if node.name in (MAIN, RECOVERY) else None,
             "kind": sign,
             "frame": getattr(node, "frame", False),
             "status": WORDS[status],

@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
-from arboleda.engine import Belief, CellRun, Entry, OperatorAct, Plant, reasons, step_of
+from arboleda.engine import Belief, CellRun, Entry, OperatorAct, Plant, step_of, why_held, why_waiting
 from arboleda.model.advice import BY_HAND, Advice, Hand, in_words, sentence
 from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Question
@@ -232,10 +232,10 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
         "progress": tree_view.progress_of(cell.tree),
         "queue": [task.id for task in cell.queue],
         "paused": cell.queue.paused,
-        "waiting_for": reasons.of_waiting(cell) if cell.queue else None,
+        "waiting_for": why_waiting(cell) if cell.queue else None,
         "not_ready": _not_ready(cell, ways),
         "blocked_by": _blocked_by(plant, cell),
-        "held_by": reasons.of_hold(cell),
+        "held_by": why_held(cell),
         "advice": [_advice(each) for each in ways],
         "refused": _refused(plant, cell.cell.name, OF_CELLS),
         "tree": tree_view.rows(cell.tree, now) if cell.tree else [],

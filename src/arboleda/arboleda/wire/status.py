@@ -1,4 +1,4 @@
-"""A Report as `/{robot}/status` carries it, and the label that carries a command id over ROS 2.
+"""A Report as `/{robot}/status` carries it over ROS 2.
 
 The values are strings: integers in decimal, `q` in rad or m separated by commas, flags as true or false,
 facts and answers of devices as JSON. A field that the robot did not report has no key. Unknown keys are
@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from arboleda.model.errors import PayloadError
@@ -26,9 +26,6 @@ from .rejections import FOREIGN_PHRASES
 from .strict import UINT32
 
 OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
-_LABEL = "id="
-_HEARD = "heard="
-_TOKEN = "token="
 NUMBER = "number"  # the last key of a status, except for those on foreign commands
 NUMBER_DIGITS = len(str(UINT32))
 _FLOAT = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", re.ASCII)
@@ -84,45 +81,6 @@ def from_status(at: float, robot: Robot, status: Status) -> Report:
     return report
 
 
-def to_label(command_id: str) -> str:
-    """The label of a command, `layout.dim[0].label`: `id=<command id>`."""
-    return _LABEL + command_id
-
-
-def from_label(label: str) -> str:
-    """The command id of a label; "" for another label, PayloadError for an invalid id."""
-    if not label.startswith(_LABEL):
-        return ""
-    return command_id("label", label[len(_LABEL) :])
-
-
-def to_heard_label(number: int) -> str:
-    """The label of the last telemetry that the plant had heard: `heard=<number>`."""
-    return f"{_HEARD}{number}"
-
-
-def from_heard_labels(labels: Iterable[str]) -> int | None:
-    """The number in the `heard` label, None if there is no such label; PayloadError for an invalid number."""
-    number = _after(_HEARD, labels)
-    return None if number is None else _count("heard", number)
-
-
-def to_token_label(token: str) -> str:
-    """The label of the token that the board is to echo: `token=<token>`."""
-    return f"{_TOKEN}{token}"
-
-
-def from_token_labels(labels: Iterable[str]) -> str | None:
-    """The token in the `token` label, None if there is no such label; PayloadError for an invalid token."""
-    token = _after(_TOKEN, labels)
-    return None if token is None else _token(token)
-
-
-def _after(prefix: str, labels: Iterable[str]) -> str | None:
-    """The text behind this prefix in the first label that has it; None where none has."""
-    return next((label.removeprefix(prefix) for label in labels if label.startswith(prefix)), None)
-
-
 def _name(robot: Robot) -> str:
     return f"arboleda: {robot.name}"
 
@@ -170,7 +128,8 @@ def _said(key: str, values: Mapping[str, str]) -> Sentence | None:
     return OWN(text=text)
 
 
-def _count(key: str, text: str) -> int:
+def count(key: str, text: str) -> int:
+    """The number, if it is valid; raises PayloadError otherwise."""
     if not _COUNT.fullmatch(text) or int(text) > UINT32:
         raise PayloadError(f"{key} is {quoted(text)}; an integer of 0 to {UINT32} is needed")
     return int(text)
@@ -178,7 +137,7 @@ def _count(key: str, text: str) -> int:
 
 def _state(key: str, text: str) -> MotionState:
     try:
-        return MotionState(_count(key, text))
+        return MotionState(count(key, text))
     except ValueError:
         allowed = ", ".join(str(state.value) for state in MotionState)
         raise PayloadError(f"{key} is {quoted(text)}; allowed: {allowed}") from None
@@ -219,20 +178,21 @@ def _in_json(key: str, text: str) -> object:
 
 def _receipt(key: str, text: str) -> Receipt:
     epoch, accepted, *done = text.split(",")[:3] if text.count(",") in (1, 2) else ("", "")
-    return Receipt(_count(key, epoch), _count(key, accepted), _count(key, done[0]) if done else None)
+    return Receipt(count(key, epoch), count(key, accepted), count(key, done[0]) if done else None)
 
 
-def _token(text: str) -> str:
+def token(text: str) -> str:
+    """The token, if it is valid; raises PayloadError otherwise."""
     return strict.name("token", text, strict.LONGEST_TOKEN)
 
 
 def _tokens(key: str, text: str) -> Tokens:
     accepted, _, done = text.partition(",")
-    return Tokens(*[_token(each) if each else None for each in (accepted, done)])
+    return Tokens(*[token(each) if each else None for each in (accepted, done)])
 
 
 def _write_tokens(tokens: Tokens) -> str:
-    return ",".join(token or "" for token in tokens)
+    return ",".join(each or "" for each in tokens)
 
 
 def _write_receipt(receipt: Receipt) -> str:
@@ -261,9 +221,9 @@ def _write_flag(value: bool) -> str:
 
 
 _ROWS: dict[str, tuple[str, Callable[[str, str], object], Callable[..., str]]] = {
-    "epoch": ("epoch", _count, str),
-    "plant": ("plant", _count, str),
-    "boot_id": ("boot_id", _count, str),
+    "epoch": ("epoch", count, str),
+    "plant": ("plant", count, str),
+    "boot_id": ("boot_id", count, str),
     "accepted": ("accepted", command_id, str),
     "done": ("done", command_id, str),
     "rejected": ("rejected", command_id, str),
@@ -274,15 +234,15 @@ _ROWS: dict[str, tuple[str, Callable[[str, str], object], Callable[..., str]]] =
     "answer": ("answer", _answer, strict.to_json),
     "state": ("state", _state, _write_state),
     "q": ("q", _joints, _write_joints),
-    "node": ("node", _count, str),
+    "node": ("node", count, str),
     "homed": ("homed", _flag, _write_flag),
     "effector": ("effector", _flag, _write_flag),
     "piece": ("piece", _flag, _write_flag),
     "facts": ("facts", _facts, _write_facts),
     "receipt": ("receipt", _receipt, _write_receipt),
     "tokens": ("tokens", _tokens, _write_tokens),
-    "foreign_refused": ("foreign_refused", _count, str),
-    "foreign_obeyed": ("foreign_obeyed", _count, str),
-    NUMBER: ("number", _count, written_number),
+    "foreign_refused": ("foreign_refused", count, str),
+    "foreign_obeyed": ("foreign_obeyed", count, str),
+    NUMBER: ("number", count, written_number),
 }
 """Key of the status -> (field of the Report, how it is read, how it is written)."""

@@ -8,9 +8,9 @@ from arboleda_interfaces.msg import Task
 from arboleda_interfaces.srv import CellCommand, SubmitTask
 from rclpy.node import Node
 
+from arboleda.drivers import quoted
 from arboleda.model.advice import BY_HAND
 from arboleda.model.messages import TaskState, Verb
-from arboleda.model.outside import quoted
 from arboleda.views import view
 from arboleda_ros.plant_queries import Asker, NoAnswer
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from arboleda.kinds.arm import Arm
+from arboleda.drivers import Arm
 from arboleda.wire import strict
 from arboleda.wire.payloads import MAX_ANGLE_DEG, REFUSALS
 from arboleda.wire.topics import Channel

@@ -8,8 +8,7 @@ from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from arboleda.model.errors import PayloadError
-from arboleda.model.plant_model import Evidence
+from arboleda.drivers import Evidence, PayloadError
 from arboleda.wire.topics import Channel, parse
 from arboleda.wire.transport import Delivery
 

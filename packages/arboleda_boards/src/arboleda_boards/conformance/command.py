@@ -10,11 +10,9 @@ from rich.text import Text
 
 from arboleda.adapters.broker_login import MQTT_PORT, Credentials, address, login
 from arboleda.cli.language import allowed, finding, say_error
-from arboleda.cli.plant_options import PlantFile
-from arboleda.drivers import Robot
-from arboleda.extension import Phrase, Sentence, StartError, say
-from arboleda.model.outside import quoted
-from arboleda.model.plant_model import Evidence, Link, PlantModel
+from arboleda.drivers import Evidence, Robot, quoted
+from arboleda.extension import Phrase, PlantFile, Sentence, StartError, say
+from arboleda.model.plant_model import Link, PlantModel
 from arboleda.plant_file import loader
 
 if TYPE_CHECKING:

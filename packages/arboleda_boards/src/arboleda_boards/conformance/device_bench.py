@@ -7,9 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice, product
 
-from arboleda.drivers import MotionState
-from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, VerbCall
-from arboleda.model.facts import Facts, Value
+from arboleda.drivers import Device, DeviceKind, DeviceVerb, Effect, Facts, MotionState, Value, VerbCommand
 from arboleda.wire.payloads import DEVICE, Telemetry, decode
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery
@@ -54,7 +52,7 @@ class DeviceBench(Bench[DeviceTelemetry]):
         return self.last.firm if self.reports else ()
 
     def order(
-        self, command: VerbCall, *, seq: int | None = None, epoch: int | None = None, **body: int | str
+        self, command: VerbCommand, *, seq: int | None = None, epoch: int | None = None, **body: int | str
     ) -> Send:
         """The order of a verb with its values."""
         values = {"valores": dict(command.values)} if command.values else {}
@@ -64,15 +62,15 @@ class DeviceBench(Bench[DeviceTelemetry]):
         """True if its last report has all of these facts."""
         return all(self.facts.get(name) == value for name, value in facts)
 
-    def way(self, wanted: Callable[[VerbCall], bool]) -> list[VerbCall] | None:
+    def way(self, wanted: Callable[[VerbCommand], bool]) -> list[VerbCommand] | None:
         """The shortest row of orders that ends in one that is wanted, as the kind declares what each sets
         and needs; one that changes a fact rather than one that changes none. None: there is no way."""
         changing = self._search(lambda command, facts: wanted(command) and not _so(facts, command.sets))
         return changing or self._search(lambda command, facts: wanted(command))
 
-    def _search(self, wanted: Callable[[VerbCall, dict[str, Value]], bool]) -> list[VerbCall] | None:
+    def _search(self, wanted: Callable[[VerbCommand, dict[str, Value]], bool]) -> list[VerbCommand] | None:
         first = self.facts or {name: type.first for name, type in self.kind.facts.items()}
-        visited, ahead = {_frozen(first)}, deque([(first, list[VerbCall]())])
+        visited, ahead = {_frozen(first)}, deque([(first, list[VerbCommand]())])
         while ahead and len(visited) < MOST_STATES:
             facts, row = ahead.popleft()
             for command in self._possible(facts):
@@ -84,7 +82,7 @@ class DeviceBench(Bench[DeviceTelemetry]):
                     ahead.append((after, [*row, command]))
         return None
 
-    def _possible(self, facts: dict[str, Value]) -> Iterator[VerbCall]:
+    def _possible(self, facts: dict[str, Value]) -> Iterator[VerbCommand]:
         return (
             command
             for verb in self.kind.verbs.values()
@@ -121,16 +119,16 @@ class DeviceBench(Bench[DeviceTelemetry]):
         return type is None or type.type is not float or bool(type.words)
 
 
-def commands(kind: DeviceKind, verb: DeviceVerb) -> Iterator[VerbCall]:
+def commands(kind: DeviceKind, verb: DeviceVerb) -> Iterator[VerbCommand]:
     """A verb with samples of its values."""
     names = [name for name, _ in verb.parameters]
     for values in islice(product(*(type.samples for _, type in verb.parameters)), MOST_VALUES):
         command = kind.command(id="", robot="", verb=verb.name, values=dict(zip(names, values, strict=True)))
-        assert isinstance(command, VerbCall)
+        assert isinstance(command, VerbCommand)
         yield command
 
 
-def is_work(command: VerbCall) -> bool:
+def is_work(command: VerbCommand) -> bool:
     """True if an order is a motion or a process."""
     return command.definition.effect in WORK
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from arboleda.kinds.declared import Effect, UseError, VerbCall
+from arboleda.drivers import Effect, UseError, VerbCommand
 from arboleda.wire.topics import Channel
 
 from .bench import MOVING, CheckSkipped, Send, Steps, Wait
@@ -60,7 +60,7 @@ def verbs(bench: DeviceBench) -> Steps:
         yield from carry_out(bench, (yield from lead_to(bench, _calls(verb.name), lacking)))
 
 
-def _calls(verb: str) -> Callable[[VerbCall], bool]:
+def _calls(verb: str) -> Callable[[VerbCommand], bool]:
     return lambda command: command.verb == verb
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.kinds.declared import Effect, VerbCall
+from arboleda.drivers import Effect, VerbCommand
 from arboleda.wire.topics import Channel
 
 from .bench import LATCHED, MOVING, CheckFailed, CheckSkipped, Send, Steps, Wait
@@ -219,14 +219,14 @@ def silence(bench: DeviceBench) -> Steps:
     demand((number, "silencio") in bench.last.failures, f"fallos is {bench.last.failures}, without silencio")
 
 
-def _any(command: VerbCall) -> bool:
+def _any(command: VerbCommand) -> bool:
     return command.definition.effect is not Effect.QUERY
 
 
-def _every(bench: DeviceBench) -> list[VerbCall]:
+def _every(bench: DeviceBench) -> list[VerbCommand]:
     return [command for verb in bench.kind.verbs.values() for command in commands(bench.kind, verb)]
 
 
-def _breaks(command: VerbCall, other: VerbCall) -> bool:
+def _breaks(command: VerbCommand, other: VerbCommand) -> bool:
     sets = dict(command.sets)
     return any(sets.get(name, value) != value for name, value in other.needs)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from arboleda.kinds.declared import Effect, VerbCall
-from arboleda.model.commands import OnStop
+from arboleda.drivers import Effect, OnStop, VerbCommand
 
 from .bench import MOVING, CheckSkipped, Steps, Wait
 from .device_bench import DeviceBench, is_work
@@ -16,12 +15,12 @@ NO_WORK = "its kind has no motion and no process"
 NO_VERB = "its kind has no verb"
 
 
-def named(command: VerbCall) -> str:
+def named(command: VerbCommand) -> str:
     """An order as its recipe writes it."""
     return f"{command.verb}({', '.join(f'{name}={value}' for name, value in command.values)})"
 
 
-def carry_out(bench: DeviceBench, command: VerbCall) -> Steps:
+def carry_out(bench: DeviceBench, command: VerbCommand) -> Steps:
     """One order, beating, until the board has proved it."""
     bench.beating = True
     yield bench.order(command)
@@ -29,7 +28,7 @@ def carry_out(bench: DeviceBench, command: VerbCall) -> Steps:
     bench.beating = False
 
 
-def outcome(bench: DeviceBench, command: VerbCall) -> Steps:
+def outcome(bench: DeviceBench, command: VerbCommand) -> Steps:
     """Wait until the last order has ended, as far as a board of its level can report that."""
     number, before = bench.seq, len(bench.reports)
     if bench.last.boot_id is None:
@@ -42,7 +41,7 @@ def outcome(bench: DeviceBench, command: VerbCall) -> Steps:
     demand(over, f"{named(command)}: {wanted} was not said within {command.at_most_s:g} s")
 
 
-def lead_to(bench: DeviceBench, wanted: Callable[[VerbCall], bool], lacking: str) -> Steps:
+def lead_to(bench: DeviceBench, wanted: Callable[[VerbCommand], bool], lacking: str) -> Steps:
     """Carry out the orders that have to come before a wanted one, and return that one.
 
     Where there is no way to one, the check is skipped, and `lacking` is why.
@@ -58,7 +57,7 @@ def lead_to(bench: DeviceBench, wanted: Callable[[VerbCall], bool], lacking: str
 def lasting(bench: DeviceBench, least_s: float = LEAST_S) -> Steps:
     """Begin, with beats, a motion or process that lasts and that a stop ends, and return its order."""
 
-    def wanted(command: VerbCall) -> bool:
+    def wanted(command: VerbCommand) -> bool:
         return is_work(command) and command.definition.on_stop is OnStop.HALT and command.takes_s >= least_s
 
     lacking = f"its kind has no motion or process of {least_s:g} s and more that a stop ends"
@@ -80,7 +79,7 @@ def at_rest(bench: DeviceBench, within_s: float, after: str) -> Steps:
     demand(rested, f"it still reports moving (1) {within_s:g} s after {after}")
 
 
-def _ended(bench: DeviceBench, command: VerbCall, number: int) -> bool:
+def _ended(bench: DeviceBench, command: VerbCommand, number: int) -> bool:
     last = bench.last
     if last.boot_id is None:
         return last.state != MOVING and bench.holds(command.sets)

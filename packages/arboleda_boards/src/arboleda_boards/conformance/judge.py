@@ -7,11 +7,8 @@ from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.drivers import Robot
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.declared import Device
+from arboleda.drivers import Arm, Device, Evidence, Robot
 from arboleda.model.by_class import nearest
-from arboleda.model.plant_model import Evidence
 from arboleda.wire.payloads import Beat, encode
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery

@@ -9,11 +9,8 @@ import typer
 
 from arboleda.cli.language import allowed
 from arboleda.cli.new import WROTE
-from arboleda.cli.plant_options import PlantFile
-from arboleda.drivers import Robot
-from arboleda.extension import Phrase, say
-from arboleda.kinds.declared import Device
-from arboleda.model.outside import quoted
+from arboleda.drivers import Device, Robot, quoted
+from arboleda.extension import Phrase, PlantFile, say
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.plant_file import loader
 from arboleda_boards.firmware_config.header import header

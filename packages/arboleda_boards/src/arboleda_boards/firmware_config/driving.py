@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType, Slot
-from arboleda.model.facts import Value, shown
+from arboleda.drivers import DeviceKind, DeviceVerb, Effect, FactType, Slot, Value, shown
 from arboleda.plant_file.document import Document, Place
 
 from .naming import unknown

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from arboleda.kinds.declared import Effect, FactType
-from arboleda.model.commands import OnStop
-from arboleda.model.facts import Value
+from arboleda.drivers import Effect, FactType, OnStop, Value
 from arboleda.wire.strict import LARGEST, UINT32
 
 from .shapes import AnalogShape, InputShape, OutputShape, ServoShape

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.kinds.declared import Device
-from arboleda.model.plant_model import Evidence
+from arboleda.drivers import Device, Evidence
 from arboleda.plant_file.document import Document
 
 from . import pins

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from itertools import product
 
-from arboleda.kinds.declared import DeviceVerb, Effect, FactType
-from arboleda.model.facts import Value, shown
+from arboleda.drivers import DeviceVerb, Effect, FactType, Value, shown
 from arboleda.plant_file.document import Document, Place
 
 from .naming import unknown

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from arboleda.kinds.declared import Device, DeviceVerb, Effect
+from arboleda.drivers import Device, DeviceVerb, Effect
 from arboleda.plant_file.document import Document, Place
 from arboleda.plant_file.user_file import read_bytes
 

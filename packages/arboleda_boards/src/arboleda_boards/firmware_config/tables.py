@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.kinds.declared import DeviceVerb, FactType
+from arboleda.drivers import DeviceVerb, FactType
 
 from .shapes import Wiring
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.kinds.declared import FactType
-from arboleda.model.facts import Value, shown
+from arboleda.drivers import FactType, Value, shown
 
 DECIMALS = 4  # of a number in telemetry
 

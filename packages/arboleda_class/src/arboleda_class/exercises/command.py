@@ -13,8 +13,7 @@ import typer
 from arboleda.cli.language import allowed, finding_in, language, say_in
 from arboleda.cli.new import WROTE, write_files
 from arboleda.cli.overview import WholeSentences
-from arboleda.extension import Phrase, say
-from arboleda.model.errors import ConfigError
+from arboleda.extension import ConfigError, Phrase, say
 from arboleda.plant_file.user_file import check_writable
 from arboleda.runtime import invocation
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 
-from arboleda.model.errors import ConfigError
-from arboleda.model.outside import among, quoted
+from arboleda.drivers import among, quoted
+from arboleda.extension import ConfigError
 from arboleda_proofs.simulator.faults import Fault
 
 if TYPE_CHECKING:

@@ -9,11 +9,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from arboleda.extension import ArboledaError
-from arboleda.model.errors import ConfigError
-from arboleda.model.facts import shown
+from arboleda.drivers import plain, shown
+from arboleda.extension import ArboledaError, ConfigError
 from arboleda.model.messages import Reason
-from arboleda.model.outside import plain
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.plant_file.yaml_marks import YamlFault, plain_value

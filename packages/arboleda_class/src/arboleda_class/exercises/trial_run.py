@@ -6,9 +6,10 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
+from arboleda.drivers import Value, shown
 from arboleda.engine import Entry, Plant
+from arboleda.engine.inspection import ledger_of
 from arboleda.model.counting import counted
-from arboleda.model.facts import Value, shown
 from arboleda.model.messages import ENDED, TaskChanged, TaskState
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.sim.machine import MachineBody
@@ -126,14 +127,14 @@ class _Run:
         return HELD if self._is_stuck(change) else OPEN
 
     def _look(self) -> None:
-        entries = self._world.plant.dispatcher.ledger.entries
+        entries = ledger_of(self._world.plant).entries
         for message in self._world.moment.sent:
             if isinstance(message, TaskChanged):
                 self._follow(message)
             elif entry := entries.get(getattr(message, "id", "")):
                 self._act(entry_name(entry))
         for name in self._people:
-            entry = self._world.plant.dispatcher.ledger.question(name)
+            entry = ledger_of(self._world.plant).question(name)
             if entry is not None and entry.command.id not in self._questions:
                 self._questions.add(entry.command.id)
                 self._act(entry_name(entry))

@@ -10,8 +10,8 @@ from typing import Any
 
 import yaml
 
-from arboleda.model.errors import ConfigError
-from arboleda.model.outside import plain
+from arboleda.drivers import plain
+from arboleda.extension import ConfigError
 from arboleda.plant_file.yaml_marks import YamlFault, plain_value
 
 from .exercise import Exercise, catalog

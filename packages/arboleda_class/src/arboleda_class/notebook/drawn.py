@@ -10,12 +10,11 @@ from typing import Any, NamedTuple
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.dashboard.wording import words
 from arboleda.drawing.folding import folded
 from arboleda.drawing.picture import Picture, Word, picture
 from arboleda.drawing.svg import svg
 from arboleda.drawing.words import outline
-from arboleda.extension import Sentence
+from arboleda.extension import Sentence, words
 from arboleda.views import tree_view
 from arboleda.web.languages import FIRST, texts
 from arboleda_class.lessons import said_in

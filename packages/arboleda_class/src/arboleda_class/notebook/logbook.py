@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from arboleda.dashboard.findings import findings
-from arboleda.dashboard.wording import words
 from arboleda.engine import Plant
+from arboleda.extension import words
 from arboleda.views import view
 from arboleda.views.chronicle import Chronicle
 from arboleda.views.resting_cells import RestingCells

@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 from traceback import format_exception
 
-from arboleda.dashboard.wording import words
+from arboleda.extension import words
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import examples
 from arboleda.web.languages import FIRST, LANGUAGES, texts

@@ -9,9 +9,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from arboleda.extension import ConfigError
 from arboleda.geometry import bodies
 from arboleda.geometry.bodies import Body
-from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.plant_file.urdf import robot_urdf

@@ -5,24 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from arboleda.dashboard import header, links, menu, settings, tasks, timeline, trees
-from arboleda.dashboard.body import Parts, body, script_data
-from arboleda.dashboard.page_api import Layout
-from arboleda.dashboard.wording import Words, words
-from arboleda.extension import rows, tag
+from arboleda.dashboard.body import script_data
+from arboleda.dashboard.lone_page import lone_page
+from arboleda.extension import Layout, Words, rows, tag, words
 from arboleda.web.languages import texts
 from arboleda_proofs.page import fault_form
 from arboleda_proofs.simulator.mishaps import MISHAPS
 
 from . import strip
 
-PARTS: Parts = {
-    "cells": trees.build,
-    "tasks": tasks.of_start,
-    "events": timeline.of_record,
-    "links": links.build,
-    "settings": lambda _, words: settings.build(words, None),
-}
 SPEEDS = ("0.25", "1", "4", "16")
 TOOLS = {"begin": "«", "back": "‹", "play": "▶", "step": "›"}  # noqa: RUF001 - as signs on buttons
 Targets = Mapping[str, Mapping[str, Any]]
@@ -53,19 +44,10 @@ def html(layout: Layout, language: str, *, plants: list[str], chosen: str, targe
     """The page of a plant; `plants` are those to choose from, `targets` whom which mishap can befall; either
     is not offered where there is none."""
     wording, own = words(language), PlayWords(language)
-    return body(
-        layout,
-        wording,
-        PARTS,
-        header=lambda places: header.build(layout, wording, places),
-        footer=lambda: _footer(layout, wording, own, plants, chosen, targets),
-    )
+    return lone_page(layout, wording, lambda: _below(wording, own, plants, chosen, targets))
 
 
-def _footer(
-    layout: Layout, wording: Words, own: PlayWords, plants: list[str], chosen: str, targets: Targets
-) -> None:
-    menu.build(layout, wording)
+def _below(wording: Words, own: PlayWords, plants: list[str], chosen: str, targets: Targets) -> None:
     with tag("section", id="play", classes="play", aria_label=own("bar")):
         if targets:
             with tag("details", id="play-mishaps", classes="play-mishaps"):

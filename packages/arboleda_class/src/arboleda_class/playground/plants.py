@@ -6,7 +6,7 @@ from importlib.resources import as_file, files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from arboleda.model.errors import ConfigError
+from arboleda.extension import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import examples, loader
 from arboleda_proofs.campaigns.plants import Plant

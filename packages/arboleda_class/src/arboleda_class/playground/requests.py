@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from arboleda.dashboard import outcomes
 from arboleda.dashboard.outcomes import Said
-from arboleda.dashboard.wording import Words
+from arboleda.extension import Words
 from arboleda.model.messages import OperatorAnswer, Outcome, TaskChanged
 from arboleda.views import view
 

@@ -7,9 +7,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from arboleda.dashboard import outcomes
-from arboleda.dashboard.faces import Face
 from arboleda.dashboard.twin.twin import Twin
-from arboleda.dashboard.wording import words
+from arboleda.extension import Face, words
 from arboleda.geometry.bodies import Body
 from arboleda.model.advice import Hand
 from arboleda.model.messages import Verb

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from arboleda.dashboard.faces import Face
-from arboleda.dashboard.wording import Words
 from arboleda.engine import RECOVERY
+from arboleda.extension import Face, Words
 from arboleda.model.plant_model import PlantModel
 from arboleda.views.chronicle import is_failure
 from arboleda.views.tree_view import RUNS

@@ -10,9 +10,8 @@ from functools import partial
 from typing import Any
 
 from arboleda.dashboard.findings import findings
-from arboleda.extension import ArboledaError
+from arboleda.extension import ArboledaError, ConfigError
 from arboleda.geometry.bodies import Body
-from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import in_json
 from arboleda.web.languages import spoken

@@ -12,9 +12,8 @@ from urllib.parse import urlsplit
 import typer
 
 from arboleda.cli.new import BAD_NAME, NAME_RULE
-from arboleda.extension import Phrase, StartError, say
-from arboleda.model.errors import ConfigError
-from arboleda.model.outside import quoted
+from arboleda.drivers import quoted
+from arboleda.extension import ConfigError, Phrase, StartError, say
 from arboleda.plant_file import examples
 from arboleda.plant_file.shapes import is_plant_name
 from arboleda.runtime import invocation

@@ -5,8 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any, Protocol
 
-from arboleda.drivers import Home, MoveJoints, Report, SetEffector
-from arboleda.kinds.joints import Jointed
+from arboleda.drivers import Home, Jointed, MoveJoints, Report, SetEffector
 
 from .receipts import Receipts
 

@@ -6,7 +6,7 @@ import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from arboleda.model.outside import plain, quoted
+from arboleda.drivers import plain, quoted
 
 LOG = logging.getLogger("arboleda.drivers")
 MOST = 120  # characters of a message that a sentence names

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from arboleda.drivers import MotionState, Robot
-from arboleda.kinds.arm import Arm
+from arboleda.drivers import Arm, MotionState, Robot
 
 from .controller import Controller
 from .link import LinkBroken

@@ -6,8 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from arboleda.drivers import Home, MotionState, MoveJoints, Report, Robot
-from arboleda.model.facts import HEALTH, WELL
+from arboleda.drivers import HEALTH, WELL, Home, MotionState, MoveJoints, Report, Robot
 from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from arboleda_drivers.connections.look import Look

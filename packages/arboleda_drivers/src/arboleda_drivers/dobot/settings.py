@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from arboleda.model.facts import HEALTH
+from arboleda.drivers import HEALTH
 from arboleda_drivers.connections.limits import within
 
 

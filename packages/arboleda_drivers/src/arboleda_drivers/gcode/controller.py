@@ -10,8 +10,7 @@ from collections.abc import Sequence
 from enum import Enum
 from typing import Any, Generic, TypeVar
 
-from arboleda.drivers import Robot
-from arboleda.kinds.joints import Jointed
+from arboleda.drivers import Jointed, Robot
 from arboleda_drivers.connections.controller import Controller
 from arboleda_drivers.connections.receipts import Receipts
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.drivers import Home, MotionState, MoveJoints, Report
-from arboleda.model.facts import HEALTH, WELL
+from arboleda.drivers import HEALTH, WELL, Home, MotionState, MoveJoints, Report
 from arboleda_drivers.connections.link import LinkBroken
 from arboleda_drivers.connections.stream import Received, Write
 

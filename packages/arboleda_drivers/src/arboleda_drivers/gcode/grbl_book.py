@@ -6,7 +6,7 @@ that after it; so what happened before a line was opened counts only where the c
 
 from __future__ import annotations
 
-from arboleda.kinds.joints import Jointed
+from arboleda.drivers import Jointed
 
 from .grbl_lines import ASK_LOCK, LOCK_SIGNS, LockSign, State, Status
 from .settings import Settings

@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 
-from arboleda.drivers import Home, MotionState, MoveJoints, Report
-from arboleda.model.facts import HEALTH, WELL
+from arboleda.drivers import HEALTH, WELL, Home, MotionState, MoveJoints, Report
 from arboleda_drivers.connections.link import LinkBroken
 from arboleda_drivers.connections.stream import Received
 

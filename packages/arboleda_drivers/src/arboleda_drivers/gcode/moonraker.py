@@ -6,8 +6,7 @@ the end of the last line that it has: so a move is sent in pieces, as it goes on
 
 from __future__ import annotations
 
-from arboleda.drivers import Home, MotionState, MoveJoints, Report
-from arboleda.model.facts import HEALTH, WELL
+from arboleda.drivers import HEALTH, WELL, Home, MotionState, MoveJoints, Report
 from arboleda_drivers.connections.link import LinkBroken
 from arboleda_drivers.connections.stream import Received
 

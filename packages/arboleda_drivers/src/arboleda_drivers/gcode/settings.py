@@ -7,10 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from arboleda.drivers import DriverError, Robot
-from arboleda.kinds.joints import Jointed
-from arboleda.model.facts import HEALTH
-from arboleda.model.plant_model import Evidence
+from arboleda.drivers import HEALTH, DriverError, Evidence, Jointed, Robot
 from arboleda_drivers.connections.stream import StreamAddress
 
 LETTERS = ("X", "Y", "Z", "A", "B", "C")  # in the order of a position

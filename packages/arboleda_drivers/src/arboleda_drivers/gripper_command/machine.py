@@ -11,9 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.drivers import Command, Robot
-from arboleda.kinds.declared import Device, VerbCall
-from arboleda.model.commands import Work
+from arboleda.drivers import Command, Device, Robot, VerbCommand, Work
 from arboleda_drivers.ros_action.events import GoalResult, Measurement, Status
 from arboleda_drivers.ros_action.joints import Joints
 from arboleda_drivers.ros_action.machine import Machine
@@ -71,7 +69,7 @@ class GripperMover:
         return self._joint.missing(now)
 
     def goals(self, command: Command) -> tuple[Width, ...]:
-        if not isinstance(command, VerbCall):
+        if not isinstance(command, VerbCommand):
             raise NoGoal(f"a gripper has no word for {type(command).__name__}")
         values, grips = dict(command.values), ("gripped", True) in command.sets
         width_mm = float(values.get("width_mm", 0.0 if grips else self._settings.width_mm))

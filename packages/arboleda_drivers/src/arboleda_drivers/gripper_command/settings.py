@@ -6,9 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from arboleda.drivers import Robot
-from arboleda.kinds.declared import Device
-from arboleda.model.plant_model import Evidence
+from arboleda.drivers import Device, Evidence, Robot
 
 FACTS: dict[str, tuple[type, ...]] = {"gripped": (bool,), "width_mm": (int, float), "force_n": (int, float)}
 VALUES = ("width_mm", "force_n")

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.drivers import Command, MoveJoints, Robot
-from arboleda.kinds.joints import Jointed
+from arboleda.drivers import Command, Jointed, MoveJoints, Robot
 from arboleda_drivers.ros_action.events import GoalResult, Measurement
 from arboleda_drivers.ros_action.joints import Joints
 from arboleda_drivers.ros_action.machine import Machine

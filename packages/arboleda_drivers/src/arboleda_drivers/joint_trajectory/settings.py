@@ -6,10 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from arboleda.drivers import Robot
-from arboleda.kinds.joints import Joint, Jointed
-from arboleda.model.facts import HEALTH
-from arboleda.model.plant_model import Evidence
+from arboleda.drivers import HEALTH, Evidence, Joint, Jointed, Robot
 from arboleda_drivers.ros_action.health import Health
 
 SHORTEST_S = 0.1

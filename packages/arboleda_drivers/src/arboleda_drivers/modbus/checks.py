@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations
 
-from arboleda.drivers import Robot
-from arboleda.kinds.declared import Device, DeviceVerb, Effect, FactType
-from arboleda.model.outside import among
+from arboleda.drivers import Device, DeviceVerb, Effect, FactType, Robot, among
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Place, Problem
 

@@ -9,9 +9,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from arboleda.drivers import Command, DriverError, NotSent, Report, Robot, Stop, StopMode
-from arboleda.kinds.declared import Device, Effect, VerbCall
-from arboleda.model.facts import Value
+from arboleda.drivers import (
+    Command,
+    Device,
+    DriverError,
+    Effect,
+    NotSent,
+    Report,
+    Robot,
+    Stop,
+    StopMode,
+    Value,
+    VerbCommand,
+)
 from arboleda_drivers.plc.numbers import Numbers
 from arboleda_drivers.plc.plc_snapshot import PlcSnapshot, Question, report
 from arboleda_drivers.plc.program_watch import ProgramWatch
@@ -77,7 +87,7 @@ class ModbusDevice:
         """The writes for a command, in order; raises NotSent if the mapping does not know it."""
         if isinstance(command, Stop):
             return self._stop(command.mode)
-        if not isinstance(command, VerbCall) or command.verb not in self._settings.verbs:
+        if not isinstance(command, VerbCommand) or command.verb not in self._settings.verbs:
             raise NotSent(f"the mapping of {self._device.name} has no word for {type(command).__name__}")
         verb = self._settings.verbs[command.verb]
         puts = [put(write, dict(command.values)) for write in verb.write]

@@ -8,9 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from arboleda.drivers import DriverError
-from arboleda.model.facts import Value
-from arboleda.model.outside import quoted
+from arboleda.drivers import DriverError, Value, quoted
 from arboleda_drivers.plc.plc_snapshot import UnreadableValue
 
 Order = Literal["big", "little"]

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from arboleda.drivers import Command, FollowPath, Robot
-from arboleda.kinds.mobile import Mobile
+from arboleda.drivers import Command, FollowPath, Mobile, Robot
 from arboleda_drivers.ros_action.events import GoalResult, Measurement
 from arboleda_drivers.ros_action.machine import Machine
 from arboleda_drivers.ros_action.mover import NoGoal, failure

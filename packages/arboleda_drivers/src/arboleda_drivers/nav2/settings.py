@@ -6,9 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from arboleda.drivers import Robot
-from arboleda.kinds.mobile import Mobile
-from arboleda.model.plant_model import Evidence
+from arboleda.drivers import Evidence, Mobile, Robot
 
 from .pose import Pose
 

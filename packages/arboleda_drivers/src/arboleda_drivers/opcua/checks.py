@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.drivers import Robot
-from arboleda.kinds.declared import Device
+from arboleda.drivers import Device, Robot
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Place, Problem
 

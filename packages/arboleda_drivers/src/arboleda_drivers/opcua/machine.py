@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from arboleda.drivers import Command, Robot, Stop
-from arboleda.model.facts import Value
+from arboleda.drivers import Command, Robot, Stop, Value
 from arboleda_drivers.plc.handshake import Handshake, Read, stop_order
 
 from .nodes import Order

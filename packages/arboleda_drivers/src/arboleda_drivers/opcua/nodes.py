@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from arboleda.drivers import DriverError
-from arboleda.model.outside import quoted
+from arboleda.drivers import DriverError, quoted
 from arboleda_drivers.plc.variables import FORMS, Form, PlcArgument, PlcVariable
 
 NODE = re.compile(r"(ns=\d+;|nsu=[^;]+;)?(i=\d+|s=.+|g=[0-9a-fA-F-]{36}|b=.+)")

@@ -7,7 +7,7 @@ from collections.abc import Awaitable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from arboleda.model.facts import Value
+from arboleda.drivers import Value
 from arboleda_drivers.opcua.machine import Call, NodeValue, Read
 from arboleda_drivers.opcua.nodes import namespace
 from arboleda_drivers.opcua.settings import Settings

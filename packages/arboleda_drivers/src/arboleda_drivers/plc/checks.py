@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from arboleda.kinds.declared import Device, DeviceVerb, Effect, FactType
-from arboleda.model.outside import among
-from arboleda.model.plant_model import Evidence
+from arboleda.drivers import Device, DeviceVerb, Effect, Evidence, FactType, among
 
 from .plc_snapshot import STATES
 from .variables import FORMS, PlcArgument, PlcVariable

@@ -9,9 +9,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Protocol, TypeVar
 
-from arboleda.drivers import Command, DriverError, NotSent, Report, Robot, StopMode
-from arboleda.kinds.declared import Device, Effect, FactType, VerbCall
-from arboleda.model.outside import quoted
+from arboleda.drivers import (
+    Command,
+    Device,
+    DriverError,
+    Effect,
+    FactType,
+    NotSent,
+    Report,
+    Robot,
+    StopMode,
+    VerbCommand,
+    quoted,
+)
 
 from .checks import answers
 from .numbers import LAST, Numbers
@@ -120,13 +130,13 @@ class Handshake:
         self._alive.begin()
         self._query = None
 
-    def verb(self, command: Command) -> VerbCall:
+    def verb(self, command: Command) -> VerbCommand:
         """The command as a mapped verb; raises NotSent for anything else."""
-        if not isinstance(command, VerbCall) or command.verb not in self._settings.verbs:
+        if not isinstance(command, VerbCommand) or command.verb not in self._settings.verbs:
             raise NotSent(f"the mapping of {self._device.name} has no word for {type(command).__name__}")
         return command
 
-    def number(self, command: VerbCall) -> int:
+    def number(self, command: VerbCommand) -> int:
         """The number for a verb, which its echo is told by from now on."""
         given = self._numbers.give(command.id)
         self._was_busy = self._busy

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.drivers import DriverError, MotionState, Receipt, Report
-from arboleda.model.facts import Facts, Value
+from arboleda.drivers import DriverError, Facts, MotionState, Receipt, Report, Value
 
 from .numbers import Numbers
 

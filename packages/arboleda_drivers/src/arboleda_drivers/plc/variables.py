@@ -8,10 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from arboleda.drivers import DriverError
-from arboleda.kinds.declared import FactType
-from arboleda.model.facts import Value
-from arboleda.model.outside import quoted
+from arboleda.drivers import DriverError, FactType, Value, quoted
 
 from .plc_snapshot import UnreadableValue
 

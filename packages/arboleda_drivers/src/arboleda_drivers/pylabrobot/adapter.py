@@ -11,8 +11,7 @@ from functools import partial
 from importlib import import_module
 from typing import Any
 
-from arboleda.drivers import Clock, Command, DriverError, Hear, NotSent, Report, Robot, driver
-from arboleda.model.outside import text_of_error
+from arboleda.drivers import Clock, Command, DriverError, Hear, NotSent, Report, Robot, driver, text_of_error
 from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from arboleda_drivers.pylabrobot.machine import Machine
 from arboleda_drivers.pylabrobot.messages import (

@@ -11,11 +11,21 @@ import math
 from collections import deque
 from collections.abc import Mapping, Sequence
 
-from arboleda.drivers import Command, MotionState, Report, Robot, Stop, StopMode, lost
-from arboleda.kinds.declared import Device, Effect, VerbCall
-from arboleda.model.commands import Work
-from arboleda.model.facts import Facts
-from arboleda.model.outside import plain
+from arboleda.drivers import (
+    Command,
+    Device,
+    Effect,
+    Facts,
+    MotionState,
+    Report,
+    Robot,
+    Stop,
+    StopMode,
+    VerbCommand,
+    Work,
+    lost,
+    plain,
+)
 from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
 from arboleda_drivers.plc.checks import answers
 
@@ -210,7 +220,7 @@ class Machine:
             self._out.append(CommandNotSent(why=f"{self._settings.peer} is not there"))
         elif isinstance(command, Stop):
             self._stop(now, command)
-        elif not isinstance(command, VerbCall) or command.verb not in self._settings.verbs:
+        elif not isinstance(command, VerbCommand) or command.verb not in self._settings.verbs:
             self._out.append(CommandNotSent(why=f"nothing is called for {command.word or 'this'}"))
         elif not self._tasks.takes(command):
             self._tell(now, rejected=command.id, refusal="busy")
@@ -219,9 +229,11 @@ class Machine:
             calls = tuple(call.filled(dict(command.values)) for call in verb.calls)
             self._begin(now, command, calls, "" if verb.answer is None else verb.answer.read)
 
-    def _begin(self, now: float, command: VerbCall | Stop, calls: Sequence[Call], result: str = "") -> None:
+    def _begin(
+        self, now: float, command: VerbCommand | Stop, calls: Sequence[Call], result: str = ""
+    ) -> None:
         self._numbers += 1
-        longest = command.at_most_s if isinstance(command, VerbCall) else None
+        longest = command.at_most_s if isinstance(command, VerbCommand) else None
         allowed = math.inf if longest is None else longest + self._settings.timeout_s
         until = now + min(allowed, self._settings.call_s or math.inf)
         if isinstance(command, Stop):
@@ -275,7 +287,7 @@ class Machine:
         if task is None or task.over is not None:
             return
         if isinstance(event, Begun):
-            if isinstance(task.command, VerbCall):
+            if isinstance(task.command, VerbCommand):
                 self._tell(now, accepted=task.command.id)
             return
         task.over = event
@@ -297,7 +309,7 @@ class Machine:
     def _settle(self, task: Task, event: Returned | Raised) -> None:
         """Say how a call has ended, with the facts that were read after it."""
         command = task.command
-        if not isinstance(command, VerbCall):
+        if not isinstance(command, VerbCommand):
             return
         if isinstance(event, Raised):
             word = plain(f"{event.name}: {event.text}" if event.text else event.name, LONGEST)

@@ -8,10 +8,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
-from arboleda.drivers import DriverError
-from arboleda.kinds.declared import FactType
-from arboleda.model.facts import Value
-from arboleda.model.outside import quoted
+from arboleda.drivers import DriverError, FactType, Value, quoted
 
 from .paths import steps
 

@@ -7,12 +7,18 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from arboleda.drivers import DriverError, Robot
-from arboleda.kinds.declared import Device, DeviceVerb, Effect, FactType
-from arboleda.model.commands import OnStop
-from arboleda.model.facts import Value
-from arboleda.model.outside import among
-from arboleda.model.plant_model import Evidence
+from arboleda.drivers import (
+    Device,
+    DeviceVerb,
+    DriverError,
+    Effect,
+    Evidence,
+    FactType,
+    OnStop,
+    Robot,
+    Value,
+    among,
+)
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Place, Problem
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.drivers import Command, Stop
-from arboleda.kinds.declared import VerbCall
-from arboleda.model.commands import OnStop, Work
+from arboleda.drivers import Command, OnStop, Stop, VerbCommand, Work
 
 from .messages import Raised, Returned
 
@@ -18,7 +16,7 @@ class Task:
     number: int
     began_at: float
     until: float
-    command: VerbCall | Stop | None
+    command: VerbCommand | Stop | None
     is_work: bool = False
     over: Returned | Raised | None = None
     first_look: int = 0  # the first look that began after the end

@@ -7,8 +7,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.model.facts import HEALTH, WELL, Value
-from arboleda.model.outside import plain
+from arboleda.drivers import HEALTH, WELL, Value, plain
 
 READY_S = 15.0  # a robot that releases its brakes takes some seconds
 LONGEST_WORD = 80

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.model.outside import plain
+from arboleda.drivers import plain
 from arboleda_drivers.connections.receipts import Receipts
 
 from .events import MakeCall

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from arboleda.drivers import Command, Home, MotionState, Report, Stop, StopMode, lost
-from arboleda.model.outside import plain
+from arboleda.drivers import Command, Home, MotionState, Report, Stop, StopMode, lost, plain
 from arboleda_drivers.connections.receipts import Receipts
 
 from .events import (

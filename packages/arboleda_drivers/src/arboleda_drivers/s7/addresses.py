@@ -14,9 +14,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Literal, get_args
 
-from arboleda.drivers import DriverError
-from arboleda.model.facts import Value
-from arboleda.model.outside import quoted
+from arboleda.drivers import DriverError, Value, quoted
 from arboleda_drivers.plc.variables import LIMITS, Form
 
 Area = Literal["DB", "M", "I", "Q"]

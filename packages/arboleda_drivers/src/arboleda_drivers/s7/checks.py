@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.drivers import Robot
-from arboleda.kinds.declared import Device, Effect
+from arboleda.drivers import Device, Effect, Robot
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Problem
 from arboleda_drivers.plc.variables import FORMS

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from arboleda.kinds.joints import Jointed
+from arboleda.drivers import Jointed
 
 from .bus import Bus
 from .position_watch import Plan, PositionWatch

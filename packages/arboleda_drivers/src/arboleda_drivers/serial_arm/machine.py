@@ -9,9 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from arboleda.drivers import Home, MotionState, MoveJoints, Report, Robot
-from arboleda.kinds.joints import Jointed
-from arboleda.model.facts import HEALTH, WELL, Facts
+from arboleda.drivers import HEALTH, WELL, Facts, Home, Jointed, MotionState, MoveJoints, Report, Robot
 from arboleda_drivers.connections.controller import Controller
 from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.link import LinkBroken

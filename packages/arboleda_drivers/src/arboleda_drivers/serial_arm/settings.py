@@ -7,11 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from arboleda.drivers import DriverError, Robot
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.joints import Jointed
-from arboleda.model.facts import HEALTH
-from arboleda.model.plant_model import Evidence
+from arboleda.drivers import HEALTH, Arm, DriverError, Evidence, Jointed, Robot
 from arboleda_drivers.connections.stream import StreamAddress
 
 from .packets import HIGHEST_ID

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from arboleda.model.outside import plain
+from arboleda.drivers import plain
 from arboleda_drivers.connections.link import LinkBroken
 from arboleda_drivers.connections.receipts import Receipts
 from arboleda_drivers.connections.replies_due import RepliesDue

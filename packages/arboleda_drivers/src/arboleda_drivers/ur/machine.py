@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.drivers import Home, MotionState, MoveJoints, Report, Robot
-from arboleda.model.facts import HEALTH, WELL
+from arboleda.drivers import HEALTH, WELL, Home, MotionState, MoveJoints, Report, Robot
 from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.link import Close, CommandNotSent, Open
 from arboleda_drivers.connections.look import Look

@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from dataclasses import dataclass
 
-from arboleda.model.outside import plain
+from arboleda.drivers import plain
 from arboleda_drivers.connections.link import LinkBroken
 
 HEADER = struct.Struct(">iB")

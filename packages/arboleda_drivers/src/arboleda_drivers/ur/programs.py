@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from arboleda.kinds.joints.joint import Joint
+from arboleda.drivers import Joint
 
 from .port_data import PRIMARY, Send
 from .rtde import Frame, beat_name

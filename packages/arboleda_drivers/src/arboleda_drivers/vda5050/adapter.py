@@ -10,8 +10,7 @@ from collections.abc import Iterable, Sequence
 from arboleda.adapters.broker_login import address, login
 from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.adapters.rate_limit import RateLimit
-from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, driver
-from arboleda.model.outside import plain, quoted
+from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, driver, plain, quoted
 from arboleda.wire.transport import Connection, Delivery, Publication
 from arboleda_drivers.connections.device_feed import taking
 from arboleda_drivers.vda5050.machine import Message, Publish, Vehicle

@@ -5,11 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from arboleda.drivers import Command
-from arboleda.kinds.declared import FactType, VerbCall
-from arboleda.model.commands import Query
-from arboleda.model.facts import Value, shown
-from arboleda.model.outside import plain
+from arboleda.drivers import Command, FactType, Query, Value, VerbCommand, plain, shown
 
 WORDS = {"rejected": "refusal", "failed": "failure", "answered": "answer"}
 
@@ -43,7 +39,7 @@ class Answers:
 
 def _answer(command: Query, result: str | None) -> Value:
     """The answer of the kind that these words mean, else the words."""
-    if not isinstance(command, VerbCall):
+    if not isinstance(command, VerbCommand):
         return result or ""
     if command.definition.number is not None:
         return _number(result or "", command.definition.number)

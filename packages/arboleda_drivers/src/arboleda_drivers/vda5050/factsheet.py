@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from arboleda.drivers import Robot
-from arboleda.kinds.declared import Device
+from arboleda.drivers import Device, Robot
 
 from .orders import as_the_standard_writes
 from .settings import Settings

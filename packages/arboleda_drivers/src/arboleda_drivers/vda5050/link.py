@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from arboleda.model.outside import plain
+from arboleda.drivers import plain
 
 from .settings import Settings
 from .state import VehicleState

@@ -13,11 +13,21 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from arboleda.drivers import Command, FollowPath, MotionState, NotSent, Report, Robot, Stop, lost
-from arboleda.kinds.declared import Device, VerbCall
-from arboleda.kinds.mobile import Mobile
-from arboleda.model.facts import Facts
-from arboleda.model.outside import plain
+from arboleda.drivers import (
+    Command,
+    Device,
+    Facts,
+    FollowPath,
+    Mobile,
+    MotionState,
+    NotSent,
+    Report,
+    Robot,
+    Stop,
+    VerbCommand,
+    lost,
+    plain,
+)
 
 from . import factsheet
 from .answers import Answers
@@ -150,7 +160,7 @@ class Vehicle:
         at = self._state.node if self._state is not None else ""
         if isinstance(command, FollowPath):
             return self._begin(command, self._map.way(at, command.nodes))
-        if not isinstance(command, VerbCall):
+        if not isinstance(command, VerbCommand):
             raise NotSent(f"VDA 5050 has no word for {type(command).__name__}")
         if command.verb not in self._settings.instant:
             if not at:
@@ -161,7 +171,9 @@ class Vehicle:
         self._instants[action.id] = command
         return self._instantly([action])
 
-    def _begin(self, command: Command, nodes: tuple[str, ...], verb: VerbCall | None = None) -> list[Message]:
+    def _begin(
+        self, command: Command, nodes: tuple[str, ...], verb: VerbCommand | None = None
+    ) -> list[Message]:
         state = self._state
         if self._order is not None:
             raise NotSent(f"the vehicle is still at its order {self._order.id}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from arboleda.kinds.mobile import Mobile
+from arboleda.drivers import Mobile
 
 from .orders import edge_id
 from .settings import Settings

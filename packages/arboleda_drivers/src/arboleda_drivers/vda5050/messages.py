@@ -16,8 +16,8 @@ from typing import Any
 
 import fastjsonschema
 
+from arboleda.drivers import plain, quoted
 from arboleda.extension import ArboledaError
-from arboleda.model.outside import plain, quoted
 
 LARGEST = 1_000_000  # bytes of a message
 DIGITS = 20  # digits of a whole number

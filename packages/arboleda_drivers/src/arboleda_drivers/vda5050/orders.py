@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from arboleda.drivers import Command, FollowPath
-from arboleda.model.facts import Facts
+from arboleda.drivers import Command, Facts, FollowPath
 
 from .state import ENDS_ORDER, VehicleState
 

@@ -6,10 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Literal
 
-from arboleda.drivers import Robot
-from arboleda.kinds.declared import Device
-from arboleda.kinds.mobile import Mobile
-from arboleda.model.plant_model import Evidence
+from arboleda.drivers import Device, Evidence, Mobile, Robot
 
 NOT_IN_TOPICS = frozenset("/+#$")
 TYPES: dict[str, tuple[type, ...]] = {"loaded": (bool,), "charging": (bool,), "battery": (int, float)}

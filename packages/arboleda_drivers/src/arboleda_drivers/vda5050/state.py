@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.model.facts import Value
+from arboleda.drivers import Value
 
 Body = Mapping[str, Any]
 """A message that fits the schema of its topic."""

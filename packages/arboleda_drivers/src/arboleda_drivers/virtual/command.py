@@ -9,10 +9,10 @@ from importlib.util import find_spec
 import typer
 
 from arboleda.cli.overview import WholeSentences
+from arboleda.drivers import text_of_error
 from arboleda.drivers.port import GROUP
 from arboleda.extension import Phrase, say
 from arboleda.host.packages import entry_points
-from arboleda.model.outside import text_of_error
 
 COMMAND = "virtual.command"  # in the folder of the driver
 UNUSABLE = Phrase("cli.virtual.unusable", "the virtual controller {module} cannot be loaded: {why}")

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Protocol
 
 from arboleda.extension import StartError
-from arboleda.host.pseudo_terminal import pseudo_terminal
+
+from .pseudo_terminal import pseudo_terminal
 
 AT_ONCE = 4096
 LONGEST_WAIT_S = 0.05

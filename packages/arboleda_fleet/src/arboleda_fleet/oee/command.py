@@ -14,10 +14,9 @@ from rich.table import Table
 from rich.text import Text
 
 from arboleda.cli import plant_options
-from arboleda.cli.plant_options import StoreAddress
 from arboleda.cli.tasks import moment
-from arboleda.extension import Phrase, RunningPlant, StateFolder, say
-from arboleda.model.outside import plain
+from arboleda.drivers import plain
+from arboleda.extension import Phrase, RunningPlant, StateFolder, StoreAddress, say
 from arboleda.oee.figures import Oee
 
 from .api import OeeQuery

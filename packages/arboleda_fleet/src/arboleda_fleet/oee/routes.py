@@ -7,9 +7,9 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from pydantic import Field, FiniteFloat
 
+from arboleda.extension import PlantApi
 from arboleda.model.packages import FLEET
 from arboleda.web.missing import missing
-from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import RequestModel
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import WRONG, answering, described, query_of

@@ -9,10 +9,9 @@ from fastapi import FastAPI, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 
-from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.shell import language_of
-from arboleda.dashboard.wording import words as words_of
-from arboleda.extension import Spot, rows, tag
+from arboleda.extension import PageApi, Spot, rows, tag
+from arboleda.extension import words as words_of
 from arboleda.model.packages import FLEET
 from arboleda.web.missing import missing
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from arboleda.dashboard.faces import Face
 from arboleda.dashboard.faces.moment import seconds
-from arboleda.dashboard.wording import Words
+from arboleda.extension import Face, Words
 from arboleda.oee.figures import Oee
 
 UNKNOWN = "-"

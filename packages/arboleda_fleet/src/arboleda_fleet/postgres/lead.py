@@ -14,8 +14,8 @@ import psycopg
 
 from arboleda.adapters import clock
 from arboleda.departures.leading import LEASE_S, RENEW_S, WANTED_S, Lease, Silence
+from arboleda.drivers import plain
 from arboleda.extension import ArboledaError, StartError
-from arboleda.model.outside import plain
 from arboleda.store.lead import Lead, OtherLeader, Standby, Superseded
 
 from .leader_row import END_LEASE, LAST_SEEN, lately

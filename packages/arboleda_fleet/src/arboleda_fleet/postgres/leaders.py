@@ -7,8 +7,8 @@ from typing import Any
 from psycopg import sql
 
 from arboleda.departures.leading import LEASE_S
+from arboleda.drivers import plain
 from arboleda.extension import ArboledaError
-from arboleda.model.outside import plain
 from arboleda.store.leadership import Leader, Leaders
 
 from .leader_row import lately

@@ -8,8 +8,8 @@ from typing import Any
 
 from arboleda.adapters import clock
 from arboleda.departures.leading import LEASE_S, Silence
+from arboleda.drivers import plain
 from arboleda.extension import ArboledaError, StartError
-from arboleda.model.outside import plain
 from arboleda.store.leadership import Leader, Leadership
 
 from .leader_row import END_LEASE, LAST_SEEN, lately

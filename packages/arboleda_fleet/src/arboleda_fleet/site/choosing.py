@@ -11,8 +11,8 @@ from urllib.parse import urlencode
 from arboleda.engine import Prospect, best
 from arboleda.extension import ArboledaError, Phrase, Sentence
 from arboleda.model.sentence import OWN
-from arboleda.model.task import Order
 from arboleda.model.text import BETWEEN_CELLS
+from arboleda.recipes import Order
 
 from .reach import NO_PLANT, PlantRefusal, PlantSilent, Reach
 

@@ -6,9 +6,8 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from arboleda.dashboard.faces import Face
 from arboleda.dashboard.faces.order import WELL, WORST
-from arboleda.dashboard.wording import Words
+from arboleda.extension import Face, Words
 from arboleda.views.view import standing
 
 from ..page.oee_rows import UNKNOWN

@@ -14,12 +14,9 @@ from arboleda.dashboard import header, shell
 from arboleda.dashboard.body import Parts, body
 from arboleda.dashboard.frames import Background, Frames
 from arboleda.dashboard.open_page import LONGEST, OpenPage
-from arboleda.dashboard.page_api import Layout
 from arboleda.dashboard.shell import language_of, role_shown
 from arboleda.dashboard.toolkit import Client, app, ui
-from arboleda.dashboard.wording import Words, words
-from arboleda.extension import Assets, act_button, rows, tag
-from arboleda.model.errors import PayloadError
+from arboleda.extension import Assets, Layout, PayloadError, Words, act_button, rows, tag, words
 from arboleda.model.messages import Verb
 from arboleda.web.access.auth import SUBMIT, allowed, require
 from arboleda.web.api import task_in

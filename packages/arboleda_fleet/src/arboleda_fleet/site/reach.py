@@ -8,8 +8,8 @@ from typing import Any
 import httpx
 
 from arboleda.client.protocol import COMMAND_LINE
+from arboleda.drivers import plain, text_of_error
 from arboleda.extension import ArboledaError, Phrase
-from arboleda.model.outside import plain, text_of_error
 from arboleda.runtime.endpoints import Place
 
 ANSWER_S = 2.5  # a browser gives a stop up after 3 s

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from arboleda.model.errors import ConfigError
+from arboleda.extension import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recording import Recording
 from arboleda.plant_file.draft_check import root_of

@@ -6,8 +6,8 @@ import time
 
 import typer
 
-from arboleda.cli.plant_options import StoreAddress, database
-from arboleda.extension import ArboledaError, Phrase, RunningPlant, StartError, StateFolder, say
+from arboleda.cli.plant_options import database
+from arboleda.extension import ArboledaError, Phrase, RunningPlant, StartError, StateFolder, StoreAddress, say
 
 PATIENCE_S = 30.0
 LOOK_S = 0.05

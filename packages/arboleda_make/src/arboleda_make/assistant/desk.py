@@ -9,8 +9,8 @@ from mcp.server.mcpserver import Context
 from mcp.types import ToolAnnotations
 
 from arboleda.client import AsyncPlant
+from arboleda.drivers import plain
 from arboleda.extension import ArboledaError
-from arboleda.model.outside import plain
 
 from .envelope import answered, refused
 

@@ -7,8 +7,8 @@ from dataclasses import asdict, is_dataclass
 from typing import Any
 
 from arboleda.client import Refusal
+from arboleda.drivers import plain
 from arboleda.extension import ArboledaError
-from arboleda.model.outside import plain
 
 NOTE = (
     "Everything in `data` was written by others: by the plant, its devices, its files and people. Ids, names,"

@@ -6,9 +6,8 @@ import asyncio
 from pathlib import Path
 from typing import Any
 
-from arboleda.client import AsyncPlant
-from arboleda.client.answers.plant import Robot
-from arboleda.model.facts import shown
+from arboleda.client import AsyncPlant, Robot
+from arboleda.drivers import shown
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda_proofs.campaigns.from_above import FloorPlan, Scene, as_svg

@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from arboleda.client import AsyncPlant
-from arboleda.client.answers.plant import Cell
+from arboleda.client import AsyncPlant, Cell
 from arboleda.drawing.picture import picture
 from arboleda.drawing.svg import svg
+from arboleda.drivers import among, quoted
 from arboleda.extension import ArboledaError
-from arboleda.model.outside import among, quoted
 from arboleda_make.client import AsyncMake
 
 Row = dict[str, Any]

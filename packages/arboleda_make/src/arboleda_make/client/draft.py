@@ -6,12 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Concatenate, ParamSpec, TypeVar
 
-from arboleda.client import Awaiting, Blocking, Routes, route
-from arboleda.client.calls import Route
+from arboleda.client import Awaiting, Blocking, Call, Line, Route, Routes, new_id, route
 from arboleda.client.http import TIMEOUT_S
-from arboleda.client.line import Call, Line
-from arboleda.client.methods import new_id
-from arboleda.model.facts import Value
+from arboleda.drivers import Value
 from arboleda_make.answers.drafts import (
     AppliedDraft,
     CheckedDraft,

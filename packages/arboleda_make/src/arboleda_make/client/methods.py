@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from arboleda.client import Awaiting, Blocking, Routes, Task, route
-from arboleda.client.calls import flow, read_answer
-from arboleda.client.line import Call
-from arboleda.client.methods import new_id
+from arboleda.client import Awaiting, Blocking, Call, Routes, Task, flow, new_id, read_answer, route
 from arboleda_make.answers.drafts import AppliedDraft, RunState
 from arboleda_make.answers.proposals import (
     DecidedProposal,

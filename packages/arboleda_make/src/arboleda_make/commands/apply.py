@@ -13,19 +13,25 @@ import typer
 
 from arboleda.cli.check import WARNING
 from arboleda.cli.language import finding
-from arboleda.cli.plant_options import PlantFile
-from arboleda.cli.working import working
-from arboleda.extension import ArboledaError, Phrase, StateFolder, client, say
-from arboleda.model.errors import ConfigError
-from arboleda.model.outside import plain
+from arboleda.drivers import plain
+from arboleda.extension import (
+    ArboledaError,
+    ConfigError,
+    Phrase,
+    PlantFile,
+    StateFolder,
+    client,
+    say,
+    working,
+)
 from arboleda.plant_file import draft_check, loader, plant_check
-from arboleda.plant_file.change import Change
-from arboleda.plant_file.changes import changes
-from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.versions import Version, Versions, version_of, whole
 from arboleda.runtime import at_work
 from arboleda.runtime.state import Running, default_state, find_running
 from arboleda_make.client.draft import CHECKED_S
+from arboleda_make.versions.change import Change
+from arboleda_make.versions.changes import changes
+from arboleda_make.versions.restart import needing_restart
 
 LONGEST = 500  # characters of a line
 NOT_TAKEN = 1

@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
-from arboleda.cli.plant_options import PlantFile, TokensFile, located
-from arboleda.extension import ArboledaError, Phrase, Role, StartError, StateFolder
+from arboleda.cli.plant_options import located
+from arboleda.extension import ArboledaError, Phrase, PlantFile, Role, StartError, StateFolder, TokensFile
 from arboleda.runtime import endpoints, invocation, tokens
 from arboleda.runtime.endpoints import Place
 from arboleda.runtime.state import find_running

@@ -10,18 +10,18 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, Protocol
 
+from arboleda.drivers import plain, quoted
 from arboleda.extension import StartError
-from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file.changes import changes
 from arboleda.plant_file.draft_check import DraftCheck
-from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.versions import Version, Versions, version_of
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.plant_file.yaml_marks import parse
 from arboleda_make.drafts.api import DraftApi, DraftRefused, Place, State
 from arboleda_make.drafts.draft import Draft
+from arboleda_make.versions.changes import changes
+from arboleda_make.versions.restart import needing_restart
 
 from .open_draft import OpenDraft
 from .plant_folder import NOT_OURS, PlantFolder

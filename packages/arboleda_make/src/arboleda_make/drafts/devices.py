@@ -10,10 +10,10 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from copy import deepcopy
 from typing import Any
 
-from arboleda.model.outside import among, quoted
-from arboleda.plant_file.change import CELLS, DEVICES, KINDS, TARGETS
+from arboleda.drivers import among, quoted
 from arboleda.plant_file.document import dotted
 from arboleda.plant_file.yaml_edit import EditRefused
+from arboleda_make.versions.change import CELLS, DEVICES, KINDS, TARGETS
 
 Values = dict[str, Any]
 HOME, GROUPS, PLACES, NEEDS, ZONES = "home", "groups", "places", "needs", "zones"

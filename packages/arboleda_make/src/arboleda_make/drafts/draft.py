@@ -9,14 +9,14 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from arboleda.bt_xml.markup import LARGEST as LARGEST_TREES
-from arboleda.model.outside import quoted
+from arboleda.drivers import quoted
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file.change import MISSING, Change
-from arboleda.plant_file.changes import changes
 from arboleda.plant_file.document import Place
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.yaml_edit import EditRefused, with_value, without
 from arboleda.plant_file.yaml_marks import parse
+from arboleda_make.versions.change import MISSING, Change
+from arboleda_make.versions.changes import changes
 
 MOST_STEPS = 1000  # that can be undone
 MOST_BYTES = 64 * 1024 * 1024  # of all that they keep

@@ -13,9 +13,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from arboleda.drivers import plain
 from arboleda.extension import ArboledaError, StartError
 from arboleda.host.files import sync_folder
-from arboleda.model.outside import plain
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import versions
 from arboleda.runtime.state import replace_file

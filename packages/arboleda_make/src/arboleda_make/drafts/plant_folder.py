@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path, PurePosixPath
 
+from arboleda.drivers import quoted
 from arboleda.extension import StartError
-from arboleda.model.outside import quoted
 from arboleda.plant_file.draft_check import root_of
 from arboleda.plant_file.versions import Version, Versions, write_files
 from arboleda.plant_file.yaml_edit import EditRefused

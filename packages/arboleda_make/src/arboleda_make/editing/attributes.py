@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 
 from arboleda.bt_xml.markup import ATTRIBUTE, Element
-from arboleda.model.outside import quoted
+from arboleda.drivers import quoted
 
 from .errors import EditError
 from .layout import Splice

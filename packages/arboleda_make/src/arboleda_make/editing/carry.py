@@ -5,11 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from arboleda.bt_xml.writing import attribute_value
-from arboleda.drivers import Robot
+from arboleda.drivers import Device, DeviceVerb, FactType, Robot, Slot, Value, among, quoted, shown
 from arboleda.extension import ArboledaError
-from arboleda.kinds.declared import Device, DeviceVerb, FactType, Slot
-from arboleda.model.facts import Value, shown
-from arboleda.model.outside import among, quoted
 from arboleda.model.plant_model import Cell
 
 NO_HAND = "{robot} of {cell} has nothing to take a part with; {known}"

@@ -19,14 +19,13 @@ from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.forest import Forest
 from arboleda.bt_xml.recipe import tree_recipe
 from arboleda.bt_xml.writing import Tag
+from arboleda.drivers import Value, quoted, shown
 from arboleda.engine import Context
 from arboleda.extension import ArboledaError
-from arboleda.model.facts import Value, shown
-from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.model.recipe import Limits, Parameter
-from arboleda.recipes import WrittenRecipe
-from arboleda.recipes.handles import Chain, Step, usable
+from arboleda.model.recipe import Limits
+from arboleda.recipes import Parameter, Step, WrittenRecipe
+from arboleda.recipes.handles import Chain, usable
 from arboleda.recipes.place_questions import PlaceQuestion
 
 from . import carry

@@ -7,8 +7,8 @@ from typing import Any
 
 from arboleda.bt_xml import leaves
 from arboleda.bt_xml.recipe import TreeRecipe, own_nodes
+from arboleda.drivers import among, quoted
 from arboleda.engine import Plant
-from arboleda.model.outside import among, quoted
 from arboleda.model.plant_model import Cell, PlantModel
 
 from . import copy_recipe

@@ -10,13 +10,12 @@ from py_trees import composites
 from arboleda.bt_xml import leaves, values
 from arboleda.bt_xml.nodes import Kind, PortDirection
 from arboleda.bt_xml.values import Variable
+from arboleda.drivers import Value, quoted, shown
 from arboleda.engine import Context
-from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Reason
-from arboleda.model.outside import quoted
-from arboleda.recipes import Kit, work
+from arboleda.recipes import Kit, Step, work
 from arboleda.recipes.authoring import Making
-from arboleda.recipes.handles import Step, flat, question_of
+from arboleda.recipes.handles import flat, question_of
 
 from .errors import EditError
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.model.errors import PayloadError
+from arboleda.extension import PayloadError
 
 
 class EditError(PayloadError):

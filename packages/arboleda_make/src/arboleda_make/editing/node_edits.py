@@ -5,7 +5,7 @@ from __future__ import annotations
 from arboleda.bt_xml import names
 from arboleda.bt_xml.markup import Element
 from arboleda.bt_xml.reading import TAGS
-from arboleda.model.outside import quoted
+from arboleda.drivers import quoted
 
 from . import attributes, layout
 from .errors import EditError

@@ -8,7 +8,7 @@ from arboleda.bt_xml import names
 from arboleda.bt_xml.markup import Element
 from arboleda.bt_xml.nodes import Category, PortDirection, built_in
 from arboleda.bt_xml.reading import MODELS, TAGS, TREE
-from arboleda.model.outside import quoted
+from arboleda.drivers import quoted
 
 from . import attributes, layout
 from .attributes import written

@@ -11,7 +11,7 @@ from arboleda.bt_xml.findings import XmlFault
 from arboleda.bt_xml.markup import LARGEST, Element, parse
 from arboleda.bt_xml.nodes import OTHER_SPELLINGS, Category
 from arboleda.bt_xml.reading import MODELS, ROOT, TAGS, TREE
-from arboleda.model.outside import among, quoted
+from arboleda.drivers import among, quoted
 
 from .errors import EditError
 

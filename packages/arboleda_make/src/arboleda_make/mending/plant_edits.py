@@ -10,8 +10,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
-from arboleda.kinds.declared import Effect
-from arboleda.model.facts import Value, shown
+from arboleda.drivers import Effect, Value, shown
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.plant_file import yaml_edit
 from arboleda.plant_file.document import Place

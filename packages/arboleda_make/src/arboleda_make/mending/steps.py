@@ -8,9 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.drivers import Robot
-from arboleda.kinds.declared import Effect, Slot
-from arboleda.model.facts import Value, shown
+from arboleda.drivers import Effect, Robot, Slot, Value, shown
 from arboleda.model.plant_model import Cell
 
 from .clues import Clues

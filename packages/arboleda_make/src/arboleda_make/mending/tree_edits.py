@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from xml.sax.saxutils import quoteattr
 
-from arboleda.model.facts import shown
+from arboleda.drivers import shown
 from arboleda.model.plant_model import Cell
 from arboleda.plant_file.mend import Cut
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from arboleda.model.outside import plain
+from arboleda.drivers import plain
 from arboleda.plant_file.findings import Source
 from arboleda.plant_file.mend import Cut, Texts
 

@@ -9,9 +9,8 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from pydantic import Field
 
-from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.shell import language_of
-from arboleda.extension import Role, needs
+from arboleda.extension import PageApi, Role, needs
 from arboleda.web.schema.bodies import BodyModel
 from arboleda.web.schema.queries import read_body
 from arboleda_make.trying.api import MakeApi

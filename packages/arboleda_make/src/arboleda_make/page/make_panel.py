@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from arboleda.dashboard.tags import way
-from arboleda.dashboard.wording import Words
-from arboleda.extension import Spot, tag
+from arboleda.extension import Spot, Words, tag
 from arboleda.plant_file.robot_models import arm_models
 from arboleda_make.trying.api import MakeApi
 

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 
 from fastapi import FastAPI
 
-from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.page_part import OtherRecord
 from arboleda.dashboard.past.side import PastSide
-from arboleda.extension import Assets, PagePart, Place, Role, Section
+from arboleda.extension import Assets, PageApi, PagePart, Place, Role, Section
 from arboleda_make.trying.api import MakeApi
 
 from . import findings_route, make_panel, proof, teach_panel, tree_editor, versions

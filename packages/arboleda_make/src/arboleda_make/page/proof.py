@@ -6,9 +6,8 @@ from fastapi import FastAPI, HTTPException, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, Response
 
-from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.sandbox import POLICY
-from arboleda.extension import Role, needs
+from arboleda.extension import PageApi, Role, needs
 from arboleda_make.trying.api import MakeApi
 
 PATH = "/proof"

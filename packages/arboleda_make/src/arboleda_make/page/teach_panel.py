@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.dashboard.faces import Face
-from arboleda.dashboard.page_api import Layout
 from arboleda.dashboard.tags import link, way
-from arboleda.dashboard.wording import Words
-from arboleda.extension import Moment, Spot, live, tag
+from arboleda.extension import Face, Layout, Moment, Spot, Words, live, tag
 from arboleda.views.view import standing
 from arboleda_make.trying.api import MakeApi
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from arboleda.dashboard.tags import way
-from arboleda.dashboard.wording import Words
-from arboleda.extension import Spot, tag
+from arboleda.extension import Spot, Words, tag
 from arboleda_make.trying.api import MakeApi
 
 HOW = ("into", "before", "around", "instead")  # where a node of the palette goes

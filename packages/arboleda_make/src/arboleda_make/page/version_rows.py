@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.dashboard.wording import Words
+from arboleda.extension import Words
 
 
 def face(listed: dict[str, Any], words: Words) -> dict[str, Any]:

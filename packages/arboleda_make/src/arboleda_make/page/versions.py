@@ -6,10 +6,9 @@ from fastapi import FastAPI, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse, Response
 
-from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.shell import language_of
-from arboleda.dashboard.wording import words as words_of
-from arboleda.extension import Spot, tag
+from arboleda.extension import PageApi, Spot, tag
+from arboleda.extension import words as words_of
 from arboleda_make.versions.api import VersionsApi
 
 from .version_rows import face

@@ -11,8 +11,8 @@ from difflib import unified_diff
 from pathlib import Path
 from typing import Any
 
+from arboleda.drivers import among, plain, quoted
 from arboleda.model.assistants import Assistants
-from arboleda.model.outside import among, plain, quoted
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.versions import Version, version_of

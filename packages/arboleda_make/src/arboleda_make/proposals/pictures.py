@@ -6,7 +6,7 @@ from arboleda.bt_xml import reading, rows
 from arboleda.bt_xml.findings import Findings
 from arboleda.drawing.picture import picture
 from arboleda.drawing.svg import svg
-from arboleda.model.errors import ConfigError
+from arboleda.extension import ConfigError
 
 
 def picture_of(file: str, content: bytes) -> str:

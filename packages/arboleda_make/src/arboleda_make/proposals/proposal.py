@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 from typing import Any
 
-from arboleda.model.errors import ConfigError
+from arboleda.extension import ConfigError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.document import Place
 from arboleda.plant_file.versions import Version

@@ -10,9 +10,8 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from arboleda.extension import StartError
-from arboleda.model.errors import ConfigError
-from arboleda.model.outside import quoted
+from arboleda.drivers import quoted
+from arboleda.extension import ConfigError, StartError
 from arboleda.runtime.state import replace_file
 from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.proposals.proposal import Proposal, from_data

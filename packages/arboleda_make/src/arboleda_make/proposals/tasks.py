@@ -9,12 +9,13 @@ from concurrent.futures import TimeoutError as NoAnswerYet
 from datetime import datetime
 from typing import Any, Protocol
 
+from arboleda.drivers import plain, quoted
 from arboleda.engine import Plant
+from arboleda.engine.inspection import intake_of, tasks_of
 from arboleda.extension import ArboledaError
 from arboleda.model.assistants import Assistants
-from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_model import PlantModel
-from arboleda.model.task import Order
+from arboleda.recipes import Order
 from arboleda.store.task_rows import ASSISTANT, TaskQuery, TaskRow
 from arboleda.web.plant_api import Found
 from arboleda_make.drafts.api import DraftRefused, State
@@ -113,5 +114,5 @@ class AssistantTasks:
 
 def _orders(plant: Plant, text: str) -> tuple[Sequence[Order], bool]:
     """The orders that a text allows, and whether the plant has a task of its id already."""
-    orders = plant.intake.orders(text)
-    return orders, orders[0].id in plant.intake.tasks
+    orders = intake_of(plant).orders(text)
+    return orders, orders[0].id in tasks_of(plant)

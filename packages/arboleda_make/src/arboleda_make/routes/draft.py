@@ -12,8 +12,7 @@ from pydantic import Field
 from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
-from arboleda.extension import Role, needs, takes
-from arboleda.web.plant_api import PlantApi
+from arboleda.extension import PlantApi, Role, needs, takes
 from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, answering, described_body, read_body

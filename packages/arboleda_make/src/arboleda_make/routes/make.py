@@ -10,9 +10,8 @@ from fastapi.responses import FileResponse, JSONResponse, Response
 from pydantic import Field
 from starlette.exceptions import HTTPException
 
-from arboleda.extension import Role, needs
+from arboleda.extension import PlantApi, Role, needs
 from arboleda.web.languages import FIRST
-from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import RequestModel
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import answering, described, described_body, query_of, read_body

@@ -12,9 +12,8 @@ from starlette.exceptions import HTTPException
 
 from arboleda.bt_xml.markup import LARGEST
 from arboleda.client import Task
-from arboleda.extension import Role, needs
+from arboleda.extension import PlantApi, Role, needs
 from arboleda.model.sentence import explained
-from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import answering, described_body, read_body

@@ -12,10 +12,9 @@ from fastapi.responses import JSONResponse
 from pydantic import Field, model_validator
 from starlette.exceptions import HTTPException
 
-from arboleda.client.answers.plant import Teaching
-from arboleda.extension import Role, needs, takes
+from arboleda.client import Teaching
+from arboleda.extension import PlantApi, Role, needs, takes
 from arboleda.model.sentence import explained
-from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, answering, described_body, read_body

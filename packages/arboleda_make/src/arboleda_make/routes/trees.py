@@ -8,9 +8,8 @@ from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 
-from arboleda.extension import Role, needs
+from arboleda.extension import PlantApi, Role, needs
 from arboleda.web.languages import FIRST, spoken, texts
-from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import RequestModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import (

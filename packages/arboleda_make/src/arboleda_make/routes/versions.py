@@ -10,8 +10,7 @@ from fastapi.responses import JSONResponse
 from pydantic import Field
 from starlette.exceptions import HTTPException
 
-from arboleda.extension import Role, needs
-from arboleda.web.plant_api import PlantApi
+from arboleda.extension import PlantApi, Role, needs
 from arboleda.web.schema.bodies import BodyModel
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import answering, described_body, read_body

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol
 
+from arboleda.drivers import Value
 from arboleda.extension import ArboledaError
-from arboleda.model.facts import Value
 
 State = dict[str, Any]
 Spot = Sequence[float] | int

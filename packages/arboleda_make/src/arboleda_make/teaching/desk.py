@@ -10,19 +10,20 @@ from typing import Any, Protocol, TypeVar
 from arboleda.adapters import clock
 from arboleda.drivers import Robot
 from arboleda.engine import Plant
+from arboleda.engine.inspection import beliefs_of
 from arboleda.extension import ArboledaError
 from arboleda.geometry import bodies
 from arboleda.geometry.bodies import Body
 from arboleda.model.messages import Jog
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.urdf import robot_urdf
-from arboleda.runtime import tool_path
 from arboleda.views import view
 from arboleda_make.drafts.api import DraftApi
 from arboleda_make.teaching.api import Along, Button, State, Target, TeachApi, TeachRefused
 
 from . import devices as taught_devices
 from . import targets as taught_targets
+from . import tool_path
 
 AHEAD_M = 0.005  # how far ahead the goal of a way without an end is
 NO_DRAWING = "the axes of {robot} are not known: {why}"
@@ -81,7 +82,7 @@ class TeachDesk(TeachApi):
         if self._draft is None:
             raise TeachRefused(NO_FILE)
         robot = self._robot(cell, target.robot)
-        at = self._line.read(lambda plant: plant.dispatcher.beliefs[robot.name].known_position)
+        at = self._line.read(lambda plant: beliefs_of(plant)[robot.name].known_position)
         if at is None:
             raise TeachRefused(NOWHERE.format(robot=robot.name))
         spot, values = taught_devices.spot(robot, at), self._draft.state()["values"]
@@ -124,7 +125,7 @@ class TeachDesk(TeachApi):
         kept = self._ways.get(robot.name)
         if kept is not None and (kept.session, kept.number) == (button.session, button.number):
             return kept.goal
-        q = self._line.read(lambda plant: plant.dispatcher.beliefs[robot.name].known_q)
+        q = self._line.read(lambda plant: beliefs_of(plant)[robot.name].known_q)
         if q is None:
             raise TeachRefused(NOWHERE.format(robot=robot.name))
         metres = along.sign * (AHEAD_M if along.mm is None else along.mm / 1000)

@@ -6,11 +6,10 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from arboleda.drivers import Robot
+from arboleda.drivers import Device, DeviceVerb, FactType, Position, Robot
 from arboleda.engine import CellRun, Plant
-from arboleda.kinds.declared import Device, DeviceVerb, FactType
+from arboleda.engine.inspection import beliefs_of, obstacles_of, teaching_of
 from arboleda.model.by_class import nearest
-from arboleda.model.commands import Position
 from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.views import view
 from arboleda_make.teaching.api import Spot, TeachRefused
@@ -32,7 +31,7 @@ def state(plant: Plant, name: str) -> Row:
     """The person who teaches a cell, why nobody may begin now, and its devices."""
     cell = cell_of(plant, name)
     request = OperatorRequest(at=plant.now, verb=Verb.TEACH, scope=name, arguments=(("teacher", "x"),))
-    refusal = plant.refusal(request) if cell.manual.teaching is None else None
+    refusal = plant.refusal(request) if teaching_of(cell) is None else None
     devices = [_device(plant, role, robot) for role, robot in cell.cell.members if robot in cell.cell.reached]
     return {
         "cell": name,
@@ -44,7 +43,7 @@ def state(plant: Plant, name: str) -> Row:
 
 def standing(plant: Plant, robot: str) -> Row:
     """Position of a robot, as people write it, whoever moved it there; and why it takes no command now."""
-    belief, obstacle = plant.dispatcher.beliefs[robot], plant.dispatcher.obstacles.of(robot)
+    belief, obstacle = beliefs_of(plant)[robot], obstacles_of(plant).of(robot)
     at = belief.known_position
     return {
         "name": robot,

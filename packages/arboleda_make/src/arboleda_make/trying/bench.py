@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from arboleda.drivers import Robot
-from arboleda.model.outside import plain
+from arboleda.drivers import Robot, plain
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.robot_models import pose_at_home
 from arboleda.plant_file.tree_file import ENDING

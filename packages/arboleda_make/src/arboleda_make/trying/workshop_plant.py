@@ -10,18 +10,15 @@ from typing import Any
 from arboleda.bt_xml import export
 from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.dashboard.findings import findings
-from arboleda.drivers import Robot
+from arboleda.drivers import Robot, quoted
 from arboleda.drivers.port import DriverSpec
 from arboleda.engine import Plant
-from arboleda.extension import ArboledaError
+from arboleda.extension import ArboledaError, ConfigError
 from arboleda.model import text
-from arboleda.model.errors import ConfigError
-from arboleda.model.outside import quoted
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.model.recipe import Recipe
 from arboleda.plant_file import draft_check, driver_forms, loader
-from arboleda.recipes import WrittenRecipe
+from arboleda.recipes import Recipe, WrittenRecipe
 from arboleda.views import forms, tree_view
 from arboleda.web.languages import texts
 from arboleda_make.editing import carry, desk

@@ -10,24 +10,24 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
+from arboleda.drivers import plain
 from arboleda.engine import CellRun, Plant
-from arboleda.extension import ArboledaError, StartError
-from arboleda.model.errors import ConfigError
+from arboleda.engine.inspection import teaching_of
+from arboleda.extension import ArboledaError, ConfigError, StartError
 from arboleda.model.messages import RevisionAnswer, RevisionName
-from arboleda.model.outside import plain
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
-from arboleda.plant_file.change import Change
-from arboleda.plant_file.changes import changes
 from arboleda.plant_file.draft_check import DraftCheck
-from arboleda.plant_file.restart import needing_restart
 from arboleda.plant_file.versions import Version, Versions, version_of, whole
 from arboleda.runtime import at_work
 from arboleda.runtime.parts.orchestrator import Orchestrator, PutToWork
 from arboleda_make.drafts.api import DraftRefused, State
 from arboleda_make.proposals.proposal import Proposal
 from arboleda_make.versions.api import VersionsApi
+from arboleda_make.versions.change import Change
+from arboleda_make.versions.changes import changes
+from arboleda_make.versions.restart import needing_restart
 
 from ..drafts.plant_folder import PlantFolder
 
@@ -281,7 +281,7 @@ def _after(run: CellRun, task: str = "") -> str:
     task = task or (run.task.id if run.task else "")
     if task:
         return AFTER_TASK.format(task=task)
-    return AT_REST if run.manual.teaching is None else AFTER_TEACHING.format(cell=run.cell.name)
+    return AT_REST if teaching_of(run) is None else AFTER_TEACHING.format(cell=run.cell.name)
 
 
 def _now() -> str:

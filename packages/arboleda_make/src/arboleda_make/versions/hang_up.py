@@ -10,9 +10,9 @@ from collections.abc import Callable
 from types import FrameType
 from typing import Any
 
+from arboleda.drivers import plain
 from arboleda.extension import ArboledaError
 from arboleda.host.signals import HANG_UP, has_terminal
-from arboleda.model.outside import plain
 
 LOG = logging.getLogger("arboleda.operators")
 NAME = "SIGHUP"  # who puts it to work, in the journal

@@ -8,11 +8,11 @@ import pytest
 
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import draft_check
-from arboleda.plant_file.changes import changes
 from arboleda.plant_file.draft_check import Shade
 from arboleda.plant_file.loader import load_with_files
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda_make.drafts.draft import MOST_BYTES, MOST_STEPS, Draft, draft_of
+from arboleda_make.versions.changes import changes
 
 FOLDER = Path(__file__).parents[5] / "examples/own_tree"
 VISE = ("cells", "cell", "targets", "vise", "loader")

@@ -19,11 +19,12 @@ from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.draft_check import DraftCheck
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.urdf import robot_urdf
-from arboleda.runtime import at_work, tool_path
+from arboleda.runtime import at_work
 from arboleda.testing import Rig
 from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.drafts.desk import DraftDesk
 from arboleda_make.drafts.plant_folder import PlantFolder
+from arboleda_make.teaching import tool_path
 from arboleda_make.teaching.api import Along, Button, Target, TeachRefused
 from arboleda_make.teaching.desk import TeachDesk
 

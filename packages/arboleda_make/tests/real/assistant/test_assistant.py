@@ -101,9 +101,7 @@ def test_without_its_library_it_says_how_to_get_it() -> None:
     ran = subprocess.run(
         [sys.executable, "-c", missing], env=ENVIRON, capture_output=True, text=True, check=False
     )
-    assert (
-        ran.returncode == 1 and "'arboleda[mcp]'" in ran.stderr and "Traceback" not in ran.stderr
-    )
+    assert ran.returncode == 1 and "'arboleda[mcp]'" in ran.stderr and "Traceback" not in ran.stderr
 
 
 def test_without_a_plant_it_says_who_can_start_one(tmp_path: Path) -> None:

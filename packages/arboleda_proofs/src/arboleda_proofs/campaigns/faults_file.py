@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from arboleda.model.errors import ConfigError
+from arboleda.extension import ConfigError
 from arboleda.plant_file import user_file
 from arboleda.plant_file.yaml_marks import LARGEST, YamlFault, parse, plain_value
 from arboleda_proofs.simulator.run import MINUTE_S

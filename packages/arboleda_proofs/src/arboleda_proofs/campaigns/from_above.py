@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from arboleda.drivers import shown
 from arboleda.extension import ArboledaError
 from arboleda.geometry import bodies, kinematics
-from arboleda.model.facts import shown
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.views.geometry import places

@@ -11,7 +11,7 @@ from importlib.resources import as_file, files
 from itertools import count
 from pathlib import Path
 
-from arboleda.model.errors import ConfigError
+from arboleda.extension import ConfigError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader

@@ -14,7 +14,7 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from arboleda.dashboard.findings import findings
-from arboleda.dashboard.wording import words
+from arboleda.extension import words
 from arboleda.web.languages import FIRST
 from arboleda.web.languages.templates import heading
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from arboleda.model.errors import ConfigError
+from arboleda.extension import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda_proofs.simulator.checks import BadFaults
 from arboleda_proofs.simulator.faults import KINDS, Fault

@@ -8,9 +8,8 @@ from typing import Annotated, Any
 
 import typer
 
-from arboleda.cli.plant_options import StoreAddress, TokensFile
-from arboleda.extension import Phrase, RunningPlant, StateFolder, client, say
-from arboleda.model.outside import plain
+from arboleda.drivers import plain
+from arboleda.extension import Phrase, RunningPlant, StateFolder, StoreAddress, TokensFile, client, say
 
 LONGEST = 500  # characters of a line
 SPAN = re.compile(r"(\d+(?:\.\d+)?)\s*(s|m|min)?")

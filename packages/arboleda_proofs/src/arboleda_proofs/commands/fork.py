@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from arboleda.cli.record import changes
-from arboleda.extension import Phrase, say
-from arboleda.model.errors import ConfigError
-from arboleda.model.outside import plain
+from arboleda.drivers import plain
+from arboleda.extension import ConfigError, Phrase, say
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import user_file

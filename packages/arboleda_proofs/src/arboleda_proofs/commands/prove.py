@@ -11,8 +11,8 @@ from typing import Annotated
 import typer
 
 from arboleda.cli.language import language
-from arboleda.cli.plant_options import PlantFile, folder
-from arboleda.extension import Phrase, StateFolder, say
+from arboleda.cli.plant_options import folder
+from arboleda.extension import Phrase, PlantFile, StateFolder, say
 from arboleda.host.packages import extra
 from arboleda.model.packages import MAKE
 from arboleda.plant_file.user_file import check_writable

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from arboleda.cli.record import LONGEST
+from arboleda.drivers import plain
 from arboleda.extension import Phrase, Sentence, say
-from arboleda.model.outside import plain
 from arboleda.plant_file.user_file import check_new
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.reader import Record

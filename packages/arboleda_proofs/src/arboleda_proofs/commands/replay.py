@@ -14,10 +14,9 @@ import typer
 
 from arboleda import __version__
 from arboleda.cli.record import File, changes, last_of
-from arboleda.extension import Phrase, Sentence, StateFolder, say
-from arboleda.model.errors import ConfigError
+from arboleda.drivers import plain
+from arboleda.extension import ConfigError, Phrase, Sentence, StateFolder, say
 from arboleda.model.messages import ENDED
-from arboleda.model.outside import plain
 from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.preamble import Beginning

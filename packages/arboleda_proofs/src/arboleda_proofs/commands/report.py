@@ -8,12 +8,10 @@ from typing import Annotated
 import typer
 
 from arboleda.cli.language import word
-from arboleda.cli.plant_options import PlantFile, folder
+from arboleda.cli.plant_options import folder
 from arboleda.cli.record import HAS_KB
-from arboleda.cli.working import working
-from arboleda.extension import Phrase, StateFolder, say
-from arboleda.model.errors import ConfigError
-from arboleda.model.outside import plain
+from arboleda.drivers import plain
+from arboleda.extension import ConfigError, Phrase, PlantFile, StateFolder, say, working
 from arboleda.recorder.errors import NoRecord
 
 LONGEST = 300  # characters of a line

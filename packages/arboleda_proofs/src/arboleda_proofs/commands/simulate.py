@@ -9,8 +9,8 @@ import typer
 from rich.text import Text
 
 from arboleda.cli.language import language
-from arboleda.cli.plant_options import IN_FOLDER, StoreAddress, plant_here
-from arboleda.extension import Phrase, say
+from arboleda.cli.plant_options import IN_FOLDER, plant_here
+from arboleda.extension import Phrase, StoreAddress, say
 from arboleda.plant_file.user_file import check_new, check_writable
 from arboleda_proofs.campaigns.defaults import CYCLES, LEVEL, SEED, SEEDS
 from arboleda_proofs.campaigns.exclusions import exclusion

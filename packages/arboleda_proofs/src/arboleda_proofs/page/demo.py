@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.dashboard.faces import Face
-from arboleda.extension import Moment, Request, Spot, tag
+from arboleda.extension import Face, Moment, Request, Spot, tag
 from arboleda_proofs.running.demonstration_api import DemonstrationApi
 
 END = "end_demo"

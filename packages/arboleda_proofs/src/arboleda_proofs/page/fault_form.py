@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from arboleda.dashboard.page_api import Layout, PageApi
-from arboleda.dashboard.wording import Words
-from arboleda.extension import Sentence, Spot, rows, tag
+from arboleda.extension import Layout, PageApi, Sentence, Spot, Words, rows, tag
 from arboleda_proofs.running.faults_api import FaultsApi
 
 LASTING_S = (2, 5, 15, 60)

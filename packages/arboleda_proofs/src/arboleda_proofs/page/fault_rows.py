@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from arboleda.dashboard.faces import Face
 from arboleda.dashboard.faces.moment import seconds
-from arboleda.extension import Moment
+from arboleda.extension import Face, Moment
 
 from .fault_acts import END
 

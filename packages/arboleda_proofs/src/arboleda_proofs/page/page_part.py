@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.dashboard.faces import Face
-from arboleda.extension import Assets, Moment, PageAct, PagePart, Place, Role, Section
+from arboleda.extension import Assets, Face, Moment, PageAct, PagePart, Place, Role, Section
 
 from . import demo, fault_acts, fault_form, fault_rows, reports
 

@@ -8,12 +8,10 @@ from fastapi import FastAPI, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, Response
 
-from arboleda.dashboard.page_api import PageApi
 from arboleda.dashboard.sandbox import POLICY
 from arboleda.dashboard.shell import language_of
 from arboleda.dashboard.tags import of_task
-from arboleda.dashboard.wording import Words, words
-from arboleda.extension import ArboledaError, Spot
+from arboleda.extension import ArboledaError, PageApi, Spot, Words, words
 from arboleda.model.packages import PROOFS
 from arboleda.web.access import login
 from arboleda.web.missing import missing

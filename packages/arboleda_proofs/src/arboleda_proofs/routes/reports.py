@@ -12,10 +12,9 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
-from arboleda.extension import ArboledaError
+from arboleda.extension import ArboledaError, PlantApi
 from arboleda.model.packages import PROOFS
 from arboleda.web.missing import missing
-from arboleda.web.plant_api import PlantApi
 from arboleda.web.schema.bodies import Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, answering

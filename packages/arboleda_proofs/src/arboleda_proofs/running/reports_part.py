@@ -12,10 +12,10 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from arboleda.drivers import plain, quoted
 from arboleda.extension import ArboledaError, Phrase
 from arboleda.host.limits import BEHIND
 from arboleda.model.messages import TaskChanged, TaskState
-from arboleda.model.outside import plain, quoted
 from arboleda.model.text import ID
 from arboleda_proofs.running.reports_api import ReportsApi
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from arboleda.model.errors import ArboledaError
+from arboleda.drivers import ArboledaError
 
 
 class BadFaults(ArboledaError):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from arboleda.model.errors import PayloadError
+from arboleda.drivers import PayloadError
 from arboleda.wire.payloads import Goal, decode
 from arboleda.wire.topics import parse
 

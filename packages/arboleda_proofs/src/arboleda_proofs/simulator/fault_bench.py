@@ -10,7 +10,7 @@ from heapq import heappop, heappush
 from itertools import count
 from typing import TYPE_CHECKING
 
-from arboleda.model.facts import Facts
+from arboleda.drivers import Facts
 from arboleda.model.plant_model import PlantModel
 from arboleda.rig.network import Client, Line
 from arboleda.sim.arm import ArmBody

@@ -10,9 +10,9 @@ from arboleda.bt_xml.running.leaves import FAILS
 from arboleda.bt_xml.running.root import FAILED as TREE_FAILED
 from arboleda.bt_xml.running.root import FAILED_AT as TREE_FAILED_AT
 from arboleda.engine import Entry, State
-from arboleda.engine.inspection import EMPTY, trouble_in
+from arboleda.engine.inspection import EMPTY, not_given_count_of, tasks_of, trouble_in
 from arboleda.model.messages import Reason, TaskChanged, TaskState
-from arboleda.model.sentence import Sentence
+from arboleda.recipes import Sentence
 from arboleda.recipes.authoring import FAIL
 from arboleda.recipes.decorators import RESCUE_FAILED
 from arboleda.recipes.place_questions import NO_PART_YET, NO_ROOM_YET
@@ -73,7 +73,7 @@ class Findings:
     def look(self) -> None:
         """Take in a step; no fault has come until then."""
         record, plant = self._record, self._world.plant
-        refused = self._refused_commands.fresh(plant) if plant.dispatcher.not_given_count else []
+        refused = self._refused_commands.fresh(plant) if not_given_count_of(plant) else []
         if refused or record.tasks.changes or record.commands.moved:
             self._take_in(refused)
 
@@ -91,7 +91,7 @@ class Findings:
             self._follow(task_change)
 
     def _began(self, change: TaskChanged) -> None:
-        self._recipes[change.cell or ""] = self._world.plant.intake.tasks[change.task].order.recipe
+        self._recipes[change.cell or ""] = tasks_of(self._world.plant)[change.task].order.recipe
         self._tasks[change.cell or ""] = change.text
 
     def _follow(self, change: TaskChanged) -> None:
@@ -130,7 +130,7 @@ class Findings:
         self.found.update(each for each in refused if not (failed and each.sentence == sentence))
 
     def _failed(self, recipe: str, change: TaskChanged) -> None:
-        task = self._world.plant.intake.tasks[change.task]
+        task = tasks_of(self._world.plant)[change.task]
         step = task.failed_step
         by_itself = (step is not None and step.key in AS_WRITTEN) or change.sentence.key in BY_TREE
         is_whole = change.sentence.key != RESCUE_FAILED.key

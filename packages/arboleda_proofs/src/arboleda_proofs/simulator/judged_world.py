@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 
 from arboleda.engine import Plant
+from arboleda.engine.inspection import asking_of
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders
 from arboleda.rig.hosts.database import LeaderRow, SharedDisk
@@ -127,7 +128,7 @@ class JudgedWorld:
             before, open_tasks = open_tasks, len(tasks.open)
             if open_tasks < before:
                 since = self.seconds
-            waits = bool(self.world.plant.zones.queue.waiting)
+            waits = bool(asking_of(self.world.plant))
             if open_tasks < before or (waits and self.seconds < since + longest_s):
                 end = self.seconds + REST_S
         self._raise(self._judges.at_the_end(self._look))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from arboleda.model.plant_model import PlantModel
-from arboleda.model.sentence import Phrase, Sentence
+from arboleda.recipes import Phrase, Sentence
 
 from .faults import KINDS, OF_BOARDS, Fault
 from .faults.titles import title

@@ -9,15 +9,14 @@ from functools import partial
 from itertools import count
 
 from arboleda.bt_xml import telling
+from arboleda.drivers import Value
 from arboleda.engine import title_of
+from arboleda.engine.inspection import Question, ledger_of
 from arboleda.model import text as task_text
 from arboleda.model.advice import Advice, Hand
-from arboleda.model.commands import Question
-from arboleda.model.errors import TextError
-from arboleda.model.facts import Value
 from arboleda.model.messages import TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Cell, Link
-from arboleda.model.recipe import Recipe
+from arboleda.recipes import Recipe, TextError
 from arboleda.recipes.place_questions import GETS_PART, GETS_ROOM
 from arboleda.rig.hands import HANDS, do
 from arboleda.rig.world import World
@@ -248,7 +247,7 @@ class FixedAnswers:
 
     def _answer(self, _: None) -> None:
         for name in self._people:
-            entry = self._world.plant.dispatcher.ledger.question(name)
+            entry = ledger_of(self._world.plant).question(name)
             if entry is not None and isinstance(entry.command, Question):
                 word = self._words.get(name)
                 answer = word if word in entry.command.answers else entry.command.answers[0]
@@ -314,7 +313,7 @@ class Attendant:
         """Have people who are asked something give one of the answers."""
         plant = self._world.plant
         for name in self._people:
-            entry = plant.dispatcher.ledger.question(name)
+            entry = ledger_of(plant).question(name)
             if entry is not None and isinstance(entry.command, Question):
                 answer = self._dice.pick(entry.command.answers)
                 self._world.request_verb(Verb.ANSWER, name, arguments=(("answer", answer),))

@@ -8,6 +8,7 @@ from typing import Any
 
 from arboleda.drivers import Command, Stop, StopMode
 from arboleda.engine import Plant, State
+from arboleda.engine.inspection import beliefs_of, ledger_of
 from arboleda.model.by_class import nearest
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import (
@@ -186,7 +187,7 @@ class Record:
 
     def _take_over(self, plant: Plant) -> None:
         """Take over the plant's beliefs, this once: reports from before this record began."""
-        beliefs = plant.dispatcher.beliefs
+        beliefs = beliefs_of(plant)
         self.bridges.take_over(self.world.bridge, self.world.now, beliefs)
         self.boards.take_over(self.world.now, beliefs)
         for name, known in self.robots.items():
@@ -247,7 +248,7 @@ class Record:
                 self.tasks.may_be_cancelled(request.scope, self.scopes.cells(request.scope))
         sent = {each.command.id: each.command for each in self.commands.new}
         if sent:
-            self.commands.follow(self._plant.dispatcher.ledger, self._plant.now)
+            self.commands.follow(ledger_of(self._plant), self._plant.now)
         for cell in self.cells.values() if sent else ():
             self.trees.look_into(cell, sent)
         self._clear_news()
@@ -299,7 +300,7 @@ class Record:
     def _compare_commands(self, plant: Plant) -> bool:
         """Take over what became of commands; True if anything did."""
         commands = self.commands
-        moved = commands.follow(plant.dispatcher.ledger, plant.now)
+        moved = commands.follow(ledger_of(plant), plant.now)
         for sent, _ in commands.moved:
             cell = self.cells[sent.entry.cell] if sent.entry is not None else None
             if sent.state is State.DONE and cell is not None and cell.run.state is CellState.EXECUTE:
@@ -308,7 +309,7 @@ class Record:
                 self.starts.gave_up(sent.command.id)
         if moved:
             self.proofs.follow(list(commands.open.values()))
-            self.heard.follow(commands, plant.dispatcher.beliefs)
+            self.heard.follow(commands, beliefs_of(plant))
         return moved
 
     def _look_at_trails(self) -> None:
@@ -352,7 +353,7 @@ class Record:
         if done is not None:
             done(self, answer.scope)
         if request.verb is Verb.HOME and request.by_hand:
-            self.heard.put_right(self.scopes.robots(answer.scope), self._plant.dispatcher.beliefs)
+            self.heard.put_right(self.scopes.robots(answer.scope), beliefs_of(self._plant))
 
     def _acted_on(self, request: OperatorRequest) -> list[KnownCell]:
         """The cells that a request is to lead on; an answer is for the one cell that asks."""

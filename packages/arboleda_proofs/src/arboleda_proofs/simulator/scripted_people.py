@@ -8,10 +8,10 @@ from functools import partial
 from typing import Any
 
 from arboleda.model import text as task_text
-from arboleda.model.errors import TextError
 from arboleda.model.messages import ENDED, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.verbs import Arguments, as_text, from_text
+from arboleda.recipes import TextError
 from arboleda.rig.hands import BEFOREHAND
 from arboleda.rig.manual_work import BY_HAND_S
 from arboleda.rig.world import World

@@ -12,10 +12,8 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import cast
 
-from arboleda.drivers import Report, Robot
-from arboleda.kinds.declared import Device, Effect
-from arboleda.kinds.mobile import Mobile
-from arboleda.model.plant_model import APART_S, Evidence
+from arboleda.drivers import Device, Effect, Evidence, Mobile, Report, Robot
+from arboleda.model.plant_model import APART_S
 from arboleda.rig.world import World
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from arboleda.drivers import Command, MotionState, Report, Robot, Stop, StopMode
+from arboleda.drivers import Command, MotionState, Position, Report, Robot, Stop, StopMode
 from arboleda.engine import Belief, Entry, Plant, State
-from arboleda.engine.inspection import HEARTBEAT_S
-from arboleda.model.commands import Position
+from arboleda.engine.inspection import HEARTBEAT_S, beliefs_of, grips_of, latches_of, ledger_of
 from arboleda.model.messages import Heartbeat
 from arboleda.model.plant_model import PlantModel
 from arboleda.rig.world import BRIDGE, World
@@ -27,9 +26,9 @@ def taken_over(plant: Plant, model: PlantModel) -> World:
     boards repeat their open commands from where and when they began, so that they are in the middle of them.
     Where that ends elsewhere than the real robot was heard last, they do the rest from that place instead.
     """
-    entries = list(plant.dispatcher.ledger.entries.values())
+    entries = list(ledger_of(plant).entries.values())
     world = _played(plant, model, entries, {entry.command.robot: entry.origin for entry in entries})
-    astray = {name for name in plant.dispatcher.beliefs if _is_astray(world, plant, name)}
+    astray = {name for name in beliefs_of(plant) if _is_astray(world, plant, name)}
     if astray:
         rest = [_rest_of(plant, entry) if entry.command.robot in astray else entry for entry in entries]
         began = {entry.command.robot: entry.origin for entry in rest}
@@ -59,15 +58,11 @@ def _played(
 
 def _place(world: World, plant: Plant, robot: Robot, began: Position | None) -> None:
     """Put a virtual robot where its open command began; without one, where the real robot was heard last."""
-    belief, board = plant.dispatcher.beliefs[robot.name], world.boards[robot.mqtt]
+    belief, board = beliefs_of(plant)[robot.name], world.boards[robot.mqtt]
     q = began if isinstance(began, tuple) else belief.q
     node = began if isinstance(began, int) else belief.node
     report = BodyReport(q, node, belief.effector, belief.piece, tuple(belief.facts.items()) or None)
-    holds = (
-        robot.held_fact is not None
-        and plant.dispatcher.effectors.grips.holding(robot.name)
-        and belief.piece is not False
-    )
+    holds = robot.held_fact is not None and grips_of(plant).holding(robot.name) and belief.piece is not False
     latched = belief.state is MotionState.STOP_LATCHED
     board.place(report, holds=holds, homed=not belief.says_unhomed, latched=latched)
     world.wake(robot.mqtt)
@@ -85,7 +80,7 @@ def _given(plant: Plant, entries: Iterable[Entry]) -> Iterator[Given]:
         if entry.state is State.CANCELLING and entry.halts and entry.cancelled_at is not None:
             halt = Stop(id=f"{plant.epoch}-0", robot=entry.command.robot, mode=StopMode.HALT)
             yield entry.cancelled_at, halt
-    for robot in sorted(plant.dispatcher.latches.stopped):
+    for robot in sorted(latches_of(plant).stopped):
         yield plant.now, Stop(id=f"{plant.epoch}-00", robot=robot, mode=StopMode.LATCH)
     while first < plant.now:
         yield first, Heartbeat(epoch=plant.epoch)
@@ -103,7 +98,7 @@ def _give(world: World, message: Command | Heartbeat) -> None:
 
 def _is_astray(world: World, plant: Plant, name: str) -> bool:
     """True if a virtual robot is further from where the real one was heard last than it could have moved."""
-    belief, robot = plant.dispatcher.beliefs[name], plant.model.robots[name]
+    belief, robot = beliefs_of(plant)[name], plant.model.robots[name]
     board = world.boards.get(robot.mqtt)
     place = None if board is None else board.body.true_place
     if place is None or belief.position is None:
@@ -118,13 +113,13 @@ def _rest_of(plant: Plant, entry: Entry) -> Entry:
         entry.command, cell=entry.cell, doing=entry.doing, sent_at=plant.now, deadline=entry.deadline
     )
     rest.state, rest.cancelled_at = entry.state, plant.now
-    rest.origin = plant.dispatcher.beliefs[entry.command.robot].position
+    rest.origin = beliefs_of(plant)[entry.command.robot].position
     return rest
 
 
 def _finish(world: World, plant: Plant) -> None:
     """Have the boards speak to this plant from now on, in place of the real ones."""
-    for name, belief in plant.dispatcher.beliefs.items():
+    for name, belief in beliefs_of(plant).items():
         world.partings[name] = Dress(belief)
         belief.number = None  # the boards that replace them count from 1
         if belief.state is MotionState.FAULT and belief.robot.mqtt in world.boards:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from arboleda.model.plant_model import Cell
-from arboleda.model.recipe import Parameter
+from arboleda.recipes import Parameter
 
 
 def task_words(cell: Cell, parameter: Parameter) -> Sequence[str]:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.kinds.declared import DeviceVerb, Effect
-from arboleda.model.facts import Value
+from arboleda.drivers import DeviceVerb, Effect, Value
 from arboleda.rig.world import World
 from arboleda.sim.machine import MachineBody
 from arboleda_proofs.simulator.people import answer_in_turn

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from arboleda.model.errors import ConfigError
+from arboleda.extension import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda_proofs.campaigns.plants import Plant

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
 
-from arboleda.drivers import Robot
-from arboleda.model.facts import Value
+from arboleda.drivers import Robot, Value
+from arboleda.engine.inspection import beliefs_of
 from arboleda.rig.world import World
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
@@ -73,7 +73,7 @@ def cell(world: World, name: str) -> CellLook:
 
 def robot(world: World, name: str) -> RobotLook:
     """The look at the robot with this name: its board's body beside the plant's belief."""
-    model, belief = world.model.robots[name], world.plant.dispatcher.beliefs[name]
+    model, belief = world.model.robots[name], beliefs_of(world.plant)[name]
     look = partial(RobotLook, name=name, online=belief.online, homed=belief.homed)
     body = world.boards[model.mqtt].body
     if model.joints and isinstance(body, ArmBody):

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
-from arboleda.model.facts import Value
+from arboleda.drivers import Value
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Build

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from warnings import warn
 
-from arboleda.testing.storage_layout import Palletizing, StorageLayout
+from arboleda.testing import Palletizing, StorageLayout
 
 __all__ = ["Palletizing", "StorageLayout"]
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from arboleda.engine.inspection import tasks_of
 from arboleda.model import text
-from arboleda.model.task import Order
+from arboleda.recipes import Order
 from arboleda.rig.rig import Rig
 from arboleda.wire.transport import Publication
 from arboleda_proofs.simulator.truth.arm import ArmTruth
@@ -50,7 +51,7 @@ class Witness:
         for meeting in truth.zones.meetings:
             self.collisions.append(f"{' and '.join(meeting.arms)} in {meeting.zone} at {self.rig.now:.2f}")
         for cell, task, _ in truth.done_tasks:
-            order = text.parse(self.rig.plant.intake.tasks[task].order.text, self.rig.model)
+            order = text.parse(tasks_of(self.rig.plant)[task].order.text, self.rig.model)
             self.false_successes += [f"{order.text}: {why}" for why in self._missing(cell, order)]
         for cell, _ in truth.begun_tasks:
             self._of_task.update({robot.name: [] for robot in self.rig.model.cell(cell).robots})

@@ -15,13 +15,13 @@ from arboleda.model.messages import Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.record_text import sentence_of
 from arboleda.recorder.tape import TapedPlant, recorded
-from arboleda.recorder.troubles import SILENCE, Trouble
 from arboleda.rig.world import World
 from arboleda.testing.plants import shipped
 from arboleda_proofs.commands.fork import compared
 from arboleda_proofs.playback.fork.device_replay import befall
 from arboleda_proofs.playback.fork.plant_events import Pair
 from arboleda_proofs.playback.fork.run import ForkRequest, ForkResult, forked
+from arboleda_proofs.playback.troubles import SILENCE, Trouble
 from arboleda_proofs.simulator.faults import KINDS, Fault
 
 Act = Callable[[World], None]

@@ -10,7 +10,8 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.engine import Failures, failure_kept, read_failure
+from arboleda.engine import Failures
+from arboleda.model.kept_failures import failure_kept, read_failure
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase
 from arboleda.recipes.authoring import FINAL

@@ -10,9 +10,10 @@ from arboleda.model.common_places import room_at, with_common_places
 from arboleda.model.messages import OperatorRequest
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase, Sentence, Value
+from arboleda.model.verb_scopes import whole
 
 from ..cell import CellRun
-from .scopes import Scopes, VerbRefusal, whole
+from .scopes import Scopes, VerbRefusal
 
 NO_STATION = Phrase("refusal.no_station", "{station} is not a station of {cell}")
 STATION_EMPTY = Phrase("refusal.station_empty", "no part is known to be in station {station} of {cell}")

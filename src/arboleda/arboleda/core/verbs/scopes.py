@@ -6,16 +6,15 @@ from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.zones import NONE, Zones
 from arboleda.model.cell_states import CellState
 from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import OperatorAnswer, OperatorRequest, Verb
+from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.outside import quoted
-from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase, Value
+from arboleda.model.verb_scopes import scopes
 from arboleda.model.verbs import Scope
 
 from ..cell import CellRun
 from ..intake import Intake
 
-PLANT = Phrase("scope.plant", "plant")
 NO_TASK = Phrase(
     "refusal.no_task",
     "there is no task {task}; open tasks: {open}; cells and robots of this plant: {known}",
@@ -106,21 +105,3 @@ class Scopes:
         if len(ids) > SHOWN:
             return AND_MORE(first=ids[:SHOWN], more=len(ids) - SHOWN)
         return ids or NONE()
-
-
-def scopes(model: PlantModel) -> dict[str, frozenset[str]]:
-    """The names of the robots of each scope: the plant, a cell, one robot."""
-    robots = {name: frozenset([name]) for name in model.robots}
-    cells = {cell.name: frozenset(robot.name for robot in cell.robots) for cell in model.cells}
-    return robots | cells | dict.fromkeys(("", "plant"), frozenset(model.robots))
-
-
-def scope_of(request: OperatorRequest | OperatorAnswer) -> str:
-    """The scope that a request names; only task ids tell capitals apart."""
-    scope = request.scope.strip()
-    return scope if Scope.TASK in request.verb.row.scopes else scope.lower()
-
-
-def whole(scope: str) -> Value:
-    """A scope as sentences name it."""
-    return scope or PLANT()

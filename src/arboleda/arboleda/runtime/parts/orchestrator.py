@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
 from functools import partial
@@ -23,7 +23,7 @@ from arboleda.departures.leaving import (
     leaves_unkept,
     stop_left,
 )
-from arboleda.engine import Memory, Plant, reasons
+from arboleda.engine import Plant, why_interrupted
 from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import (
@@ -31,6 +31,7 @@ from arboleda.model.messages import (
     CellRevised,
     ClockSet,
     Event,
+    Fact,
     InternalError,
     Journal,
     KeptTask,
@@ -108,7 +109,7 @@ class StartState(NamedTuple):
     """The values that a plant was made of beside its file and its epoch: its clock's time, and its memory."""
 
     now: float
-    memory: Memory
+    memory: Mapping[Fact, Mapping[str, str]]
     kept: Sequence[KeptTask]
 
 
@@ -207,8 +208,8 @@ class Orchestrator:
         if ros is not None and (store is None or store.lead.renew_s is None):
             ros.check_alone()
         for run in self.plant.cells.values():
-            if reasons.of_earlier_task(run) is not None:
-                TASKS.warning("%s", reasons.of_earlier_task(run))
+            if (why := why_interrupted(run)) is not None:
+                TASKS.warning("%s", why)
             if run.queue.left_over:
                 TASKS.warning("%s", run.queue.why_paused)
         self.screens.open()

@@ -13,9 +13,9 @@ from typing import Any
 from arboleda.bt_xml import reading
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.recipe import TreeRecipe, tree_recipe
+from arboleda.drivers import Value, shown
 from arboleda.extension import ArboledaError
 from arboleda.model import text
-from arboleda.model.facts import Value, shown
 from arboleda.model.plant_model import PlantModel
 from arboleda_make.editing import desk
 from arboleda_make.editing.operations import Insert, NewNode, Operation, Wrap

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arboleda.extension import ArboledaError
+from arboleda.extension import ArboledaError, ConfigError
 from arboleda.host.limits import give_way
-from arboleda.model.errors import ConfigError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import in_json

@@ -11,11 +11,10 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from arboleda.adapters import clock
-from arboleda.drivers import Driver, MotionState, Report, Robot
+from arboleda.drivers import Driver, MotionState, Report, Robot, plain
 from arboleda.drivers.port import Listens
 from arboleda.drivers.reports import objection
 from arboleda.extension import ArboledaError
-from arboleda.model.outside import plain
 from arboleda.model.plant_model import DriverUse
 from arboleda.plant_file.python_uses import LONGEST, error_text
 from arboleda_make.trying.address import address

@@ -7,12 +7,10 @@ from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from arboleda.bt_xml import telling
-from arboleda.drivers import Command
+from arboleda.drivers import Command, Query, Value, VerbCommand
 from arboleda.engine import Entry
-from arboleda.kinds.declared import QueryCall
-from arboleda.model.commands import Question
+from arboleda.engine.inspection import Question, ledger_of
 from arboleda.model.common_places import room_at, same_places
-from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, TaskChanged
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.findings import PlantFinding, Source
@@ -95,7 +93,7 @@ class _Marks:
         self._ended = self._stage.ended
 
     def _begins(self, message: object) -> bool:
-        entry = self._stage.world.plant.dispatcher.ledger.entries.get(getattr(message, "id", ""))
+        entry = ledger_of(self._stage.world.plant).entries.get(getattr(message, "id", ""))
         if not isinstance(message, Command) or entry is None:
             return False
         self._ask(entry)
@@ -106,7 +104,7 @@ class _Marks:
         self._what, command = entry_name(entry), entry.command
         if isinstance(command, Question):
             self.questions[command.robot] = tuple(command.answers)
-        elif isinstance(command, QueryCall):
+        elif isinstance(command, VerbCommand) and isinstance(command, Query):
             listed = command.definition.answers
             self.questions[command.robot] = listed or self._numbers[command.robot, command.verb]
 

@@ -10,12 +10,11 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Composite
 
+from arboleda.drivers import Value
 from arboleda.engine import Context
-from arboleda.model.facts import Value
 from arboleda.model.plant_model import PlantModel
-from arboleda.model.recipe import Recipe
-from arboleda.model.task import Order
-from arboleda.recipes.handles import Handle, Step
+from arboleda.recipes import Order, Recipe, Step
+from arboleda.recipes.handles import Handle
 from arboleda_proofs.simulator.faults import Fault
 
 from .calm import Calm, calm_run

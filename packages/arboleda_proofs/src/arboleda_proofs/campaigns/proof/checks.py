@@ -10,8 +10,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
+from arboleda.drivers import Value
 from arboleda.extension import ArboledaError
-from arboleda.model.facts import Value
 from arboleda.model.plant_model import Cell
 from arboleda_proofs.simulator.faults.targets import queries
 

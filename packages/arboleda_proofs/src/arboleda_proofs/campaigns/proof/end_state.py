@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from arboleda.model.facts import Value, shown
+from arboleda.drivers import Value, shown
+from arboleda.engine.inspection import beliefs_of
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import nearest
 from arboleda_proofs.simulator.judged_world import JudgedWorld
@@ -46,7 +47,7 @@ def _by_device(cell: Cell, end: Mapping[str, Value]) -> dict[str, Value]:
 
 def facts_by_report(watched: JudgedWorld, cell: Cell) -> dict[str, object]:
     """The facts of a cell's devices as the plant has heard them last, by the same names."""
-    beliefs = watched.world.plant.dispatcher.beliefs
+    beliefs = beliefs_of(watched.world.plant)
     robots = [robot for robot in cell.robots if robot.name in beliefs]
     return {
         f"{each.name}.{fact}": beliefs[each.name].fact(fact) for each in robots for fact in each.fact_names

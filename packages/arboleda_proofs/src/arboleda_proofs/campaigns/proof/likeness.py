@@ -16,13 +16,12 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.drivers import Robot
+from arboleda.drivers import DeviceKind, Robot
 from arboleda.engine import Belief, Entry, Plant
-from arboleda.engine.inspection import Ledger, News, ReportMoment
+from arboleda.engine.inspection import Ledger, News, ReportMoment, beliefs_of
 from arboleda.extension import Phrase
-from arboleda.kinds.declared import DeviceKind
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.model.recipe import Recipe
+from arboleda.recipes import Recipe
 from arboleda.rig.network import Client, Line
 from arboleda.rig.world import World
 from arboleda.sim.board import Board
@@ -86,7 +85,7 @@ def _words(world: World) -> Iterator[int]:
     What a fault leaves behind most often comes first.
     """
     plant = world.plant
-    found: list[Any] = [plant.dispatcher.beliefs, world.boards, world.bridge, world, world.to_come]
+    found: list[Any] = [beliefs_of(plant), world.boards, world.bridge, world, world.to_come]
     numbers = {id(each): number for number, each in enumerate(found)}  # `found` keeps them: no other gets one
     robots = {robot.mqtt: robot.name for robot in world.model.robots.values()}
     robots |= {name: name for name in world.model.robots}

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.dashboard.findings import findings
-from arboleda.dashboard.wording import Words, words
 from arboleda.drawing.folding import folded
 from arboleda.drawing.words import outline
+from arboleda.extension import Words, words
 from arboleda.web.languages import FIRST, LANGUAGES, texts
 from arboleda_proofs.simulator.faults.titles import title
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from arboleda.model.errors import ConfigError
+from arboleda.extension import ConfigError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import loader
 

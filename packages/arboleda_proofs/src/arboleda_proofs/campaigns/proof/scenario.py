@@ -7,14 +7,12 @@ from dataclasses import dataclass, replace
 
 from py_trees.behaviour import Behaviour
 
+from arboleda.drivers import Motion, Value, shown
 from arboleda.engine import Act, Context, Leaf, Plant
-from arboleda.model.commands import Motion
-from arboleda.model.facts import Value, shown
 from arboleda.model.orders import orders
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.model.recipe import Recipe
-from arboleda.model.task import Order
 from arboleda.model.tree_nodes import nodes_of
+from arboleda.recipes import Order, Recipe
 
 from .equal_cells import equal_cells
 

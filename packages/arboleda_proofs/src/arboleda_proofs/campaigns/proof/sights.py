@@ -27,6 +27,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from arboleda.engine import Entry, Plant
+from arboleda.engine.inspection import beliefs_of, grips_of, ledger_of
 from arboleda.model.messages import TaskChanged
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.wire.topics import Channel, topic
@@ -232,7 +233,7 @@ class Watch:
                 yield from (((name, each), fields.get(each)) for each in (*fields, *lacks))
 
     def _happened(self) -> Iterator[tuple[str, Words]]:
-        moment, entries = self._stage.world.moment, self._stage.world.plant.dispatcher.ledger.entries
+        moment, entries = self._stage.world.moment, ledger_of(self._stage.world.plant).entries
         for message in moment.sent:
             entry = entries.get(getattr(message, "id", ""))
             if entry is not None:
@@ -246,11 +247,11 @@ class Watch:
 
 def standing(plant: Plant, cell: Cell) -> Standing:
     """The standing of a cell now."""
-    run, dispatcher = plant.cells[cell.name], plant.dispatcher
-    grips, names = dispatcher.effectors.grips.by_holder, [robot.name for robot in cell.robots]
+    run, ledger, beliefs = plant.cells[cell.name], ledger_of(plant), beliefs_of(plant)
+    grips, names = grips_of(plant).by_holder, [robot.name for robot in cell.robots]
     return Standing(
-        doing={name: tuple(map(_doing, dispatcher.ledger.of_robot(name))) for name in names},
-        saying={name: tuple(dispatcher.beliefs[name].facts.items()) for name in names},
+        doing={name: tuple(map(_doing, ledger.of_robot(name))) for name in names},
+        saying={name: tuple(beliefs[name].facts.items()) for name in names},
         state=(run.state.value, run.task is not None),
         grips=tuple((name, grips[name].value) for name in names if name in grips),
     )

@@ -9,12 +9,12 @@ from dataclasses import replace
 from hashlib import blake2b
 
 from arboleda.engine import CellRun, Entry, Plant
-from arboleda.engine.inspection import EMPTY
+from arboleda.engine.inspection import EMPTY, ledger_of, tasks_of
 from arboleda.model.advice import Hand
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.plant_model import Link, PlantModel
-from arboleda.model.task import Order
+from arboleda.recipes import Order
 from arboleda.rig.hands import HANDS
 from arboleda.rig.world import PLANT
 from arboleda_proofs.simulator.faults import Fault
@@ -270,7 +270,7 @@ class Stage:
 
     def _look(self) -> None:
         self._count_ended()
-        entries = self.world.plant.dispatcher.ledger.entries
+        entries = ledger_of(self.world.plant).entries
         for message in self.world.moment.sent:
             if isinstance(message, TaskChanged):
                 self._follow(message)
@@ -299,7 +299,7 @@ class Stage:
     def _fresh_questions(self) -> Iterator[Entry]:
         """The questions that persons see since this step: those are sent to nobody else."""
         for name in self._people:
-            entry = self.world.plant.dispatcher.ledger.question(name)
+            entry = ledger_of(self.world.plant).question(name)
             if entry is not None and entry.cell == self.cell.name and entry.command.id not in self._questions:
                 self._questions.add(entry.command.id)
                 yield entry
@@ -318,7 +318,7 @@ class Stage:
         if not mine or self.ended:
             return
         self.last_change = change
-        task = self.world.plant.intake.tasks.get(change.task)
+        task = tasks_of(self.world.plant).get(change.task)
         self._order = self._order or (task.order if task is not None else None)
         trouble = self.run.place_trouble
         if change.state is TaskState.FAILED and trouble is not None and trouble.key == EMPTY.key:

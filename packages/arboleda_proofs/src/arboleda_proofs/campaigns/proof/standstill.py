@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from arboleda.engine import CellRun
+from arboleda.engine.inspection import ledger_of, teaching_of, walk_of
 from arboleda.model.messages import Heartbeat
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 
@@ -36,7 +37,7 @@ class Standstill:
         plant, bodies = self._world.plant, [board.body for board in self._world.boards.values()]
         return (
             not self._world.faults_active
-            and plant.dispatcher.ledger.next_deadline == math.inf
+            and ledger_of(plant).next_deadline == math.inf
             and not any(map(_waits, plant.cells.values()))
             and not any(body.moving or body.next_change_us is not None for body in bodies)
         )
@@ -58,5 +59,5 @@ class Standstill:
 
 def _waits(cell: CellRun) -> bool:
     """True for a cell that does something at a time; what a tree waited for that is over means nothing."""
-    at_work = cell.tree is not None or cell.keeping.walk is not None or cell.manual.teaching is not None
+    at_work = cell.tree is not None or walk_of(cell) is not None or teaching_of(cell) is not None
     return at_work and cell.due is not None

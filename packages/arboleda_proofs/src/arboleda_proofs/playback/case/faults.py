@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Iterator
 
 from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder.cause import TOGETHER_S, Cause, Evidence
-from arboleda.recorder.incident import Incident
-from arboleda.recorder.troubles import ALARM, BOOT, BRIDGE, Trouble
+from arboleda_proofs.playback.cause import TOGETHER_S, Cause, Evidence
+from arboleda_proofs.playback.incident import Incident
+from arboleda_proofs.playback.troubles import ALARM, BOOT, BRIDGE, Trouble
 from arboleda_proofs.simulator.faults import KINDS, Fault
 
 LATE_S = 60.0  # a board that booted without losing its link: its last will comes too late to matter

@@ -6,16 +6,16 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
-from arboleda.model.errors import ConfigError
+from arboleda.drivers import plain
+from arboleda.extension import ConfigError
 from arboleda.model.messages import ENDED, Event, OperatorRequest, TaskChanged, TaskState, Verb
-from arboleda.model.outside import plain
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.verbs import lasting
-from arboleda.recorder.incident import AWAY_S, Reader, supervised
 from arboleda.recorder.reader import Record
 from arboleda.recorder.replay import plant_of
-from arboleda.recorder.troubles import Troubles
 from arboleda_proofs.campaigns.plants import ELSEWHERE
+from arboleda_proofs.playback.incident import AWAY_S, Reader, supervised
+from arboleda_proofs.playback.troubles import Troubles
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.scripted_people import Act, scopes
 

@@ -6,8 +6,8 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
-from arboleda.model.errors import ConfigError
-from arboleda.model.outside import plain
+from arboleda.drivers import plain
+from arboleda.extension import ConfigError
 from arboleda.plant_file.yaml_marks import LARGEST, MOST_VALUES
 from arboleda.recorder.preamble import Beginning
 from arboleda.recorder.record_text import moment

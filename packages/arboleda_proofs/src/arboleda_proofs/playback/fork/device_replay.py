@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 
+from arboleda.drivers import Evidence
 from arboleda.model.messages import Event, OperatorRequest, RestartRequest, Revision, Shutdown, TaskRequest
-from arboleda.model.plant_model import Evidence, Link
-from arboleda.recorder.troubles import ALARM, BOOT, BRIDGE, Trouble
+from arboleda.model.plant_model import Link
 from arboleda.rig.network import keeps_its_place
 from arboleda.rig.world import World
 from arboleda.wire.transport import Publication
+from arboleda_proofs.playback.troubles import ALARM, BOOT, BRIDGE, Trouble
 
 # What comes from people; devices are virtual.
 INPUTS = (TaskRequest, OperatorRequest, Shutdown, Revision, RestartRequest)

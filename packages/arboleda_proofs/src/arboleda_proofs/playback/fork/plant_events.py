@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from typing import Any
 
-from arboleda.model.commands import LABELS
+from arboleda.engine.inspection import LABELS
 from arboleda.model.verbs import Verb, as_text
 from arboleda.recorder.plain_data import TYPE
 

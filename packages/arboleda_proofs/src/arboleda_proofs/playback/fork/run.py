@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
+from arboleda.drivers import Evidence
 from arboleda.engine import Plant
+from arboleda.extension import ConfigError
 from arboleda.model.cell_states import CellState
-from arboleda.model.errors import ConfigError
 from arboleda.model.messages import ENDED, Event
-from arboleda.model.plant_model import Evidence, Link, PlantModel
+from arboleda.model.plant_model import Link, PlantModel
 from arboleda.model.recipe import Builders
 from arboleda.model.revision import Versions
 from arboleda.recorder.plain_data import plain
@@ -20,9 +21,9 @@ from arboleda.recorder.record_text import moment
 from arboleda.recorder.replay import ReplayedStep, first_difference
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import RecordedStep, hash_of, outcome
-from arboleda.recorder.troubles import Trouble, Troubles
 from arboleda.rig.world import World
 from arboleda_proofs.campaigns.plants import ELSEWHERE
+from arboleda_proofs.playback.troubles import Trouble, Troubles
 from arboleda_proofs.simulator.takeover import taken_over
 
 from . import device_replay

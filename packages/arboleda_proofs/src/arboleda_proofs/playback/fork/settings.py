@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import yaml
 
-from arboleda.model.errors import ConfigError
-from arboleda.model.outside import quoted
+from arboleda.drivers import quoted
+from arboleda.extension import ConfigError
 
 
 def with_settings(content: bytes, settings: Sequence[str]) -> bytes:

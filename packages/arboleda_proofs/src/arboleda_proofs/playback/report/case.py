@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable, Iterator
 
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder.cause import Cause
-from arboleda.recorder.incident import Incident
+from arboleda_proofs.playback.cause import Cause
+from arboleda_proofs.playback.incident import Incident
 from arboleda_proofs.simulator.faults import KINDS, Fault
 from arboleda_proofs.simulator.faults.kind import NONE
 

@@ -7,8 +7,8 @@ from typing import Any
 
 from arboleda.extension import Sentence
 from arboleda.model.sentence import OWN
-from arboleda.recorder.cause import Cause
-from arboleda.recorder.incident import Incident
+from arboleda_proofs.playback.cause import Cause
+from arboleda_proofs.playback.incident import Incident
 
 
 def facts(found: Incident, cause: Cause | None) -> dict[str, Any]:

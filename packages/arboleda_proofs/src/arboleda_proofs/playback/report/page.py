@@ -14,14 +14,13 @@ from importlib import resources
 from typing import Any
 
 from arboleda.dashboard.findings import findings
-from arboleda.dashboard.wording import Words, words
 from arboleda.drawing.folding import folded
 from arboleda.drawing.words import outline
-from arboleda.extension import Sentence
+from arboleda.extension import Sentence, Words, words
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder.cause import Cause
-from arboleda.recorder.incident import Incident
 from arboleda.web.languages import FIRST, LANGUAGES, texts
+from arboleda_proofs.playback.cause import Cause
+from arboleda_proofs.playback.incident import Incident
 
 from .facts import facts
 from .scene import scene

@@ -7,15 +7,15 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from arboleda.model.errors import ConfigError
-from arboleda.model.outside import plain
+from arboleda.drivers import plain
+from arboleda.extension import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.files import parts_in
-from arboleda.recorder.incident import Incident, Reader
 from arboleda.recorder.reader import Record, opened, steps_there
 from arboleda.recorder.replay import plant_of
 from arboleda.recorder.steps import RecordedStep
 from arboleda.recorder.writing import FLUSH_S
+from arboleda_proofs.playback.incident import Incident, Reader
 
 from ..recorded_plant import model_of, versions_of
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Callable
 
-from arboleda.recorder.cause import Cause
+from arboleda_proofs.playback.cause import Cause
 
 from .case import case_of
 from .page import Report, page

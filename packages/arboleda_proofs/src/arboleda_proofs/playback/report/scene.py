@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder.incident import Incident
 from arboleda_proofs.campaigns.from_above import FloorPlan
+from arboleda_proofs.playback.incident import Incident
 
 Row = dict[str, Any]
 

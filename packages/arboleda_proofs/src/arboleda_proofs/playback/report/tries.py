@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder.incident import AFTER_S, Incident
 from arboleda.recorder.record_text import sentence_of
-from arboleda.recorder.troubles import SILENCE
+from arboleda_proofs.playback.incident import AFTER_S, Incident
+from arboleda_proofs.playback.troubles import SILENCE
 
 from ..fork.plant_events import TASK, PlantEvent
 from ..fork.run import ForkRequest, forked

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Protocol
 
-from arboleda.model.facts import Facts
+from arboleda.drivers import Facts
 from arboleda.model.plant_model import PlantModel
 from arboleda.rig.network import Client
 from arboleda.sim.board import Board

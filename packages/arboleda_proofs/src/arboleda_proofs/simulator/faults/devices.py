@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.kinds.declared import FactType
-from arboleda.model.facts import Value
+from arboleda.drivers import FactType, Value
 from arboleda.model.plant_model import PlantModel
 from arboleda.rig.world import World
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from arboleda.model.plant_model import PlantModel
-from arboleda.model.sentence import Sentence
+from arboleda.recipes import Sentence
 from arboleda.rig.world import World
 
 from ..chance import Dice

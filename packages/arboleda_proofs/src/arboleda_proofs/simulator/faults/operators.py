@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from arboleda.drivers import shown
 from arboleda.engine import HISTORY
-from arboleda.model.facts import shown
+from arboleda.engine.inspection import Task, tasks_of
 from arboleda.model.messages import OperatorRequest, TaskState, Verb
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.model.recipe import Recipe
-from arboleda.model.sentence import Sentence
-from arboleda.model.task import Task
 from arboleda.model.verbs import PARTS, STATION, WORK, Arguments, Devices, Scope
+from arboleda.recipes import Recipe, Sentence
 from arboleda.rig import hands
 from arboleda.rig.world import World
 
@@ -109,7 +108,7 @@ def _task(world: World, fault: Fault) -> str:
 
 
 def _tasks_of(world: World, cell: str) -> list[Task]:
-    return [task for task in world.plant.intake.tasks.values() if task.order.cell == cell]
+    return [task for task in tasks_of(world.plant).values() if task.order.cell == cell]
 
 
 def _words(verb: Verb) -> Words:

@@ -5,9 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import cast
 
-from arboleda.drivers import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
-from arboleda.kinds.declared import Device, FactType
-from arboleda.model.facts import Value
+from arboleda.drivers import (
+    Command,
+    Device,
+    FactType,
+    FollowPath,
+    Home,
+    MoveJoints,
+    SetEffector,
+    Stop,
+    StopMode,
+    Value,
+)
 from arboleda.model.messages import Heartbeat
 from arboleda.model.plant_model import PlantModel
 from arboleda.rig.world import BRIDGE, World

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import cast
 
-from arboleda.drivers import Robot
-from arboleda.model.commands import Query
-from arboleda.model.plant_model import Evidence, Link, PlantModel
+from arboleda.drivers import Evidence, Query, Robot
+from arboleda.model.plant_model import Link, PlantModel
 from arboleda.rig.world import BRIDGE, PLANT
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.machine import MachineBody

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from arboleda.drivers import Robot
+from arboleda.drivers import Position, Robot
 from arboleda.engine import Teaching
-from arboleda.model.commands import Position
+from arboleda.engine.inspection import teaching_of
 from arboleda.model.messages import Jog, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.rig.world import World
@@ -60,7 +60,7 @@ class Teacher:
     @property
     def _teaching(self) -> Teaching | None:
         """Its own manual mode; None where that has ended, or was refused."""
-        found = self.world.plant.cells[self.cell].manual.teaching
+        found = teaching_of(self.world.plant.cells[self.cell])
         return found if found is not None and found.teacher == self.name else None
 
     def _go_on(self, _: object) -> None:

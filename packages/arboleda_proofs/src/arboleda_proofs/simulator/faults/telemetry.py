@@ -6,9 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any, cast
 
-from arboleda.drivers import MotionState, Robot
-from arboleda.kinds.joints import Joint, Jointed
-from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.drivers import Evidence, Joint, Jointed, MotionState, Robot
+from arboleda.model.plant_model import PlantModel
 from arboleda.rig.world import World
 from arboleda.wire.units import to_wire
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.engine import reasons
+from arboleda.engine import why_waiting
 from arboleda.model.advice import in_words
 
 from .invariant import Look, Trigger, invariant
@@ -19,7 +19,7 @@ def advice_leads_out(look: Look) -> Iterator[str]:
     """
     for name, acts in look.record.acts.of.items():
         if len(acts) > ENOUGH and _counted(acts) > ENOUGH:
-            why = reasons.of_waiting(look.world.plant.cells[name])
+            why = why_waiting(look.world.plant.cells[name])
             yield f"{name} does not work after {', '.join(acts)}: {why}"
 
 

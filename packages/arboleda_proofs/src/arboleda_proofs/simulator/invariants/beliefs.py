@@ -6,10 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from operator import attrgetter
 from typing import Any
 
-from arboleda.drivers import Robot
-from arboleda.kinds.declared import Device
-from arboleda.model.facts import Value
-from arboleda.model.plant_model import Evidence
+from arboleda.drivers import Device, Evidence, Robot, Value
+from arboleda.engine.inspection import beliefs_of
 
 from ..recorded.scopes import UNSENT
 from .invariant import Look, Trigger, invariant
@@ -29,7 +27,7 @@ def believed_as_said(look: Look) -> Iterable[str]:
 
 def _unlike(look: Look, robots: set[str]) -> Iterator[str]:
     for name in robots & look.record.robots.keys():
-        known, belief = look.record.robots[name], look.world.plant.dispatcher.beliefs[name]
+        known, belief = look.record.robots[name], beliefs_of(look.world.plant)[name]
         if known.robot.link in UNSENT:
             continue
         if (believed := _believed(belief)) != (said := _values(known)):

@@ -8,14 +8,25 @@ from collections.abc import Iterable, Iterator
 from py_trees.behaviour import Behaviour
 
 from arboleda.bt_xml.running.decorators import Loop
-from arboleda.drivers import Command, Home, MotionState, MoveJoints, Robot, Stop, StopMode
+from arboleda.drivers import (
+    Command,
+    Evidence,
+    Home,
+    Motion,
+    MotionState,
+    MoveJoints,
+    Query,
+    Robot,
+    Stop,
+    StopMode,
+    Switch,
+)
 from arboleda.engine import Act, State
-from arboleda.engine.inspection import TABLE
+from arboleda.engine.inspection import TABLE, teaching_of, time_of
 from arboleda.kinds.joints.motion import JointMotion
 from arboleda.model.cell_states import CellState
-from arboleda.model.commands import Motion, Query, Switch
 from arboleda.model.messages import Reason, Verb
-from arboleda.model.plant_model import Cell, Evidence, Timing
+from arboleda.model.plant_model import Cell, Timing
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import Commands, SentCommand
@@ -130,7 +141,7 @@ def _overrun(look: Look) -> Iterator[str]:
         yield from _moved_deadline(look, sent)
     for cell in record.cells.values():
         if cell.looked:
-            yield from _waits(cell.leaves, cell.run.context.time.now)
+            yield from _waits(cell.leaves, time_of(cell.run).now)
 
 
 def _too_long(look: Look, sent: SentCommand) -> str | None:
@@ -227,7 +238,7 @@ def _left(look: Look) -> Iterator[str]:
         if sent.entry is not None and sent.entry.doing.key == ON_AN_OPERATORS_WORD:
             continue
         cell = record.cells[sent.entry.cell] if sent.entry else None
-        teaching = None if cell is None else cell.run.manual.teaching
+        teaching = None if cell is None else teaching_of(cell.run)
         if cell is None or (teaching is not None and teaching.held is not None):
             continue  # of a cell that is taught whoever holds its button waits for it
         if cell.run.tree is None:
@@ -278,7 +289,7 @@ def low_robots_rise_first(look: Look) -> Iterator[str]:
         if sent.way and sent.entry is not None:
             cell = look.world.plant.cells[sent.entry.cell]
             place = _low_place(look, sent.command, cell.cell)
-            if place is not None and cell.manual.teaching is None:
+            if place is not None and teaching_of(cell) is None:
                 yield f"{sent} leaves {place} sideways"
 
 
@@ -316,7 +327,7 @@ def tasks_take_their_time(look: Look) -> Iterator[str]:
     """
     for sent in look.record.commands.new:
         cell = look.record.cells[sent.entry.cell] if sent.entry is not None else None
-        if cell is None or sent.verbs or cell.run.run.recovering or cell.run.manual.teaching is not None:
+        if cell is None or sent.verbs or cell.run.run.recovering or teaching_of(cell.run) is not None:
             continue
         since = _waits_since(look, cell, sent)
         if since is not None and sent.at < since + cell.timing.dwell_s - ROUNDING_S:

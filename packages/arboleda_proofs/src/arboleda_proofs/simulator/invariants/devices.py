@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.drivers import Command, Home, MotionState, Robot, Stop, StopMode
+from arboleda.drivers import Command, Evidence, Home, Motion, MotionState, Query, Robot, Stop, StopMode
 from arboleda.engine import State
-from arboleda.model.commands import Motion, Query, Question
+from arboleda.engine.inspection import Question, facts_of, ledger_of, tasks_of
 from arboleda.model.messages import Fact, OperatorRequest, Reason, Remember, TaskState, Verb
-from arboleda.model.plant_model import Evidence
 from arboleda.wire.hop import shown
 
 from ..recorded.commands import SentCommand
@@ -74,7 +73,7 @@ def what_a_task_left_is_so(look: Look) -> Iterator[str]:
     reports anything counts as switched after a time, and so does a device at `state`, which is judged while
     nothing goes wrong.
     """
-    truth, last_sent = look.truth, look.world.plant.dispatcher.ledger.last_sent
+    truth, last_sent = look.truth, ledger_of(look.world.plant).last_sent
     for cell, task, began in truth.done_tasks:
         of_task = look.world.model.cell(cell)
         for robot in of_task.robots:
@@ -229,7 +228,7 @@ def offered_answers_are_accepted(look: Look) -> Iterator[str]:
     for request in look.moment.requests if refused else ():
         if not isinstance(request, OperatorRequest) or request.verb is not Verb.ANSWER:
             continue
-        entry = look.world.plant.dispatcher.ledger.question(request.scope)
+        entry = ledger_of(look.world.plant).question(request.scope)
         if entry is None or entry.sent_at >= request.at or request.scope not in refused:
             continue
         if _is_offered(entry.command, request):
@@ -258,7 +257,7 @@ def a_shared_device_serves_one_cell(look: Look) -> Iterator[str]:
         device, cell, holder = sent.robot, sent.entry.cell, plant.zones.holder(sent.robot)
         if holder != cell:
             yield f"{device} is told something by {cell}, and {holder} holds it"
-        others = {each.cell for each in plant.dispatcher.ledger.of_robot(device)}
+        others = {each.cell for each in ledger_of(plant).of_robot(device)}
         if len(others) > 1:
             yield f"{device} works for {', '.join(sorted(others))} at the same time"
 
@@ -296,7 +295,7 @@ def _is_said_to_be_empty(look: Look, name: str) -> bool:
     said = (each for each in look.moment.sent if isinstance(each, Remember) and each.value is not None)
     if any((each.fact, each.name) == (Fact.EMPTIED, name) for each in said):
         return True
-    return look.world.plant.dispatcher.memory.value(Fact.EMPTIED, name) is not None
+    return facts_of(look.world.plant).value(Fact.EMPTIED, name) is not None
 
 
 def _gives_back(message: Remember) -> bool:
@@ -307,7 +306,7 @@ def _gives_back(message: Remember) -> bool:
 def numbers_lie_within_their_limits(look: Look) -> Iterator[str]:
     """A task is accepted only with numbers within the limits of its recipe."""
     for change in look.record.tasks.changes:
-        known = look.world.plant.intake.tasks.get(change.message.task)
+        known = tasks_of(look.world.plant).get(change.message.task)
         if change.message.state is not TaskState.QUEUED or change.answer or known is None:
             continue
         cell = look.world.model.cell(known.order.cell)

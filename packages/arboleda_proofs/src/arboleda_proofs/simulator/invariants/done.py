@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.drivers import Command, FollowPath, Home, MoveJoints, SetEffector
-from arboleda.model.plant_model import Evidence
+from arboleda.drivers import Command, Evidence, FollowPath, Home, MoveJoints, SetEffector
 
 from ..truth.arm import ArmTruth
 from ..truth.ended_commands import EndedCommand

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from arboleda.drivers import Evidence
+from arboleda.engine.inspection import tasks_of
 from arboleda.model import text
 from arboleda.model.messages import Check
-from arboleda.model.plant_model import Evidence
 from arboleda.sim.starts import supplies_of
 from arboleda.wire.payloads import EffectorGoal
 
@@ -117,7 +118,7 @@ def _may_miss_a_release(look: Look, holder: RobotTruth, began: float) -> bool:
 
 def _may_be_unchecked(look: Look, cell: str, task: str, *, silent: bool) -> tuple[bool, ...]:
     """The answers that a task may give to whether its grip is unchecked; a recipe of the plant may choose."""
-    model, known = look.world.model.cell(cell), look.world.plant.intake.tasks.get(task)
+    model, known = look.world.model.cell(cell), tasks_of(look.world.plant).get(task)
     if silent:
         return (True,)
     if known is None or not model.recipe(text.parse(known.order.text, look.world.model).recipe).is_shipped:

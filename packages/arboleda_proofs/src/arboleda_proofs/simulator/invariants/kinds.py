@@ -4,10 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from arboleda.drivers import Command
-from arboleda.kinds.declared import Effect, FactType, Slot, VerbCall
-from arboleda.model.commands import Motion, Process, Query, Switch, Work
-from arboleda.model.facts import Value
+from arboleda.drivers import (
+    Command,
+    Effect,
+    FactType,
+    Motion,
+    Process,
+    Query,
+    Slot,
+    Switch,
+    Value,
+    VerbCommand,
+    Work,
+)
 
 from .invariant import Look, Trigger, invariant
 
@@ -24,11 +33,11 @@ def commands_are_as_declared(look: Look) -> Iterator[str]:
     """A command of a device has the effect, values, facts, needs and end that its verb is declared with."""
     for sent in look.record.commands.new:
         call = sent.command
-        if isinstance(call, VerbCall) and (wrong := [what for what, as_is in LIKE if not as_is(call)]):
+        if isinstance(call, VerbCommand) and (wrong := [what for what, as_is in LIKE if not as_is(call)]):
             yield f"{sent} is not {call.verb} as it is declared: {', '.join(wrong)}"
 
 
-def _as_values(call: VerbCall) -> bool:
+def _as_values(call: VerbCommand) -> bool:
     """True for a value of each parameter, in their order, that its type has."""
     types, names = dict(call.definition.parameters), [name for name, _ in call.values]
     return names == [*types] and all(_is_one(types[name], value) for name, value in call.values)
@@ -43,22 +52,22 @@ def _is_one(type: FactType, value: Value) -> bool:
     return not isinstance(value, int | float) or type.lower <= value <= type.upper
 
 
-def _as_sets(call: VerbCall) -> bool:
+def _as_sets(call: VerbCommand) -> bool:
     """True if it sets what is declared; for a function of its values only that function knows."""
     return call.definition.sets_by is not None or call.sets == _sets(call)
 
 
-def _sets(call: VerbCall) -> tuple[tuple[str, Value], ...]:
+def _sets(call: VerbCommand) -> tuple[tuple[str, Value], ...]:
     values = dict(call.values)
     rows = call.definition.sets
     return tuple((name, values[value.name] if isinstance(value, Slot) else value) for name, value in rows)
 
 
-def _as_end(call: VerbCall) -> bool:
+def _as_end(call: VerbCommand) -> bool:
     return not isinstance(call, Work) or call.on_stop is call.definition.on_stop
 
 
-def _as_grip(call: VerbCall) -> bool:
+def _as_grip(call: VerbCommand) -> bool:
     """True if a switch counts as a grip, and as one that lets go, by the only truth value that it sets."""
     if not isinstance(call, Switch):
         return True
@@ -66,7 +75,7 @@ def _as_grip(call: VerbCall) -> bool:
     return call.grips is (held if call.definition.holds else None)
 
 
-LIKE: tuple[tuple[str, Callable[[VerbCall], bool]], ...] = (
+LIKE: tuple[tuple[str, Callable[[VerbCommand], bool]], ...] = (
     ("effect", lambda call: isinstance(call, CLASSES[call.definition.effect])),
     ("with", _as_values),
     ("sets", _as_sets),

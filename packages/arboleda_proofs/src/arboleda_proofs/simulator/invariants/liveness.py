@@ -4,11 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.drivers import MotionState
-from arboleda.engine import Entry, reasons
+from arboleda.drivers import Evidence, MotionState
+from arboleda.engine import Entry, why_held, why_waiting
+from arboleda.engine.inspection import (
+    beliefs_of,
+    is_ending,
+    ledger_of,
+    parts_of,
+    places_of,
+    reached_of,
+    time_of,
+)
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Fact
-from arboleda.model.plant_model import Evidence, Link, Pose, Workspace
+from arboleda.model.plant_model import Link, Pose, Workspace
 from arboleda.sim.board import Board
 
 from ..recorded.cells import KnownCell
@@ -31,7 +40,7 @@ def running_tree_has_waker(look: Look) -> Iterable[str]:
 
 def _questions(look: Look) -> list[Entry]:
     """The open questions to people: nothing is sent for those."""
-    ledger, robots = look.world.plant.dispatcher.ledger, look.world.model.robots.values()
+    ledger, robots = ledger_of(look.world.plant), look.world.model.robots.values()
     asked = [ledger.question(robot.name) for robot in robots if robot.link is Link.SCREEN]
     return [entry for entry in asked if entry is not None]
 
@@ -39,7 +48,7 @@ def _questions(look: Look) -> list[Entry]:
 def _sleeps(cell: KnownCell) -> bool:
     """True if no time will wake a tree that runs; a cell whose own time stands still has no such time."""
     runs = cell.tree is not None and cell.state is CellState.EXECUTE
-    return runs and cell.context.time.next_deadline is None
+    return runs and time_of(cell.run).next_deadline is None
 
 
 @invariant(Trigger.NEWS)
@@ -80,7 +89,7 @@ def _idle_though_ready(look: Look) -> Iterator[str]:
 def ready(look: Look, cell: KnownCell) -> bool:
     """True if a cell would start a task, by what its robots said and what operators asked for."""
     plant, robots = look.world.plant, look.record.robots
-    if cell.stopped or plant.intake.closed or _is_asked(look, cell):
+    if cell.stopped or is_ending(plant) or _is_asked(look, cell):
         return False
     for robot in cell.cell.robots:
         if robot.link is Link.SCREEN:
@@ -93,7 +102,7 @@ def ready(look: Look, cell: KnownCell) -> bool:
         if known.state is MotionState.MOVING or known.is_unfit(plant.now, plant.epoch):
             return False
         # the plant's evidence judges if a jump of its joints was a reboot
-        if not robot.says_homed and plant.dispatcher.beliefs[robot.name].displaced:
+        if not robot.says_homed and beliefs_of(plant)[robot.name].displaced:
             return False
     return not _is_busy(look, cell) and _outside(look, cell)
 
@@ -101,7 +110,7 @@ def ready(look: Look, cell: KnownCell) -> bool:
 def _is_asked(look: Look, cell: KnownCell) -> bool:
     """True while a person has to say what a task that is not done has left at a place."""
     places = look.truth.places.cells.get(cell.name)
-    asked = look.world.plant.cells[cell.name].context.places.asked
+    asked = places_of(look.world.plant.cells[cell.name]).asked
     return places is not None and bool(asked.targets) and places.may_have_left(asked.targets)
 
 
@@ -146,7 +155,7 @@ def _is_outside(look: Look, space: Workspace) -> bool:
     it says of its place.
     """
     if space.robot.evidence is Evidence.STATE:
-        goal = look.world.plant.dispatcher.whereabouts.reached.get(space.robot.name)
+        goal = reached_of(look.world.plant).get(space.robot.name)
         return goal is None or any(not pose.zones and pose.q == goal for pose in space.poses)
     return _stands_at(look, space, [pose for pose in space.poses if not pose.zones])
 
@@ -158,7 +167,7 @@ def _stands_at(look: Look, space: Workspace, poses: list[Pose]) -> bool:
     if robot.evidence is Evidence.IDS and robot.has_stop and known.unnamed is not None:
         return False
     # the plant's evidence judges if what it told of its place may be older than its last stop
-    if not look.world.plant.dispatcher.beliefs[robot.name].stillness.is_sure:
+    if not beliefs_of(look.world.plant)[robot.name].stillness.is_sure:
         return False
     points = [point for pose in poses for point in (pose.q, pose.above) if point is not None]
     here = known.node if known.q is None else known.q
@@ -191,7 +200,7 @@ def at_rest_at_end(look: Look) -> Iterable[str]:
         yield f"task {task.id} of {task.cell} is {task.state.value}"
     for name, cell in plant.cells.items():
         if cell.state is not CellState.IDLE or cell.tree is not None:
-            yield f"{name} is {cell.state.value}; {reasons.of_hold(cell) or 'its tree runs'}"
+            yield f"{name} is {cell.state.value}; {why_held(cell) or 'its tree runs'}"
     for sent in record.commands.open.values():
         yield f"{sent} is open"
     for zone in look.world.model.zones:
@@ -240,10 +249,10 @@ def nothing_waits_at_end(look: Look) -> Iterable[str]:
     """At the end every queue is empty, none is paused, and no arm holds anything."""
     for name, cell in look.world.plant.cells.items():
         if cell.queue:
-            yield f"{len(cell.queue)} tasks wait in {name}: {reasons.of_waiting(cell)}"
+            yield f"{len(cell.queue)} tasks wait in {name}: {why_waiting(cell)}"
         if cell.queue.paused:
             yield f"the queue of {name} is paused"
-        for robot in cell.context.parts.holding:
+        for robot in parts_of(cell).holding:
             yield f"{robot} may hold a part"
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.drivers import Stop, StopMode
-from arboleda.model.commands import Switch
+from arboleda.drivers import Stop, StopMode, Switch
+from arboleda.engine.inspection import parts_of
 from arboleda.model.messages import Fact, Remember
 
 from ..recorded.robots import StopProgress
@@ -56,7 +56,7 @@ def _effectors(look: Look) -> Iterator[str]:
     kept = look.world.disk.facts.get(Fact.EFFECTOR, {})
     for cell in look.record.cells.values():
         for name in cell.cell.holders:
-            grip = cell.context.parts.grip(name)
+            grip = parts_of(cell.run).grip(name)
             if kept.get(name, "off") != grip:
                 yield f"the effector of {name} is {grip.value}, kept is {kept.get(name)}"
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
+from arboleda.drivers import Value, shown
+from arboleda.engine.inspection import ledger_of, places_of, tasks_of
 from arboleda.model import text
-from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Check, Fact
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import nearest
@@ -37,7 +38,7 @@ def books_of_parts_are_true(look: Look) -> Iterator[str]:
         places = look.truth.places.cells.get(cell)
         if places is None:
             continue
-        booked = look.world.plant.cells[cell].context.places.counts
+        booked = places_of(look.world.plant.cells[cell]).counts
         kept = look.world.disk.facts.get(Fact.PARTS, {}).get(cell, "")
         known = places.parts.keys() - (places.by_people if look.moment.last_words else ())
         wrong = {each: booked[each] for each in known if booked[each] != places.parts[each]}
@@ -59,7 +60,7 @@ def done_tasks_leave_nothing_behind(look: Look) -> Iterator[str]:
     """
     for cell, task, began in look.truth.done_tasks:
         model = look.world.model.cell(cell)
-        if not _is_known(look, cell) or task not in look.world.plant.intake.tasks:
+        if not _is_known(look, cell) or task not in tasks_of(look.world.plant):
             continue
         wanted = _wanted(look, model, task, began)
         for name in model.holders if _is_calm(look) else _hands(look, model):
@@ -70,13 +71,13 @@ def done_tasks_leave_nothing_behind(look: Look) -> Iterator[str]:
                 continue
             if robot is not None and robot.body.true_facts.get(robot.robot.held_fact):
                 yield f"{task} is called done, and {name} still holds a part"
-        if Check.GRIP not in look.world.plant.intake.tasks[task].unchecked:
+        if Check.GRIP not in tasks_of(look.world.plant)[task].unchecked:
             yield from _left_in_devices(look, model, task, wanted)
 
 
 def _was_commanded(look: Look, robot: str, cell: str, *, since: float) -> bool:
     """True where the last command to a robot is of this cell, and not older than `since`, in s."""
-    last = look.world.plant.dispatcher.ledger.last_sent.get(robot)
+    last = ledger_of(look.world.plant).last_sent.get(robot)
     return last is not None and last.cell == cell and last.sent_at >= since
 
 
@@ -94,7 +95,7 @@ def recipes_end_as_they_say(look: Look) -> Iterator[str]:
     """The end of a task that is called done is as its recipe says, and what cells share as it left it."""
     for cell, task, began in look.truth.done_tasks:
         model = look.world.model.cell(cell)
-        if not _is_known(look, cell) or task not in look.world.plant.intake.tasks:
+        if not _is_known(look, cell) or task not in tasks_of(look.world.plant):
             continue
         for what, value in _wanted(look, model, task, began).items():
             found = _found(look, model, what, began)
@@ -128,7 +129,7 @@ def _closed_late(look: Look, cell: Cell, hand: str, began: float) -> bool:
 
 def _wanted(look: Look, cell: Cell, task: str, began: float) -> Mapping[str, Value]:
     """The end of a task that its recipe states; of several the one that is meant by what is found."""
-    order = text.parse(look.world.plant.intake.tasks[task].order.text, look.world.model)
+    order = text.parse(tasks_of(look.world.plant)[task].order.text, look.world.model)
 
     def differs(what: str, value: Value) -> bool:
         return _found(look, cell, what, began) not in (None, value)

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from arboleda.departures.leaving import WORTH_TELLING_S
+from arboleda.drivers import Evidence, Query, Switch
 from arboleda.engine import State
-from arboleda.model.commands import Query, Switch
 from arboleda.model.messages import Reason
-from arboleda.model.plant_model import Evidence
 
 from ..recorded.commands import SentCommand
 from ..recorded.proofs import Proof, cause_text

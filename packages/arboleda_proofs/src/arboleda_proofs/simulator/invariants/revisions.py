@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from arboleda.model import text
 from arboleda.model.cell_states import CellState
-from arboleda.model.errors import TextError
 from arboleda.model.messages import CellRevised, RevisionAnswer, TaskChanged, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.revision import revised
+from arboleda.recipes import TextError
 
 from .invariant import Look, Trigger, invariant
 

@@ -9,7 +9,7 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.drivers import FollowPath, MotionState, MoveJoints, Robot
+from arboleda.drivers import FollowPath, MotionState, MoveJoints, Position, Robot
 from arboleda.engine import OPEN, State
 from arboleda.engine.inspection import (
     BACK_AT_ZERO,
@@ -26,12 +26,10 @@ from arboleda.engine.inspection import (
     UNHOMED,
 )
 from arboleda.model.advice import Advice, sentence
-from arboleda.model.commands import Position
 from arboleda.model.messages import ENDED, Reason, TaskChanged
 from arboleda.model.plant_model import Cell
-from arboleda.model.recipe import Recipe
-from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.tree_nodes import nodes_of
+from arboleda.recipes import Phrase, Recipe, Sentence
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand

@@ -10,14 +10,11 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.drivers import FollowPath, MoveJoints, Robot
+from arboleda.drivers import Arm, Evidence, FollowPath, Mobile, MoveJoints, PayloadError, Robot
 from arboleda.engine import OPEN, State
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.mobile import Mobile
+from arboleda.engine.inspection import reached_of
 from arboleda.model.cell_states import CellState
-from arboleda.model.errors import PayloadError
 from arboleda.model.messages import OperatorRequest
-from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import OWN
 from arboleda.model.tree_nodes import nodes_of
 from arboleda.model.verbs import Scope, refusable
@@ -375,7 +372,7 @@ def _ends(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
     """Differences in since when a robot goes, where it came to, and when it said where it is."""
     name = known.robot.name
     last = look.record.commands.last.get(name)
-    reached = rows.ended_at(known.robot, last, look.world.plant.dispatcher.whereabouts.reached.get(name))
+    reached = rows.ended_at(known.robot, last, reached_of(look.world.plant).get(name))
     goes = last is not None and last.state in (State.RUNNING, State.CANCELLING)
     since = row["going_since"]
     if row["reached"] != reached or (since is not None and (last is None or last.state not in OPEN)):

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from arboleda.drivers import Stop, StopMode
+from arboleda.engine.inspection import tasks_of
 from arboleda.model import text
-from arboleda.model.errors import TextError
 from arboleda.model.messages import Heartbeat, TaskChanged, TaskRequest, TaskState
+from arboleda.recipes import TextError
 from arboleda.wire.hop import shown
 
 from ..recorded.tasks import SURE
@@ -17,7 +18,7 @@ from .invariant import Look, Trigger, invariant
 @invariant(Trigger.BORN)
 def accepted_is_found_again(look: Look) -> Iterator[str]:
     """Whatever was told of a task and of a stop is so for the plant that starts next."""
-    starts, known = look.record.starts, look.world.plant.intake.tasks
+    starts, known = look.record.starts, tasks_of(look.world.plant)
     found = look.world.plant_process.found.tasks
     for id, said in [*starts.before.items()][-SURE:]:
         row, end = found.get(id), starts.ended.get(id)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 
-from arboleda.drivers import Command, Stop, StopMode
+from arboleda.drivers import Command, Evidence, Stop, StopMode
+from arboleda.engine.inspection import is_ending, tasks_of
 from arboleda.model.cell_states import TABLE, Cause, CellState
 from arboleda.model.messages import (
     ENDED,
@@ -19,8 +20,8 @@ from arboleda.model.messages import (
     TaskState,
     Verb,
 )
-from arboleda.model.plant_model import Cell, Evidence, Workspace
-from arboleda.model.sentence import Sentence
+from arboleda.model.plant_model import Cell, Workspace
+from arboleda.recipes import Sentence
 from arboleda.wire.hop import shown
 
 from ..recorded.cells import KnownCell
@@ -206,7 +207,7 @@ def accepted_tasks_are_kept(look: Look) -> Iterable[str]:
 
 
 def _unkept(look: Look) -> Iterator[str]:
-    tasks, remembered = look.record.tasks, look.world.plant.intake.tasks
+    tasks, remembered = look.record.tasks, tasks_of(look.world.plant)
     for id in tasks.open:
         if id not in remembered:
             yield f"task {id} has not ended, and is forgotten"
@@ -218,7 +219,7 @@ def _unkept(look: Look) -> Iterator[str]:
         if len(run.queue) != len(queue) or (tasks.changes and [each.id for each in run.queue] != list(queue)):
             yield f"{name} has {len(run.queue)} tasks in its queue; by what was told {len(queue)}, or others"
     for change in tasks.changes:
-        known = look.world.plant.intake.tasks.get(change.message.task)
+        known = tasks_of(look.world.plant).get(change.message.task)
         recorded = tasks.known(change.message.task)
         if known is not None and recorded is not None and known.state is not recorded.state:
             yield f"task {known.id} is {known.state.value}, and was told to be {recorded.state.value}"
@@ -244,7 +245,7 @@ def _illegal(look: Look) -> Iterator[str]:
 def _causes(look: Look, cell: KnownCell) -> frozenset[Cause]:
     """The causes for which a cell may change its state in this step."""
     by_itself = BY_ITSELF | {Cause.AWAY} if look.record.step.away else BY_ITSELF
-    if look.world.plant.intake.closed:  # a plant that ends in order holds what is at work
+    if is_ending(look.world.plant):  # a plant that ends in order holds what is at work
         by_itself |= {Cause.HOLD}
     return by_itself.union(*(BY_VERB.get(verb, frozenset()) for verb in _verbs(look, cell)))
 
@@ -376,7 +377,7 @@ def no_task_fails_without_a_fault(look: Look) -> Iterable[str]:
 
 
 def _may_fail(look: Look, change: TaskChanged) -> bool:
-    order = look.world.plant.intake.tasks[change.task].order
+    order = tasks_of(look.world.plant)[change.task].order
     if look.world.model.cell(order.cell).recipe(order.recipe).is_shipped:
         return _cannot_be_done(look, change)
     return change.reason not in ONLY_BY_FAULTS
@@ -388,7 +389,7 @@ def _cannot_be_done(look: Look, change: TaskChanged) -> bool:
     A virtual board without ids has no piece sensor. A path may begin where the mobile robot is not: the board
     refuses it if the plant may not drive there, or at `state` does not know the place.
     """
-    order = look.world.plant.intake.tasks[change.task].order
+    order = tasks_of(look.world.plant)[change.task].order
     cell = look.world.model.cell(order.cell)
     mobile = look.truth.robot(cell.giver.robot.name)
     if change.reason is Reason.ZONE_UNAVAILABLE:

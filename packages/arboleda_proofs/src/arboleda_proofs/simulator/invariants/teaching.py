@@ -6,12 +6,10 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from arboleda.drivers import Home, Robot, Stop
-from arboleda.engine.inspection import HOLD_S
-from arboleda.kinds.joints import Jointed
+from arboleda.drivers import Home, Jointed, Motion, Robot, Stop
+from arboleda.engine.inspection import HOLD_S, ledger_of
 from arboleda.kinds.joints.motion import STRIDE_S
 from arboleda.model.by_class import nearest
-from arboleda.model.commands import Motion
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.wire.hop import shown
 
@@ -64,7 +62,7 @@ def a_lost_teacher_stops_the_robot(look: Look) -> Iterator[str]:
             longest = nearest(LONGEST_S, type(robot))
             if longest is None or robot.name in cell.shared:
                 continue
-            work = world.plant.dispatcher.ledger.work_of(robot.name)
+            work = ledger_of(world.plant).work_of(robot.name)
             homes = work is not None and isinstance(work.command, Home)
             since = world.now - teachers.held_at.get(robot.name, math.inf)
             if not homes and since > longest(robot) and world.boards[robot.mqtt].body.moving:

@@ -6,11 +6,12 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from arboleda.engine.inspection import is_ending
 from arboleda.model.messages import TaskChanged, TaskRequest, TaskState
 from arboleda.model.plant_model import Cell, Link, PlantModel
-from arboleda.model.recipe import Parameter, Recipe
 from arboleda.model.sentence import Value
 from arboleda.model.text import FORM, UNKNOWN_BUT_NEAR
+from arboleda.recipes import Parameter, Recipe
 
 from ..task_words import task_words
 from .invariant import Look, Trigger, invariant
@@ -59,8 +60,8 @@ def _wrongly_taken(look: Look, text: str, meant: list[Meaning]) -> Iterator[str]
     full = [each for each in meant if queued[each.cell] >= look.world.offers.cell(each.cell).queue_limit]
     id = meant[0].id
     known = id is not None and id in record.before_requests.ids
-    is_ending = look.world.plant.intake.closed
-    if not known and refused is not (is_ending or len(full) == len(meant)):
+    ends = is_ending(look.world.plant)
+    if not known and refused is not (ends or len(full) == len(meant)):
         word = "refused" if refused else "taken"
         yield f"{text!r} was {word}, so many tasks wait: {queued}"
     allowed = {(each.cell, each.words) for each in meant}

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
-from arboleda.drivers import Command, Home, Stop, StopMode
+from arboleda.drivers import Command, Evidence, Home, Stop, StopMode, Switch
 from arboleda.engine import OPEN, State
-from arboleda.engine.inspection import RELEASING
+from arboleda.engine.inspection import RELEASING, grips_of, places_of
 from arboleda.model.cell_states import CellState
-from arboleda.model.commands import Switch
 from arboleda.model.common_places import with_common_places
 from arboleda.model.messages import Fact, Journal, OperatorAnswer, OperatorRequest, Outcome, TaskState, Verb
-from arboleda.model.plant_model import Evidence, Link
+from arboleda.model.plant_model import Link
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
@@ -279,7 +278,7 @@ def _released(look: Look, request: OperatorRequest) -> Iterator[str]:
 def _emptied(look: Look, request: OperatorRequest) -> Iterator[str]:
     scope = look.record.scopes.robots(request.scope)
     held = [name for name in scope if look.world.model.robots[name].held_fact is not None]
-    left = [name for name in held if look.world.plant.dispatcher.effectors.grips.holding(name)]
+    left = [name for name in held if grips_of(look.world.plant).holding(name)]
     if left:
         yield f"{left} may still hold a part"
     for each in look.moment.sent:
@@ -315,7 +314,7 @@ def _booked(look: Look, request: OperatorRequest) -> Iterator[str]:
         cell = look.record.cells[before.name]
         seen_to = {each.target for each in cell.cell.places if each.by_people and before.name in begun}
         wanted = before.parts | named.get(before.name, {})
-        booked = cell.context.places.counts
+        booked = places_of(cell.run).counts
         if any(booked[each] != wanted[each] for each in wanted.keys() - seen_to):
             yield f"{before.name} has the parts {booked}, and had to have {wanted}"
 

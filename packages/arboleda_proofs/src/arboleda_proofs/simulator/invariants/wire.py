@@ -6,11 +6,21 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
-from arboleda.drivers import Command, FollowPath, Home, MoveJoints, Robot, SetEffector, Stop, StopMode
-from arboleda.kinds.joints import Joint
-from arboleda.kinds.mobile import Grid
+from arboleda.drivers import (
+    Command,
+    Evidence,
+    FollowPath,
+    Grid,
+    Home,
+    Joint,
+    MoveJoints,
+    Robot,
+    SetEffector,
+    Stop,
+    StopMode,
+)
+from arboleda.engine.inspection import beliefs_of
 from arboleda.model.messages import Heartbeat
-from arboleda.model.plant_model import Evidence
 from arboleda.wire.payloads import StopGoal
 
 from ..recorded.boards import fields, is_number, on_wire
@@ -161,7 +171,7 @@ def payload_size(look: Look) -> Iterable[str]:
 @invariant(Trigger.HEARD)
 def published_joints_are_reported(look: Look) -> Iterable[str]:
     """A position that the plant shows is the last one it heard, and its board told it lately."""
-    boards, beliefs = look.record.boards.of_robot, look.world.plant.dispatcher.beliefs
+    boards, beliefs = look.record.boards.of_robot, beliefs_of(look.world.plant)
     for report in look.moment.reports:
         if report.robot in boards:
             known, belief = look.record.robots[report.robot], beliefs[report.robot]
@@ -187,7 +197,7 @@ def _untold(look: Look) -> Iterator[str]:
 @invariant(Trigger.BORN)
 def nothing_shown_before_heard(look: Look) -> Iterable[str]:
     """A plant that starts shows no position of a robot that it has not heard."""
-    beliefs, robots = look.world.plant.dispatcher.beliefs, look.record.robots
+    beliefs, robots = beliefs_of(look.world.plant), look.record.robots
     wrong = (name for name, belief in beliefs.items() if belief.position is not None)
     return [f"{name} is shown without a word of it" for name in wrong if not _has_place(robots[name])]
 

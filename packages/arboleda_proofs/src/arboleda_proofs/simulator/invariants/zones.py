@@ -7,12 +7,11 @@ from itertools import dropwhile
 
 from py_trees.common import Status
 
-from arboleda.drivers import MoveJoints
+from arboleda.drivers import Evidence, MoveJoints, Position
 from arboleda.engine import CellRun, State, TakeDevices, TakeZones
 from arboleda.model.cell_states import CellState
-from arboleda.model.commands import Position
-from arboleda.model.plant_model import Cell, Evidence, Pose, Workspace
-from arboleda.model.sentence import Sentence
+from arboleda.model.plant_model import Cell, Pose, Workspace
+from arboleda.recipes import Sentence
 
 from ..recorded.commands import SentCommand
 from ..recorded.zone_users import ZoneUser

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from arboleda.engine.inspection import Task, teaching_of
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import OperatorRequest, Verb
-from arboleda.model.task import Task
 from arboleda.model.verbs import as_text
 
 from .cells import KnownCell
@@ -51,7 +51,7 @@ class Acts:
     def _works(self, cell: KnownCell) -> bool:
         """True if a cell would start a task, or works on another one than at the first noted act."""
         run = cell.run
-        if run.manual.teaching is not None:  # as its teacher wants it to be
+        if teaching_of(run) is not None:  # as its teacher wants it to be
             return True
         if run.state is CellState.IDLE:
             return run.not_ready is None

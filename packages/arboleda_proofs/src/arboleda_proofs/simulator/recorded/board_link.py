@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from arboleda.drivers import Robot
+from arboleda.drivers import Evidence, Robot
 from arboleda.engine import Belief
-from arboleda.model.plant_model import Evidence
 
 
 class KnownLink:

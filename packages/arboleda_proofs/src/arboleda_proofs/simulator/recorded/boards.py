@@ -9,9 +9,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from arboleda.drivers import Robot
+from arboleda.drivers import Joint, Robot
 from arboleda.engine import Belief
-from arboleda.kinds.joints import Joint
 from arboleda.rig.moment import Moment
 from arboleda.rig.network import Client
 from arboleda.rig.world import World

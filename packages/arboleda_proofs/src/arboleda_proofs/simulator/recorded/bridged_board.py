@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 
-from arboleda.drivers import Command, Report, Robot
+from arboleda.drivers import Command, Evidence, Report, Robot
 from arboleda.engine import Belief
-from arboleda.model.plant_model import Evidence
 from arboleda.wire.rejections import FOREIGN, Rejection
 from arboleda.wire.transport import Delivery, Publication
 

@@ -10,6 +10,7 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 
 from arboleda.engine import Act, CellRun
+from arboleda.engine.inspection import time_of
 from arboleda.model.cell_states import CellState
 from arboleda.model.plant_model import Cell, Timing
 
@@ -47,7 +48,7 @@ class KnownCell:
 
     def begin(self, run: CellRun) -> None:
         """Begin anew with a plant that starts."""
-        self.run, self.context = run, run.context
+        self.run, self.time = run, time_of(run)
         self.tree: Behaviour | None = None
         self.sends: dict[tuple[Behaviour, str], int] = {}
         self.again = 0
@@ -58,7 +59,7 @@ class KnownCell:
         self.frozen_s = self.ran_s = 0.0
         self._held_at: float | None = None
         self._lag_s = math.inf
-        self.wakes = self.context.time.wakes
+        self.wakes = self.time.wakes
         self.follow()
 
     def follow(self) -> None:
@@ -85,7 +86,7 @@ class KnownCell:
 
     def woke(self) -> bool:
         """True if a time for which its tree waited after the last step has come."""
-        now = self.context.time.now
+        now = self.time.now
         return any(at <= now for at in self.wakes)
 
     def watch_time(self, now: float, *, away: bool = False) -> None:
@@ -93,7 +94,7 @@ class KnownCell:
 
         Where the plant was `away`, that time does not pass for a cell at work.
         """
-        own, before = self.context.time.now, self._held_at
+        own, before = self.time.now, self._held_at
         lag_s = now - own
         self.frozen_s = 0.0 if away else max(lag_s - self._lag_s, 0.0)
         self._lag_s = math.inf if self.state in PAUSED else lag_s
@@ -125,7 +126,7 @@ class CellStates:
         changed = False
         for cell in self._cells:
             cell.looked, run = False, cell.run
-            cell.wakes = cell.context.time.wakes
+            cell.wakes = cell.time.wakes
             if cell.signs(run) == cell.last_signs and len(run.queue) == cell.queued:
                 continue
             before, changed = cell.state, True

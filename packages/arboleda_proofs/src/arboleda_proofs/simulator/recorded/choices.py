@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from statistics import median
 
 from arboleda.engine import CellRun
-from arboleda.engine.inspection import LAST, UNKNOWN_S
+from arboleda.engine.inspection import LAST, UNKNOWN_S, Task, tasks_of, time_of
 from arboleda.model import text
 from arboleda.model.cell_states import CellState
-from arboleda.model.errors import TextError
 from arboleda.model.messages import Course, Fact, TaskRequest, TaskState
-from arboleda.model.task import Order, Task
+from arboleda.recipes import Order, TextError
 from arboleda.rig.world import World
 
 from .courses import Courses
@@ -60,12 +59,12 @@ class Choices:
             orders = text.alternatives(requests[0].text, world.offers)
         except TextError:
             return
-        if len(orders) > 1 and orders[0].id not in plant.intake.tasks:
+        if len(orders) > 1 and orders[0].id not in tasks_of(plant):
             self.promises = {order.cell: self._promise(order, world) for order in orders}
 
     def _promise(self, order: Order, world: World) -> Promise:
         run = world.plant.cells[order.cell]
-        past = [task for task in world.plant.intake.tasks.values() if task.state is TaskState.DONE]
+        past = [task for task in tasks_of(world.plant).values() if task.state is TaskState.DONE]
         ahead = [order, *(task.order for task in run.queue)]
         seconds = sum(_expected(each, past) for each in ahead)
         if run.task is not None and run.task.started_at is not None:
@@ -83,7 +82,7 @@ class Choices:
         progress = self._courses.at_work.get(run.cell.name)
         if run.task is None or progress is None or progress.recovers:
             return None
-        steps, now = progress.steps, run.context.time.now + (0.0 if run.state in STANDS else since_step_s)
+        steps, now = progress.steps, time_of(run).now + (0.0 if run.state in STANDS else since_step_s)
         for alike in _alike(run.task.order, past)[:-1]:
             courses = [task.course for task in alike[-LAST:] if task.course]
             known = [step for step in steps if any(step in course.begun for course in courses)]

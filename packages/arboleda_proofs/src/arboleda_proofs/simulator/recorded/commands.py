@@ -7,11 +7,20 @@ from collections import deque
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from arboleda.drivers import Command, MotionState, Report, Stop, StopMode
+from arboleda.drivers import (
+    Command,
+    Motion,
+    MotionState,
+    OnStop,
+    Report,
+    Stop,
+    StopMode,
+    Switch,
+    VerbCommand,
+    Work,
+)
 from arboleda.engine import OPEN, Entry, State
 from arboleda.engine.inspection import Ledger
-from arboleda.kinds.declared import WorkCall
-from arboleda.model.commands import Motion, OnStop, Switch, Work
 from arboleda.model.messages import Heartbeat, Verb
 from arboleda.model.plant_model import Timing
 
@@ -70,7 +79,7 @@ class SentCommand:
 
 def _on_stop(command: Work) -> OnStop:
     """Its end at a stop, by the definition of its verb: what the command says of it is the engine's."""
-    return command.definition.on_stop if isinstance(command, WorkCall) else command.on_stop
+    return command.definition.on_stop if isinstance(command, VerbCommand) else command.on_stop
 
 
 class Commands:

@@ -10,6 +10,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.engine import RECOVERY, Act, Await, Dwell, Plant
+from arboleda.engine.inspection import time_of
 from arboleda.model.messages import Course
 
 from .starts import turns_of
@@ -176,14 +177,14 @@ class Courses:
         for name, run in plant.cells.items():
             progress = self._at_work.get(name)
             if progress is not None and progress.nodes is not run.run.nodes:
-                self.ended[progress.task], progress.ended_at = self._at_work.pop(name), run.context.time.now
+                self.ended[progress.task], progress.ended_at = self._at_work.pop(name), time_of(run).now
                 progress = None
             if progress is None and run.task is not None and run.run.nodes:
                 whole = run.task.id not in self._began_before
-                progress = TaskInProgress(run.task.id, run.run.nodes, run.context.time.now, whole=whole)
+                progress = TaskInProgress(run.task.id, run.run.nodes, time_of(run).now, whole=whole)
                 self._at_work[name] = progress
             if progress is not None and progress.rested is not run.run.rested:
-                progress.look(run.run.rested, run.context.time.now)
+                progress.look(run.run.rested, time_of(run).now)
 
 
 def _note_since(since: dict[Behaviour, float], step: Behaviour, now: float, is_so: bool) -> None:

@@ -5,8 +5,18 @@ from __future__ import annotations
 import json
 from collections import defaultdict
 
-from arboleda.drivers import Command, FollowPath, Home, MoveJoints, Report, Robot, SetEffector, Stop, StopMode
-from arboleda.model.commands import Motion
+from arboleda.drivers import (
+    Command,
+    FollowPath,
+    Home,
+    Motion,
+    MoveJoints,
+    Report,
+    Robot,
+    SetEffector,
+    Stop,
+    StopMode,
+)
 from arboleda.wire.hop import is_stop
 from arboleda.wire.rejections import Rejection
 from arboleda.wire.transport import Publication

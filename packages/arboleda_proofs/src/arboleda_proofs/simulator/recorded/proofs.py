@@ -10,11 +10,20 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import cast
 
-from arboleda.drivers import FollowPath, Home, MotionState, MoveJoints, Report, Robot
-from arboleda.kinds.joints import Jointed
-from arboleda.model.commands import Motion, Query, Switch
+from arboleda.drivers import (
+    Evidence,
+    FollowPath,
+    Home,
+    Jointed,
+    Motion,
+    MotionState,
+    MoveJoints,
+    Query,
+    Report,
+    Robot,
+    Switch,
+)
 from arboleda.model.messages import Failure, Reason
-from arboleda.model.plant_model import Evidence
 
 from .commands import SentCommand
 from .robots import KnownRobot

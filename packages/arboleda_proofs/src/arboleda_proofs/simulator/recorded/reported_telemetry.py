@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import Any
 
-from arboleda.drivers import MotionState, Report, Robot
-from arboleda.model.plant_model import Evidence
+from arboleda.drivers import Evidence, MotionState, Report, Robot
 from arboleda.wire.transport import Delivery
 
 from .board_link import KnownLink

@@ -8,11 +8,10 @@ from collections.abc import Callable
 from copy import copy
 from enum import Enum
 
-from arboleda.drivers import MotionState, Report, Robot
+from arboleda.drivers import Evidence, MotionState, Report, Robot, Value
 from arboleda.engine import Belief
-from arboleda.model.facts import Value
 from arboleda.model.messages import BUILT_IN
-from arboleda.model.plant_model import Evidence, Link
+from arboleda.model.plant_model import Link
 
 NUMBERS = 512  # telemetry messages, more than a plant that was stalled finds in its inbox
 LOOK_S = 0.5  # a report that says the same counts as news this often

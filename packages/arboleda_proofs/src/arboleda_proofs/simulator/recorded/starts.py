@@ -12,9 +12,8 @@ from operator import attrgetter
 from py_trees.behaviour import Behaviour
 
 from arboleda.bt_xml.running.leaves import Step as StepOfFile
-from arboleda.drivers import Command
+from arboleda.drivers import Command, Motion, Query
 from arboleda.engine.inspection import path_of
-from arboleda.model.commands import Motion, Query
 from arboleda.model.messages import ENDED, TaskChanged, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.recipes.decorators import Again, Times

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from arboleda.model.commands import Motion
+from arboleda.drivers import Motion
 from arboleda.model.messages import Heartbeat
 from arboleda.wire.hop import FromPlant, is_stop
 

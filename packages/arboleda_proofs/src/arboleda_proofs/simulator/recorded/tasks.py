@@ -7,9 +7,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from arboleda.engine import HISTORY
+from arboleda.engine.inspection import UNCHECKED
 from arboleda.model.messages import KeptTask, TaskChanged, TaskState
 from arboleda.model.sentence import NOTHING
-from arboleda.model.task import UNCHECKED
 
 SURE = 500  # accepted tasks back to which the plant remembers every one
 KEPT = HISTORY  # ended tasks that are remembered: the plant may remember as many

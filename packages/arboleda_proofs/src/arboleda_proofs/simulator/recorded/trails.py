@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from arboleda.drivers import Evidence
 from arboleda.engine import Act, State
 from arboleda.engine.inspection import MORE, Trail
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Fact, Remember
-from arboleda.model.plant_model import Evidence
-from arboleda.model.sentence import Sentence
+from arboleda.recipes import Sentence
 
 from .cells import KnownCell
 from .commands import Commands

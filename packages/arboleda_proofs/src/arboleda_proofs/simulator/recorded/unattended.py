@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from arboleda.drivers import Command, Home
-from arboleda.model.commands import Work
+from arboleda.drivers import Command, Home, Work
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import PlantModel
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from arboleda.engine.inspection import parts_of, places_of
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import OperatorRequest, TaskState
-from arboleda.model.sentence import Sentence
+from arboleda.recipes import Sentence
 from arboleda.rig.world import World
 
 from .cells import KnownCell
@@ -60,8 +61,8 @@ class EarlierState:
                 run.trouble is not None,
                 run.stranded is not None,
                 run.awaits is not None,
-                bool(cell.context.parts.holding),
-                cell.context.places.counts,
+                bool(parts_of(cell.run).holding),
+                places_of(cell.run).counts,
             )
             for cell in cells
             for run in (cell.run,)

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Mapping
 
 from arboleda.drivers import MoveJoints
 from arboleda.engine import Plant
+from arboleda.engine.inspection import asking_of
 from arboleda.model.cell_states import CellState
 
 from .cells import KnownCell
@@ -25,7 +26,7 @@ class Waiting:
         """Look at the zones, before the cells are taken over: each still has its previous state. `seconds`
         passed since the step before.
         """
-        requests = plant.zones.queue.waiting
+        requests = asking_of(plant)
         if requests != self._requests:
             self._requests, robots = requests, dict(requests)
             users = [user for cell in self._cells.values() for user in cell.zone_users.values()]

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from operator import add, sub
 
-from arboleda.kinds.arm import Arm
-from arboleda.model.commands import Position
+from arboleda.drivers import Arm, Position
 from arboleda.model.plant_model import Cell, Pose
 from arboleda.rig.network import Client
 from arboleda.sim.arm import ArmBody

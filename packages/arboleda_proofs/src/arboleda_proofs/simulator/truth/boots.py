@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from arboleda.drivers import MotionState, Report, Robot
-from arboleda.model.plant_model import Evidence
+from arboleda.drivers import Evidence, MotionState, Report, Robot
 
 from .robot import RobotTruth
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from arboleda.drivers import Command
 from arboleda.engine import Entry, State
+from arboleda.engine.inspection import ledger_of
 from arboleda.model.plant_model import APART_S
 from arboleda.rig.world import BRIDGE, World
 
@@ -52,13 +53,13 @@ class Books:
             self.ended = []
         if self._in_time:
             self.late, self._in_time = self.late - self._in_time, set()
-        entries = self._world.plant.dispatcher.ledger.entries
+        entries = ledger_of(self._world.plant).entries
         if not self._open.keys() <= entries.keys():
             self.ended = [self._open.pop(id) for id in [*self._open] if id not in entries]
 
     def sent(self, command: Command) -> None:
         """Take in a command that the plant has sent; one that has no entry in its ledger is passed over."""
-        entry = self._world.plant.dispatcher.ledger.entries.get(command.id)
+        entry = ledger_of(self._world.plant).entries.get(command.id)
         if entry is not None:
             late = self.is_late(command.robot)
             if late:

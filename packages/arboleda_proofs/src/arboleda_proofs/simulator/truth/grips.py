@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
-from arboleda.drivers import Command, MotionState, Report
-from arboleda.model.commands import Motion, Switch
+from arboleda.drivers import Command, Motion, MotionState, Report, Switch
+from arboleda.engine.inspection import ledger_of
 from arboleda.model.plant_model import Cell
 from arboleda.rig.world import World
 from arboleda.wire.payloads import EffectorGoal
@@ -199,7 +199,7 @@ class GripsTruth:
         if isinstance(command, Motion):
             effector.set_out()
         elif isinstance(command, Switch) and command.grips is not None:
-            entry = self._world.plant.dispatcher.ledger.entries.get(command.id)
+            entry = ledger_of(self._world.plant).entries.get(command.id)
             cell = entry.cell if entry is not None else ""
             effector.tell(Told(cell=cell, at=self._world.now), grips=command.grips)
             if command.grips and not runs(cell):

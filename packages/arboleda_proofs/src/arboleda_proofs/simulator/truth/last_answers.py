@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.model.facts import Value
+from arboleda.drivers import Value
 
 from .ended_commands import EndedCommand
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.drivers import Command, Robot
-from arboleda.model.commands import Switch, needs_clear
-from arboleda.model.facts import Value
+from arboleda.drivers import Command, Robot, Switch, Value, needs_clear
 from arboleda.model.plant_model import Cell, Interlock
 from arboleda.rig.network import Client
 from arboleda.sim.board import Board

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.kinds.mobile import Mobile
-from arboleda.model.commands import Position
+from arboleda.drivers import Mobile, Position
 from arboleda.model.plant_model import Cell
 from arboleda.rig.network import Client
 from arboleda.sim.board import Board

@@ -7,17 +7,14 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from arboleda.drivers import Command, Robot
+from arboleda.drivers import Command, Evidence, Position, Robot, Switch, makes_parts
 from arboleda.engine import Entry, State
-from arboleda.engine.inspection import EMPTY, trouble_in
-from arboleda.kinds.declared import makes_parts
+from arboleda.engine.inspection import EMPTY, Grip, effectors_of, grips_of, places_of, trouble_in
 from arboleda.model import text
-from arboleda.model.commands import Position, Switch
 from arboleda.model.common_places import with_common_places
-from arboleda.model.grips import Grip
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskState, Verb
-from arboleda.model.plant_model import Cell, Evidence, Place, Workspace
-from arboleda.model.recipe import Recipe
+from arboleda.model.plant_model import Cell, Place, Workspace
+from arboleda.recipes import Recipe
 from arboleda.rig.world import World
 
 from ..recorded.scopes import Scopes
@@ -341,7 +338,7 @@ class PlacesTruth:
         if self.missed:
             self.missed = []
         self._before = self._grips
-        effectors = self._world.plant.dispatcher.effectors
+        effectors = effectors_of(self._world.plant)
         if self._seen != (effectors, effectors.version):
             self._seen, self._grips = (effectors, effectors.version), effectors.grips.by_holder
 
@@ -433,7 +430,7 @@ class PlacesTruth:
             order = text.parse(change.text, self._world.model)
             in_grip = filter(self._closes_or_opens, places.tools)
             recipe = self._world.model.cell(places.cell.name).recipe(order.recipe)
-            places.begin(change.task, recipe, run.context.places.counts, in_grip)
+            places.begin(change.task, recipe, places_of(run).counts, in_grip)
             if places.cell.handover is not None and places.cell.handover.giver in self._robots:
                 places.see(self._robots[places.cell.handover.giver])
         elif change.state is TaskState.DONE:
@@ -453,7 +450,7 @@ class PlacesTruth:
         return hand in cell.shared and self._world.plant.zones.holder(hand) not in (None, cell.name)
 
     def _is_in_grip(self, places: CellPlaces) -> bool:
-        grips = self._world.plant.dispatcher.effectors.grips
+        grips = grips_of(self._world.plant)
         switching = any(grips[hand] is Grip.SWITCHING for hand in places.hands)
         return switching or any(map(self._closes_or_opens, places.tools))
 

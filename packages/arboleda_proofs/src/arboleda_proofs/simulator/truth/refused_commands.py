@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from arboleda.engine import Entry, Plant
+from arboleda.engine.inspection import not_given_count_of, not_given_of
 
 
 class RefusedCommands:
@@ -16,6 +17,6 @@ class RefusedCommands:
         """Those since it was last asked, of the plant that runs now."""
         if plant is not self._plant:
             self._plant, self._count = plant, 0
-        count = plant.dispatcher.not_given_count - self._count
+        count = not_given_count_of(plant) - self._count
         self._count += count
-        return list(plant.dispatcher.not_given)[-count:] if count else []
+        return list(not_given_of(plant))[-count:] if count else []

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
-from arboleda.drivers import Command, Robot, StopMode
-from arboleda.model.commands import Position
-from arboleda.model.plant_model import Cell, Evidence, Interlock
+from arboleda.drivers import Command, Evidence, Position, Robot, StopMode
+from arboleda.model.plant_model import Cell, Interlock
 from arboleda.rig.network import Client
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal

@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from arboleda.drivers import Command, Report, Robot
-from arboleda.kinds.declared import Device
-from arboleda.kinds.joints import Jointed
-from arboleda.kinds.mobile import Mobile
+from arboleda.drivers import Command, Device, Evidence, Jointed, Mobile, Report, Robot
+from arboleda.engine.inspection import beliefs_of
 from arboleda.model.by_class import nearest
 from arboleda.model.messages import CellRevised, Fact, OperatorAnswer, Remember, Verb
-from arboleda.model.plant_model import Evidence
 from arboleda.model.whole_cells import whole_cell
 from arboleda.rig.world import World
 
@@ -105,7 +102,7 @@ class RobotsTruth:
         return robot.overdue or lies or self.unseen(robot) or self._has_forgotten_unheard(robot)
 
     def _has_forgotten_unheard(self, robot: RobotTruth) -> bool:
-        booted_at, belief = robot.booted_us / 1e6, self.world.plant.dispatcher.beliefs[robot.robot.name]
+        booted_at, belief = robot.booted_us / 1e6, beliefs_of(self.world.plant)[robot.robot.name]
         return robot.FORGETS and self.world.now < booted_at + LATE_BOOT_S and belief.boot_id != robot.boot
 
     def look(self) -> None:

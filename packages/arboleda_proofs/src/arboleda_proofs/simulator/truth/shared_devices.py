@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from arboleda.model.facts import Value
+from arboleda.drivers import Value
 from arboleda.model.plant_model import Cell
 from arboleda.rig.world import World
 

@@ -6,10 +6,9 @@ from collections import deque
 from collections.abc import Mapping
 from typing import Any
 
-from arboleda.drivers import Command, Robot
-from arboleda.model.commands import needs_clear
+from arboleda.drivers import Command, Evidence, Robot, needs_clear
 from arboleda.model.messages import Fact, OperatorAnswer, Remember, Verb
-from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.model.plant_model import PlantModel
 from arboleda.wire.forms import form_of
 from arboleda.wire.payloads import Goal, JointsGoal, StopGoal
 

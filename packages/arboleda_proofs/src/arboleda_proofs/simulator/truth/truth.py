@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 
-from arboleda.drivers import Command, Report
-from arboleda.model.commands import Motion, Query
-from arboleda.model.facts import Value
+from arboleda.drivers import Command, Motion, Query, Report, Value
+from arboleda.engine.inspection import not_given_count_of, teaching_of
 from arboleda.model.messages import ENDED, Check, Fact, OperatorAnswer, TaskChanged, TaskState, Verb
 from arboleda.model.whole_cells import whole_cell
 from arboleda.rig.world import World
@@ -119,7 +118,7 @@ class Truth(RobotsTruth):
         for booked in self.books.ended:
             self._end(booked)
         plant = self.world.plant
-        if self.places.cells and plant.dispatcher.not_given_count:
+        if self.places.cells and not_given_count_of(plant):
             for refused in self._refused_commands.fresh(plant):
                 self.places.take_refusal(refused)
         if not self._orders:
@@ -198,7 +197,7 @@ class Truth(RobotsTruth):
     def _may_grip(self, cell: str) -> bool:
         """True for a cell with a task at work, or that somebody teaches; where nobody knows which it is."""
         run = self.world.plant.cells.get(cell)
-        return run is None or cell in self._at_work or run.manual.teaching is not None
+        return run is None or cell in self._at_work or teaching_of(run) is not None
 
     def _task(self, change: TaskChanged) -> None:
         cell = change.cell or ""

@@ -10,18 +10,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from arboleda.kinds.declared import Device, UseError, VerbCall
-from arboleda.model.commands import Command, Stop, StopMode
-from arboleda.model.errors import PayloadError
-
-from . import strict
-from .status import command_id
+from arboleda.drivers import Command, Device, PayloadError, Stop, StopMode, UseError, VerbCommand
+from arboleda.wire import strict
+from arboleda.wire.status import command_id
 
 
 def write(command: Command, *, copied: bool = False) -> str:
     """The text of a command; `copied`: a copy without the id comes on the plain topic."""
     fields: dict[str, object] = {"id": command.id} if command.id else {}
-    if isinstance(command, VerbCall):
+    if isinstance(command, VerbCommand):
         fields |= {"verb": command.verb, "values": dict(command.values)}
         fields |= {} if command.heard is None else {"heard": command.heard}
         fields |= {} if command.token is None else {"token": command.token}

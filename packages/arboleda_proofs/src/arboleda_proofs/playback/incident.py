@@ -8,30 +8,28 @@ from dataclasses import dataclass, field, replace
 from operator import attrgetter
 from typing import Any
 
+from arboleda.drivers import Command, MotionState, Report, Stop, Switch
+from arboleda.drivers import Evidence as Level
 from arboleda.engine import Plant
-from arboleda.model.commands import Command, Stop, Switch
+from arboleda.extension import Sentence
 from arboleda.model.messages import (
     Event,
     Failure,
     FaultByHand,
     Interference,
-    MotionState,
     OperatorRequest,
-    Report,
     TaskChanged,
     TaskState,
 )
-from arboleda.model.plant_model import Evidence as Level
 from arboleda.model.plant_model import Link, PlantModel
-from arboleda.model.sentence import Sentence
 from arboleda.model.verbs import as_text
 from arboleda.recipes.decorators import first_cause
+from arboleda.recorder.chapter import Chapter
+from arboleda.recorder.chapters import chapters_of
+from arboleda.recorder.reader import Record
 from arboleda.views import tree_view, twin_view
 
 from .cause import BY_KEY, Cause, Evidence, TaskCommand, cause_of
-from .chapter import Chapter
-from .chapters import chapters_of
-from .reader import Record
 from .troubles import Trouble, Troubles
 
 FRAMES_S, FRAME_S = 10.0, 0.2  # span and interval of the places of devices kept

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from .document import Place, dotted
-from .yaml_flow import flow
-from .yaml_marks import clipped
+from arboleda.plant_file.document import Place, dotted
+from arboleda.plant_file.yaml_flow import flow
+from arboleda.plant_file.yaml_marks import clipped
 
 LONGEST = 120  # characters of a value
 CELLS, DEVICES, KINDS, TARGETS = "cells", "devices", "kinds", "targets"

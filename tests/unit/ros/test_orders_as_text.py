@@ -6,15 +6,14 @@ import json
 from dataclasses import replace
 
 import pytest
+from tests.unit.kinds.station import STATION, plant
 
 from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import MotionState, Report
-from arboleda.wire import order
 from arboleda.wire.status import from_status, to_status
-
-from .station import STATION, plant
+from arboleda_ros import order
 
 STATION_1 = plant().robots["station"]
 assert isinstance(STATION_1, Device)

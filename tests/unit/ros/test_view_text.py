@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 
 from arboleda.model.sentence import in_json
-from arboleda.runtime import view_text
 from arboleda.runtime.parts.slices import Slices
 from arboleda.testing import Rig, shipped
+from arboleda_ros import view_text
 
 
 def text_of(snapshot: dict[str, Any]) -> str:

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file.changes import changes
-from arboleda.plant_file.restart import needing_restart
+from arboleda_make.versions.changes import changes
+from arboleda_make.versions.restart import needing_restart
 
 BEFORE = """\
 name: a
@@ -73,3 +73,11 @@ def test_it_needs_a_restart_with_a_reason(before: str, after: str, why: str) -> 
 def test_of_files_trees_alone_are_taken(name: str, needs: Any) -> None:
     pair = (b"<root BTCPP_format='4'/>", b"<root BTCPP_format='4' a='b'/>")
     assert bool(told("", "", **{name: pair})) is needs
+
+
+def test_a_change_of_python_is_named_without_its_content() -> None:
+    sides = [
+        PlantFiles(plant="plant.yaml", contents={"plant.yaml": BEFORE.encode(), "own.py": each})
+        for each in (b"secret = 1", b"secret = 2")
+    ]
+    assert [each.words for each in changes(*sides)] == ["own.py: changed"]

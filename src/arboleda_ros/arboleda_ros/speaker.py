@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from arboleda.model.sentence import Phrase, Sentence
+from arboleda.recipes import Phrase, Sentence
 
 HOLD_S = 0.5  # time for messages of a gone node to leave the queues
 NAMELESS_S = 1.0  # discovery may show a publisher before it knows the node

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from arboleda.model.errors import StartError
+from arboleda.extension import StartError
 
 try:
     import tty

@@ -10,11 +10,11 @@ from arboleda.bt_xml import reading
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.forest import Node
 from arboleda.model.plant_files import PlantFiles
+from arboleda.plant_file.document import Place
+from arboleda.plant_file.tree_file import ENDING
+from arboleda.plant_file.yaml_marks import YamlFault, parse
 
 from .change import CELLS, KINDS, MISSING, TARGETS, VERBS, Change
-from .document import Place
-from .tree_file import ENDING
-from .yaml_marks import YamlFault, parse
 
 
 def changes(before: PlantFiles, after: PlantFiles) -> tuple[Change, ...]:

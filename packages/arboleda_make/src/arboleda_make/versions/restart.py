@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from arboleda.plant_file.own_recipes import TREES
+
 from .change import MISSING, Change
-from .own_recipes import TREES
 
 CELLS, TIMING, USES = "cells", "timing", "uses"
 OF_PLANT = ("history_days", "paths", "stations", "palletizing")

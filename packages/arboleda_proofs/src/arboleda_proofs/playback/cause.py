@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from arboleda.engine import PLANT
+from arboleda.extension import Phrase, Sentence
 from arboleda.model.advice import DO
 from arboleda.model.messages import Reason, Verb
-from arboleda.model.sentence import Phrase, Sentence, Value
+from arboleda.model.sentence import Value
+from arboleda.model.verb_scopes import PLANT
 
 from .troubles import ALARM, BOOT, BRIDGE, SILENCE, Trouble
 

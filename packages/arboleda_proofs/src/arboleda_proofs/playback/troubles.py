@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
-from arboleda.model.messages import MotionState, Report
+from arboleda.drivers import MotionState, Report
 
 SILENT_S = 0.6  # boards report ten times a second, so such a silence means lost messages
 ROUNDING_S = 1e-6

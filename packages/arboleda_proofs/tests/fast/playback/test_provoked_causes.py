@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from tests.unit.recorder.test_cause import ARM, trouble
-
 from arboleda.core.plant import Plant
 from arboleda.model.messages import FaultByHand, Reason
-from arboleda.recorder.cause import Evidence, cause_of
-from arboleda.recorder.incident import Reader
 from arboleda.recorder.replay import plant_of
 from arboleda.recorder.tape import TapedPlant
-from arboleda.recorder.troubles import BOOT
 from arboleda.rig.world import World
 from arboleda.testing import shipped
+from arboleda_proofs.playback.cause import Evidence, cause_of
+from arboleda_proofs.playback.incident import Reader
+from arboleda_proofs.playback.troubles import BOOT
 from arboleda_proofs.running.fault_desk import INSTANT
 from arboleda_proofs.simulator.faults import KINDS, Fault
+
+from .test_cause import ARM, trouble
 
 
 def test_a_command_of_an_earlier_start_is_somebody_elses() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.wire.speaker import HOLD_S, NAMELESS_S, Speaker
+from arboleda_ros.speaker import HOLD_S, NAMELESS_S, Speaker
 
 TOPIC = "/ra1/status"
 BRIDGE, STRANGER = "/mqtt_bridge", "/forger"

@@ -10,8 +10,8 @@ import pytest
 
 from arboleda.dashboard.wording import words
 from arboleda.model.messages import MotionState, Reason, Report
-from arboleda.recorder.cause import BY_KEY, BY_REASON, PHRASES, Evidence, TaskCommand, cause_of
-from arboleda.recorder.troubles import ALARM, BOOT, BRIDGE, SILENCE, Trouble, Troubles
+from arboleda_proofs.playback.cause import BY_KEY, BY_REASON, PHRASES, Evidence, TaskCommand, cause_of
+from arboleda_proofs.playback.troubles import ALARM, BOOT, BRIDGE, SILENCE, Trouble, Troubles
 
 ARM = "ra1"
 SENT = TaskCommand(id="7-1", robot=ARM, at=8.0, accepted_at=8.1)
