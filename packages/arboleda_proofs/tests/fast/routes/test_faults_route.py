@@ -13,7 +13,7 @@ from tests.guarded_plant import PRESENT, shared_app
 
 from arboleda.web.access.auth import Role
 from arboleda_proofs.routes import faults
-from arboleda_proofs.running.faults_api import BegunFault, FaultRefused
+from arboleda_proofs.running.faults_api import BegunFault, FaultRefused, FaultsApi
 
 BEGUN = BegunFault(number=1, robot="ra1", kind="no_grip", about="Grip beside the part", left_s=600.0)
 NO_GRIP = {"kind": "no_grip", "robot": "ra1", "seconds": 600}
@@ -62,7 +62,7 @@ def ask(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> Ask:
     def go(
         path: str, body: dict[str, Any], *, role: Role = Role.OPERATOR, at: Desk | None = desk
     ) -> httpx.Response:
-        monkeypatch.setattr(PRESENT, "plant", SimpleNamespace(ask=lambda _kind: at))
+        monkeypatch.setattr(PRESENT, "plant", SimpleNamespace(ask={FaultsApi: at}.get))
 
         async def as_role(scope: Any, receive: Any, send: Any) -> None:
             await shared_app()({**scope, "arboleda.role": role}, receive, send)
