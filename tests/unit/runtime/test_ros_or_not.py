@@ -20,6 +20,8 @@ Started = Callable[..., "tuple[App | None, str]"]
 class Missing:
     """The entry point of the ROS 2 link on a machine without ROS 2, or with one that cannot be loaded."""
 
+    name = "ros"
+
     def __init__(self, error: ImportError) -> None:
         self._error = error
 
@@ -41,9 +43,7 @@ def started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.Capt
 
     monkeypatch.setattr(session, "Session", Unrun)
     monkeypatch.setattr(build, "PARTS", tuple(part for part in build.PARTS if part != "web"))
-    monkeypatch.setattr(
-        session, "entry_points", lambda **_: [Missing(ImportError("No module named 'rclpy'"))]
-    )
+    monkeypatch.setattr(session, "registered", lambda _: [Missing(ImportError("No module named 'rclpy'"))])
 
     def start(*words: str) -> tuple[App | None, str]:
         monkeypatch.setattr(sys, "argv", ["arboleda", *words, "--state", str(tmp_path / "state")])
@@ -68,7 +68,7 @@ def test_who_has_no_ros_is_told_how_to_get_it_and_nothing_of_modules(
     started: Started, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     missing = ModuleNotFoundError("No module named 'rclpy'", name="rclpy")
-    monkeypatch.setattr(session, "entry_points", lambda **_: [Missing(missing)])
+    monkeypatch.setattr(session, "registered", lambda _: [Missing(missing)])
     app, _ = started("up")
     assert app
     (note,) = (note for note in app.notes if "ROS 2" in note)

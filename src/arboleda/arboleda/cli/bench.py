@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from arboleda.host.packages import registered
 from arboleda.model.errors import StartError
 
 GROUP = "arboleda.bench"
@@ -42,9 +42,9 @@ def add_to(cli: typer.Typer) -> None:
     """Add the command."""
 
     def bench(names: Names = None, json: Json = None, quick: Quick = False, listed: Listed = False) -> None:
-        found = entry_points(group=GROUP)
+        found = registered(GROUP)
         if not found:
             raise StartError(MISSING)
-        raise typer.Exit(next(iter(found)).load()(names or [], quick=quick, file=json, listed=listed))
+        raise typer.Exit(found[0].load()(names or [], quick=quick, file=json, listed=listed))
 
     cli.command("bench", help=HELP, short_help=HELP.partition("\n")[0])(bench)

@@ -7,13 +7,13 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
-from importlib.metadata import entry_points
 from queue import SimpleQueue
 from typing import Any
 
 from rich.console import Console
 from rich.text import Text
 
+from arboleda.host.packages import registered
 from arboleda.model.errors import StartError
 from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase
@@ -51,7 +51,7 @@ class RosMissing(StartError):
 
 def ros_link(*, lan: bool) -> Any:
     """The ROS 2 link of the entry point `arboleda.links: ros`; RosMissing if there is none."""
-    found = next(iter(entry_points(group="arboleda.links", name="ros")), None)
+    found = next((each for each in registered("arboleda.links") if each.name == "ros"), None)
     if found is None:
         raise RosMissing(NO_ROS())
     try:
