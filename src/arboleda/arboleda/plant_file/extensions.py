@@ -9,7 +9,7 @@ from typing import Any
 
 from arboleda.host.distributions import APIS
 from arboleda.host.packages import entry_points, package_of, registered, why_left_out
-from arboleda.host.pieces import Pieces, piece_of
+from arboleda.host.pieces import THE_PARTS, Pieces, piece_of
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 
@@ -82,7 +82,7 @@ def notes(plant: PlantModel) -> list[str]:
     pieces = Pieces(error_text, tell=lambda _: None, off=plant.extensions_off)
     of_the_door = {each.dist for each in entry_points(APIS)}
     for point in pieces.registered(PARTS):
-        with pieces.calling(piece_of(point, "the parts")):
+        with pieces.calling(piece_of(point, THE_PARTS)):
             declared = getattr(point.load(), "settings_type", None) if point.dist in of_the_door else None
             if declared is not None:
                 settings_of(plant, package_of(point), declared)

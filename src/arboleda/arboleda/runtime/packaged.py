@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.metadata import EntryPoint
 
-from arboleda.host.pieces import Pieces, piece_of
+from arboleda.host.pieces import THE_PARTS, Pieces, piece_of
 
 from .extensions.making import factory_of
 from .extensions.part import Part
@@ -15,7 +15,7 @@ def packaged(pieces: Pieces) -> list[tuple[EntryPoint, Factory]]:
     """The factories of packages, each with its entry point; what cannot be loaded is left out."""
     found: list[tuple[EntryPoint, Factory]] = []
     for point in pieces.registered(GROUP):
-        with pieces.calling(piece_of(point, "the parts")):
+        with pieces.calling(piece_of(point, THE_PARTS)):
             found += [(point, each) for each in _factories(point)]
     return found
 
