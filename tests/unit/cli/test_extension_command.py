@@ -78,6 +78,13 @@ def test_one_for_another_api_is_listed_with_why_it_is_left_out(tmp_path: Path) -
     assert "it is written for API 7, and here is API 1" in lines[at + 1]
 
 
+def test_one_with_the_name_of_another_is_left_out_and_both_are_named(tmp_path: Path) -> None:
+    register(tmp_path / "site", "late", {"arboleda.parts": ["acme.more = late"]})
+    lines = said("list").splitlines()
+    at = lines.index("late 1: parts")
+    assert "acme-tools 1 is registered as acme, too; remove one of them" in lines[at + 1] and is_there()
+
+
 @pytest.mark.parametrize("verb", ["on", "off"])
 def test_a_name_that_nobody_has_is_refused_with_the_nearest(verb: str) -> None:
     ran = CliRunner().invoke(cli, ["extension", verb, "acme-tool"])

@@ -154,10 +154,9 @@ def test_what_a_plant_goes_on_without_is_noted(load: Load) -> None:
     )
 
 
-def test_a_package_of_another_api_may_be_off(load: Load) -> None:
-    assert load("{old: off}").extensions_off == {"old"}
-    with pytest.raises(ConfigError, match="it is written for API 0"):
-        load("{old: {}}")
+@pytest.mark.parametrize("settings", ["off", "{cell: lab}"])
+def test_a_plant_goes_on_without_a_package_that_is_left_out_whole(load: Load, settings: str) -> None:
+    assert load(f"{{old: {settings}}}").extensions == {}
 
 
 def test_settings_of_another_class_are_refused_in_words(load: Load) -> None:

@@ -1,7 +1,8 @@
 """Installed distributions that add to Arboleda, and which of them are left out whole, before any import.
 
-A distribution is left out that a person has put off, and one that is written for another API than this: it
-says so by an entry point `1 = its_module` of the group `arboleda.api`.
+A distribution is left out that a person has put off, one that is written for another API than this, which it
+says by an entry point `1 = its_module` of the group `arboleda.api`, and one whose name for its parts, routes
+and the like is another's already.
 """
 
 from __future__ import annotations
@@ -22,11 +23,16 @@ from .state_folders import plants_root
 API = 1
 """The number of what `arboleda.extension` offers. It grows where a package has to be changed for it."""
 OURS, APIS = "arboleda", "arboleda.api"
+OF_PACKAGES = ("client", "commands", "languages", "page", "parts", "routes")  # groups of names of packages
 OF_THINGS = ("drivers", "kinds", "stores")  # groups in which names are not those of packages
 OFF = "ARBOLEDA_EXTENSIONS_OFF"  # names with commas between
 OTHER_API = (
     "Arboleda goes on without {package}: it is written for API {theirs}, and here is API {ours}; "
     "type pip install -U {outdated}"
+)
+NAMED_ALIKE = (
+    "Arboleda goes on without {package}: {other} is registered as {name}, too; "
+    "remove one of them, or give one another name"
 )
 IS_OFF = "{package} is off: type arboleda extension on {name}"
 Folders = tuple[tuple[str, int], ...]  # each with the time of its last change
@@ -37,7 +43,7 @@ class Installed(NamedTuple):
     """Every entry point, and the distributions that are left out, each with the sentence that says why."""
 
     points: Any
-    other_api: Mapping[metadata.Distribution, str]
+    barred: Mapping[metadata.Distribution, str]
     off: Mapping[metadata.Distribution, str]
 
 
@@ -92,7 +98,13 @@ def _read(_: Folders, off: frozenset[str]) -> Installed:
     for each in points.select(group=APIS):
         numbers[each.dist].add(each.name)
     others = {dist: _other_api(dist, each) for dist, each in numbers.items() if str(API) not in each}
-    return Installed(points, others, _off(points, off) if off else {})
+    are_off = _off(points, off) if off else {}
+    named = {
+        dist: groups
+        for dist, groups in _by_distribution(points).items()
+        if dist not in others and dist not in are_off
+    }
+    return Installed(points, {**others, **_named_alike(named)}, are_off)
 
 
 def _other_api(dist: metadata.Distribution, numbers: set[str]) -> str:
@@ -103,6 +115,21 @@ def _other_api(dist: metadata.Distribution, numbers: set[str]) -> str:
         ours=API,
         outdated=OURS if is_newer else dist.name,
     )
+
+
+def _named_alike(named: Mapping[metadata.Distribution, Groups]) -> dict[metadata.Distribution, str]:
+    """The distributions with a name that one before them, in the order of their own names, has."""
+    owners: dict[str, metadata.Distribution] = {}
+    found: dict[metadata.Distribution, str] = {}
+    for dist, groups in sorted(named.items(), key=lambda each: each[0].name):
+        names = {each.partition(".")[0] for group in OF_PACKAGES for each in groups.get(group, ())}
+        if taken := sorted(names & owners.keys()):
+            other, name = owners[taken[0]], taken[0]
+            package, theirs = (f"{each.name} {each.version}" for each in (dist, other))
+            found[dist] = NAMED_ALIKE.format(package=package, other=theirs, name=name)
+        else:
+            owners |= dict.fromkeys(names, dist)
+    return found
 
 
 def _off(points: Any, off: frozenset[str]) -> dict[metadata.Distribution, str]:
@@ -137,7 +164,7 @@ def _added(found: Installed, dist: metadata.Distribution, groups: Groups) -> Add
         adds=groups,
         names=_names(dist, groups),
         is_off=dist in found.off,
-        left_out=found.off.get(dist) or found.other_api.get(dist, ""),
+        left_out=found.off.get(dist) or found.barred.get(dist, ""),
     )
 
 

@@ -18,20 +18,20 @@ def entry_points(group: str) -> metadata.EntryPoints:
     found = installed()
     points = found.points.select(group=group)
     return metadata.EntryPoints(
-        each for each in points if each.dist not in found.other_api and each.dist not in found.off
+        each for each in points if each.dist not in found.barred and each.dist not in found.off
     )
 
 
 def left_out() -> tuple[str, ...]:
-    """A sentence for each distribution that is written for another API; who puts one off needs none."""
+    """A sentence for each distribution that is left out, though nobody has put it off."""
     found = installed()
-    return tuple(why for dist, why in found.other_api.items() if dist not in found.off)
+    return tuple(why for dist, why in found.barred.items() if dist not in found.off)
 
 
 def why_left_out(group: str, name: str) -> str:
     """The sentence that a distribution is left out which has this name in a group; "" where there is none."""
     found = installed()
-    why = {**found.other_api, **found.off}
+    why = {**found.barred, **found.off}
     points = (each for each in found.points.select(group=group) if name in (each.name, package_of(each)))
     return next((why[each.dist] for each in points if each.dist in why), "")
 

@@ -54,8 +54,7 @@ def settings_given(document: Document, used: PythonUses) -> dict[str, object]:
         document.problem((SECTION,), f"must be a mapping (key: value), is {shown(value)}")
     known = sorted({package_of(point) for group in OF_A_PLANT for point in registered(group)})
     for name in document.keys((SECTION,)):
-        is_off = document.value((SECTION, name)) in OFF and bool(why_left_out(PARTS, name))
-        if name not in known and not is_off:
+        if name not in known and not why_left_out(PARTS, name):
             _nobody(document, name, known)
     read = {name: _settings(document, name, used) for name in named(document) if name in known}
     return {name: each for name, each in read.items() if each is not None and each is not FAULTY}
