@@ -156,6 +156,33 @@ def test_a_package_whose_routes_break_is_left_out_and_named(
     assert Caller(app).get("/api/plant").status_code == 200
 
 
+BROAD = """
+from fastapi import APIRouter
+
+
+async def any_of(what: str = ""):
+    return "any"
+
+
+async def ended():
+    return "ended"
+
+
+def routes(side):
+    api = APIRouter()
+    for path in ("/api/{what:path}", "/api/{what}"):
+        api.add_api_route(path, any_of)
+    api.add_api_route("/api/ended", ended)
+    return api
+"""
+
+
+def test_a_whole_address_goes_before_one_that_takes_any(plant: Plant, put: Install) -> None:
+    put(BROAD)
+    web = Caller(make_app(plant))
+    assert [web.get(f"/api/{each}").json() for each in ("ended", "other")] == ["ended", "any"]
+
+
 BREAKS = """
 @api.post("/orders")
 async def order(body: dict):

@@ -7,7 +7,7 @@ from importlib.metadata import EntryPoint
 from typing import Any
 
 from fastapi import FastAPI, routing
-from starlette.routing import BaseRoute, Match
+from starlette.routing import BaseRoute, Match, Mount
 from starlette.types import Receive, Scope, Send
 
 from arboleda.host.packages import package_of
@@ -102,6 +102,14 @@ def taking(app: FastAPI) -> Callable[[Scope], Takes | None]:
         return next((each for each in mine if each is not None), None)
 
     return taken
+
+
+def breadth(route: BaseRoute) -> tuple[bool, int]:
+    """The breadth of what a route takes: whether it takes whole folders, and how many parts of its address
+    may be anything."""
+    paths = [str(getattr(each, "path", "")) for each in leaves([getattr(route, "behind", route)])]
+    is_whole = isinstance(getattr(route, "behind", route), Mount) or any(":path}" in each for each in paths)
+    return is_whole, max((each.count("{") for each in paths), default=0)
 
 
 def guarded(

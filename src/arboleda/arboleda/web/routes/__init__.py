@@ -14,11 +14,12 @@ from importlib.metadata import EntryPoint
 from typing import Any
 
 from fastapi import APIRouter
+from starlette.routing import BaseRoute
 
 from arboleda.host.packages import package_of, registered
 from arboleda.host.pieces import RUNNER, Pieces, piece_of
 
-from ..package_routes import addresses, guarded
+from ..package_routes import addresses, breadth, guarded
 from ..part_routes import PartRoute, PartRoutes
 from ..plant_api import PlantApi
 
@@ -38,17 +39,19 @@ def installed() -> set[str]:
 
 
 def packaged(side: PlantApi, before: Sequence[APIRouter], pieces: Pieces) -> list[APIRouter]:
-    """The routers of packages, without a route that `before`, the page or another package has."""
+    """The routers of packages, without a route that `before`, the page or another package has. What one asks
+    for by its whole address goes before what another one would take with it, as `/api/{anything}`."""
     taken = {each: RUNNER for router in before for each in addresses(router.routes)}
-    found: list[APIRouter] = []
+    found: list[BaseRoute] = []
     for each in (*_registered(side, pieces), *(side.ask(PartRoutes) or ())):
         with pieces.calling(piece_of(each.point, ROUTES)):
             router = each.make()
             if not isinstance(router, APIRouter):
                 raise TypeError(f"{each.point.value} makes no APIRouter")
-            found.append(APIRouter())
-            found[-1].routes += guarded(router.routes, each.point, taken, pieces, each.part)
-    return found
+            found += guarded(router.routes, each.point, taken, pieces, each.part)
+    whole = APIRouter()
+    whole.routes += sorted(found, key=breadth)
+    return [whole]
 
 
 def _registered(side: PlantApi, pieces: Pieces) -> Iterator[PartRoute]:
