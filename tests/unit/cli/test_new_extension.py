@@ -51,6 +51,7 @@ def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """The folder of a new package, which is installed from there, as `pip install -e` does it."""
     folder = tmp_path / NAME
     assert new(folder).exit_code == 0
+    without_threads(monkeypatch)
     register(tmp_path / "site", NAME, entry_points(folder / "pyproject.toml"))
     for each in (tmp_path / "site", folder):
         monkeypatch.syspath_prepend(each)
@@ -93,8 +94,7 @@ def test_what_it_writes_counts_the_tasks_that_its_settings_name(site: Path, tmp_
     )
 
 
-def test_its_test_passes(site: Path, plant_with: MakePlantWith, monkeypatch: pytest.MonkeyPatch) -> None:
-    without_threads(monkeypatch)
+def test_its_test_passes(site: Path, plant_with: MakePlantWith) -> None:
     tests = [each for each in vars(import_module(f"test_{NAME}")).values() if isfunction(each)]
     assert len(tests) == 1
     tests[0](plant_with)

@@ -31,6 +31,7 @@ from .loading import loading
 GROUP = "arboleda.commands"
 SAYS_WHY = typer.BadParameter.__mro__[2]  # what typer raises to end with a sentence
 TOLD: tuple[type[BaseException], ...] = (ArboledaError, SAYS_WHY, typer.Exit, typer.Abort, BrokenPipeError)
+ADDS_NONE = Phrase("cli.commands.adds_none", "{module} adds no command {name}")
 BROKE = Phrase("cli.commands.broke", "the command {name} of {package} broke: {why} ({file}, line {line})")
 OF_PACKAGES = {  # extras of `arboleda`, by command
     "apply": MAKE,
@@ -170,6 +171,8 @@ class LoadedCommands(Mapping[str, Any]):
             group = whole.rpartition(" ")[0]
             added = _commands_of(_known(whole).module, whole)
             self._loaded |= {f"{group} {each}".lstrip(): command for each, command in added.items()}
+        if whole not in self._loaded:
+            raise ArboledaError(ADDS_NONE(module=_known(whole).module, name=whole))
         return self._loaded[whole]
 
     def __iter__(self) -> Iterator[str]:
@@ -229,7 +232,7 @@ def _sparing_people(module: str, name: str) -> Iterator[None]:
             raise
         from arboleda.plant_file.python_uses import error_text  # no command waits for it that works
 
-        *_, last = extract_tb(error.__traceback__)
+        *_, last = [each for each in extract_tb(error.__traceback__) if not each.filename.startswith("<")]
         package, why = module.partition(".")[0], plain(error_text(error), LONGEST)
         raise ArboledaError(
             BROKE(name=name, package=package, why=why, file=last.filename, line=last.lineno or 0)

@@ -117,9 +117,9 @@ def new(
         raise ConfigError((say(BAD_NAME(name=quoted(name), rule=NAME_RULE())),))
     for file in write_started(folder, WRITTEN):
         typer.echo(say(WROTE(file=str(file))))
-    told = {"command": invocation.command(), "python": invocation.python(), "name": name}
-    told["install"] = invocation.pip_install()
-    typer.echo(say(NEXT(**told, folder=shlex.quote(str(folder)))))
+    command, python, install = invocation.command(), invocation.python(), invocation.pip_install()
+    where = shlex.quote(str(folder))
+    typer.echo(say(NEXT(command=command, python=python, install=install, name=name, folder=where)))
 
 
 def add_to(parent: typer.Typer) -> None:

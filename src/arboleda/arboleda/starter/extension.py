@@ -1,8 +1,6 @@
-"""NAME: counts the tasks that end in each cell, and tells it over HTTP and on the page."""
+"""NAME: counts the tasks that end in each cell, and tells it over HTTP."""
 
 from dataclasses import dataclass
-
-from fastapi import APIRouter
 
 from arboleda.extension import Part
 
@@ -28,10 +26,10 @@ class Counter(Part, settings=Settings):
             self.plant.show(**self.kept.rows())
 
     def routes(self):
-        api = APIRouter(prefix="/api")
+        api = super().routes()
 
-        @api.get("/NAME")
-        async def counted() -> dict[str, int]:
+        @api.get("/api/NAME")
+        def counted() -> dict[str, int]:
             """How many tasks ended so in each cell."""
             return self.kept.rows()
 
