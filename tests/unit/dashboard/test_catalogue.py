@@ -13,6 +13,7 @@ from types import ModuleType
 import pytest
 from tests.packages import PACKAGES
 
+from arboleda.dashboard import toolkit as toolkit  # to import it starts a process, which no test may
 from arboleda.dashboard.wording import words
 from arboleda.model.sentence import Phrase
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import pytest
 from tests.in_process import without_threads
 
 from arboleda.extension import ArboledaError, Part, Role
+from arboleda.model.plant_model import Link
 from arboleda.testing import shipped
 from arboleda.testing.plugin import MakePlantWith
 
@@ -58,6 +59,14 @@ def test_tasks_are_done_and_the_part_follows(plant_with: MakePlantWith) -> None:
     plant = orders(plant_with)
     assert plant.post(f"/api/orders?text={TASK.replace(' ', '%20').replace('#', '%23')}") == "queued"
     assert plant.wait(900, until=lambda: plant.shown(Orders).get("done") == ["lot", "next"])
+
+
+def test_a_device_that_is_reached_in_another_way_is_a_virtual_board(plant_with: MakePlantWith) -> None:
+    model = shipped("sis_a")
+    cells = tuple(cell.with_robots(lambda robot: replace(robot, link=Link.ROS)) for cell in model.cells)
+    plant = plant_with(Orders, settings=[OrderSettings(cell="sis_a")], plant=replace(model, cells=cells))
+    plant.submit(TASK)
+    assert plant.wait(900, until=lambda: plant.shown(Orders).get("done") == ["lot"])
 
 
 def test_rows_are_there_after_a_restart(plant_with: MakePlantWith) -> None:

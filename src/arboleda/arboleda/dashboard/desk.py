@@ -13,6 +13,7 @@ from fastapi.concurrency import run_in_threadpool
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Outcome, Verb
+from arboleda.model.outside import plain
 from arboleda.model.sentence import in_json
 from arboleda.store.task_rows import PAGE
 from arboleda.web.access.auth import SUBMIT, allowed
@@ -31,6 +32,7 @@ ANSWER_S = 5.0
 LOOK_S = 0.2
 FOLLOWED_S = 120.0  # a homing may take a minute
 DOWNLOAD = "download"
+LONGEST_ACT = 80  # characters
 
 Answer = TypeVar("Answer")
 
@@ -56,7 +58,7 @@ class Desk(OpenPage):
         if act == DOWNLOAD:
             self._download()
         elif act not in self._acts and act != SUBMIT and act not in VERBS:
-            return
+            self.say(self._words("page.no_act", act=plain(act, LONGEST_ACT)), good=False)
         elif not self._may(act):
             self.say(self._words("page.not_allowed", act=self._name(act)), good=False)
         elif act == SUBMIT:

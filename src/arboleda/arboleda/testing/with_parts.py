@@ -16,7 +16,7 @@ from arboleda.host.packages import package_of, registered
 from arboleda.host.pieces import Piece, Pieces, piece_of
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskRequest, Verb
-from arboleda.model.plant_model import PlantModel
+from arboleda.model.plant_model import Link, PlantModel
 from arboleda.model.verbs import Arguments
 from arboleda.recorder.chapter import Chapter
 from arboleda.rig.rig import Rig
@@ -112,7 +112,7 @@ class KeptChapters(list[Chapter]):
 
 
 class PlantWith:
-    """A plant with parts of packages and virtual boards; `plant_with` makes it.
+    """A plant with parts of packages; `plant_with` makes it. Each device is a virtual board.
 
     `wait` moves time. What is asked takes effect at once, and parts are told of it before the call returns.
     """
@@ -120,7 +120,7 @@ class PlantWith:
     def __init__(
         self, parts: Iterable[type[Part]], *, settings: Iterable[object], model: PlantModel, folder: Path
     ) -> None:
-        self.rig = Rig(model)
+        self.rig = Rig(model.on_boards(Link.ROS, Link.NONE, Link.DRIVER))
         self._settings = {type(each): each for each in settings}
         self._classes = tuple(parts)
         self._folder = folder

@@ -175,8 +175,10 @@ class Plant:
         """Tell people of something until `end` of what this returns; a restart ends it, too.
 
         `level` is `warning`, or `error` where somebody is needed. The same alarm is not raised twice. Raises
-        ValueError without a sentence, and for another level.
+        ValueError without a sentence, for another level, and for a cell that there is not.
         """
+        if cell and cell not in self.cells:
+            raise ValueError(f"there is no cell {cell}; there are {', '.join(self.cells)}")
         return self._uses.alarms.add(
             self._uses.package, sentence, cell=cell, level=level, part=self.extension
         )
