@@ -70,3 +70,8 @@ def test_every_package_in_the_tree_is_demanded() -> None:
     described = (*ROOT.glob("src/*/package.xml"), *ROOT.glob("packages/*/package.xml"))
     packages = {path.parent.name for path in described}
     assert load("ros-test").PACKAGES.keys() == packages
+
+
+def test_an_environment_that_is_activated_is_none_of_the_build(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("VIRTUAL_ENV", "/elsewhere")
+    assert "VIRTUAL_ENV" not in load("ros-test").environment()
