@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -61,3 +63,16 @@ def test_a_listener_that_hangs_holds_up_no_task(app: App) -> None:
     part.plant.submit("sis_a 0B 7 #lot").result(PATIENCE_S)
     assert part.hangs.wait(PATIENCE_S)
     assert part.plant.submit("sis_a 0B 8 #next").result(PATIENCE_S).state == "queued"
+
+
+def test_a_start_says_once_which_part_is_left_out(tmp_path: Path) -> None:
+    code = (
+        "from arboleda.extension import Part\n\n\nclass Orders(Part):\n    def start(self):\n        1 / 0\n"
+    )
+    install(tmp_path / "site", "orders", code, what="Orders")
+    words = ["up", "--once", "sis_a 0B 1", "--no-ros", "--rate", "10", "--state", str(tmp_path / "state")]
+    environ = {**os.environ, "PYTHONPATH": str(tmp_path / "site"), "COLUMNS": "200"}
+    run = [sys.executable, "-c", "from arboleda.cli.main import main; main()", *words]
+    ran = subprocess.run(run, env=environ, capture_output=True, text=True, check=True)
+    said = "Arboleda goes on without the part Orders of orders 1: ZeroDivisionError: division by zero"
+    assert (ran.stdout + ran.stderr).count(said) == 1

@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 from tests.added_package import register
+from typer.testing import CliRunner
 
+from arboleda.cli.main import cli
 from arboleda.host.pieces import Pieces
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.plant_model import PlantModel
@@ -151,6 +153,14 @@ def test_what_a_plant_goes_on_without_is_noted(load: Load) -> None:
     assert notes(load("{broken: off}")) == [f"Arboleda goes on without the parts of shop 1: {why}"]
     assert (
         notes(load("{orders: {cell: lab}, broken: off}")) == notes(load("{orders: off, broken: off}")) == []
+    )
+
+
+def test_check_says_what_a_plant_goes_on_without(load: Load, tmp_path: Path) -> None:
+    load("{broken: off}")
+    said = CliRunner().invoke(cli, ["check", str(tmp_path / "plant.yaml")]).output
+    assert (
+        said.count("Arboleda goes on without the parts of shop 1: the plant file gives orders no cell") == 1
     )
 
 
