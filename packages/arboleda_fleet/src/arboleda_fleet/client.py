@@ -1,5 +1,4 @@
-"""What this package adds to the client of a plant: methods of each `arboleda.client.Plant`, and the same with
-types, `Fleet(plant)`."""
+"""Methods of this package for the client of a plant: of each `Plant`, and with types, `Fleet(plant)`."""
 
 from __future__ import annotations
 
@@ -19,8 +18,8 @@ class FleetRoutes(Routes):
 
 
 class Fleet(FleetRoutes, Blocking):
-    """What this package adds to a plant, with types: `Fleet(plant).oee()` is `plant.oee()`."""
+    """Methods of Fleet for a plant, with types: `Fleet(plant).oee()` is `plant.oee()`."""
 
 
 class AsyncFleet(FleetRoutes, Awaiting):
-    """What this package adds to an AsyncPlant: the methods of Fleet, to be awaited."""
+    """Methods of Fleet for an AsyncPlant, to be awaited."""

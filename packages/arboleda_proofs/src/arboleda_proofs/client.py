@@ -1,5 +1,4 @@
-"""What this package adds to the client of a plant: methods of each `arboleda.client.Plant`, and the same with
-types, `Proofs(plant)`."""
+"""Methods of this package for the client of a plant: of each `Plant`, and with types, `Proofs(plant)`."""
 
 from __future__ import annotations
 
@@ -52,8 +51,8 @@ class ProofsRoutes(Faults, Reports):
 
 
 class Proofs(ProofsRoutes, Blocking):
-    """What this package adds to a plant, with types: `Proofs(plant).report(id)` is `plant.report(id)`."""
+    """Methods of Proofs for a plant, with types: `Proofs(plant).report(id)` is `plant.report(id)`."""
 
 
 class AsyncProofs(ProofsRoutes, Awaiting):
-    """What this package adds to an AsyncPlant: the methods of Proofs, to be awaited."""
+    """Methods of Proofs for an AsyncPlant, to be awaited."""

@@ -207,10 +207,10 @@ def _commands_of(module: str, name: str) -> Mapping[str, Any]:
         loaded = import_module(module if "." in module else f".{module}", __package__)
         loaded.add_to(cli)
     group: Any = typer.main.get_command(cli)
-    for name, each in group.commands.items():
+    for called, each in group.commands.items():
         if hasattr(each, "commands"):
-            each.commands = LoadedCommands(name, each.commands)
-        each.invoke = partial(_invoked, each.invoke, module, name)
+            each.commands = LoadedCommands(called, each.commands)
+        each.invoke = partial(_invoked, each.invoke, module, called)
     found: Mapping[str, Any] = group.commands
     return found
 

@@ -104,19 +104,19 @@ __all__ = [
 ]
 
 beliefs_of: Callable[[Plant], Mapping[str, Belief]] = attrgetter("dispatcher.beliefs")
-"""What a plant believes of each robot, by its name."""
+"""The beliefs of a plant about each robot, by its name."""
 ledger_of: Callable[[Plant], Ledger] = attrgetter("dispatcher.ledger")
 """The commands of a plant."""
 obstacles_of: Callable[[Plant], Obstacles] = attrgetter("dispatcher.obstacles")
-"""Why robots of a plant take no command."""
+"""The reasons for which robots of a plant take no command."""
 effectors_of: Callable[[Plant], Effectors] = attrgetter("dispatcher.effectors")
 """The effectors of a plant."""
 grips_of: Callable[[Plant], Grips] = attrgetter("dispatcher.effectors.grips")
-"""What the effectors of a plant may hold."""
+"""The parts that the effectors of a plant may hold."""
 latches_of: Callable[[Plant], Latches] = attrgetter("dispatcher.latches")
 """The stops (software) of the robots of a plant."""
 outbox_of: Callable[[Plant], Sequence[Command | Notice]] = attrgetter("dispatcher.outbox")
-"""What a plant is about to send; empty between its steps."""
+"""The messages that a plant is about to send; none between its steps."""
 facts_of: Callable[[Plant], FactMemory] = attrgetter("dispatcher.memory")
 """The facts that outlive a plant."""
 reached_of: Callable[[Plant], Mapping[str, Position]] = attrgetter("dispatcher.whereabouts.reached")
@@ -124,9 +124,9 @@ reached_of: Callable[[Plant], Mapping[str, Position]] = attrgetter("dispatcher.w
 not_given_of: Callable[[Plant], Sequence[Entry]] = attrgetter("dispatcher.not_given")
 """The last commands that something kept a plant from giving."""
 not_given_count_of: Callable[[Plant], int] = attrgetter("dispatcher.not_given_count")
-"""How many commands something kept a plant from giving, in this start."""
+"""The number of commands that something kept a plant from giving, in this start."""
 intake_of: Callable[[Plant], Intake] = attrgetter("intake")
-"""What takes the texts of tasks."""
+"""The intake of a plant, which takes the texts of tasks."""
 tasks_of: Callable[[Plant], Mapping[str, Task]] = attrgetter("intake.tasks")
 """The tasks that a plant remembers, by id."""
 is_ending: Callable[[Plant], bool] = attrgetter("intake.closed")
@@ -140,6 +140,6 @@ parts_of: Callable[[CellRun], Parts] = attrgetter("context.parts")
 time_of: Callable[[CellRun], CellTime] = attrgetter("context.time")
 """The time of a cell."""
 teaching_of: Callable[[CellRun], Teaching | None] = attrgetter("manual.teaching")
-"""Who teaches a cell; None where nobody does."""
+"""The teaching of a cell; None where nobody teaches it."""
 walk_of: Callable[[CellRun], WalkBack | None] = attrgetter("keeping.walk")
 """The way back to where an earlier start left the task of a cell; None where there is none."""

@@ -17,7 +17,7 @@ from .python_uses import LONGEST, PythonUses, SourceSpot, error_text, refused
 from .robot_models import Shape
 
 FAULTY = object()
-"""What is found where there are problems, which are kept."""
+"""Stands for settings with problems, which are kept."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,7 +69,7 @@ def required(fits: type[Shape]) -> list[str]:
 
 
 def loaded(document: Document, place: Place, point: EntryPoint, used: PythonUses) -> Any:
-    """What an entry point names; FAULTY, with the problem kept at `place`, where it cannot be imported."""
+    """The object of an entry point; FAULTY, with the problem kept at `place`, where it cannot be imported."""
     used.watch(SourceSpot(file=point.value), "importing this")
     try:
         return point.load()

@@ -153,7 +153,7 @@ class PlantWith:
 
     @property
     def chapters(self) -> list[Chapter]:
-        """What parts have written into the reports of tasks."""
+        """The chapters that parts have written into the reports of tasks."""
         return [*self._kept]
 
     def answer(self, word: str) -> None:

@@ -82,7 +82,7 @@ class PackageRoute(BaseRoute):
             await apart(package_of(self._point), self.behind.handle, scope, receive, send)
 
     def takes(self, scope: Scope) -> Takes | None:
-        """What it takes beyond the usual, of this request; None where it is another one's."""
+        """Its limits for this request; None for the usual ones, and for a request of another route."""
         return next((found for each, found in self._taking if each.matches(scope)[0] is Match.FULL), None)
 
     def _needs(self, scope: Scope) -> tuple[Need, ...]:
@@ -95,7 +95,7 @@ class PackageRoute(BaseRoute):
 
 
 def taking(app: FastAPI) -> Callable[[Scope], Takes | None]:
-    """A function that tells what the package's route for a request takes beyond the usual, if anything."""
+    """A function that gives the limits that the route of a package declares for a request, if any."""
 
     def taken(scope: Scope) -> Takes | None:
         mine = (each.takes(scope) for each in app.router.routes if isinstance(each, PackageRoute))
@@ -139,6 +139,6 @@ def _answers(route: BaseRoute, request: str) -> bool:
 
 
 def _takes(route: Any) -> Takes | None:
-    """The last declaration of what it takes: its router's stands before its own."""
+    """The last declaration of its limits: its router's stands before its own."""
     found = (each.dependency for each in reversed(getattr(route, "dependencies", ())))
     return next((each for each in found if isinstance(each, Takes)), None)

@@ -1,5 +1,4 @@
-"""What this package adds to the client of a plant: methods of each `arboleda.client.Plant`, and the same with
-types, `Make(plant)`."""
+"""Methods of this package for the client of a plant: of each `Plant`, and with types, `Make(plant)`."""
 
 from __future__ import annotations
 

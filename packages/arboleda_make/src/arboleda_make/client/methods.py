@@ -1,4 +1,4 @@
-"""What this package adds to a plant over HTTP: versions, trees, proposals and the draft."""
+"""Methods of a plant over HTTP: versions, trees, proposals and the draft."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ class MakeRoutes(Versions, Trees, Proposals):
 
 
 class Make(MakeRoutes, Blocking):
-    """What this package adds to a plant, with types: `Make(plant).draft()` is `plant.draft()`."""
+    """Methods of Make for a plant, with types: `Make(plant).draft()` is `plant.draft()`."""
 
     def draft(self, editor: str = "") -> Draft:
         """The draft of its files, under the id of an editor or a new one; `take` begins to edit it."""
@@ -139,7 +139,7 @@ class Make(MakeRoutes, Blocking):
 
 
 class AsyncMake(MakeRoutes, Awaiting):
-    """What this package adds to an AsyncPlant: the methods of Make, to be awaited."""
+    """Methods of Make for an AsyncPlant, to be awaited."""
 
     def draft(self, editor: str = "") -> AsyncDraft:
         """The draft of its files, as `Make.draft`."""

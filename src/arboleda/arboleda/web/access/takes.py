@@ -1,4 +1,4 @@
-"""What routes of packages take beyond the usual limits, as a route or its router declares it."""
+"""Limits of requests for routes of packages, as a route or its router declares them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ MOST_KILOBYTES = 4096  # a body is read whole, before anybody looks at it
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Takes:
-    """What a route takes: a body of so many bytes, and requests as often as a held button makes them."""
+    """Limits of one route: the bytes of a body, and whether it is asked as often as a held button asks."""
 
     body_bytes: int
     held: bool

@@ -55,7 +55,7 @@ def packaged(side: PlantApi, before: Sequence[APIRouter], pieces: Pieces) -> lis
 
 
 def _registered(side: PlantApi, pieces: Pieces) -> Iterator[PartRoute]:
-    """What packages register as functions of a plant."""
+    """The routes that packages register as functions of a plant."""
     for point in pieces.registered(GROUP):
         yield PartRoute(point, piece_of(point, ROUTES), partial(_router, point, side))
 
