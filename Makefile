@@ -187,7 +187,6 @@ reference:  ## write docs/reference/api.md and verbs.md anew from docstrings and
 	@scripts/install
 	@page=$$($(BIN)/python scripts/api-reference) && printf '%s\n' "$$page" >docs/reference/api.md
 	@page=$$($(BIN)/python scripts/verb-reference) && printf '%s\n' "$$page" >docs/reference/verbs.md
-	@page=$$($(BIN)/python scripts/verb-reference es) && printf '%s\n' "$$page" >docs/reference/verbs.es.md
 
 proof:  ## write docs/reference/proof.md anew from runs of the shipped plant and the examples; minutes
 	@scripts/install

@@ -1,4 +1,5 @@
-"""Every page for users is there in Spanish, too, and says there what it says in English."""
+"""A page for whoever stands at a cell, teaches or learns is there in Spanish, too, and says there what it says
+in English. Any other page for users has one line in Spanish, that it is in English."""
 
 from __future__ import annotations
 
@@ -15,15 +16,20 @@ from ..documents import BOXES, ENGLISH, boxes, links
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs/how-to"
-REFERENCE = ("bt-xml", "command-line", "robot-models", "states", "topics", "verbs")
-PAGES = [
-    *(page.relative_to(ROOT).as_posix().removesuffix(".es.md") for page in sorted(FOLDER.glob("*.es.md"))),
-    *(f"docs/reference/{name}" for name in REFERENCE),
-    "docs/safety",
-    "docs/scope",
-    "firmware/esp32/README",
+AT_A_CELL = ("operate", "page", "send-a-task", "failed-at-night", "two-arms", "real-boards", "make-a-board")
+MAKING = ("add-a-device", "write-a-recipe", "plant-file")
+LEARNING = ("teach", "teach-a-class", "teach-the-lessons", "exercises", "playground", "original-description")
+HOW_TOS = [f"docs/how-to/{name}" for name in (*AT_A_CELL, *MAKING, *LEARNING)]
+PAGES = [*HOW_TOS, "docs/reference/topics", "docs/safety", "docs/scope"]
+OF_A_PROGRAM = ("api", "proof")  # pages of the reference that are made from code
+IN_ENGLISH = [
+    page
+    for folder in (FOLDER, ROOT / "docs/reference")
+    for page in sorted(folder.glob("*.md"))
+    if not page.name.endswith(".es.md")
+    and not page.with_suffix(".es.md").exists()
+    and page.stem not in OF_A_PROGRAM
 ]
-HOW_TOS = [page for page in PAGES if page.startswith("docs/how-to/")]
 COMMENT = re.compile(
     r"(?:^|\s+)(?:#|//)\s.*|(?<=\S) {3,}\S.*|^\s*state \".*|: \w+( \w+)+$"
 )  # as a word of a diagram
@@ -52,9 +58,15 @@ def is_said(line: str, spanish: str) -> bool:
     return bool(ENGLISH.search(line)) and not ENGLISH.search(spanish)
 
 
-def test_every_page_is_there_in_both_languages() -> None:
-    written = {path.name.removesuffix(".md").removesuffix(".es") for path in FOLDER.glob("*.md")}
-    assert {Path(page).name for page in HOW_TOS} == written
+def test_these_pages_and_no_others_are_in_spanish() -> None:
+    written = {page.relative_to(ROOT).as_posix() for page in FOLDER.glob("*.es.md")}
+    assert written == {f"{page}.es.md" for page in HOW_TOS}
+
+
+@pytest.mark.parametrize("page", IN_ENGLISH, ids=lambda page: page.stem)
+def test_a_page_in_english_says_so_in_spanish_below_its_title(page: Path) -> None:
+    title, _, line, *_ = page.read_text("utf-8").splitlines()
+    assert title.startswith("# ") and re.fullmatch(r"\*\w.+: esta página está en inglés\.\*", line)
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -108,8 +120,11 @@ def test_each_leads_to_the_other(page: str) -> None:
     assert f"]({name}.es.md)" in english and f"]({name}.md)" in spanish
 
 
-@pytest.mark.parametrize("page", HOW_TOS)
-def test_a_title_says_what_a_person_does(page: str) -> None:
-    english, spanish = (re.match(r"# (\w+) \S", text) for text in both(page))
-    assert english is not None and english[1] not in ("How", "A", "The", "From", "My")
-    assert spanish is not None and spanish[1].endswith(("ar", "er", "ir"))
+@pytest.mark.parametrize("page", sorted(FOLDER.glob("*.md")), ids=lambda page: page.name)
+def test_a_title_says_what_a_person_does(page: Path) -> None:
+    title = re.match(r"# (\w+) \S", page.read_text("utf-8"))
+    assert title is not None
+    if page.name.endswith(".es.md"):
+        assert title[1].endswith(("ar", "er", "ir"))
+    else:
+        assert title[1] not in ("How", "A", "The", "From", "My")

@@ -54,9 +54,9 @@ def said(driver: Any, busy: bool) -> tuple[MotionState, str | None, str | None]:
 STOPPED, MOVING = MotionState.STOPPED, MotionState.MOVING
 
 
-@pytest.fixture(params=["write-a-driver.md", "write-a-driver.es.md"])
-def driver(request: pytest.FixtureRequest) -> Any:
-    return page(request.param)
+@pytest.fixture
+def driver() -> Any:
+    return page("write-a-driver.md")
 
 
 def test_what_stands_still_since_before_is_not_done(driver: Any) -> None:
