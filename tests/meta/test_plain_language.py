@@ -15,7 +15,7 @@ from arboleda.web.languages import contents
 from ..documents import ENGLISH
 
 ROOT = Path(__file__).parents[2]
-NOT_FOR_USERS = ("ARCHITECTURE.md", "CHANGELOG.md", "CONTRIBUTING.md", "performance-studies.md")
+NOT_FOR_USERS = ("ARCHITECTURE.md", "CHANGELOG.md", "CONTRIBUTING.md")
 PAGES = sorted(
     page.relative_to(ROOT).as_posix()
     for folder in (

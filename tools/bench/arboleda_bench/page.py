@@ -1,4 +1,5 @@
-"""Page of the figures: writes those of one run of `arboleda bench --json` into docs/performance.md.
+"""Page of the figures: writes those of one run of `arboleda bench --json` that have an aim, and all of a benchmark
+without aims, into docs/performance.md.
 
     make performance                                             measures, and writes the page
     python -m arboleda_bench.page docs/performance.json docs/performance.md
@@ -10,7 +11,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -45,10 +46,16 @@ def filled(page: str, run: Mapping[str, Any]) -> str:
 
 
 def block(run: Mapping[str, Any]) -> str:
-    """The figures of a run as Markdown: of what it is, the table, what was not measured, the notes."""
-    rows = [_row(name, each) for name, bench in run["benches"].items() for each in bench["figures"]]
-    parts = ["\n".join(_heading(run)), "\n".join([HEAD, *rows]), "\n".join(_notes(run))]
-    return "\n\n".join(parts) + "\n"
+    """The figures of a run as Markdown: of what it is, the table, what was not measured."""
+    rows = [_row(name, each) for name, bench in run["benches"].items() for each in shown(bench["figures"])]
+    missing = [f"- `{name}` was not measured: {why}" for name, why in run["not_measured"].items()]
+    parts = ["\n".join(_heading(run)), "\n".join([HEAD, *rows]), "\n".join(missing)]
+    return "\n\n".join(filter(None, parts)) + "\n"
+
+
+def shown(figures: Sequence[Mapping[str, Any]]) -> Sequence[Mapping[str, Any]]:
+    """The figures of a benchmark that have an aim; all where none has."""
+    return [each for each in figures if each["aim"]] or figures
 
 
 def _heading(run: Mapping[str, Any]) -> Iterator[str]:
@@ -76,13 +83,6 @@ def _row(name: str, figure: Mapping[str, Any]) -> str:
         REACHED[figure["reached"]],
     )
     return f"| {' | '.join(cells)} |"
-
-
-def _notes(run: Mapping[str, Any]) -> Iterator[str]:
-    for name, why in run["not_measured"].items():
-        yield f"- `{name}` was not measured: {why}"
-    for name, bench in run["benches"].items():
-        yield from (f"- `{name}`: {note}" for note in bench["notes"])
 
 
 if __name__ == "__main__":
