@@ -1,4 +1,4 @@
-"""A decision that no longer holds, or holds in part only, says so before anything else."""
+"""A decision is short; one that no longer holds, or holds in part only, says so before anything else."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 FOLDER = Path(__file__).parents[2] / "docs/decisions"
+MOST_WORDS = 200
 MARK = re.compile(r"^\W*(?:No longer holds|Holds in part|Replaced by)\b", re.IGNORECASE)
 FORM = re.compile(r"\*\*(?:No longer holds|Holds in part):\*\* \S.*")
 LINK = re.compile(r"\]\(([^)#]+)[^)]*\)")
@@ -26,6 +27,11 @@ def faults(page: str, folder: Path) -> list[str]:
 @pytest.mark.parametrize("page", sorted(FOLDER.glob("*.md")), ids=lambda page: page.stem)
 def test_a_mark_stands_below_the_title_and_leads_to_what_holds_now(page: Path) -> None:
     assert faults(page.read_text("utf-8"), FOLDER) == []
+
+
+@pytest.mark.parametrize("page", sorted(FOLDER.glob("*.md")), ids=lambda page: page.stem)
+def test_a_decision_is_short(page: Path) -> None:
+    assert len(page.read_text("utf-8").split()) <= MOST_WORDS
 
 
 @pytest.mark.parametrize(
