@@ -1,5 +1,6 @@
-"""Page of the figures: writes those of one run of `arboleda bench --json` that have an aim, and all of a benchmark
-without aims, into docs/performance.md.
+"""Page of the figures: writes those of one run of `arboleda bench --json` into docs/performance.md.
+
+Of a benchmark with aims only the figures that have one; the others are in the file of the run.
 
     make performance                                             measures, and writes the page
     python -m arboleda_bench.page docs/performance.json docs/performance.md
