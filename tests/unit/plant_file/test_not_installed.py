@@ -49,11 +49,14 @@ def problems(plant: str) -> str:
     return str(refused.value)
 
 
-def test_a_start_remembers_what_a_package_brought_and_the_next_check_names_it(folder: Path) -> None:
+@pytest.mark.parametrize("state", [None, Path("elsewhere")])
+def test_a_start_remembers_what_a_package_brought_and_the_next_check_names_it(
+    folder: Path, state: Path | None
+) -> None:
     assert "must be mqtt, ros" in problems(OF_PACKAGE), "nobody has ever brought it"
     register(folder / "site", "scales", {"arboleda.drivers": ["balance = scales:Plain"]})
     plant = loader.load(Path("plant.yaml"))
-    build(plant, {"orchestrator"}, Options(page=False)).stop()
+    build(plant, {"orchestrator"}, Options(page=False, state_dir=state)).stop()
     assert json.loads((default_state("lab") / FILE).read_text()) == {
         "arboleda.drivers": {"balance": "scales 1"}
     }

@@ -1,6 +1,6 @@
 """What a plant file names and nobody brings: the reason, with what to install.
 
-Each start keeps in its state directory which package brought what, so that the next one knows.
+Each start keeps in the default state directory of its plant which package brought what.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from arboleda.plant_file import versions
 from arboleda.plant_file.not_installed import FILE as PACKAGES
 from arboleda.plant_file.versions import Version, version_of
 
-from .state import replace_file
+from .state import default_state, replace_file
 
 FOLDER, FRESH = "at_work", "at_work.new"  # the second for a moment only, in which the first may be gone
 
@@ -32,11 +32,15 @@ def keep(state: Path, files: PlantFiles | None, at: str) -> None:
         fresh.rename(folder)
 
 
-def keep_brought(state: Path, brought: Mapping[str, Mapping[str, str]]) -> None:
-    """Keep which packages bring what of the plant; a start goes on where the disk refuses."""
-    file = state / PACKAGES
-    if brought or file.exists():
-        with suppress(OSError):
+def keep_brought(plant: str, brought: Mapping[str, Mapping[str, str]]) -> None:
+    """Keep which packages bring what of the plant; a start goes on where the disk refuses.
+
+    It is kept in the default state directory also where the state is elsewhere: `check` knows no other.
+    """
+    file = default_state(plant) / PACKAGES
+    with suppress(OSError):
+        if brought or file.exists():
+            file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
             replace_file(file, json.dumps(brought))
 
 

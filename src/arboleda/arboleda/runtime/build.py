@@ -94,7 +94,7 @@ class App:
             now = datetime.now(timezone.utc).isoformat(timespec="seconds")
             files = options.recording.files if options.recording else None
             at_work.keep(self._holdings.state.path, files, now)
-            at_work.keep_brought(self._holdings.state.path, self.model.brought)
+            at_work.keep_brought(self.model.name, self.model.brought)
         return Assembly(
             model=self.model,
             parts=parts,
