@@ -88,14 +88,29 @@ def test_otherwise_is_the_way_of_all_numbers_without_another() -> None:
     assert here.told == ["scale weigh", "gate middle"]
 
 
-@pytest.mark.parametrize("said", ["heavy", 500.5, True])
-def test_an_answer_that_the_kind_does_not_have_fails_the_task(said: Any) -> None:
-    here = Bench(line(sorting("> 120", "otherwise")))
+LIMITED = FactType(type=int, first=0, upper=500, lower=0)
+FROM_TO = "; it may answer {} from 0 to 500"
+
+
+@pytest.mark.parametrize(
+    ("said", "number", "why"),
+    [
+        ("heavy", GRAMS, FROM_TO.format("numbers")),
+        (500.5, GRAMS, FROM_TO.format("numbers")),
+        (True, GRAMS, FROM_TO.format("numbers")),
+        (2.5, LIMITED, FROM_TO.format("whole numbers")),
+        ("heavy", NUMBER, "; the recipe knows > 120, otherwise"),
+    ],
+)
+def test_an_answer_that_the_kind_does_not_have_fails_the_task(
+    said: Any, number: FactType, why: str
+) -> None:
+    here = Bench(line(sorting("> 120", "otherwise"), number))
     here.machines["scale"].answer = lambda goal: said
     here.submit("line sort")
     ended = here.outcome()
     assert (ended.state, ended.reason, here.told) == (TaskState.FAILED, Reason.REJECTED, ["scale weigh"])
-    assert "the recipe knows > 120, otherwise" in str(ended.sentence)
+    assert str(ended.sentence) == f"scale weigh answered {str(said).lower()}{why}"
 
 
 @pytest.mark.parametrize(

@@ -51,6 +51,15 @@ PARALLEL = Phrase("step.parallel", "parallel")
 FALLBACK = Phrase("step.fallback", "fallback")
 RECOVER = Phrase("step.recover", "recover")
 OTHER_ANSWER = Phrase("recipe.other_answer", "{robot} answered {answer}; the recipe knows {known}")
+BEYOND: Mapping[type, Phrase] = {
+    float: Phrase(
+        "recipe.beyond", "{robot} answered {answer}; it may answer numbers from {lower:g} to {upper:g}"
+    ),
+    int: Phrase(
+        "recipe.beyond_whole",
+        "{robot} answered {answer}; it may answer whole numbers from {lower:g} to {upper:g}",
+    ),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -231,6 +240,14 @@ def check_choices(step: Step, making: Making) -> None:
             )
 
 
+def _unexpected(question: Question, known: Iterable[Wanted]) -> Sentence:
+    """The sentence on an answer without a branch, or one that its device may not give."""
+    named, number = {"robot": question.name, "answer": value_text(question.answer)}, question.number
+    if number is not None and number.is_limited and not number.takes(question.answer):
+        return BEYOND[number.type](**named, lower=number.lower, upper=number.upper)
+    return OTHER_ANSWER(**named, known=tuple(map(value_text, known)))
+
+
 def _one(step: Step | Sequence[Step], where: str) -> Step:
     """The step, or a list of steps as one step."""
     return usable(step, f"{where} is given") if not is_list(step) else chain(WORK(), flat(list(step), where))
@@ -362,12 +379,9 @@ class Kit(Offers):
 
         def other() -> Failure | None:
             """The cause of a chosen branch that failed; else a failure for an answer without a branch."""
-            answer = question.answer
             if any(map(question.is_answered, wanted)):
                 return self._context.failures.first
-            expected = tuple(map(value_text, wanted))
-            sentence = OTHER_ANSWER(robot=question.name, answer=value_text(answer), known=expected)
-            return Failure(reason=Reason.REJECTED, sentence=sentence)
+            return Failure(reason=Reason.REJECTED, sentence=_unexpected(question, wanted))
 
         def branch(value: Wanted, way: Step | Sequence[Step]) -> Step:
             chosen = Unless(IS(answer=value_text(value)), partial(answers, value))
