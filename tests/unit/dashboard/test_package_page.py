@@ -241,6 +241,8 @@ def test_before_the_part_shows_anything_all_is_empty(put: Put, told: list[str]) 
     ("broken", "piece"),
     [
         ({"open": [7]}, "open"),
+        ({"open": 7}, "open"),
+        ({"per_hour": [7]}, "per_hour"),
         ({"per_hour": {"08": "many"}}, "per_hour"),
         ({"per_hour": {"08": float("nan")}}, "per_hour"),
         ({"price": ["5"]}, "price"),
@@ -253,6 +255,7 @@ def test_an_item_whose_data_are_wrong_is_left_out_alone(
     face(parts, SHOWN | broken)
     (said,) = told
     assert said.startswith(f"Arboleda goes on without the section orders.{piece} of orders 1: ")
+    assert " is no " in said
     shown = html(parts)
     names = {"open": "data-rows", "per_hour": "data-chart", "price": "data-live"}
     there = {name for name, kind in names.items() if f'{kind}="orders:{name}"' in shown}
@@ -373,6 +376,81 @@ def test_a_page_that_contradicts_itself_is_left_out(put: Put, told: list[str], c
     assert (
         told[0].startswith("Arboleda goes on without the part of the page of orders 1: ") and why in told[0]
     )
+
+
+COLUMNS = "it takes Mapping[str, Text] | Sequence[str]"
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "declaration", "why"),
+    [
+        (
+            'columns={"customer": "Customer", "amount": "Amount"}',
+            "columns=7",
+            "Rows 'open'",
+            f"columns of Rows 'open' is 7; {COLUMNS}",
+        ),
+        (
+            "fields=FIELDS",
+            'fields=["amount"]',
+            "Act 'add'",
+            "fields of Act 'add' is ['amount']; it takes Sequence[Field]",
+        ),
+        (
+            'Field("customer")',
+            'Field("customer", choices=7)',
+            "Act 'add'",
+            f"choices of Field 'customer' is 7; {COLUMNS}",
+        ),
+        ('"bars"', '"pie"', "Chart 'per_hour'", "kind of Chart 'per_hour' is 'pie'; it takes "),
+        (
+            'Tab("prices", "Prices", [Value("price")])',
+            '"prices"',
+            "'prices'",
+            "one of tabs of the page is 'prices'; it takes Sequence[Tab]",
+        ),
+        (
+            '[Value("price")]',
+            '[Value("price"), "count"]',
+            "'count'",
+            "one of items of Tab 'prices' is 'count'; it takes Sequence[Item]",
+        ),
+        (
+            'card=[Value("count", "tasks that ended here")]',
+            'card="count"',
+            "card of the page",
+            "card of the page is 'count'; it takes Sequence[Item]",
+        ),
+        ('"Prices"', "7", "Tab 'prices'", "label of Tab 'prices' is 7; it takes Text"),
+    ],
+)
+def test_what_a_page_declares_wrongly_is_left_out_alone_before_anybody_looks(
+    put: Put, told: list[str], right: str, wrong: str, declaration: str, why: str
+) -> None:
+    parts = put(CODE.replace(right, wrong))
+    (said,) = told
+    assert said.startswith(f"Arboleda goes on without the declaration {declaration} of orders 1: {why}")
+    takes = {*re.findall(r'data-takes="([\w.]+)"', html(parts))}
+    assert ("orders.add" in takes) is (declaration != "Act 'add'")
+    assert {"orders.look", "orders.limit"} <= takes and len(told) == 1
+
+
+@pytest.mark.parametrize("folder", [True, False])
+def test_a_file_that_is_not_there_is_left_out_alone(
+    put: Put, told: list[str], tmp_path: Path, folder: bool
+) -> None:
+    page = tmp_path / "site/orders"
+    page.mkdir(parents=True)
+    (page / "__init__.py").write_text(CODE.replace("tabs=[", 'script="order.js", tabs=[', 1), "utf-8")
+    if folder:
+        (page / "assets").mkdir()
+    register(tmp_path / "site", "orders", {GROUP: ["orders = orders:PAGE"]})
+    parts = AddedParts(Pieces(tell=told.append), whole_page.OWN)
+    assert told == [
+        "Arboleda goes on without the file order.js of the page of orders 1: there is no such file in "
+        f"{page / 'assets'}"
+    ]
+    assert 'data-takes="orders.add"' in html(parts) and parts.assets == AddedParts().assets
 
 
 def test_what_is_inside_a_tab_whose_name_is_taken_is_left_out_with_it(put: Put, told: list[str]) -> None:

@@ -60,7 +60,8 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]
     register(site, "old", {"arboleda.api": ["0 = old"], "arboleda.parts": ["old = old:Parts"]})
     monkeypatch.syspath_prepend(site)
     yield
-    sys.modules.pop("shop", None)
+    for each in ("shop", "sums"):
+        sys.modules.pop(each, None)
 
 
 @pytest.fixture
@@ -162,6 +163,18 @@ def test_check_says_what_a_plant_goes_on_without(load: Load, tmp_path: Path) -> 
     assert (
         said.count("Arboleda goes on without the parts of shop 1: the plant file gives orders no cell") == 1
     )
+
+
+def test_what_is_wrong_on_a_page_is_noted(load: Load, tmp_path: Path) -> None:
+    page = "from arboleda.extension import Page, Value\nPAGE = Page(card=[Value('count'), 'sum'])\n"
+    (tmp_path / "site/sums.py").write_text(page, "utf-8")
+    groups = {"arboleda.api": ["1 = sums"], "arboleda.page": ["sums = sums:PAGE"]}
+    register(tmp_path / "site", "sums", groups)
+    assert notes(load("{orders: off, broken: off}")) == [
+        "Arboleda goes on without the declaration 'sum' of sums 1: one of card of the page is 'sum'; "
+        "it takes Sequence[Item]"
+    ]
+    assert notes(load("{orders: off, broken: off, sums: off}")) == []
 
 
 @pytest.mark.parametrize("settings", ["off", "{cell: lab}"])

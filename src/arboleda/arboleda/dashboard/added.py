@@ -12,7 +12,7 @@ from typing import NamedTuple
 from fastapi import FastAPI
 
 from arboleda.host.packages import package_of, registered
-from arboleda.host.pieces import RUNNER, Piece, Pieces, piece_of
+from arboleda.host.pieces import RUNNER, THE_PAGE, Piece, Pieces, piece_of
 from arboleda.model.verbs import Verb
 from arboleda.web.access.auth import SUBMIT
 from arboleda.web.package_routes import addresses, guarded
@@ -22,7 +22,7 @@ from .asset_files import Assets
 from .desk import DOWNLOAD
 from .faces import Face
 from .faces.moment import Moment
-from .package_page.page import Page, part_of
+from .package_page.page import page_part
 from .page_api import Layout, PageApi
 from .page_part import GROUP, OtherRecord, PageAct, PagePart, Place, Request, Section, Spot
 from .wording import Words
@@ -50,8 +50,8 @@ class AddedParts:
         self._taken = dict.fromkeys(runners, RUNNER)
         self._parts: list[_Added] = []
         for point in self._pieces.registered(GROUP):
-            with self._pieces.calling(piece_of(point, "the part of the page")):
-                part = _loaded(point)
+            with self._pieces.calling(piece_of(point, THE_PAGE)):
+                part = page_part(point, self._pieces)
                 _ = part.assets and part.assets.address  # its files are read
                 self._parts.append(_Added(point, self._free(point, part)))
         self._sections = [*self._placed()]
@@ -161,13 +161,3 @@ class AddedParts:
 def _tab_of(section: Section) -> str:
     """The name of the part of its own that a section is, or is inside; "" for one that stands elsewhere."""
     return {Place.TAB: section.name, Place.INSIDE: section.within}.get(section.place, "")
-
-
-def _loaded(point: EntryPoint) -> PagePart:
-    """The part of the page that a package registers; TypeError for anything else."""
-    part = point.load()
-    if isinstance(part, Page):
-        return part_of(part, package_of(point), point.module)
-    if not isinstance(part, PagePart):
-        raise TypeError(f"{point.value} is no Page and no PagePart")
-    return part

@@ -27,7 +27,7 @@ SLOW = "Arboleda has waited for {piece} for more than {seconds:g} s"
 HANGS = "it does not end within {seconds:g} s"
 NAME_TAKEN = "{whose} has this name already"
 RUNNER = "Arboleda"  # has what is of no package
-THE_PARTS = "the parts"  # of a package, as a piece
+THE_PARTS, THE_PAGE = "the parts", "the part of the page"  # of a package, as pieces
 
 
 @dataclass(frozen=True, kw_only=True)

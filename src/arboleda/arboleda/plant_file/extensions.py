@@ -9,7 +9,7 @@ from typing import Any
 
 from arboleda.host.distributions import APIS
 from arboleda.host.packages import entry_points, package_of, registered, why_left_out
-from arboleda.host.pieces import THE_PARTS, Pieces, piece_of
+from arboleda.host.pieces import THE_PAGE, THE_PARTS, Pieces, piece_of
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 
@@ -20,8 +20,8 @@ from .python_uses import PythonUses, error_text
 from .settings import shape
 
 SECTION = "extensions"
-PARTS = "arboleda.parts"
-OF_A_PLANT = (PARTS, "arboleda.page", "arboleda.routes")  # what a plant can leave out
+PARTS, PAGE = "arboleda.parts", "arboleda.page"
+OF_A_PLANT = (PARTS, PAGE, "arboleda.routes")  # what a plant can leave out
 OFF = ("off", False)
 NOBODY = "no installed package is called {name}{nearest}; there are {known}"
 FORM = "must be off, or a mapping of its settings, is {value}"
@@ -77,7 +77,8 @@ def settings_of(plant: PlantModel, name: str, declared: type) -> Any:
 
 
 def notes(plant: PlantModel) -> list[str]:
-    """A line for each part of a package that the plant goes on without, as it lacks settings or breaks."""
+    """A line for each piece of packages that the plant goes on without: a part that lacks settings, what is
+    wrong on a page, and what breaks when it is loaded."""
     pieces = Pieces(error_text, tell=lambda _: None, off=plant.extensions_off)
     of_the_door = {each.dist for each in entry_points(APIS)}
     for point in pieces.registered(PARTS):
@@ -85,6 +86,14 @@ def notes(plant: PlantModel) -> list[str]:
             declared = getattr(point.load(), "settings_type", None) if point.dist in of_the_door else None
             if declared is not None:
                 settings_of(plant, package_of(point), declared)
+    for point in pieces.registered(PAGE):
+        if point.dist in of_the_door:
+            from arboleda.dashboard.package_page.page import (
+                page_part,
+            )  # loads long, and few packages have one
+
+            with pieces.calling(piece_of(point, THE_PAGE)):
+                page_part(point, pieces)
     return pieces.notes
 
 

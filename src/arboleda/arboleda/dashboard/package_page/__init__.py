@@ -6,7 +6,6 @@ package shows by the same keys. Its acts are called in a thread, with what someb
 
 from .acts import Act, Asked
 from .fields import Field
-from .items import Chart, Rows, Value
-from .page import Page, Tab
+from .items import Chart, Page, Rows, Tab, Value
 
 __all__ = ["Act", "Asked", "Chart", "Field", "Page", "Rows", "Tab", "Value"]

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any
 
 from arboleda.model.facts import shown
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase, Sentence
-from arboleda.web.access.auth import Role
 
-from ..faces import Face
 from ..wording import Text, Words
 
 DECIMALS = 3
@@ -50,22 +48,6 @@ class Here:
         if isinstance(value, int | float):
             return shown(round(value, DECIMALS) if isinstance(value, float) else value)
         raise TypeError(f"{quoted(value)} is no text and no number")
-
-
-class Item(Protocol):
-    """Item of a tab, of a card or of the settings; `word` is that of its act, "" of what only shows."""
-
-    @property
-    def name(self) -> str: ...
-
-    @property
-    def role(self) -> Role: ...
-
-    def word(self, package: str) -> str: ...
-
-    def draw(self, here: Here) -> None: ...
-
-    def face(self, here: Here) -> Face: ...
 
 
 def shown_by(package: str, links: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Items that are only looked at: a value, a table, a chart of numbers."""
+"""Page of a package as data: its tabs, and items that are only looked at: a value, a table, a chart."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ from .acts import Act
 from .here import Here, labelled
 
 MOST = 200  # rows of a table, points of a chart
+NO_ROWS = "{value} is no list of mappings from column to value"
+NO_PAIRS = "{value} is no list of pairs of a label and a number, and no mapping"
 
 
 class _Looked:
@@ -71,8 +73,10 @@ class Rows(_Looked):
             rows(here.name(self.name), columns, empty=here.say(self.empty), classes="plain")
 
     def face(self, here: Here) -> Face:
-        name = here.name(self.name)
-        told = {str(row.get("id", n)): row for n, row in enumerate((here.given(self.name) or ())[:MOST])}
+        name, given = here.name(self.name), here.given(self.name) or []
+        if not isinstance(given, list) or not all(isinstance(row, Mapping) for row in given):
+            raise TypeError(NO_ROWS.format(value=quoted(given)))
+        told = {str(row.get("id", n)): row for n, row in enumerate(given[:MOST])}
         found: Face = {f"rows/{name}": [*told]}
         return found | {f"row/{name}/{id}": self._row(here, id, row) for id, row in told.items()}
 
@@ -106,11 +110,42 @@ class Chart(_Looked):
             live("p", f"{name}.about", classes="hint")
 
     def face(self, here: Here) -> Face:
-        given = here.given(self.name) or ()
-        pairs = [*(given.items() if isinstance(given, Mapping) else given)][-MOST:]
-        points = [[here.text(label), _number(number)] for label, number in pairs]
+        given = here.given(self.name) or []
+        pairs = [*given.items()] if isinstance(given, Mapping) else given
+        if not isinstance(pairs, list) or not all(isinstance(each, list | tuple) for each in pairs):
+            raise TypeError(NO_PAIRS.format(value=quoted(given)))
+        points = [[here.text(label), _number(number)] for label, number in pairs[-MOST:]]
         name = here.name(self.name)
         return {f"chart/{name}": points, f"text/{name}.about": [_about(here, points), ""]}
+
+
+Item = Value | Rows | Chart | Act
+
+
+@dataclass(frozen=True)
+class Tab:
+    """Tab of the header, with its items below each other. `name` stands in the page's address."""
+
+    name: str
+    label: Text
+    items: Sequence[Item]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Page:
+    """Page of a package: tabs, items below the card of each cell, and items among the settings.
+
+    Items are `Value`, `Rows`, `Chart` and `Act`. Several tabs share one place of the header. `script` is a
+    module in the folder `assets` beside the module of the page; it exports `start()`. `styles` are names of
+    style sheets there. `acts` are asked for by that script alone.
+    """
+
+    tabs: Sequence[Tab] = ()
+    card: Sequence[Item] = ()
+    settings: Sequence[Item] = ()
+    acts: Sequence[Act] = ()
+    script: str = ""
+    styles: Sequence[str] = ()
 
 
 def _number(value: object) -> float:

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import sys
 from asyncio import Semaphore
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager
+from dataclasses import replace
 from functools import partial
+from importlib.metadata import EntryPoint
 from typing import Any
 
 from fastapi.concurrency import run_in_threadpool
 
+from arboleda.host.packages import package_of
+from arboleda.host.pieces import Pieces, piece_of
 from arboleda.model.errors import ArboledaError
 from arboleda.model.sentence import Phrase, Sentence
+from arboleda.web.access.auth import Role
 from arboleda.web.access.needs import RANKS
 
 from ..asset_files import Assets
@@ -20,45 +25,36 @@ from ..faces import Face
 from ..faces.moment import Moment
 from ..page_part import PageAct, PagePart, Place, Request, Section, Spot
 from ..tags import tag
-from ..wording import Text, Words
+from ..wording import Words
 from .acts import Act, Asked
-from .here import Here, Item, shown_by
-from .items import Rows
+from .checks import Spared, right
+from .here import Here, shown_by
+from .items import Item, Page, Rows, Tab
 
 AT_ONCE = 4  # acts of a page in threads; the others wait, so that one that hangs takes no more of them
+NO_FILE = "there is no such file in {folder}"
 
 
-@dataclass(frozen=True)
-class Tab:
-    """Tab of the header, with its items below each other. `name` stands in the page's address."""
-
-    name: str
-    label: Text
-    items: Sequence[Item]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Page:
-    """Page of a package: tabs, items below the card of each cell, and items among the settings.
-
-    Items are `Value`, `Rows`, `Chart` and `Act`. Several tabs share one place of the header. `script` is a
-    module in the folder `assets` beside the module of the page; it exports `start()`. `styles` are names of
-    style sheets there. `acts` are asked for by that script alone.
-    """
-
-    tabs: Sequence[Tab] = ()
-    card: Sequence[Item] = ()
-    settings: Sequence[Item] = ()
-    acts: Sequence[Act] = ()
-    script: str = ""
-    styles: Sequence[str] = ()
+def page_part(point: EntryPoint, pieces: Pieces) -> PagePart:
+    """The part of the plant's page that a package registers; TypeError where it is none."""
+    part = point.load()
+    if isinstance(part, Page):
+        return _declared(part, point, pieces)
+    if not isinstance(part, PagePart):
+        raise TypeError(f"{point.value} is no Page and no PagePart")
+    return part
 
 
-def part_of(page: Page, package: str, module: str) -> PagePart:
-    """The part of the plant's page that a package declares in this module."""
-    turn = Semaphore(AT_ONCE)
+def _declared(page: Page, point: EntryPoint, pieces: Pieces) -> PagePart:
+    """The part that a `Page` declares, without what is wrong in it."""
+    package, turn = package_of(point), Semaphore(AT_ONCE)
+
+    def spared(what: str) -> AbstractContextManager[None]:
+        return pieces.calling(piece_of(point, what))
+
+    page = right(page, spared)
     return PagePart(
-        assets=_assets(page, module),
+        assets=_assets(page, point.module, spared),
         sections=(
             *(each for tab in page.tabs for each in _tab(tab, page.tabs[0].name, package)),
             *(_section(item, Place.CARD, package) for item in page.card),
@@ -69,16 +65,22 @@ def part_of(page: Page, package: str, module: str) -> PagePart:
     )
 
 
-def _assets(page: Page, module: str) -> Assets | None:
-    if not page.script and not page.styles:
-        return None
-    package = sys.modules[module].__package__ or module
-    return Assets(package=package, script=page.script, styles=tuple(page.styles))
+def _assets(page: Page, module: str, spared: Spared) -> Assets | None:
+    """The files of a page, without those that are not there."""
+    there = []
+    assets = Assets(package=sys.modules[module].__package__ or module)
+    for each in filter(None, (page.script, *page.styles)):
+        with spared(f"the file {each} of the page"):
+            if not (assets.folder / each).is_file():
+                raise ArboledaError(NO_FILE.format(folder=assets.folder))
+            there.append(each)
+    styles = tuple(each for each in page.styles if each in there)
+    return replace(assets, script=page.script * (page.script in there), styles=styles) if there else None
 
 
 def _tab(tab: Tab, first: str, package: str) -> Iterator[Section]:
     within = "" if tab.name == first else first
-    role = min((item.role for item in tab.items), key=RANKS.index)
+    role = min((item.role for item in tab.items), key=RANKS.index, default=Role.VIEWER)
     yield Section(place=Place.TAB, build=_nothing, name=tab.name, within=within, role=role, label=tab.label)
     for item in tab.items:
         yield _section(item, Place.INSIDE, package, within=tab.name)
@@ -139,7 +141,7 @@ def _acts(page: Page) -> list[Act]:
     in_rows = (act for each in items if isinstance(each, Rows) for act in each.acts)
     found: dict[str, Act] = {}
     for act in (*page.acts, *(each for each in items if isinstance(each, Act)), *in_rows):
-        if found.setdefault(act.name, act) is not act:
+        if found.setdefault(act.name, act) != act:
             raise ValueError(f"two acts of the page are called {act.name}")
     return [*found.values()]
 
