@@ -99,7 +99,7 @@ def test_a_package_may_refuse_the_start_with_a_sentence(tmp_path: Path, put: Ins
     refuse = "from arboleda.model.errors import StartError; raise StartError('no shelf, no plant')"
     put("acme", raising(make=refuse))
     for _ in range(2):  # the second finds the state directory free
-        with pytest.raises(StartError, match="no shelf, no plant"):
+        with pytest.raises(StartError, match=r"^acme 1 keeps the plant from starting: no shelf, no plant$"):
             built(tmp_path)
 
 

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import contextmanager, nullcontext
 from importlib.metadata import EntryPoint
 from typing import NamedTuple
 
 from arboleda.host.packages import left_out
 from arboleda.host.pieces import Piece, Pieces, piece_of
+from arboleda.model.errors import StartError
+from arboleda.model.sentence import Phrase
 from arboleda.plant_file.python_uses import error_text
 
 from .packaged import packaged
 from .parts.part import Part
 from .registry import Assembly, Factory
+
+KEEPS = Phrase("piece.keeps", "{package} keeps the plant from starting: {why}")
 
 
 class _Made(NamedTuple):
@@ -26,7 +30,8 @@ class PartList:
 
     A part of the runner that cannot start keeps the plant from starting, and so does a part of a package that
     the plant needs. Another part of a package may be for a count or a card on the page: where it breaks,
-    robots work without it, and `notes` say so. A StartError is raised, whoever raises it.
+    robots work without it, and `notes` say so. A StartError is raised, whoever raises it, with the name of
+    the package.
     Packages in `off` have no part.
     """
 
@@ -67,8 +72,16 @@ class PartList:
             with nullcontext() if piece is None else self.pieces.ending(piece):
                 part.stop()
 
-    def _calling(self, piece: Piece | None) -> AbstractContextManager[None]:
-        return nullcontext() if piece is None else self.pieces.calling(piece)
+    @contextmanager
+    def _calling(self, piece: Piece | None) -> Iterator[None]:
+        if piece is None:
+            yield
+            return
+        try:
+            with self.pieces.calling(piece):
+                yield
+        except StartError as error:
+            raise StartError(KEEPS(package=piece.of, why=error.sentence)) from error
 
 
 def _piece(point: EntryPoint | None, what: str, named: object, said: str = "") -> Piece | None:
