@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -31,12 +33,14 @@ class Orders(Part):
     def hang(self, task):
         self.hangs.set()
         self.goes_on.wait()
+
+    def poll(self):
+        raise OSError("the line is cut")
 """
 
 
-@pytest.fixture
-def app(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[App]:
-    monkeypatch.syspath_prepend(tmp_path / "site")
+@contextmanager
+def started(tmp_path: Path) -> Iterator[App]:
     install(tmp_path / "site", "orders", CODE, what="Orders")
     made = build(shipped("sis_a"), {"orchestrator"}, Options(state_dir=tmp_path / "state", page=False))
     made.start()
@@ -44,6 +48,13 @@ def app(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[App]:
     part_of(made).goes_on.set()
     made.stop()
     sys.modules.pop("orders", None)
+
+
+@pytest.fixture
+def app(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[App]:
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    with started(tmp_path) as made:
+        yield made
 
 
 def part_of(app: App) -> Any:
@@ -63,6 +74,20 @@ def test_a_listener_that_hangs_holds_up_no_task(app: App) -> None:
     part.plant.submit("sis_a 0B 7 #lot").result(PATIENCE_S)
     assert part.hangs.wait(PATIENCE_S)
     assert part.plant.submit("sis_a 0B 8 #next").result(PATIENCE_S).state == "queued"
+
+
+def test_a_thread_of_a_part_that_dies_is_named_and_prints_no_traceback(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    before = threading.excepthook
+    with started(tmp_path) as app:
+        thread = threading.Thread(target=part_of(app).poll, name="poll")
+        thread.start()
+        thread.join(PATIENCE_S)
+    said = "Arboleda goes on without the thread poll of orders 1: OSError: the line is cut"
+    assert app.notes[-1] == said and "Traceback" not in capsys.readouterr().err
+    assert threading.excepthook is before
 
 
 def test_a_start_says_once_which_part_is_left_out(tmp_path: Path) -> None:

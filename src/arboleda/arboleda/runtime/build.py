@@ -30,7 +30,7 @@ from .missing import refuse_missing
 from .options import Options
 from .part_list import PartList
 from .parts.bridge import BridgePart
-from .parts.drivers import DriversPart
+from .parts.drivers import DeadThreads, DriversPart
 from .parts.garbage import Garbage
 from .parts.orchestrator import Orchestrator
 from .parts.part import PageAddress, Part
@@ -77,6 +77,7 @@ class App:
         self._parts = PartList(model.extensions_off)
         try:
             self._assembly = self._begun(parts)
+            self._threads = DeadThreads(self._assembly.leave_out_thread)
             self._parts.make(self._assembly, OWN)
             refuse_missing(self._assembly)
             if self.orchestrator is not None:
@@ -155,6 +156,7 @@ class App:
         """Start every part in order; where one cannot, nothing is left running."""
         sys.setswitchinterval(TURN_S)
         self._garbage.start(has_steps=self._has_plant)
+        self._threads.watch()
         try:
             self._parts.start()
         except BaseException:  # Ctrl-C while it starts ends it as cleanly as later
@@ -182,6 +184,7 @@ class App:
         if self.orchestrator is not None:
             self.orchestrator.halt()  # parts that end before it may take their time
         self._parts.stop()
+        self._threads.forget()
         self._garbage.stop()
         sys.setswitchinterval(self._turn_s)
         self._holdings.close()

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import IntEnum
+from traceback import walk_tb
 from typing import Any
 
 from arboleda.host.packages import registered
@@ -139,6 +141,16 @@ class Assembly(Offers):
             return False
         module, name = called.tb_frame.f_globals.get("__name__", ""), called.tb_frame.f_code.co_name
         piece = _piece_in(module, f"the listener {name}")
+        if piece is not None:
+            self.pieces.leave_out(piece, error)
+        return piece is not None
+
+    def leave_out_thread(self, error: BaseException) -> bool:
+        """Leave out the thread that calls this, and ends with this error; False where it is of no package."""
+        what = f"the thread {threading.current_thread().name}"
+        modules = (frame.f_globals.get("__name__", "") for frame, _ in walk_tb(error.__traceback__))
+        pieces = (_piece_in(each, what) for each in modules if not isinstance(error, SystemExit))
+        piece = next((each for each in pieces if each is not None), None)
         if piece is not None:
             self.pieces.leave_out(piece, error)
         return piece is not None
