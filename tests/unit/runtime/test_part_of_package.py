@@ -210,6 +210,32 @@ def test_a_part_that_is_left_out_leaves_no_question_and_its_routes_say_why(made:
     assert (answer.status_code, answer.json()) == (503, {"sentence": why[0]})
 
 
+BROKEN = CODE.format(start="pass", follow="pass") + """
+    def __init__(self, *given):
+        raise ValueError("no shelf")
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "piece"), [("raise ValueError('no shelf')", "parts"), (BROKEN, "part Orders")]
+)
+def test_a_part_that_is_not_made_has_no_routes_and_the_answer_says_why(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, code: str, piece: str
+) -> None:
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    install(tmp_path / "site", "orders", code, what="Orders")
+    app = build(shipped("sis_a"), {"orchestrator"}, Options(state_dir=tmp_path / "state", page=False))
+    assembly = cast(Any, app.offers)
+    asked = Caller(make_app(assembly.need(LocalPlant), pieces=assembly.pieces)).get("/api/orders")
+    app.stop()
+    sys.modules.pop("orders", None)
+    assert (asked.status_code, asked.json()["sentence"]) == (
+        404,
+        "There is nothing here; /api/docs lists what there is; "
+        f"Arboleda goes on without the {piece} of orders 1: ValueError: no shelf",
+    )
+
+
 def test_it_is_told_outside_of_the_steps_of_the_plant(made: Made) -> None:
     app, part = made()
     answer = part.plant.submit("sis_a 0B 7 #lot")

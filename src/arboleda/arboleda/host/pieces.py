@@ -89,6 +89,12 @@ class Pieces:
         """A line for each piece that is left out, in the order of time."""
         return [*self._left_out.values()]
 
+    @property
+    def without_routes(self) -> list[str]:
+        """The lines for pieces that are left out before anybody knows their routes."""
+        routed = ("the part", "the factory", "the routes")
+        return [line for piece, line in self._left_out.items() if piece.what.startswith(routed)]
+
     def why_not(self, piece: Piece) -> str:
         """The line that a piece is left out; "" where it is not."""
         return self._left_out.get(piece, "")

@@ -26,6 +26,7 @@ from arboleda.client.answers.plant import Snapshot
 from arboleda.client.answers.tasks import Act, Done, KeptTask, Task
 from arboleda.client.protocol import COMMAND_LINE
 from arboleda.departures.leaving import Unkept
+from arboleda.host.packages import left_out
 from arboleda.host.pieces import Pieces, short
 from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, Refused, TextError
 from arboleda.model.messages import Outcome, Verb
@@ -64,9 +65,10 @@ class NotFound(BaseRoute):
     """The last of the `routes`. Pages are mounted after it, and take every path; without it they would
     answer for a route of ours that was asked with another method."""
 
-    def __init__(self, routes: Sequence[BaseRoute]) -> None:
+    def __init__(self, routes: Sequence[BaseRoute], pieces: Pieces) -> None:
         self._routes = tuple(routes)
         self._packages = installed()
+        self._pieces = pieces
 
     def matches(self, scope: Scope) -> tuple[Match, Scope]:
         if scope["type"] != "http":
@@ -81,7 +83,8 @@ class NotFound(BaseRoute):
             package = package_missing(scope["path"], self._packages)
             if package is not None:
                 raise missing(package)
-            raise HTTPException(404, "There is nothing here; /api/docs lists what there is.")
+            why = (NOTHING, *left_out(), *self._pieces.without_routes)
+            raise HTTPException(404, "; ".join(why) if why[1:] else f"{NOTHING}.")
         raise HTTPException(405, f"Here one can {methods} only.", {"allow": methods})
 
     def _methods(self, scope: Scope) -> list[str]:
@@ -89,6 +92,7 @@ class NotFound(BaseRoute):
         return sorted({method for route in known for method in getattr(route, "methods", None) or ()})
 
 
+NOTHING = "There is nothing here; /api/docs lists what there is"
 NOTHING_SENT = "No response returned."
 log = logging.getLogger(__name__)
 Answer = TypeVar("Answer")
@@ -152,9 +156,10 @@ def make_app(
     routers = [routes(side), *looks(side), stream.routes(side, streams)]
     routers += [login.routes(), openapi.routes(app)]
     routers += [_metrics(counts)] if counts is not None else []
-    routers += packaged(side, routers, pieces or Pieces())
+    pieces = pieces or Pieces()
+    routers += packaged(side, routers, pieces)
     app.serve(routers)
-    app.router.routes.append(NotFound([route for router in routers for route in router.routes]))
+    app.router.routes.append(NotFound([route for router in routers for route in router.routes], pieces))
     return app
 
 
