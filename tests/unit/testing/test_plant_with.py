@@ -81,6 +81,13 @@ def test_a_route_refuses_who_may_not(plant_with: MakePlantWith) -> None:
         orders(plant_with).post("/api/orders?text=x", role=Role.VIEWER)
 
 
+def test_an_answer_has_its_status(plant_with: MakePlantWith) -> None:
+    plant = orders(plant_with)
+    assert plant.response("POST", "/api/orders?text=x", role=Role.VIEWER).status_code == 403
+    assert plant.response("GET", "/api/nothing").status_code == 404
+    assert plant.response("GET", "/api/plant").status_code == 200
+
+
 def test_what_parts_tell_and_ask_people_is_seen(plant_with: MakePlantWith) -> None:
     plant = orders(plant_with)
     part = plant.part(Orders)
@@ -89,6 +96,9 @@ def test_what_parts_tell_and_ask_people_is_seen(plant_with: MakePlantWith) -> No
     answer = part.plant.ask("Ship it?")
     assert (plant.alarms, plant.questions) == (["the shelf is full"], ["Ship it?"])
     assert [each.title for each in plant.chapters] == ["Invoice"]
+    seen = plant.get("/api/plant")
+    assert [each["text"] for each in seen["questions"]] == ["Ship it?"]
+    assert [each["package"] for each in seen["alarms"]] == ["orders"] and seen["chapters"] == ["lot"]
     plant.answer("yes")
     assert answer.result(0) == "yes" and plant.questions == []
     with pytest.raises(ArboledaError, match="no part asks"):

@@ -60,6 +60,7 @@ class Side(PlantApi):
         self.rig = rig
         self.things = Offers()
         self.watchers: list[Callable[[Snapshot], None]] = []
+        self.beside: Callable[[], Snapshot] = dict  # what a snapshot has beside the plant's own
 
     @property
     def model(self) -> PlantModel:
@@ -69,7 +70,7 @@ class Side(PlantApi):
         return look(self.rig.plant)
 
     def snapshot(self) -> Snapshot:
-        return view.snapshot(self.rig.plant)
+        return {**view.snapshot(self.rig.plant), **self.beside()}
 
     latest = snapshot
 
@@ -198,12 +199,19 @@ class PlantWith:
 
     def request(self, method: str, path: str, body: object = None, *, role: Role = Role.OPERATOR) -> Any:
         """The answer to any other request, in the same way."""
-        answer = asyncio.run(self._asked(method, path, body, role))
-        self._tell()
+        answer = self.response(method, path, body, role=role)
         if answer.is_error:
             raise ArboledaError(answer.json()["sentence"])
         is_json = answer.headers.get("content-type", "").startswith("application/json")
         return answer.json() if is_json else answer.content
+
+    def response(
+        self, method: str, path: str, body: object = None, *, role: Role = Role.OPERATOR
+    ) -> httpx.Response:
+        """The whole answer to a request, also to one that is refused: `status_code`, `headers`, `json()`."""
+        answer = asyncio.run(self._asked(method, path, body, role))
+        self._tell()
+        return answer
 
     def restart(self) -> None:
         """Kill the plant and start it again, with what it and its parts have kept."""
@@ -225,6 +233,9 @@ class PlantWith:
         self._alarms = PackageAlarms()
         running: Any = None  # `answer` below answers, and no plant
         self._questions = Questions(running, self.rig.plant.epoch)
+        self._chapters = Chapters(lambda: self._kept)
+        told = (self._alarms, self._questions, self._chapters)
+        self._side.beside = lambda: {key: rows for each in told for key, rows in each.rows().items()}
         self._parts = [self._made(each) for each in self._classes]
         for part in self._parts:
             part.start()
@@ -240,7 +251,7 @@ class PlantWith:
             telling=telling,
             alarms=self._alarms,
             questions=self._questions,
-            chapters=Chapters(lambda: self._kept),
+            chapters=self._chapters,
             tell_tasks=self._listeners.append,
             tell_views=self._side.watchers.append,
             table=self._table,
