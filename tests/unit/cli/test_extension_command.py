@@ -45,11 +45,12 @@ def is_there() -> bool:
 
 
 def test_it_is_listed_with_what_it_adds() -> None:
-    (line,) = (each for each in said("list").splitlines() if each.startswith("acme-tools"))
-    assert line == (
+    lines = said("list").splitlines()
+    at = lines.index(
         "acme-tools 1 (API 1): commands, drivers acme, extras, kinds balance, pump, languages, the page, "
         "parts, routes, standby, stores acme"
     )
+    assert lines[at + 1] == "  in a plant file: extensions: {acme: ...}"
 
 
 @pytest.mark.parametrize("name", ["acme-tools", "acme_tools", "acme"])

@@ -32,6 +32,7 @@ cli = typer.Typer(
 )
 NONE = Phrase("cli.extension.none", "no package is installed that adds anything")
 LINE = Phrase("cli.extension.line", "{name} {version} ({api}): {adds}")
+IN_PLANT_FILE = Phrase("cli.extension.in_plant_file", "in a plant file: extensions: {{{name}: ...}}")
 IS_OFF = Phrase("cli.extension.is_off", "off: {command} extension on {name}")
 NO_PACKAGE = Phrase("cli.extension.no_package", "there is no package {name}; {others}")
 WENT_OFF = Phrase(
@@ -53,6 +54,7 @@ THINGS = {
     "kinds": Phrase("cli.extension.kinds", "kinds {names}"),
     "stores": Phrase("cli.extension.stores", "stores {names}"),
 }
+OF_A_PLANT = ("page", "parts", "routes")  # what a plant file can set, or leave out
 WRITTEN = {
     "extension.toml": "pyproject.toml",
     "extension.py": f"{NAMED}.py",
@@ -154,6 +156,9 @@ def _lines(each: Added) -> Iterator[str]:
         yield f"  {say(IS_OFF(name=each.name, command=invocation.command()))}"
     elif each.left_out:
         yield f"  {finding(each.left_out)}"
+    else:
+        here = {name.partition(".")[0] for group in OF_A_PLANT for name in each.adds.get(group, ())}
+        yield from (f"  {say(IN_PLANT_FILE(name=name))}" for name in sorted(here))
 
 
 def _adds(each: Added) -> Iterator[Value]:
