@@ -26,16 +26,18 @@ if TYPE_CHECKING:
     from arboleda.dashboard.faces.moment import Moment as Moment
     from arboleda.dashboard.package_page import Act as Act, Asked as Asked, Chart as Chart, Field as Field
     from arboleda.dashboard.package_page import Page as Page, Rows as Rows, Tab as Tab, Value as Value
+    from arboleda.dashboard.package_page.items import Item as Item
     from arboleda.dashboard.page_api import Layout as Layout, PageApi as PageApi
     from arboleda.dashboard.page_part import PageAct as PageAct, PagePart as PagePart, Place as Place
     from arboleda.dashboard.page_part import Request as Request, Section as Section, Spot as Spot
     from arboleda.dashboard.tags import act_button as act_button, live as live, rows as rows, tag as tag
-    from arboleda.dashboard.wording import Words as Words, words as words
+    from arboleda.dashboard.wording import Text as Text, Words as Words, words as words
     from arboleda.host.distributions import API as API
     from arboleda.model.errors import ArboledaError as ArboledaError, ConfigError as ConfigError
     from arboleda.model.errors import PayloadError as PayloadError, Refused as Refused
     from arboleda.model.errors import StartError as StartError
     from arboleda.model.sentence import Phrase as Phrase, Sentence as Sentence
+    from arboleda.runtime.extensions.alarms import RaisedAlarm as RaisedAlarm
     from arboleda.runtime.extensions.part import Part as Part
     from arboleda.runtime.extensions.plant import Device as Device, Plant as Plant
     from arboleda.runtime.extensions.table import Table as Table
@@ -55,12 +57,14 @@ HOMES = {
     "dashboard.faces": ("Face",),
     "dashboard.faces.moment": ("Moment",),
     "dashboard.package_page": ("Act", "Asked", "Chart", "Field", "Page", "Rows", "Tab", "Value"),
+    "dashboard.package_page.items": ("Item",),
     "dashboard.page_api": ("Layout", "PageApi"),
     "dashboard.page_part": ("PageAct", "PagePart", "Place", "Request", "Section", "Spot"),
     "dashboard.tags": ("act_button", "live", "rows", "tag"),
-    "dashboard.wording": ("Words", "words"),
+    "dashboard.wording": ("Text", "Words", "words"),
     "model.errors": ("ArboledaError", "ConfigError", "PayloadError", "Refused", "StartError"),
     "model.sentence": ("Phrase", "Sentence"),
+    "runtime.extensions.alarms": ("RaisedAlarm",),
     "runtime.extensions.part": ("Part",),
     "runtime.extensions.plant": ("Device", "Plant"),
     "runtime.extensions.table": ("Table",),

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import pytest
@@ -462,14 +462,27 @@ def test_what_is_inside_a_tab_whose_name_is_taken_is_left_out_with_it(put: Put, 
 HOW_TO = Path(__file__).parents[3] / "docs/how-to/write-an-extension.md"
 
 
+def example(has: str, page: Path = HOW_TO) -> str:
+    """The only Python of a page in which this stands."""
+    codes = re.findall(r"```python\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
+    (found,) = [each for each in codes if has in each]
+    return str(found)
+
+
+def module(name: str, code: str, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """A module with this code, for the time of a test."""
+    made = ModuleType(name)
+    monkeypatch.setitem(sys.modules, name, made)
+    exec(code, made.__dict__)
+    return made
+
+
 @pytest.mark.usefixtures("put")
 def test_the_example_of_the_documentation_works(
     tmp_path: Path, told: list[str], plant_with: MakePlantWith
 ) -> None:
-    text = HOW_TO.read_text("utf-8")
-    codes = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-    (part,), (code,) = ([each for each in codes if has in each] for has in ("Counter", "tabs=["))
-    (script,) = re.findall(r"```js\n(.*?)```", text, re.DOTALL)
+    part, code = example("Counter"), example("tabs=[")
+    (script,) = re.findall(r"```js\n(.*?)```", HOW_TO.read_text("utf-8"), re.DOTALL)
     files = {"__init__.py": "", "part.py": part, "page.py": code, "assets/orders.js": script}
     for name, content in files.items():
         (tmp_path / "site/orders" / name).parent.mkdir(parents=True, exist_ok=True)
@@ -495,3 +508,36 @@ def test_the_example_of_the_documentation_works(
     assert {*names.split(", ")} == {
         *re.findall(r"^export (?:const|async function|function) (\w+)", own, re.MULTILINE)
     }
+
+
+def test_the_section_of_the_documentation_is_drawn(put: Put, told: list[str]) -> None:
+    parts = put(example("PagePart("))
+    shown = html(parts)
+    assert ">Shelf</a>" in shown and all(f'data-live="shelf.{place}"' in shown for place in "ABCD")
+    links = {"shelf": {"parts": {"A": "lot"}}}
+    found = parts.face(SimpleNamespace(snapshot={"cells": []}, links=links, words=words("en")))  # type: ignore[arg-type]
+    assert (found["text/shelf.A"], found["text/shelf.B"]) == (["lot", ""], ["empty", ""]) and told == []
+
+
+def test_the_events_of_the_documentation_are_sent(
+    plant_with: MakePlantWith, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    changes = module("changes", example("text/event-stream"), monkeypatch).Changes
+    plant = plant_with(changes)
+    part: Any = plant.part(changes)
+    (route,) = part.routes().routes
+
+    async def two() -> list[str]:
+        lines = (await route.endpoint()).body_iterator
+        first = await anext(lines)
+        plant.submit("sis_a 0B 7 #lot")
+        return [first, await anext(lines)]
+
+    assert asyncio.run(two()) == ["data: {}\n\n", 'data: {"id": "lot", "state": "running"}\n\n']
+
+
+def test_the_test_of_a_driver_of_the_documentation_passes(monkeypatch: pytest.MonkeyPatch) -> None:
+    driver = example('@driver("my_plc"', HOW_TO.with_name("write-a-driver.md"))
+    module("arboleda_oven", "", monkeypatch)
+    module("arboleda_oven.driver", driver, monkeypatch)
+    module("test_oven", example("arboleda_oven.driver"), monkeypatch).test_it_says_what_it_has_done()

@@ -102,9 +102,7 @@ FROM_TO = "; it may answer {} from 0 to 500"
         ("heavy", NUMBER, "; the recipe knows > 120, otherwise"),
     ],
 )
-def test_an_answer_that_the_kind_does_not_have_fails_the_task(
-    said: Any, number: FactType, why: str
-) -> None:
+def test_an_answer_that_the_kind_does_not_have_fails_the_task(said: Any, number: FactType, why: str) -> None:
     here = Bench(line(sorting("> 120", "otherwise"), number))
     here.machines["scale"].answer = lambda goal: said
     here.submit("line sort")

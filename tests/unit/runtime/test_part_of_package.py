@@ -210,10 +210,13 @@ def test_a_part_that_is_left_out_leaves_no_question_and_its_routes_say_why(made:
     assert (answer.status_code, answer.json()) == (503, {"sentence": why[0]})
 
 
-BROKEN = CODE.format(start="pass", follow="pass") + """
+BROKEN = (
+    CODE.format(start="pass", follow="pass")
+    + """
     def __init__(self, *given):
         raise ValueError("no shelf")
 """
+)
 
 
 @pytest.mark.parametrize(

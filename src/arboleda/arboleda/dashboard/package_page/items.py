@@ -120,6 +120,7 @@ class Chart(_Looked):
 
 
 Item = Value | Rows | Chart | Act
+"""Item of a tab, of a card or of the settings: a `Value`, `Rows`, a `Chart` or an `Act`."""
 
 
 @dataclass(frozen=True)
