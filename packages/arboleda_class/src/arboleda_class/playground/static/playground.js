@@ -20,6 +20,7 @@ let clock = { tick: 0, latest: 0, tick_s: 1, marks: [] };
 let playing = false;
 let owed = 0; // ticks that have not passed yet
 let turn = null; // the last request that moves time
+let broke = null; // why nothing goes on
 
 onStep(loading);
 document.documentElement.lang = spoken;
@@ -212,11 +213,19 @@ function wire() {
 }
 
 function broken(error) {
+  console.error(error);
+  broke = error;
   playing = false;
   const said = (window.arboledaPage?.words.js_broken ?? "{why}").replace("{why}", error.message);
   if (shell) shell.answer(said, false);
   else at("play-loading").textContent = said;
 }
 
+// Whether the plant goes on; a test does not wait for a page that broke.
+function ready() {
+  if (broke) throw broke;
+  return playing;
+}
+
 // For a workbook, which may be read in another language; and for tests: what is asked of the plant without a button.
-window.arboledaPlay = { leave, ask, ready: () => playing, pause: () => play(false), advance: (ticks) => move("advance", { ticks }), clock: () => clock };
+window.arboledaPlay = { leave, ask, ready, pause: () => play(false), advance: (ticks) => move("advance", { ticks }), clock: () => clock };
