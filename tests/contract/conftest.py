@@ -1,8 +1,7 @@
-"""Real brokers on free ports, clients whose events can be waited for, and certificates made by openssl."""
+"""Real brokers on free ports, clients whose events can be waited for, and certificates of a lab."""
 
 from __future__ import annotations
 
-import re
 import socket
 import struct
 import subprocess
@@ -19,9 +18,7 @@ from arboleda.adapters.mqtt import MqttClient
 from arboleda.wire.transport import Connection, Delivery
 
 from ..patience import PATIENCE_S
-from ..shared import need_tool
-
-NEW_KEY = ("-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes")
+from ..tls_lab import Lab
 
 
 class Inbox(list):
@@ -142,35 +139,6 @@ def said(caplog: pytest.LogCaptureFixture, words: str) -> str:
     return found[0]
 
 
-class Authority:
-    """A certificate authority of a lab, in a folder."""
-
-    def __init__(self, folder: Path) -> None:
-        folder.mkdir()
-        self._folder = folder
-        self.certificate = folder / "ca.crt"
-        about = ("-subj", "/CN=lab", "-addext", "basicConstraints=critical,CA:TRUE", "-days", "2")
-        self._openssl(
-            "req", "-x509", *NEW_KEY, *about, "-keyout", folder / "ca.key", "-out", self.certificate
-        )
-
-    def sign(self, name: str, *, days: int = 1) -> tuple[Path, Path]:
-        """The certificate of a host or client of that name, and its key."""
-        request, key, certificate, extra = (
-            self._folder / f"{name}.{each}" for each in ("csr", "key", "crt", "ext")
-        )
-        kind = "IP" if re.fullmatch(r"[\d.]+", name) else "DNS"
-        extra.write_text(f"subjectAltName={kind}:{name}\n")
-        self._openssl("req", *NEW_KEY, "-subj", f"/CN={name}", "-keyout", key, "-out", request)
-        signed = ("-CA", self.certificate, "-CAkey", self._folder / "ca.key", "-CAcreateserial")
-        lasts = ("-days", str(days), "-extfile", extra)
-        self._openssl("x509", "-req", "-in", request, *signed, *lasts, "-out", certificate)
-        return certificate, key
-
-    def _openssl(self, *words: object) -> None:
-        subprocess.run(["openssl", *map(str, words)], check=True, capture_output=True)
-
-
 @pytest.fixture(autouse=True)
 def patient_messages(monkeypatch: pytest.MonkeyPatch) -> None:
     """What a client of this process sends leaves it, however long the process had to wait for a core."""
@@ -178,10 +146,8 @@ def patient_messages(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(scope="session")
-def lab(tmp_path_factory: pytest.TempPathFactory) -> Authority:
-    """An authority; who uses it needs openssl."""
-    need_tool("openssl")
-    return Authority(tmp_path_factory.mktemp("tls") / "lab")
+def lab(tmp_path_factory: pytest.TempPathFactory) -> Lab:
+    return Lab(tmp_path_factory.mktemp("tls") / "lab")
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""MQTT over TLS, with mosquitto and certificates that openssl made: who believes whom, and what is said."""
+"""MQTT over TLS, with mosquitto: who believes whom, and what is said."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from arboleda.adapters.broker_login import CERTIFICATE, Address, address
 from arboleda.wire.transport import Publication
 
 from ..patience import PATIENCE_S
-from .conftest import Authority
+from ..tls_lab import Lab
 
-pytestmark = [pytest.mark.requires("mosquitto"), pytest.mark.requires("openssl")]
+pytestmark = pytest.mark.requires("mosquitto")
 
 
 @pytest.fixture
-def secure(mosquitto: Callable[..., Any], lab: Authority) -> Callable[..., int]:
+def secure(mosquitto: Callable[..., Any], lab: Lab) -> Callable[..., int]:
     """`secure("127.0.0.1")`: a mosquitto with a certificate for that name listens; its port."""
 
     def start(name: str, *options: str, days: int = 1) -> int:
@@ -43,7 +43,7 @@ def complaint(caplog: pytest.LogCaptureFixture) -> str:
 
 
 def test_a_message_goes_over_tls_to_a_broker_that_asks_for_a_certificate(
-    secure: Callable[..., int], trusts: Callable[..., None], lab: Authority, peer: Callable[..., Any]
+    secure: Callable[..., int], trusts: Callable[..., None], lab: Lab, peer: Callable[..., Any]
 ) -> None:
     port = secure("127.0.0.1", f"cafile {lab.certificate}", "require_certificate true")
     trusts(lab.certificate, *lab.sign("plant"))
@@ -65,7 +65,7 @@ def test_a_message_goes_over_tls_to_a_broker_that_asks_for_a_certificate(
 def test_a_broker_that_is_not_believed_is_told_why(
     secure: Callable[..., int],
     trusts: Callable[..., None],
-    lab: Authority,
+    lab: Lab,
     peer: Callable[..., Any],
     caplog: pytest.LogCaptureFixture,
     name: str,
@@ -104,7 +104,7 @@ def test_no_tls_to_a_port_with_it_is_told_as_such(
 def test_a_client_without_the_certificate_that_is_asked_for_is_told_so(
     secure: Callable[..., int],
     trusts: Callable[..., None],
-    lab: Authority,
+    lab: Lab,
     peer: Callable[..., Any],
     caplog: pytest.LogCaptureFixture,
 ) -> None:

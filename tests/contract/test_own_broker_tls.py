@@ -1,4 +1,4 @@
-"""The plant's own broker over TLS, with certificates by openssl, for clients of others and of the plant.
+"""The plant's own broker over TLS, for clients of others and of the plant.
 
 What TLS does there is tried in memory, in tests/unit/adapters.
 """
@@ -18,15 +18,15 @@ from arboleda.adapters.broker_login import CA, Address, Credentials, address
 from arboleda.adapters.server_tls import server_tls
 
 from ..patience import PATIENCE_S
-from .conftest import Authority, said
+from ..tls_lab import Lab
+from .conftest import said
 
-pytestmark = pytest.mark.requires("openssl")
 USERS = {"ra_1": "secret", "ra_2": "hidden"}
 Start = Callable[..., "tuple[EmbeddedBroker, Address]"]
 
 
 @pytest.fixture
-def own(lab: Authority) -> Iterator[Start]:
+def own(lab: Lab) -> Iterator[Start]:
     """`own()`: a broker of the plant that listens, and its address; `asks` for certificates of boards."""
     with ExitStack() as stack:
 
@@ -64,7 +64,7 @@ def pub(require: Callable[[str], str], port: int, *options: object) -> subproces
 
 
 def test_mosquitto_pub_gets_through(
-    own: Start, lab: Authority, require: Callable[[str], str], peer: Callable[..., Any]
+    own: Start, lab: Lab, require: Callable[[str], str], peer: Callable[..., Any]
 ) -> None:
     broker, at = own()
     plant = peer("bridge", at, credentials=broker.credentials, subscriptions=["ra_1/sensores"]).up()
@@ -84,7 +84,7 @@ def test_who_does_not_believe_it_is_a_sentence_on_both_sides(
 
 
 def test_where_it_asks_a_board_shows_a_certificate_with_its_name_and_the_plant_none(
-    own: Start, lab: Authority, require: Callable[[str], str], peer: Callable[..., Any]
+    own: Start, lab: Lab, require: Callable[[str], str], peer: Callable[..., Any]
 ) -> None:
     broker, at = own(asks=True)
     peer("bridge", at, credentials=broker.credentials).up()

@@ -13,7 +13,7 @@ from tests.packages import PACKAGES
 
 ROOT = Path(__file__).parents[2]
 HOUSE = ROOT / "src/arboleda/arboleda"
-IMPORTED_AS = {"cryptography": "cryptography", "msgpack": "msgpack", "pillow": "PIL", "pyzmq": "zmq"}
+IMPORTED_AS = {"msgpack": "msgpack", "pillow": "PIL", "pyzmq": "zmq"}
 KEY = re.compile(r"<(?:exec_)?depend>(?:python3-)?([\w-]+)</")
 
 
@@ -33,7 +33,7 @@ def asked_of_pip() -> list[str]:
 def asked_of_extras() -> dict[str, list[str]]:
     """The libraries, with their bounds, that extras of the runner bring and it does not need."""
     text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-    names = ("certs", "groot2", "pictures")
+    names = ("groot2", "pictures")
     rows = {name: re.search(rf"^{name} = \[(.*)\]$", text, re.MULTILINE) for name in names}
     return {name: re.findall(r'"([^"]+)"', row[1]) for name, row in rows.items() if row}
 

@@ -11,7 +11,7 @@ import pytest
 from tests.packages import PACKAGES
 
 CLI = Path(__file__).parents[2] / "src/arboleda/arboleda/cli"
-NO_SENTENCES = {"mosquitto_files.py", "service_unit.py"}  # they write files for other programs
+NO_SENTENCES = {"service_unit.py"}  # it writes a file for another program
 SAYING = {"print", "echo", "confirm", "status", "add_column", "Text", "BadParameter"}
 WORD = re.compile(r"\b[A-Za-z]{2,}\b")
 VERBATIM = re.compile(r"(\s*\{\}\n)?\s*\{\} (exercise|up|replay) |MCP: http:")  # to be typed, or an address

@@ -16,7 +16,7 @@ CHECK = load("wheel-check")
 
 def test_the_parts_are_those_that_who_runs_a_plant_installs() -> None:
     parts = CHECK.optional_parts((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    assert {"modbus", "opcua", "certs", "groot2", "pictures", "postgres", "mcp"} <= set(parts)
+    assert {"modbus", "opcua", "groot2", "pictures", "postgres", "mcp"} <= set(parts)
     assert not CHECK.OF_DEVELOPERS & set(parts)
     assert not {name.removeprefix("arboleda_") for name in PACKAGES} & set(parts)
 
@@ -40,14 +40,14 @@ def test_the_part_that_fails_is_named_with_its_machine(monkeypatch: pytest.Monke
         return "snap7 has no wheels" if "s7" in extras else ""
 
     monkeypatch.setattr(CHECK, "trouble", trouble)
-    found = CHECK.troubles("uv", "macos-arm64", "3.14", ["certs", "s7"])
+    found = CHECK.troubles("uv", "macos-arm64", "3.14", ["mcp", "s7"])
     assert found == ["arboleda[s7] on macos-arm64, Python 3.14: snap7 has no wheels"]
-    assert CHECK.troubles("uv", "macos-arm64", "3.14", ["certs"]) == []
+    assert CHECK.troubles("uv", "macos-arm64", "3.14", ["mcp"]) == []
 
 
 def test_parts_that_exclude_each_other_are_no_silence(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(CHECK, "trouble", lambda _uv, _machine, _python, extras: "no" * (len(extras) > 1))
-    (found,) = CHECK.troubles("uv", "macos-arm64", "3.14", ["certs", "s7"])
+    (found,) = CHECK.troubles("uv", "macos-arm64", "3.14", ["mcp", "s7"])
     assert "not all of them together" in found
 
 

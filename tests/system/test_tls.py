@@ -1,9 +1,8 @@
-"""A plant that speaks TLS everywhere, with the certificates that `arboleda certs` made for it."""
+"""A plant that speaks TLS everywhere."""
 
 from __future__ import annotations
 
 import ssl
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,32 +11,28 @@ import httpx
 import pytest
 
 from ..patience import PATIENCE_S
-from .conftest import paths
+from ..tls_lab import Lab
 
-pytestmark = [pytest.mark.system, pytest.mark.requires("cryptography")]
+pytestmark = pytest.mark.system
 Typed = Callable[..., tuple[int, str]]
 
 
 @pytest.fixture
-def certs(start: Callable[..., Any], tmp_path: Path) -> Path:
-    """The folder that the command wrote."""
-    folder = tmp_path / "certs"
-    main = "from arboleda.cli.main import main; main()"
-    made = start(sys.executable, "-c", main, "certs", str(folder), env={"PYTHONPATH": paths()})
-    assert made.wait() == 0, made.output
-    return folder
+def lab(tmp_path: Path) -> Lab:
+    return Lab(tmp_path / "lab")
 
 
 @pytest.fixture
-def shown(certs: Path) -> tuple[str, ...]:
-    return "--tls-cert", str(certs / "plant.crt"), "--tls-key", str(certs / "plant.key")
+def shown(lab: Lab) -> tuple[str, ...]:
+    certificate, key = lab.sign("localhost")
+    return "--tls-cert", str(certificate), "--tls-key", str(key)
 
 
 @pytest.mark.smoke
 def test_page_boards_and_commands_speak_tls(
     arboleda: Callable[..., Any],
     typed: Typed,
-    certs: Path,
+    lab: Lab,
     shown: tuple[str, ...],
     free_port: int,
     browser: Any,
@@ -62,7 +57,7 @@ def test_page_boards_and_commands_speak_tls(
     assert "travels in clear" not in up.output
     assert typed("submit", "--wait", "sis_a 0B 7")[0] == 0
     token = typed("token", "operator")[1]
-    believing = ssl.create_default_context(cafile=certs / "ca.crt")
+    believing = ssl.create_default_context(cafile=lab.certificate)
     asks = {"verify": believing, "trust_env": False, "headers": {"authorization": f"Bearer {token}"}}
     assert (
         httpx.get(f"https://localhost:{free_port}/api/plant", timeout=PATIENCE_S, **asks).status_code == 200

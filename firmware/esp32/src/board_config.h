@@ -30,8 +30,8 @@ constexpr uint32_t kDirectionUs = 5;  // and a new direction before it
 // Pins 34 to 39 have no pull-up of their own: a resistor of 10 k to 3.3 V belongs to each switch.
 
 #ifdef ARBOLEDA_TLS
-// What `arboleda certs` wrote: ca.crt, then boards/NAME.crt and .key where the broker asks for a certificate of the
-// board. Empty: it shows none.
+// Files of docs/how-to/tls.md: rootCA.pem, then clients/NAME.crt and .key where the broker asks for a certificate of
+// the board. Empty: it shows none.
 constexpr char kBrokerCa[] = R"(-----BEGIN CERTIFICATE-----
 the certificate authority of your broker
 -----END CERTIFICATE-----

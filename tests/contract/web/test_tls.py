@@ -1,4 +1,4 @@
-"""The server with a certificate by openssl: requests, sockets, logins, the commands; and what is not TLS."""
+"""The server with TLS: requests, sockets, logins, the commands; and what is not TLS."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from typing import Any
 import httpx
 import pytest
 from tests.patience import PATIENCE_S
+from tests.tls_lab import Lab
 from tests.web_plant import TOKENS, VIEW
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
@@ -27,14 +28,11 @@ from arboleda.runtime.state import StateDir
 from arboleda.web import server
 from arboleda.web.access.auth import Role
 
-from ..conftest import Authority
 from .conftest import Web
-
-pytestmark = pytest.mark.requires("openssl")
 
 
 @pytest.fixture
-def tls(lab: Authority) -> ServerTls:
+def tls(lab: Lab) -> ServerTls:
     return server_tls(*lab.sign("127.0.0.1"))
 
 
@@ -44,7 +42,7 @@ def secure(serve: Callable[..., Web], tls: ServerTls) -> Web:
 
 
 def test_who_believes_the_authority_is_answered_by_both_versions_that_are_still_safe(
-    serve: Callable[..., Web], tls: ServerTls, lab: Authority
+    serve: Callable[..., Web], tls: ServerTls, lab: Lab
 ) -> None:
     web = serve(tls=tls)
     for version in (ssl.TLSVersion.TLSv1_2, ssl.TLSVersion.TLSv1_3):
@@ -114,7 +112,7 @@ def test_tls_to_a_port_without_it_breaks_no_more_than_that(local: Web) -> None:
 
 
 def test_the_commands_believe_the_certificate_that_the_state_directory_has(
-    serve: Callable[..., Web], lab: Authority, tmp_path: Path
+    serve: Callable[..., Web], lab: Lab, tmp_path: Path
 ) -> None:
     tls = server_tls(*lab.sign("mill.lab", days=-1))  # neither its name nor its age count here
     web = serve(tls=tls)

@@ -1,4 +1,4 @@
-"""What stands in `container/` fits the plant: its command line, and the files that `arboleda certs` makes."""
+"""What stands in `container/` fits the plant: its command line, and the files of the page on TLS."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import typer
 import yaml
 
 from arboleda.cli.main import cli
-from arboleda.cli.mosquitto_files import CONFIGURATION
 
 FOLDER = Path(__file__).parents[3] / "container"
 
@@ -35,30 +34,20 @@ def test_the_plants_command_line_is_one(services: dict[str, Any]) -> None:
         assert command.make_context(verb, options).params["broker"] == "mqtts://broker:8883"
 
 
-@pytest.mark.requires("cryptography")
-def test_the_files_that_are_mounted_are_those_that_its_first_lines_make(
-    services: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    line = next(
-        line for line in (FOLDER / "compose.yaml").read_text().splitlines() if "arboleda certs" in line
-    )
-    words = line.removeprefix("# arboleda ").replace("NAME", "mill.lab").split()
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("arboleda.cli.certs.own_addresses", lambda: ["192.0.2.7"])
-    with pytest.raises(SystemExit) as ended:
-        cli(words, standalone_mode=True)
-    assert ended.value.code == 0
+def test_the_files_that_are_mounted_are_those_of_the_page_on_tls(services: dict[str, Any]) -> None:
+    page = (FOLDER.parent / "docs/how-to/tls.md").read_text()
     broker, plant = mounted(services["broker"]), mounted(services["plant"])
-    assert all((tmp_path / outside).exists() for outside in (*broker.values(), *plant.values()))
-    named = [
-        value for name, value in services["plant"]["environment"].items() if name.startswith("ARBOLEDA_MQTT")
-    ]
-    assert len(named) == 3 and set(named) <= set(plant)
-    (inside,) = broker
-    said = (tmp_path / broker[inside] / CONFIGURATION).read_text().split()
-    files = [word for word in said if word.startswith("/")]
-    assert len(files) == 4
-    assert all((tmp_path / broker[inside] / Path(each).relative_to(inside)).is_file() for each in files)
+    assert broker == {"/etc/mosquitto/arboleda": "./certs/mosquitto"}
+    assert services["broker"]["command"] == ["mosquitto", "-c", "/etc/mosquitto/arboleda/mosquitto.conf"]
+    assert f"`{' '.join(services['broker']['command'])}`" in page
+    named = {
+        name: value
+        for name, value in services["plant"]["environment"].items()
+        if name.startswith("ARBOLEDA_MQTT")
+    }
+    assert len(named) == 3
+    exported = [f"{name}={plant[inside].removeprefix('./')}" for name, inside in named.items()]
+    assert f"export {' '.join(exported)}\n" in page
 
 
 def test_the_plant_keeps_its_memory_in_the_database_beside_it(services: dict[str, Any]) -> None:

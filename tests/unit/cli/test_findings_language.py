@@ -62,8 +62,8 @@ def test_each_sentence_has_the_values_of_its_english() -> None:
             "API HTTP: http://127.0.0.1:41/api/plant (el puerto 8080 está ocupado)",
         ),
         (
-            "The certificate a.pem expires on 2027-01-01; make a new one, e.g. by `arboleda certs`",
-            "El certificado a.pem vence el 2027-01-01; haga uno nuevo, p. ej. con `arboleda certs`",
+            "The certificate a.pem expires on 2027-01-01; make a new one, e.g. with mkcert",
+            "El certificado a.pem vence el 2027-01-01; haga uno nuevo, p. ej. con mkcert",
         ),
         ("OPC UA: opc.tcp://127.0.0.1:4840, read only", "OPC UA: opc.tcp://127.0.0.1:4840, solo lectura"),
         (

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 from arboleda.cli import verbs
 from arboleda.cli.commands import commands
 from arboleda.cli.main import cli
-from arboleda.cli.old_names import OLD_NAMES
+from arboleda.cli.old_names import GONE, OLD_NAMES
 from arboleda.model.verbs import Verb
 
 WORDS = {  # as they were typed
@@ -56,7 +56,13 @@ def test_an_old_name_does_what_the_new_one_does(old: str, new: tuple[str, ...], 
     assert "No such" not in output and "nexpected" not in output
 
 
-@pytest.mark.parametrize("old", OLD_NAMES)
+@pytest.mark.parametrize("gone", GONE)
+def test_a_command_that_is_gone_says_what_does_it_now(gone: str) -> None:
+    status, output, _ = typed(gone, "--plant", "nowhere.yaml")
+    assert status == 2 and output.startswith(f"`arboleda {gone}` is gone: ") and output.count("\n") == 1
+
+
+@pytest.mark.parametrize("old", [*OLD_NAMES, *GONE])
 def test_an_old_name_is_in_no_list(old: str) -> None:
     assert old not in commands()
     for topic in ("", "run", "operate", "make", "test", "history"):

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from tests.tls_lab import Lab
 
 from arboleda.cli.main import main
 
@@ -50,16 +51,9 @@ def test_up_once_refuses_bad_input(typed: Typed, args: tuple[str, ...], sentence
 
 @pytest.fixture(scope="module")
 def shown(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, ...]:
-    """The options that show a certificate of the command's own."""
-    pytest.importorskip("cryptography", reason="cryptography is not installed")
-    folder = tmp_path_factory.mktemp("tls") / "certs"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("arboleda.web.access.names.interface_addresses", list)  # they are asked of a socket
-        patch.setattr(sys, "argv", ["arboleda", "certs", str(folder)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-    assert not ended.value.code
-    return "--tls-cert", str(folder / "plant.crt"), "--tls-key", str(folder / "plant.key")
+    """The options that show a certificate."""
+    certificate, key = Lab(tmp_path_factory.mktemp("tls") / "certs").sign("localhost")
+    return "--tls-cert", str(certificate), "--tls-key", str(key)
 
 
 @pytest.mark.parametrize(

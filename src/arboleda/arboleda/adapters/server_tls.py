@@ -35,7 +35,7 @@ class ServerTls:
             return None
         day = datetime.fromtimestamp(self.until, timezone.utc).strftime("%Y-%m-%d")
         how = f"has expired on {day}: nobody believes it" if self.until <= now else f"expires on {day}"
-        return f"The certificate {self.certificate} {how}; make a new one, e.g. by `arboleda certs`"
+        return f"The certificate {self.certificate} {how}; make a new one, e.g. with mkcert"
 
 
 def server_tls(certificate: Path, key: Path | None = None, *, authority: Path | None = None) -> ServerTls:

@@ -104,11 +104,6 @@ OURS: Mapping[str, Command] = {
     "tasks": Command(
         "tasks", "List tasks and their outcomes, also of earlier starts, whether the plant runs or not."
     ),
-    "certs": Command(
-        "certs",
-        "Make a small authority for a lab, and certificates for the plant on this machine and for "
-        "each board.",
-    ),
     "backup": Command("backup", "Copy the plant's memory to a file, while the plant runs or not."),
     "restore": Command("backup", "Put a backup in the place of the plant's memory; the plant must not run."),
     "record logs": Command(

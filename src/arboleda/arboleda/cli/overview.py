@@ -44,7 +44,6 @@ SECTIONS: Mapping[str, tuple[str, ...]] = {
             "tree",
             "nodes",
             "urdf",
-            "certs",
         ),
     ),
     "Put it to the test": ("simulate", "prove", "fault", "bench"),

@@ -99,7 +99,7 @@ TlsCert = Annotated[
     typer.Option(
         metavar="FILE",
         envvar="ARBOLEDA_TLS_CERT",
-        help="Certificate of this machine, e.g. of `arboleda certs`: page and HTTP API speak TLS with it.",
+        help="Certificate of this machine, e.g. by mkcert: page and HTTP API speak TLS with it.",
     ),
 ]
 TlsKey = Annotated[
