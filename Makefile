@@ -9,10 +9,10 @@ PYTEST_ARGS ?= -n auto --dist worksteal
 INTEGRATION_ARGS ?= -n 4 --dist worksteal # more than cores: most of the time, tests of the real chain wait
 SMOKE_ARGS ?= -n 2 --dist worksteal
 REAL = scripts/with-messages $(BIN)/python -m pytest -p tests.second_tries
-TESTS ?= tests/unit tests/scenario tests/meta $(wildcard packages/*/tests/fast)
-INTEGRATION_TESTS ?= tests/processes tests/contract tests/system tests/tutorial $(wildcard packages/*/tests/real)
+TESTS ?= tests/unit tests/scenario tests/meta tools/tests/fast $(wildcard packages/*/tests/fast)
+INTEGRATION_TESTS ?= tests/processes tests/contract tests/system tests/tutorial tools/tests/real $(wildcard packages/*/tests/real)
 KILTED_TESTS ?= tests/unit/ros $(addprefix tests/system/test_ros_,tools.py link.py log.py)
-NEWEST_TESTS ?= packages/arboleda_drivers/tests/fast tests/unit/adapters $(addprefix packages/arboleda_drivers/tests/real/,contract modbus opcua s7 serial_arm) packages/arboleda_fleet/tests/real/opcua_view tests/contract/test_mqtt.py
+NEWEST_TESTS ?= packages/arboleda_drivers/tests/fast tools/tests/fast/fuzzers tools/tests/real/fuzzers tests/unit/adapters $(addprefix packages/arboleda_drivers/tests/real/,contract modbus opcua s7 serial_arm) packages/arboleda_fleet/tests/real/opcua_view tests/contract/test_mqtt.py
 SIMULATE = $(BIN)/arboleda simulate $(if $(JOBS),--jobs $(JOBS))
 CALM_SEEDS ?= 100
 SEEDS ?= 1000
@@ -64,9 +64,9 @@ test-tools:  ## install the programs of others, too large for everybody, that so
 alone-test:  ## run what `make test` runs in a clone without packages/, in an environment of its own; TESTS=... for others
 	@scripts/without-packages make test
 
-judge-test:  ## plant a bug for each invariant of the simulator, which has to find it; tests/mutants
+judge-test:  ## plant a bug for each invariant of the simulator, which has to find it; tools/tests/mutants
 	@scripts/install test
-	$(BIN)/python -m pytest tests/mutants $(PYTEST_ARGS)
+	$(BIN)/python -m pytest tools/tests/mutants $(PYTEST_ARGS)
 
 ros-test:  ## build and test the ROS 2 packages with colcon, in .colcon
 	@scripts/install colcon
@@ -211,7 +211,7 @@ moving-picture:  ## take the picture of README.md that moves, docs/images/task.w
 clean:  ## remove .venv and whatever builds and tests left behind
 	rm -rf .venv .colcon .kilted .newest .check .build build firmware/build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	rm -rf *.egg-info src/*/*.egg-info packages/*/build shots
-	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
+	find src tests tools -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-17s%s\n", $$1, $$2 }' Makefile

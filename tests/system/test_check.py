@@ -96,7 +96,7 @@ def test_more_than_three_second_tries_in_all_jobs_are_too_many(
 
 @pytest.mark.parametrize(
     ("name", "tests"),
-    [("tests", "tests"), ("ur", "--about ur tests packages/*/tests firmware/test")],
+    [("tests", "tests"), ("ur", "--about ur tests packages/*/tests tools/tests firmware/test")],
     ids=["folder", "word"],
 )
 def test_any_tests_are_a_job(check: Any, name: str, tests: str) -> None:

@@ -758,7 +758,7 @@ def test_a_recovery_that_leaves_a_low_place_sideways_is_found(monkeypatch: Patch
 def test_every_invariant_of_devices_has_a_bug() -> None:
     elsewhere = {
         "a_shared_device_is_handed_on_empty_at_home",  # test_shared_robots.py
-        "numbers_lie_within_their_limits",  # tests/mutants/test_bugs_of_devices.py
+        "numbers_lie_within_their_limits",  # tools/tests/mutants/test_bugs_of_devices.py
     }
     assert {each.name for each in (*DEVICES, *PLACES)} <= {name for name, _, _ in BITES} | elsewhere
     assert {name for name, _, _ in BITES} <= {each.name for each in INVARIANTS}

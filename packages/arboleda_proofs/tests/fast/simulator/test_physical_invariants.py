@@ -465,5 +465,5 @@ def test_it_bites(name: str, break_it: Callable[[Patch], Watch], monkeypatch: Pa
 
 
 def test_every_invariant_has_something_that_breaks_it() -> None:
-    elsewhere = {"recovery_takes_its_zones"}  # it needs seeds, and has its bug in tests/mutants
+    elsewhere = {"recovery_takes_its_zones"}  # it needs seeds, and has its bug in tools/tests/mutants
     assert {name for name, _ in BREAKS} | elsewhere == {each.name for each in INVARIANTS}

@@ -153,7 +153,7 @@ def test_all_of_them_hold_however_often_the_plant_dies(kind: str, seed: int) -> 
 
 
 def test_every_one_of_them_has_a_bug_and_judges_where_it_can() -> None:
-    rest = {"tasks_go_on_from_what_was_kept"}  # it needs boots, and has its bugs in tests/mutants
+    rest = {"tasks_go_on_from_what_was_kept"}  # it needs boots, and has its bugs in tools/tests/mutants
     over_all_starts = (*STARTS, parts_are_taken_and_put_where_they_can_be)
     assert {each.name for each in over_all_starts} == rest | {name for name, _ in BITES}
     assert {*over_all_starts} <= {*INVARIANTS}

@@ -1,0 +1,8 @@
+"""Where packages are, tests of tools begin faults of proofs in their own process, as tests of packages do."""
+
+from __future__ import annotations
+
+from tests.packages import PACKAGES
+
+if PACKAGES:
+    from packages.conftest import no_forks as no_forks
