@@ -26,6 +26,7 @@ def test_an_event_that_is_set_ends_the_wait() -> None:
     setter = threading.Thread(target=event.set)
     setter.start()
     interrupts.until(event)
+    assert event.is_set()
     setter.join()
 
 

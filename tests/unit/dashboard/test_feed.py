@@ -210,7 +210,7 @@ def test_the_page_ends_however_soon_after_news(
 ) -> None:
     monkeypatch.setattr(feed_module, "FRAMES_HZ", 1e9)
 
-    async def run() -> None:
+    async def run() -> int:
         feed = Feed(side)  # type: ignore[arg-type]
         feed.start()
         background = Background(feed.run)
@@ -222,5 +222,6 @@ def test_the_page_ends_however_soon_after_news(
             await asyncio.sleep(0)
         await background.stop()
         feed.stop()
+        return len(asyncio.all_tasks())
 
-    asyncio.run(run())
+    assert asyncio.run(run()) == 1  # this one

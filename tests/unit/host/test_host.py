@@ -90,10 +90,15 @@ def test_an_open_file_gets_other_content(tmp_path: Path) -> None:
     assert path.read_bytes() == b"short"
 
 
-def test_a_folder_that_cannot_be_opened_is_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_is_synced_where_folders_can_be_opened(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    synced: list[int] = []
+    monkeypatch.setattr(os, "fsync", lambda opened: synced.append(os.fstat(opened).st_ino))
     files.sync_folder(tmp_path)
     monkeypatch.delattr(os, "O_DIRECTORY")
-    files.sync_folder(tmp_path / "absent")
+    files.sync_folder(tmp_path)
+    assert synced == [tmp_path.stat().st_ino]
 
 
 def test_a_boot_that_nobody_tells_is_another_each_time(
@@ -127,8 +132,12 @@ def test_a_mark_is_that_of_the_user(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_limit_that_the_system_refuses_is_done_without(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(*_: object) -> None:
+    asked: list[object] = []
+
+    def refuse(_: int, size: object) -> None:
+        asked.append(size)
         raise ValueError("current limit exceeds maximum limit")
 
     monkeypatch.setattr(limits.resource, "setrlimit", refuse)
     limits.limit_memory(1 << 30)
+    assert asked == [(1 << 30, 1 << 30)]

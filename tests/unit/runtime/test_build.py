@@ -15,6 +15,7 @@ def test_all_parts_need_no_compiled_firmware(monkeypatch: pytest.MonkeyPatch, tm
     monkeypatch.setenv("ARBOLEDA_BOARD", str(tmp_path / "never built"))
     app = build(shipped(), PARTS, Options(state_dir=tmp_path / "state", page=False))
     app.stop()
+    assert app.orchestrator is not None
 
 
 def test_the_firmwares_boards_are_refused_where_they_were_not_built(

@@ -128,8 +128,12 @@ def test_stopping_steps_what_was_posted_and_no_more(make, machine, sent):
     assert sent == ["a"]
 
 
-def test_it_can_be_stopped_before_it_was_started(make):
-    make().stop()
+def test_one_that_is_stopped_before_its_start_steps_nothing(make, machine):
+    loop = make()
+    loop.stop()
+    loop.post("late")
+    loop.start()
+    assert machine.steps == []
 
 
 def test_a_message_that_cannot_be_sent_is_handed_back_and_the_rest_goes_on(make, sent):

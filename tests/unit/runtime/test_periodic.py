@@ -27,8 +27,13 @@ def test_all_are_looked_at_until_one_says_that_the_plant_must_end() -> None:
     assert crashes == [("place", error)]
 
 
-def test_one_that_was_not_started_can_be_stopped() -> None:
-    Periodic("place", [], lambda *_: None).stop()
+def test_one_that_is_stopped_before_its_start_looks_at_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    stand_in(periodic, AtOnce, monkeypatch)
+    looks: list[int] = []
+    part = Periodic("place", [lambda: looks.append(1)], lambda *_: None)
+    part.stop()
+    part.start()
+    assert not looks
 
 
 def test_its_thread_looks_and_after_a_crash_no_more(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -205,8 +205,11 @@ def test_a_second_owner_is_kept_out_though_the_directory_was_deleted(tmp_path, w
 
 @pytest.mark.skipif(not host_claim.HAS_ABSTRACT, reason="only Linux has names without files")
 def test_owners_of_two_directories_do_not_meet(tmp_path):
-    with StateDir(tmp_path / "north"), StateDir(tmp_path / "south"):
-        pass
+    folders = (tmp_path / "north", tmp_path / "south")
+    with StateDir(folders[0]), StateDir(folders[1]):
+        for each in folders:
+            with pytest.raises(StartError, match="already running"):
+                StateDir(each).open()
 
 
 def test_where_no_name_is_without_a_file_the_lock_alone_keeps_owners_apart(tmp_path, monkeypatch):

@@ -834,10 +834,15 @@ def test_a_memory_whose_log_was_deleted_has_all_that_was_kept_once_it_is_closed(
 
 
 def test_who_backs_up_or_reads_beside_the_plant_leaves_its_files_in_their_place(path, store):
+    def files():
+        return {each.name: each.stat().st_ino for each in (path, Path(f"{path}-wal"))}
+
     store.keep(LATCH)
+    before = files()
     history = TaskHistory(path)
     history.select(TaskQuery())
     history.close()
     with closing(sqlite3.connect(path)) as other:
         other.execute("PRAGMA wal_checkpoint(TRUNCATE)")
     store.keep(LATCH)
+    assert files() == before

@@ -330,6 +330,8 @@ def test_a_file_that_another_program_has_written_as_it_was_is_no_trouble(killed,
         store.look()
         long_work(store)
         store.look()
+    with Store(killed) as again:
+        assert again.facts(Fact.STEP) == {"t1": str(FEW - 1)}
 
 
 def test_a_note_that_is_damaged_is_refused_where_a_kill_left_it(killed):

@@ -14,10 +14,16 @@ def report(done: str = "") -> Report:
 
 
 def test_reports_that_do_not_fit_are_passed_over() -> None:
-    reports = Reports(patience_s=60.0)
-    for done in ("", "c1"):
+    reports, seen = Reports(patience_s=60.0), list[str | None]()
+    for done in ("", "c1", "c2"):
         reports.hear(report(done))
-    reports.until(lambda each: each.done == "c1")
+
+    def fits(each: Report) -> bool:
+        seen.append(each.done)
+        return each.done == "c1"
+
+    reports.until(fits)
+    assert seen == [None, "c1"]
 
 
 def test_a_wait_ends_though_other_reports_keep_coming() -> None:

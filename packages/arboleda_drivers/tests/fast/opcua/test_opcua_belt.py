@@ -15,7 +15,6 @@ from arboleda_drivers.opcua.settings import Settings
 from arboleda_drivers.opcua.virtual.faults import FAULTS
 from arboleda_drivers.opcua.virtual.program import BeltProgram
 from arboleda_drivers.plc.plc_snapshot import UnreadableValue
-from arboleda_drivers.plc.virtual import machine
 from arboleda_drivers.virtual.faults import Faults
 
 EXAMPLE = ROOT / "examples/plc_conveyor/opcua.yaml"
@@ -121,7 +120,3 @@ def test_faults_of_the_server(belt: Device) -> None:
     assert line.tell("load") == "BadUserAccessDenied"
     assert line.program.show()["part_at"] == Bad(status="BadSensorFailure")
     assert line.program.is_mute()
-
-
-def test_the_faults_of_the_program_are_among_them() -> None:
-    assert set(machine.FAULTS) < set(FAULTS)
