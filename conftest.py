@@ -1,3 +1,3 @@
-"""Tests in `tests/` and in `packages/*/tests` share fixtures and hooks."""
+"""Tests in `tests/`, `packages/*/tests` and `tools/tests` share fixtures and hooks."""
 
 pytest_plugins = ["tests.shared"]

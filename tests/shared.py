@@ -95,7 +95,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def folder(item: pytest.Item | pytest.Module) -> str:
-    """The folder below `tests`, here or in a package, that the test is in; else nothing."""
+    """The folder below `tests`, here, in a package or in tools, that the test is in; else nothing."""
     below = item.path.relative_to(ROOT).parts if item.path.is_relative_to(ROOT) else ()
     return below[below.index("tests") + 1] if "tests" in below else ""
 
