@@ -21,6 +21,7 @@ NOT_DRAWN = (
     ("", "shared"),
     ("", "history_days"),
     ("", "groot2"),
+    ("", "extensions"),
     ("", "opcua_view"),
     ("", "store"),
     ("", "assistants"),
