@@ -170,7 +170,7 @@ playground:  ## write a plant in a tab of a browser, as files alone, to build/pl
 install:  ## make .venv with the arboleda command; PYTHON=python3.12 chooses the interpreter, ROS=1 brings ROS 2, too
 	@scripts/install $(if $(ROS),ros)
 
-lint:  ## check style, format, types and the import rules
+lint:  ## check style, format, types, the import rules and the budget (scripts/budget.tsv)
 	@scripts/install test
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
@@ -178,6 +178,7 @@ lint:  ## check style, format, types and the import rules
 	$(BIN)/mypy --explicit-package-bases firmware/test/*.py
 	$(BIN)/mypy --scripts-are-modules $$(grep -lE '^#!.*python' scripts/* tools/* 2>/dev/null) scripts/*.py tools/*.py
 	@PYTHONPATH=src/arboleda_bringup:tools:tools/drawn $(BIN)/lint-imports # pip does not install these
+	$(BIN)/python scripts/budget
 
 diagrams:  ## write docs/reference/states.md anew from the state tables of the core
 	@scripts/install
