@@ -31,8 +31,8 @@ def test_a_test_of_the_page_passes(
 
 
 def test_the_page_has_plants_a_recipe_and_tests() -> None:
-    assert set(FILES) - set(TESTS) == {"my_plant.yaml", "bench.yaml", "tidy.py"}
-    assert len(TESTS) == 3
+    assert set(FILES) - set(TESTS) == {"my_plant.yaml", "there_and_back.py", "bench.yaml", "tidy.py"}
+    assert len(TESTS) == 4
 
 
 def test_every_kind_and_level_of_faults_is_on_the_page() -> None:
