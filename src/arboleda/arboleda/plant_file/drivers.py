@@ -125,7 +125,9 @@ def _settings(document: Document, place: Place, spec: DriverSpec, used: PythonUs
     def wrong(sentence: str) -> None:
         used.keep(document, used.spot(spec).problem(sentence))
 
-    form = f"{KEY}: {{{spec.name}: {{{{}}: ...}}}}"
+    def form(key: str) -> str:
+        return f"{KEY}: {{{spec.name}: {{{key}: ...}}}}"
+
     taker = Taker(what=KEY, name=spec.name, settings=spec.settings, form=form, wrong=wrong)
     return given(document, place, taker)
 

@@ -24,13 +24,14 @@ FAULTY = object()
 class Taker:
     """Taker of settings: `what` it is, as `driver`, its name, and the dataclass, None for one without.
 
-    `form` is what to write where there are none, with {} for a key. `wrong` keeps a problem of the dataclass.
+    `form` is what to write where there are none, by a key that is missing. `wrong` keeps a problem of the
+    dataclass.
     """
 
     what: str
     name: str
     settings: type | None
-    form: str = ""
+    form: Callable[[str], str] = str
     wrong: Callable[[str], None]
 
 
@@ -48,7 +49,7 @@ def given(document: Document, place: Place, taker: Taker) -> Any:
         return FAULTY
     if not has and (missing := required(fits)):
         keys = ", ".join(missing)
-        document.problem(place, f"{whom} needs {keys}; write {taker.form.format(missing[0])}")
+        document.problem(place, f"{whom} needs {keys}; write {taker.form(missing[0])}")
         return FAULTY
     try:
         if not has:
