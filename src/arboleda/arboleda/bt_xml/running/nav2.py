@@ -34,26 +34,27 @@ class RecoveryNode(Node):
 
     def work(self) -> Result:
         most = self.ports.number("number_of_retries", self.scope, "1")
+        work, recovery = self.below
         self.begin()
         goes_on = any(child.status is Status.RUNNING for child in self.below)
         while self.retries <= most:
-            if not self.recovers and self.below[0].status is Status.INVALID:
+            if not self.recovers and work.status is Status.INVALID:
                 self.round_began = self.time.now
-            result = self.below[self.recovers].execute()
+            result = (recovery if self.recovers else work).execute()
             if result is RUNNING:
                 return RUNNING
             if not self.recovers and (result is not FAILURE or self.retries >= most):
                 return self._over(result)
             if not self.recovers:
-                self.below[0].reset()
+                work.reset()
                 self.recovers = True
             elif result is SUCCESS:
-                self.below[1].reset()
+                recovery.reset()
                 self.recovers, self.retries = False, self.retries + 1
                 if goes_on and self.round_began == self.time.now:
                     return self.again()
             elif result is SKIPPED:  # no recovery is possible, so this is no retry
-                self.below[1].reset()
+                recovery.reset()
                 self.recovers = False
                 return FAILURE
             else:

@@ -73,6 +73,7 @@ from .urgency import Urgency
 
 LOG = logging.getLogger(__name__)
 PATIENCE_S = 6.0  # a stop is confirmed within stop_timeout_s, 5 s in the shipped plant
+AWAY = "the plant was away for %.1f s; cells that were at work are held, see `arboleda status`"
 
 
 IN_DOUBT = Phrase(
@@ -172,6 +173,16 @@ class Orchestrator:
         self._port: PlantPort | None = None
         self._urgency = Urgency(self.plant)
         self._at_rest = threading.Event()
+        self._for_process: Mapping[type, Callable[[Any], None]] = {
+            Facts: lambda message: self.keeping.keep_facts(message.facts),
+            Journal: self._keep_act,
+            StopsAway: self.stops.departed,
+            ActsDone: self.stops.happened,
+            CommandsLeft: lambda _: self.keeping.settle(),
+            InternalError: lambda message: log_defect(message.cell or "plant", message.error),
+            Absence: lambda message: LOG.warning(AWAY, message.seconds),
+        }
+        """What messages of a step are for that neither leave nor wait to be told."""
 
     def hear(self, event: Event) -> None:
         """Take an event of the port, in the port's thread; a report without news may wait for others."""
@@ -293,55 +304,39 @@ class Orchestrator:
         self.keeping.durability.stop()
         self.stops.loop.stop()
 
-    def _send(self, message: Command | Notice | Facts | StopsAway | ActsDone | CommandsLeft) -> None:
-        if isinstance(message, Facts):
-            self.keeping.keep_facts(message.facts)
-            return
-        if isinstance(message, Journal):
-            log_act(message)
-            self.keeping.keep_act(message)
-            return
-        if isinstance(message, StopsAway):
-            self.stops.departed(message)
-            return
-        if isinstance(message, ActsDone):
-            self.stops.happened(message)
-            return
-        if isinstance(message, CommandsLeft):
-            self.keeping.settle()
-            return
-        if isinstance(message, InternalError):
-            log_defect(message.cell or "plant", message.error)
-            return
-        if isinstance(message, Absence):
-            LOG.warning(
-                "the plant was away for %.1f s; cells that were at work are held, see `arboleda status`",
-                message.seconds,
-            )
-            return
-        if self.keeping.failure is not None and not leaves_unkept(message):
+    def _send(self, message: Any) -> None:
+        """Do with a message what it is for; one that leaves waits for what has to be kept before it."""
+        for_process = self._for_process.get(type(message))
+        if for_process is not None:
+            for_process(message)
+        elif self.keeping.failure is not None and not leaves_unkept(message):
             self._refuse_unkept(message, self.keeping.failure)
-            return
-        if isinstance(message, CellRevised):
+        elif isinstance(message, CellRevised):
             OPERATORS.info("%s works by version %d from now on", message.cell, message.version.number)
-            return
-        if isinstance(message, TaskChanged):
-            self.keeping.keep_task(message, self.askers.way_of(message.request))
-        if isinstance(message, Durable):
+        elif isinstance(message, Durable):
+            if isinstance(message, TaskChanged):
+                self.keeping.keep_task(message, self.askers.way_of(message.request))
             self.keeping.settle()
             self.keeping.durability.tell(message)
         elif self._port is not None and self.keeping.lets_leave(message):
-            if not leaves_unkept(message):
-                self.keeping.durability.let_commands_leave()
-            if is_too_late(message, self.plant, now := clock.seconds()):
-                raise CommandTooLate(SENT_TOO_LATE(seconds=now - self.plant.now))
-            if self.stops.ahead:
-                self.stops.refuse_overtaken(message)
-            self._port.send(message)
-            if late := late_departure(message, self.plant, clock.seconds()):
-                self.loop.post(late)
-            if self.stops.ahead:  # one may have left meanwhile
-                self.stops.stop_again(message)
+            self._let_leave(message, self._port)
+
+    def _let_leave(self, message: Any, port: PlantPort) -> None:
+        if not leaves_unkept(message):
+            self.keeping.durability.let_commands_leave()
+        if is_too_late(message, self.plant, now := clock.seconds()):
+            raise CommandTooLate(SENT_TOO_LATE(seconds=now - self.plant.now))
+        if self.stops.ahead:
+            self.stops.refuse_overtaken(message)
+        port.send(message)
+        if late := late_departure(message, self.plant, clock.seconds()):
+            self.loop.post(late)
+        if self.stops.ahead:  # one may have left meanwhile
+            self.stops.stop_again(message)
+
+    def _keep_act(self, message: Journal) -> None:
+        log_act(message)
+        self.keeping.keep_act(message)
 
     def _tell(self, message: Durable, failure: Exception | None) -> None:
         """Tell whoever waits for it of a change that is durable, or that it is not; in the thread of that."""
