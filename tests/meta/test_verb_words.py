@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from arboleda.core.intake import Intake
+from arboleda.core.news import News
 from arboleda.core.operator import BY_HAND, Operator
+from arboleda.core.plant_state import PlantState
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.zones import Zones
 from arboleda.model.plant_model import PlantModel
@@ -26,8 +29,14 @@ def test_the_page_is_what_the_script_prints() -> None:
 
 def test_every_verb_is_carried_out_by_something_and_has_words() -> None:
     model = PlantModel(name="empty", cells=())
-    intake, dispatcher = Intake(model, 1), Dispatcher(model, 1, {})
-    operator = Operator({}, dispatcher, Zones(()), intake, lambda: 0.0, lambda cell, error: None)
+    state = PlantState(
+        clock=SimpleNamespace(now=0.0),
+        dispatcher=Dispatcher(model, 1, {}),
+        zones=Zones(()),
+        intake=Intake(model, 1),
+        news=News(()),
+    )
+    operator = Operator(state, lambda cell, error: None)
     assert list(operator.table) == list(ABOUT) == list(Verb)
 
 

@@ -99,11 +99,11 @@ class Refused:
 
 def test_tries_that_take_no_time_are_not_all_at_one_instant() -> None:
     """However many steps there are, each with as many tries as a plant file may allow, without a pause."""
-    clock = [0.0]
+    clock = SimpleNamespace(now=0.0)
     failures = Failures(SimpleNamespace(carrier=None, opened_by=None))  # type: ignore[arg-type]
     context: Any = SimpleNamespace(
         cell=SimpleNamespace(name="cell", retry=Retry(times=10, backoff_s=0.0)),
-        time=CellTime(lambda: clock[0]),
+        time=CellTime(clock),
         commands=Refused(),
         failures=failures,
         timing=SimpleNamespace(stop_timeout_s=5.0),
@@ -112,7 +112,7 @@ def test_tries_that_take_no_time_are_not_all_at_one_instant() -> None:
     run = TreeRun(context)
     status = run.begin(lambda: Selector("one of them", memory=True, children=[*acts]))
     while status is Status.RUNNING:
-        clock[0] = context.time.next_deadline
+        clock.now = context.time.next_deadline
         assert context.time.woken()
         status = run.tick()
     assert failures.last is not None and failures.last.reason is Reason.LINK_LOST

@@ -8,7 +8,7 @@ from arboleda.core.choosing import best
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
 from arboleda.core.task_desk import TaskDesk
-from arboleda.core.verbs.cancelling import Cancelling, _cancel
+from arboleda.core.verbs.cancelling import Cancelling
 from arboleda.core.verbs.held_cells import resume
 from arboleda.dispatch import evidence
 from arboleda.dispatch.latches import Latches
@@ -48,9 +48,9 @@ TASKS = (
         "nothing_of_an_ended_task_moves",
         "A task that is cancelled ends at once, and goes on with its work.",
         edit(
-            _cancel,
-            "if held or not cell.run.recovering:\n        cell.recover()",
-            "if cell.task is not None:\n        cell._finish(cell.task, TaskState.CANCELLED)",
+            CellRun.cancel,
+            "if held or not self.run.recovering:\n        self.recover()",
+            "if self.task is not None:\n        self._finish(self.task, TaskState.CANCELLED)",
         ),
         weather={"operator_cancel": 20.0},
     ),
@@ -103,14 +103,14 @@ TASKS = (
         edit(
             TaskDesk.tell,
             "cell=task.order.cell,",
-            "cell=[*self._cells][-1] if task.state is TaskState.RUNNING else task.order.cell,",
+            "cell=[*self._state.cells][-1] if task.state is TaskState.RUNNING else task.order.cell,",
         ),
         weather="none",
     ),
     mutant(
         "cancelled_tasks_end_cancelled",
         "A task that is held counts as failed when it is cancelled.",
-        edit(_cancel, "cell.cancelling = True", "cell.cancelling = cell.state is CellState.EXECUTE"),
+        edit(CellRun.cancel, "self.cancelling = True", "self.cancelling = self.state is CellState.EXECUTE"),
         weather={"operator_hold": 20.0, "operator_cancel": 40.0},
     ),
     mutant(
@@ -136,7 +136,7 @@ TASKS = (
             Operator.act,
             "do = self._planned(request, scope)",
             "early = Journal(verb=request.verb, scope=scope, cell=None, sentence=PLANT())\n"
-            "    self._dispatcher.outbox.append(early)\n"
+            "    self._state.dispatcher.outbox.append(early)\n"
             "    do = self._planned(request, scope)",
         ),
     ),
@@ -145,8 +145,8 @@ TASKS = (
         "An empty task text is passed over.",
         edit(
             TaskDesk.take,
-            "self._dispatcher.outbox.append(_refused(",
-            "if request.text: self._dispatcher.outbox.append(_refused(",
+            "self._state.dispatcher.outbox.append(_refused(",
+            "if request.text: self._state.dispatcher.outbox.append(_refused(",
         ),
         weather={"bad_task": 30.0},
     ),

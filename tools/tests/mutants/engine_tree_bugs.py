@@ -357,7 +357,7 @@ OF_CELLS = (
     bug(
         "trees/cell_time.py",
         "Time passes while a cell is held.",
-        "            self.paused_s += self._clock() - self._paused_at\n",
+        "            self.paused_s += self._clock.now - self._paused_at\n",
         "",
     ),
 )

@@ -146,7 +146,7 @@ PEOPLE = (
     mutant(
         "kept_is_what_is",
         "An overridden zone is still kept, and so quarantined again after a restart.",
-        edit(Overriding._override, "self._dispatcher.memory.vacate([zone])", ""),
+        edit(Overriding._override, "self._state.dispatcher.memory.vacate([zone])", ""),
         seeds=SHARED,
         weather={"brown_out": 15.0, "operator_override": 40.0, "operator_stop": 5.0},
     ),
@@ -188,7 +188,7 @@ SCREENS = (
     mutant(
         "screens_are_told_of_news",
         "What an operator has done is shown only with the next news.",
-        edit(People.operate, "self._news.changes += 1", "pass"),
+        edit(People.operate, "self._state.news.changes += 1", "pass"),
         weather={"operator_hold": 10.0},
     ),
     mutant(

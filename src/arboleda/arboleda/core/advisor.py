@@ -17,6 +17,8 @@ from arboleda.trees import part_places
 
 from . import reasons
 from .cell import CellRun
+from .cell_steps import waits_for_grip
+from .plant_state import PlantState
 from .verbs.device_verbs import works
 
 WILL_BE_HOMED = Phrase("cell.will_be_homed", "{arm} will have been homed")
@@ -29,11 +31,11 @@ Refusal = Callable[[OperatorRequest], "Sentence | None"]
 class Advisor:
     """Finds the ways out of every cell, from the present state alone."""
 
-    def __init__(self, cells: Mapping[str, CellRun], refusal: Refusal) -> None:
-        self._cells = cells
+    def __init__(self, state: PlantState, refusal: Refusal) -> None:
+        self._state = state
         self._refusal = refusal
         self._runs: dict[str, list[CellRun]] = {}
-        for run in cells.values():
+        for run in state.cells.values():
             for robot in run.cell.robots:
                 self._runs.setdefault(robot.name, []).append(run)
 
@@ -46,7 +48,7 @@ class Advisor:
 
         `visited` are the cells that wait for zones of this cell.
         """
-        run = self._cells[cell]
+        run = self._state.cells[cell]
         lead = LEADS.get(run.state)
         if lead is None or run.closed or run.manual.teaching is not None:
             return ()
@@ -104,7 +106,7 @@ class Advisor:
             yield retry
         for number, robot in enumerate(each for each in holding if each not in beside):
             yield from _releasing(run, robot, why, instead=helps and not failed and number == 0)
-        if holding and run.waits_for_grip:
+        if holding and waits_for_grip(run):
             yield from _running_again(run)
         else:
             yield Advice(

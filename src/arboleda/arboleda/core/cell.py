@@ -108,12 +108,6 @@ class CellRun:
         return self.readiness.objection() or (self.queue.why_paused if self.queue.paused else None)
 
     @property
-    def waits_for_grip(self) -> bool:
-        """True while only a part in a gripper holds the cell: it is idle once the part is out."""
-        trouble = self.trouble if self.state is CellState.HELD and self.task is None else None
-        return trouble is not None and trouble.reason is Reason.INTERRUPTED
-
-    @property
     def is_between_tasks(self) -> bool:
         """True where it can take another version: nobody teaches it, no task, tree or command is open."""
         if self.manual.teaching is not None or self.task is not None or self.run.tree is not None:
@@ -241,6 +235,28 @@ class CellRun:
         self.context.places.begin()
         self.look(self.run.begin(lambda: self.keeping.make(task.order)))
 
+    def take_up(self, task: Task, trail_text: str) -> None:
+        """Hold a task that was at work when an earlier start ended, until a person says how it goes on."""
+        self.task, self.queue.paused = task, True
+        self.become(Cause.AWAY)
+        self.context.answers, self.context.commands.task = task.answers, hash_of(task.id)
+        self.context.time.pause()
+        self.stranded = self.keeping.revive(task.order, trail_text)
+        trail = self.keeping.walk.trail if self.keeping.walk else None
+        if trail is not None:
+            self.trouble, self.cancelling = trail.failure, trail.cancels
+
+    def cancel(self, failure: Failure) -> None:
+        """End the running task: halt, recover, then it is cancelled."""
+        self.cancelling = True
+        if self.task is not None:
+            self.task.fail(failure)
+        held = self.state is CellState.HELD
+        if held:
+            self.become(Cause.ABANDON)
+        if held or not self.run.recovering:
+            self.recover()
+
     def recover(self, *, anew: bool = False) -> None:
         """Drop and halt the task's tree, and run the recovery alone; `anew`: after a recovery that failed."""
         self._recovers_anew = anew
@@ -270,8 +286,12 @@ class CellRun:
         self.run.drop()
         if not recovered:
             unknown = Failure(reason=Reason.INTERNAL, sentence=NO_CAUSE(cell=self.cell.name))
-            self._note_in_vain(self.context.failures.last or unknown)
-            self.stuck(self.context.failures.last or unknown)
+            last = self.context.failures.last or unknown
+            # where something outside of the cell broke a retried recovery off, a further retry may help
+            if self._recovers_anew and last.reason not in BROKEN_OFF:
+                self.in_vain.add((Verb.RETRY, self.cell.name))
+                self.in_vain.update((Verb.RELEASE, robot) for robot in self.context.parts.unopened)
+            self.stuck(last)
         else:
             self.in_vain.clear()
             self.become(Cause.ENDED)
@@ -287,12 +307,6 @@ class CellRun:
         else:
             task.course, task.unchecked = course, self.context.handling.unchecked
             self._finish(task, TaskState.DONE)
-
-    def _note_in_vain(self, failure: Failure) -> None:
-        """Note a recovery that was retried in vain, unless something outside of the cell broke it off."""
-        if self._recovers_anew and failure.reason not in BROKEN_OFF:
-            self.in_vain.add((Verb.RETRY, self.cell.name))
-            self.in_vain.update((Verb.RELEASE, robot) for robot in self.context.parts.unopened)
 
     def stuck(self, failure: Failure) -> None:
         """Hold a cell that cannot go on by itself."""

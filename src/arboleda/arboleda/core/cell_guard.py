@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.messages import Failure, InternalError, Reason
 from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase, Sentence
 
-from .cell import CellRun
-from .news import News
+from .plant_state import PlantState
 
 BROKE_IN_STEP = Phrase("cell.broke_in_step", "{cell}: {kind} in a step: {error}")
 
@@ -18,14 +16,9 @@ BROKE_IN_STEP = Phrase("cell.broke_in_step", "{cell}: {kind} in a step: {error}"
 class CellGuard:
     """Guard of the cells; `told` has the last error of each cell since the last request of anybody."""
 
-    def __init__(
-        self, cells: dict[str, CellRun], dispatcher: Dispatcher, news: News, clock: Callable[[], float]
-    ) -> None:
+    def __init__(self, state: PlantState) -> None:
         self.told: dict[str, Sentence] = {}
-        self._cells = cells
-        self._dispatcher = dispatcher
-        self._news = news
-        self._clock = clock
+        self._state = state
 
     def run(self, cell: str, act: Callable[[], None]) -> None:
         """Do something for one cell; where it raises, that cell breaks down and no other."""
@@ -36,13 +29,13 @@ class CellGuard:
 
     def break_down(self, cell: str, error: Exception) -> None:
         """Hold a cell in which something raised. An equal error is told once until the next request."""
-        self._news.changes += 1
-        self._news.revised.add(cell)
+        self._state.news.changes += 1
+        self._state.news.revised.add(cell)
         text = plain(" ".join(str(error).split()))
         sentence = BROKE_IN_STEP(cell=cell, kind=type(error).__name__, error=text)
         failure = Failure(reason=Reason.INTERNAL, sentence=sentence)
         if self.told.get(cell) != sentence:
             self.told[cell] = sentence
-            self._dispatcher.outbox.append(InternalError(cell=cell, error=error))
-        self._dispatcher.booking.give_up(cell, failure, self._clock())
-        self._cells[cell].break_down(failure)
+            self._state.dispatcher.outbox.append(InternalError(cell=cell, error=error))
+        self._state.dispatcher.booking.give_up(cell, failure, self._state.clock.now)
+        self._state.cells[cell].break_down(failure)

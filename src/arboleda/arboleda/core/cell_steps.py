@@ -85,7 +85,7 @@ def _found_unsettled(run: CellRun) -> bool:
 
 def _settled(run: CellRun) -> bool:
     """Leave `held` where only a part in an effector was the trouble; else note faults that come meanwhile."""
-    if run.waits_for_grip and not run.context.parts.holding:
+    if waits_for_grip(run) and not run.context.parts.holding:
         run.leave_as_it_is()
         return True
     if run.keeping.walk is not None:
@@ -94,6 +94,12 @@ def _settled(run: CellRun) -> bool:
         run.trouble = _fault(run)
     _miss_part(run)
     return run.absence.hold is not None and _absence_is_over(run)
+
+
+def waits_for_grip(run: CellRun) -> bool:
+    """True while only a part in a gripper holds a cell: it is idle once the part is out."""
+    trouble = run.trouble if run.state is CellState.HELD and run.task is None else None
+    return trouble is not None and trouble.reason is Reason.INTERRUPTED
 
 
 def _miss_part(run: CellRun) -> None:

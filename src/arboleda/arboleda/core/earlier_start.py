@@ -7,21 +7,8 @@ from arboleda.dispatch.latches import Latches
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Fact
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.model.step_token import hash_of
-from arboleda.model.task import Task
 
 from .cell import CellRun
-
-
-def walk_back(run: CellRun, task: Task, trail_text: str) -> None:
-    """Hold a task that was at work when an earlier start ended, until a person says how it goes on."""
-    run.task, run.queue.paused, run.state = task, True, CellState.HELD
-    run.context.answers, run.context.commands.task = task.answers, hash_of(task.id)
-    run.context.time.pause()
-    run.stranded = run.keeping.revive(task.order, trail_text)
-    trail = run.keeping.walk.trail if run.keeping.walk else None
-    if trail is not None:
-        run.trouble, run.cancelling = trail.failure, trail.cancels
 
 
 def look_back(run: CellRun) -> None:

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from arboleda.dispatch.booking import was_broken_off
-from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.ledger import Entry, State
-from arboleda.dispatch.zones import Zones
 from arboleda.model.advice import DO
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Journal, OperatorRequest, Outcome, Verb
@@ -17,8 +15,7 @@ from arboleda.model.verb_scopes import PLANT, scope_of, whole
 from arboleda.model.verbs import Arguments, as_text, lasting
 
 from .acts import ENDED, Acts, OperatorAct, outcome_of
-from .cell import CellRun
-from .intake import Intake
+from .plant_state import PlantState
 from .verbs.answering import Answering
 from .verbs.cancelling import Cancelling
 from .verbs.cell_by_cell import CellByCell, Doing, Plan
@@ -84,23 +81,13 @@ class Operator:
     `table` has for each verb a `CellByCell`, which does it cell by cell, or the function that plans it.
     """
 
-    def __init__(
-        self,
-        cells: dict[str, CellRun],
-        dispatcher: Dispatcher,
-        zones: Zones,
-        intake: Intake,
-        clock: Callable[[], float],
-        broke: Callable[[str, Exception], None],
-    ) -> None:
+    def __init__(self, state: PlantState, broke: Callable[[str, Exception], None]) -> None:
         self.acts = Acts()
-        self.scopes = scopes = Scopes(cells, dispatcher, zones, intake)
-        self._cells = cells
-        self._dispatcher = dispatcher
-        self._clock = clock
+        self.scopes = scopes = Scopes(state)
+        self._state = state
         self._doing = doing = Doing(broke)
-        stops, counts = Stops(cells, dispatcher), PartCounts(scopes, dispatcher)
-        self.homing = Homing(scopes, dispatcher, zones, doing, clock)
+        stops, counts = Stops(state), PartCounts(state, scopes)
+        self.homing = Homing(state, scopes, doing)
         self.table: dict[Verb, CellByCell | Plan] = {
             Verb.STOP: CellByCell(doing, first=stops.latch, do=lambda cell, robots: cell.stop()),
             Verb.CLEAR: CellByCell(
@@ -114,17 +101,17 @@ class Operator:
             ),
             Verb.HOLD: CellByCell(doing, check=not_holdable, do=hold),
             Verb.RESUME: CellByCell(doing, check=not_resumable, do=resume),
-            Verb.CANCEL: Cancelling(scopes, intake, doing).plan,
+            Verb.CANCEL: Cancelling(state, scopes, doing).plan,
             Verb.RETRY: CellByCell(doing, check=not_retryable, do=retry),
             Verb.ABANDON: CellByCell(doing, check=not_abandonable, do=abandon),
-            Verb.RELEASE: Releasing(scopes, dispatcher, zones, doing, clock).plan,
+            Verb.RELEASE: Releasing(state, scopes, doing).plan,
             Verb.HOME: self.homing.plan,
-            Verb.DO: DeviceVerbs(scopes, dispatcher, doing).plan,
-            Verb.OVERRIDE: Overriding(scopes, dispatcher, zones).plan,
+            Verb.DO: DeviceVerbs(state, scopes, doing).plan,
+            Verb.OVERRIDE: Overriding(state, scopes).plan,
             Verb.UNLOAD: counts.plan_unloading,
             Verb.LOAD: counts.plan_loading,
-            Verb.ANSWER: Answering(dispatcher, clock).plan,
-            Verb.TEACH: TaughtCells(scopes, dispatcher, self.acts).plan,
+            Verb.ANSWER: Answering(state).plan,
+            Verb.TEACH: TaughtCells(state, scopes, self.acts).plan,
             Verb.AUTOMATIC: CellByCell(
                 doing, check=not_taught, do=lambda cell, robots: cell.manual.end(BY_VERB)
             ),
@@ -139,7 +126,7 @@ class Operator:
         outcome, why = self._at_once(request.verb)
         act = OperatorAct(
             number=self.acts.next_number,
-            at=self._clock(),
+            at=self._state.clock.now,
             verb=request.verb,
             scope=scope,
             arguments=arguments_of(request),
@@ -147,7 +134,7 @@ class Operator:
             sentence=self._with_shared(request.verb, scope, _did(request, scope)),
             outcome=outcome,
             why=why,
-            ended_at=self._clock() if outcome is Outcome.FAILED else None,
+            ended_at=self._state.clock.now if outcome is Outcome.FAILED else None,
         )
         self.acts.add(act, self._doing.sent)
         self._journal(act, act.sentence)
@@ -158,7 +145,7 @@ class Operator:
     def look(self) -> bool:
         """Journal the ends of acts that devices carry out; True where one has ended."""
         news = False
-        for act, entries in self.acts.ended(self._clock()):
+        for act, entries in self.acts.ended(self._state.clock.now):
             self._journal(act, act.ended, act.outcome)
             self._learn(act.verb, entries)
             news = True
@@ -193,9 +180,9 @@ class Operator:
         for entry in entries:
             tried = (verb, entry.command.robot)
             if entry.state is State.DONE:
-                self._cells[entry.cell].in_vain.discard(tried)
+                self._state.cells[entry.cell].in_vain.discard(tried)
             elif not was_broken_off(entry):
-                self._cells[entry.cell].in_vain.add(tried)
+                self._state.cells[entry.cell].in_vain.add(tried)
 
     def _journal(self, act: OperatorAct, sentence: Sentence, outcome: Outcome | None = None) -> None:
         entry = Journal(
@@ -206,14 +193,14 @@ class Operator:
             sentence=sentence,
             outcome=outcome,
         )
-        self._dispatcher.outbox.append(entry)
+        self._state.dispatcher.outbox.append(entry)
 
     def _with_shared(self, verb: Verb, scope: str, did: Sentence) -> Sentence:
         """The sentence about an act; of a cell's stop also that its shared devices stop for other cells."""
-        cell = self._cells.get(scope) if verb.row.stops else None
+        cell = self._state.cells.get(scope) if verb.row.stops else None
         if cell is None or not cell.cell.shared:
             return did
-        cells_of = self._dispatcher.model.cells_of
+        cells_of = self._state.dispatcher.model.cells_of
         others = {other.name: None for name in cell.cell.shared for other in cells_of[name]}
         others.pop(scope)
         return STOPS_SHARED(did=did, devices=cell.cell.shared, cells=tuple(others), scope=scope)

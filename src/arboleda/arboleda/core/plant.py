@@ -1,4 +1,39 @@
-"""The plant: `Plant.step(now, events) -> commands and notices` is where all state changes."""
+"""The plant: `Plant.step(now, events) -> commands and notices` is where all state changes.
+
+**Theory of operation.** A plant has no clock, no thread and no I/O. A process (`runtime/`), the simulator or
+a test hands it what has happened, each event with its time, and carries out what it returns. The same model,
+memory, times and events give the same commands and notices; so a record of the events can be run again.
+
+A step has these phases, in this order:
+
+1. *Late departures.* A command that left late is due later. This precedes all that looks at deadlines.
+2. *Absence.* Where the plant did nothing for longer than robots wait for it, they have stopped by themselves.
+   So cells at work are held before any event is taken in, and requests go behind the reports: people mean
+   the robots as they stand now.
+3. *Events*, in order. Before each one the deadlines expire that came earlier, so a late step with many events
+   decides as punctual steps would have. A report changes what is believed of a device, and ends commands by
+   evidence. A request is judged by all reports before it, and answered at once. Both mark in `News` the cells
+   that have to be looked at.
+4. *Deadlines* up to now: commands that are late, robots that are silent.
+5. *Zones* follow what was heard: a robot that is seen outside gives its zone back, one whose place is unknown
+   has it quarantined. This precedes the trees, which ask for zones by all that was heard.
+6. *Rounds.* Each marked cell does what it can: it leaves a state that waits, ticks its tree, starts its next
+   task. One cell may give another more to do, with a zone or a shared device. So rounds go on until no cell
+   does anything. Trees send commands here, and an act of phase 3 that begins a tree ticks it once.
+7. *Acts.* What an operator asked of devices has ended by now, where this step showed it; the journal says so.
+8. *Heartbeat.* Robots stop by themselves without it, so it comes last: the step before it has ended.
+
+Commands and notices are returned in the order in which they arose. Not all may leave alike:
+
+- A stop waits for nothing. It leaves before anything of its step is kept; and while a step is at work, the
+  process sends it beside the step (`departures/stop_lane.py`), which repeats it: two stops are one stop.
+- Any other command leaves once the notices for which `precedes_commands` is true are durable: a latch, a task
+  that begins. So a plant that is killed at any instant knows afterwards all that its robots were told.
+- People are told of a notice once it is durable. Other notices than these become durable behind the commands.
+
+What raises while it works for a cell ends the work of that cell, not that of the plant (`CellGuard`). What
+the parts of a plant share is in `PlantState`; `CellRun` is one cell, and changes its state by a table alone.
+"""
 
 from __future__ import annotations
 
@@ -64,6 +99,7 @@ from .intake import Intake
 from .news import News
 from .operator import CLOCK_AHEAD, CLOCK_BACK, RESTART_UNWANTED, RESTART_WANTED, Operator
 from .people import People
+from .plant_state import PlantState
 from .revisions import Revisions
 from .rounds import Rounds
 from .task_desk import TaskDesk
@@ -108,27 +144,32 @@ class Plant:
         self.model = model
         self.epoch = epoch
         self.now = now
-        clock = partial(getattr, self, "now")  # trees read it all the time: this costs no Python call
-        self.intake = Intake(model, epoch)
-        self.dispatcher = dispatcher = Dispatcher(model, epoch, memory)
+        dispatcher = Dispatcher(model, epoch, memory)
         if memory.get(Fact.QUARANTINE):
             for belief in dispatcher.beliefs.values():
                 if belief.robot.goes:  # its first report may be older than its last move of an earlier start
                     belief.stillness.doubt(until=now + SHORTEST_ABSENCE_S)
-        self.zones = Zones((*model.zones, *model.shared), memory.get(Fact.QUARANTINE, {}))
-        self.cells: dict[str, CellRun] = {}
         self.revisions = {cell.name: 0 for cell in model.cells}
-        self._news = news = News(self.revisions)
-        self._tasks = TaskDesk(self.cells, dispatcher, self.intake, news, clock)
-        self.cells |= {cell.name: self._run(cell, clock, recipes or {}) for cell in model.cells}
-        self._guard = guard = CellGuard(self.cells, dispatcher, news, clock)
-        self._operator = Operator(self.cells, dispatcher, self.zones, self.intake, clock, guard.break_down)
+        state = PlantState(
+            clock=self,
+            dispatcher=dispatcher,
+            zones=Zones((*model.zones, *model.shared), memory.get(Fact.QUARANTINE, {})),
+            intake=Intake(model, epoch),
+            news=News(self.revisions),
+        )
+        self.dispatcher, self.zones, self.intake = dispatcher, state.zones, state.intake
+        self._news = news = state.news
+        self._tasks = TaskDesk(state)
+        self.cells = state.cells
+        self.cells |= {cell.name: self._run(cell, recipes or {}) for cell in model.cells}
+        self._guard = guard = CellGuard(state)
+        self._operator = Operator(state, guard.break_down)
         self.provoked = ProvokedFaults()
-        self._advisor = Advisor(self.cells, self._operator.refusal)
-        self._watch = ZoneWatch(self.cells, dispatcher, self.zones, guard)
-        self._rounds = Rounds(self.cells, dispatcher, news, guard, self._watch)
-        self._people = People(self.cells, dispatcher, self._operator, news, guard, self._rounds)
-        revisions = Revisions(self.versions, self.cells, dispatcher, self.intake, news, self._use)
+        self._advisor = Advisor(state, self._operator.refusal)
+        self._watch = ZoneWatch(state, guard)
+        self._rounds = Rounds(state, guard, self._watch)
+        self._people = People(state, self._operator, guard, self._rounds)
+        revisions = Revisions(state, self.versions, self._use)
         self._runs = {
             name: [self.cells[cell.name] for cell in cells] for name, cells in model.cells_of.items()
         }
@@ -136,16 +177,14 @@ class Plant:
         self._steps = False
         self._tasks.take_back(kept)
         end_teaching(self.cells, dispatcher.memory)
-        self._first_homing = HomingAtStart(
-            model, dispatcher.beliefs, self._operator.scopes, self._operator.homing
-        )
+        self._first_homing = HomingAtStart(state, self._operator.scopes, self._operator.homing)
         self._handlers: dict[type, Callable[[Any], None]] = {
             TaskRequest: self._tasks.take,
             OperatorRequest: self._people.operate,
             Jog: self._people.jog,
             Undelivered: self._on_undelivered,
             Interference: self._on_interference,
-            Uncontested: self._on_uncontested,
+            Uncontested: lambda event: dispatcher.believe_again(event.robot, event.said),
             FaultByHand: self._on_fault_by_hand,
             ClockSet: partial(_note_clock, news, self.provoked, dispatcher.outbox),
             Shutdown: self._on_shutdown,
@@ -165,23 +204,21 @@ class Plant:
     def step(self, now: float, events: Iterable[Event]) -> list[Command | Notice]:
         """Take in `events` in order, then deadlines up to `now` (s, never decreasing); return what to send.
 
-        Zones follow the events, and trees follow the zones: a tree asks for a zone by all that was heard.
+        The module says its phases; the numbers are those there.
         """
         events, away_s = [*events], now - self.now
-        if LateDeparture in map(type, events):
+        if LateDeparture in map(type, events):  # 1
             events = self._without_late_departures(events)
         due = self.next_deadline if self._due is None else self._due
-        if self._steps and away_s > self.away_after_s:
+        if self._steps and away_s > self.away_after_s:  # 2
             self._come_back(away_s)
             events = _requests_last(events, now)
         if (pause_s := now - self._next_beat + HEARTBEAT_S) > LATE_S:
             self.dispatcher.beat_pauses.note(now, pause_s)
         self.now, self._steps = now, True
-        for event in events:
-            # Deadlines expire between events, in the order of time. So a late step, with many events at
-            # once, decides as punctual steps would have; a report that comes at a deadline is still in time.
+        for event in events:  # 3
             if event.at > due:
-                limit = math.nextafter(event.at, -math.inf)
+                limit = math.nextafter(event.at, -math.inf)  # a report that comes at a deadline is in time
                 if limit >= due:
                     self.dispatcher.expire(limit, now, self._guard.run)
             if isinstance(event, Report):
@@ -194,20 +231,20 @@ class Plant:
                     self._news.revised.update(self.cells)
                 self._guard.told.clear()
                 self._handlers[type(event)](event)
-        if now >= due:
+        if now >= due:  # 4
             self.dispatcher.expire(now, now, self._guard.run)
-        if self._watch.interlocked:
+        if self._watch.interlocked:  # 5
             self._watch.follow_interlocks()
         if self.zones.is_used:
             self._watch.look()
-        self._rounds.go(self.now)
-        if self._operator.acts.under_way:
+        self._rounds.go(now)  # 6
+        if self._operator.acts.under_way:  # 7
             self._news.changes += self._operator.look()
             self._news.revised.update(self.cells)
         for name in self._news.revised:
             self.revisions[name] += 1
         self._news.revised.clear()
-        if now >= self._next_beat:
+        if now >= self._next_beat:  # 8
             self._next_beat = now + HEARTBEAT_S
             self.dispatcher.outbox.append(Heartbeat(epoch=self.epoch))
         self._due = None
@@ -295,7 +332,7 @@ class Plant:
         asleep = [cell.cell.name for cell in runs if not cell.context.time.wakes]
         return [name for name in asleep if name not in awake]
 
-    def _run(self, cell: Cell, clock: Callable[[], float], builders: Builders) -> CellRun:
+    def _run(self, cell: Cell, builders: Builders) -> CellRun:
         def build(order: Order, context: Context) -> Behaviour:
             make = builders.get(order.recipe) or context.cell.recipe(order.recipe).build
             return make(order, context)
@@ -303,7 +340,7 @@ class Plant:
         def ways_out(cell: str) -> Sequence[Advice]:
             return self._advisor.ways_out(cell)
 
-        context = Context(cell, self.dispatcher, self.zones, clock, self.at_work)
+        context = Context(cell, self.dispatcher, self.zones, self, self.at_work)
         stop = stop_of(cell, self.model, self.dispatcher.latches)
         return CellRun(cell, context, self._tasks.tell, build, ways_out, stop)
 
@@ -361,9 +398,6 @@ class Plant:
     def _on_interference(self, event: Interference) -> None:
         if event.robot in self.dispatcher.beliefs:
             self.dispatcher.interfere(event.robot, event.sentence, event.at, obeyed=True)
-
-    def _on_uncontested(self, event: Uncontested) -> None:
-        self.dispatcher.believe_again(event.robot, event.said)
 
     def _on_fault_by_hand(self, event: FaultByHand) -> None:
         self._news.changes += 1

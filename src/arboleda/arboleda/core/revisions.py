@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.errors import TextError
 from arboleda.model.messages import CellRevised, Journal, Revision, RevisionAnswer
 from arboleda.model.outside import plain
@@ -14,9 +13,9 @@ from arboleda.model.revision import obstacle, revised
 from arboleda.model.sentence import Phrase, Sentence
 
 from .cell import CellRun, NextVersion
-from .intake import Intake, gone
-from .news import News
+from .intake import gone
 from .operator import PUT_TO_WORK
+from .plant_state import PlantState
 
 UNKNOWN_VERSION = Phrase("revision.unknown", "the plant has no version {number}")
 NOT_WHILE_IT_RUNS = Phrase("revision.refused", "a plant that runs cannot take version {number}: {why}")
@@ -27,26 +26,17 @@ class Revisions:
     """Versions that can be put to work, by digest; `use` makes another model that of the plant."""
 
     def __init__(
-        self,
-        versions: dict[str, PlantModel],
-        cells: dict[str, CellRun],
-        dispatcher: Dispatcher,
-        intake: Intake,
-        news: News,
-        use: Callable[[PlantModel], None],
+        self, state: PlantState, versions: dict[str, PlantModel], use: Callable[[PlantModel], None]
     ) -> None:
+        self._state = state
         self._versions = versions
-        self._cells = cells
-        self._dispatcher = dispatcher
-        self._intake = intake
-        self._news = news
         self._use = use
 
     def take(self, event: Revision) -> None:
         """Have each cell take another version once it rests. Tasks that wait are read by it at once."""
-        self._news.changes += 1
+        self._state.news.changes += 1
         version, number = event.version, event.version.number
-        model, present = self._versions.get(version.digest), self._dispatcher.model
+        model, present = self._versions.get(version.digest), self._state.dispatcher.model
         if model is None:
             self._refuse(event, UNKNOWN_VERSION(number=number))
             return
@@ -54,21 +44,23 @@ class Revisions:
             self._refuse(event, NOT_WHILE_IT_RUNS(number=number, why=why))
             return
         cells = tuple(map(revised, present.cells, model.cells))
-        self._intake.put_last = version.digest
-        self._dispatcher.outbox.append(_put_to_work(event))
-        self._intake.model = replace(model, cells=cells)
-        cancelled = [id for run in self._cells.values() for id in self._without_unfit(run, version.digest)]
-        for run, cell in zip(self._cells.values(), cells, strict=True):
+        self._state.intake.put_last = version.digest
+        self._state.dispatcher.outbox.append(_put_to_work(event))
+        self._state.intake.model = replace(model, cells=cells)
+        cancelled = [
+            id for run in self._state.cells.values() for id in self._without_unfit(run, version.digest)
+        ]
+        for run, cell in zip(self._state.cells.values(), cells, strict=True):
             run.following = NextVersion(version=version, cell=cell, timing=model.timing, taken=self._taken)
-        self._use(replace(self._intake.model, cells=present.cells))
-        busy = [(name, run) for name, run in self._cells.items() if not run.is_between_tasks]
+        self._use(replace(self._state.intake.model, cells=present.cells))
+        busy = [(name, run) for name, run in self._state.cells.items() if not run.is_between_tasks]
         waits = tuple((name, run.task.id if run.task else "") for name, run in busy)
-        self._dispatcher.outbox.append(
+        self._state.dispatcher.outbox.append(
             RevisionAnswer(version=version, waits=waits, cancelled=tuple(cancelled), request=event.request)
         )
 
     def _refuse(self, event: Revision, why: Sentence) -> None:
-        self._dispatcher.outbox.append(
+        self._state.dispatcher.outbox.append(
             RevisionAnswer(version=event.version, refusal=why, request=event.request)
         )
 
@@ -77,7 +69,7 @@ class Revisions:
         unfit = []
         for task in [*run.queue]:
             try:
-                task.order = self._intake.still_allowed(task, version)
+                task.order = self._state.intake.still_allowed(task, version)
             except TextError as error:
                 unfit.append(task.id)
                 run.drop(task, gone(error.sentence))
@@ -85,12 +77,12 @@ class Revisions:
 
     def _taken(self, taken: NextVersion) -> None:
         """Go by the version that a cell has just taken."""
-        name, present = taken.cell.name, self._dispatcher.model
+        name, present = taken.cell.name, self._state.dispatcher.model
         cells = tuple(taken.cell if cell.name == name else cell for cell in present.cells)
         self._use(replace(present, cells=cells))
-        self._news.revised.add(name)
-        self._news.changes += 1
-        self._dispatcher.outbox.append(CellRevised(cell=name, version=taken.version))
+        self._state.news.revised.add(name)
+        self._state.news.changes += 1
+        self._state.dispatcher.outbox.append(CellRevised(cell=name, version=taken.version))
 
 
 def _put_to_work(event: Revision) -> Journal:

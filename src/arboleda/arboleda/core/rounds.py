@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Fact, Notice, Remember, TaskChanged, TaskState
@@ -14,7 +13,7 @@ from .cell import CellRun
 from .cell_guard import CellGuard
 from .cell_steps import advance
 from .earlier_start import trail_of
-from .news import News
+from .plant_state import PlantState
 from .zone_watch import ZoneWatch
 
 ROUND_BOUND = 100  # rounds in one step; more means cells that wake each other for ever
@@ -23,31 +22,22 @@ ROUND_BOUND = 100  # rounds in one step; more means cells that wake each other f
 class Rounds:
     """Rounds over the cells of a plant."""
 
-    def __init__(
-        self,
-        cells: dict[str, CellRun],
-        dispatcher: Dispatcher,
-        news: News,
-        guard: CellGuard,
-        watch: ZoneWatch,
-    ) -> None:
-        self._cells = cells
-        self._dispatcher = dispatcher
-        self._news = news
+    def __init__(self, state: PlantState, guard: CellGuard, watch: ZoneWatch) -> None:
+        self._state = state
         self._guard = guard
         self._watch = watch
-        self._order = {name: number for number, name in enumerate(cells)}
+        self._order = {name: number for number, name in enumerate(state.cells)}
         self._wakes: dict[str, float] = {}  # by cell
         self._next_wake = math.inf
         self._unplanned: set[str] = set()  # cells whose wakes may have changed
-        self._shares = bool(dispatcher.model.shared)
+        self._shares = bool(state.dispatcher.model.shared)
 
     @property
     def next_wake(self) -> float:
         """The time at which a tree is to be woken next, s; worked out once it is asked for."""
         if self._unplanned:
             for name in self._unplanned:
-                at = self._cells[name].due
+                at = self._state.cells[name].due
                 self._wakes[name] = math.inf if at is None else at
             self._unplanned.clear()
             self._next_wake = min(self._wakes.values())
@@ -55,7 +45,7 @@ class Rounds:
 
     def go(self, now: float) -> None:
         """Let each cell to which something happened do what it can, round after round until none does."""
-        ledger, news = self._dispatcher.ledger, self._news
+        ledger, news = self._state.dispatcher.ledger, self._state.news
         soon = math.nextafter(now, math.inf)  # a wake after a hold may be earlier by one rounding
         if self._next_wake <= soon:
             woken = [name for name, at in self._wakes.items() if at <= soon]
@@ -95,7 +85,7 @@ class Rounds:
         text = trail_of(run)
         if text is None or run.task is None:
             return
-        outbox = self._dispatcher.outbox
+        outbox = self._state.dispatcher.outbox
         first = before
         while first < len(outbox) and not _waits(outbox[first], run.task):
             first += 1
@@ -103,16 +93,16 @@ class Rounds:
         for each in outbox[first:]:
             (facts if _is_fact(each) else others).append(each)
         outbox[first:] = facts
-        self._dispatcher.memory.remember(Fact.STEP, run.task.id, text)
+        self._state.dispatcher.memory.remember(Fact.STEP, run.task.id, text)
         outbox += others
 
     def _advanced(self, name: str, *, woken: bool) -> bool:
         """Let a cell do what it can; True where it did anything."""
-        before = len(self._dispatcher.outbox)
+        before = len(self._state.dispatcher.outbox)
         try:
-            did = advance(self._cells[name], woken=woken)
+            did = advance(self._state.cells[name], woken=woken)
             if did or woken:
-                self.keep_trail(self._cells[name], before)
+                self.keep_trail(self._state.cells[name], before)
         except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
             self._guard.break_down(name, error)
             return False

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
-from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.cell_states import CellState
 from arboleda.model.errors import QueueFull, TextError
 from arboleda.model.messages import (
@@ -22,11 +21,9 @@ from arboleda.model.sentence import OWN, Phrase, Sentence
 from arboleda.model.task import Order, Task
 
 from . import reasons
-from .cell import CellRun
 from .choosing import PastTimes, Prospect, best, prospect
-from .earlier_start import walk_back
-from .intake import CUT_OFF, OTHER_VERSION, Intake
-from .news import News
+from .intake import CUT_OFF, OTHER_VERSION
+from .plant_state import PlantState
 
 DEFECT = Phrase("plant.defect", "this failed on an internal error; the log has its details")
 OWN_CYCLE = Phrase("cell.own_cycle", "{arm} is in its own cycle; its plant file refuses a trigger then")
@@ -35,25 +32,14 @@ OWN_CYCLE = Phrase("cell.own_cycle", "{arm} is in its own cycle; its plant file 
 class TaskDesk:
     """Desk for the tasks of a plant."""
 
-    def __init__(
-        self,
-        cells: dict[str, CellRun],
-        dispatcher: Dispatcher,
-        intake: Intake,
-        news: News,
-        clock: Callable[[], float],
-    ) -> None:
-        self._cells = cells
-        self._dispatcher = dispatcher
-        self._intake = intake
-        self._news = news
-        self._clock = clock
+    def __init__(self, state: PlantState) -> None:
+        self._state = state
 
     def take_back(self, records: Iterable[KeptTask]) -> None:
         """Queue the tasks that waited when an earlier start ended, and hold those at work at their steps."""
-        now, memory = self._clock(), self._dispatcher.memory
-        tasks = [(each.state, self._intake.take_back(each, now)) for each in records]
-        for name, run in self._cells.items():
+        now, memory = self._state.clock.now, self._state.dispatcher.memory
+        tasks = [(each.state, self._state.intake.take_back(each, now)) for each in records]
+        for name, run in self._state.cells.items():
             own = [task for _, task in tasks if task.order.cell == name]
             waiting = [task for task in own if task.state is TaskState.QUEUED]
             at_work = [task for task in own if task.state is TaskState.RUNNING]
@@ -61,8 +47,8 @@ class TaskDesk:
             for task in at_work:
                 trail = memory.value(Fact.STEP, task.id)
                 if trail is not None and run.task is None and run.state is CellState.IDLE:
-                    walk_back(run, task, trail)
-        at_work_here = {run.task for run in self._cells.values()}
+                    run.take_up(task, trail)
+        at_work_here = {run.task for run in self._state.cells.values()}
         for was, task in tasks:
             if task.state is TaskState.RUNNING and task not in at_work_here:
                 task.fail(Failure(reason=Reason.INTERRUPTED, sentence=CUT_OFF()))
@@ -76,33 +62,36 @@ class TaskDesk:
         """Accept a request for a task, or refuse it."""
         try:
             if request.kept is not None:
-                self._intake.recall(request.kept)
-            task = self._intake.task(request.text, lambda orders: best(self.prospects(orders)))
-            if not self._intake.knows(task):
-                if request.version and self._intake.put_last not in ("", request.version):
+                self._state.intake.recall(request.kept)
+            task = self._state.intake.task(request.text, lambda orders: best(self.prospects(orders)))
+            if not self._state.intake.knows(task):
+                if request.version and self._state.intake.put_last not in ("", request.version):
                     raise TextError(OTHER_VERSION())
                 task.version = request.version
                 if request.choice and task.choice is None:
                     task.choice = OWN(text=plain(request.choice))
                 self._refuse_trigger(request, task)
-                self._cells[task.order.cell].queue.add(task)
-                self._news.touched.add(task.order.cell)
-                self._news.revised.add(task.order.cell)
-                self._intake.remember(task)
+                self._state.cells[task.order.cell].queue.add(task)
+                self._state.news.touched.add(task.order.cell)
+                self._state.news.revised.add(task.order.cell)
+                self._state.intake.remember(task)
         except (TextError, QueueFull) as refusal:
             for_now = isinstance(refusal, QueueFull)
-            self._dispatcher.outbox.append(_refused(request, refusal.sentence, for_now=for_now))
+            self._state.dispatcher.outbox.append(_refused(request, refusal.sentence, for_now=for_now))
             return
         except Exception as error:  # noqa: BLE001 - whoever asks gets an answer, and the plant goes on
-            self._dispatcher.outbox += [_refused(request, DEFECT()), InternalError(cell="", error=error)]
+            self._state.dispatcher.outbox += [
+                _refused(request, DEFECT()),
+                InternalError(cell="", error=error),
+            ]
             return
         self.tell(task, request.request)
 
     def tell(self, task: Task, request: str | None = None) -> None:
         """Tell of a change of a task."""
-        self._news.changes += 1
+        self._state.news.changes += 1
         sentence = (
-            reasons.of_waiting(self._cells[task.order.cell]) if task.state is TaskState.QUEUED else None
+            reasons.of_waiting(self._state.cells[task.order.cell]) if task.state is TaskState.QUEUED else None
         )
         change = TaskChanged(
             task=task.id,
@@ -116,18 +105,20 @@ class TaskDesk:
             course=task.course,
             unchecked=task.unchecked,
         )
-        self._dispatcher.outbox.append(change)
+        self._state.dispatcher.outbox.append(change)
         if task.ended_at is not None:
-            self._dispatcher.memory.remember(Fact.STEP, task.id, None)
+            self._state.dispatcher.memory.remember(Fact.STEP, task.id, None)
 
     def prospects(self, orders: Iterable[Order]) -> list[Prospect]:
         """The promises of the cells that may carry out one of these orders."""
-        times = PastTimes(self._intake.tasks.values())
-        return [prospect(order, self._cells[order.cell], times, self._clock()) for order in orders]
+        times = PastTimes(self._state.intake.tasks.values())
+        return [
+            prospect(order, self._state.cells[order.cell], times, self._state.clock.now) for order in orders
+        ]
 
     def _refuse_trigger(self, request: TaskRequest, task: Task) -> None:
         """Raise QueueFull for a machine's start signal that the cell does not take now."""
-        cell = self._cells[task.order.cell]
+        cell = self._state.cells[task.order.cell]
         busy = cell.queue.in_its_own_cycle(cell.task) if request.trigger else None
         if busy is not None:
             raise QueueFull(OWN_CYCLE(arm=busy))

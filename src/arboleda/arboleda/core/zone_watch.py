@@ -5,12 +5,11 @@ from __future__ import annotations
 from functools import partial
 from itertools import filterfalse
 
-from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.dispatch.zones import Zones
 from arboleda.model.cell_states import CellState
 
 from .cell import CellRun
 from .cell_guard import CellGuard
+from .plant_state import PlantState
 
 
 class ZoneWatch:
@@ -19,18 +18,14 @@ class ZoneWatch:
     `interlocked` has each device that may occupy zones, with its cell; a shared device with its first cell.
     """
 
-    def __init__(
-        self, cells: dict[str, CellRun], dispatcher: Dispatcher, zones: Zones, guard: CellGuard
-    ) -> None:
+    def __init__(self, state: PlantState, guard: CellGuard) -> None:
         self.interlocked = [
             (run, device)
-            for name, run in cells.items()
+            for name, run in state.cells.items()
             for device in run.cell.interlocked
-            if dispatcher.model.cell_of[device].name == name
+            if state.dispatcher.model.cell_of[device].name == name
         ]
-        self._cells = cells
-        self._dispatcher = dispatcher
-        self._zones = zones
+        self._state = state
         self._guard = guard
 
     def follow_interlocks(self) -> None:
@@ -40,8 +35,8 @@ class ZoneWatch:
 
     def look(self) -> None:
         """Quarantine or give back the zones of robots, then shared devices."""
-        inside = self._zones.robots
-        for name, cell in self._cells.items() if inside else ():
+        inside = self._state.zones.robots
+        for name, cell in self._state.cells.items() if inside else ():
             # A shared robot may home for a cell without zones, and holds those of its other cells meanwhile.
             movers = filter(inside.__contains__, cell.cell.workspaces)
             machines = filter(inside.__contains__, cell.cell.interlocked)
@@ -52,8 +47,8 @@ class ZoneWatch:
 
     def give_back_shared(self) -> None:
         """Give back shared devices that idle cells hold; a silent device stays with its cell."""
-        for device in self._dispatcher.model.shared:
-            holder = self._cells.get(self._zones.holder(device) or "")
+        for device in self._state.dispatcher.model.shared:
+            holder = self._state.cells.get(self._state.zones.holder(device) or "")
             if holder is not None:
                 # a cell that is held, stopped or taught keeps its devices
                 ended = holder.state is CellState.IDLE and holder.manual.teaching is None
@@ -65,8 +60,8 @@ class ZoneWatch:
 
         Others are given back once no step of the cell's task can need them, and the robot is seen outside.
         """
-        belief = self._dispatcher.beliefs[robot]
+        belief = self._state.dispatcher.beliefs[robot]
         if not belief.online or belief.unhomed:
-            self._zones.quarantine(robot)
+            self._state.zones.quarantine(robot)
         elif cell.manual.teaching is None and (cell.tree is None or cell.stranded):
             cell.context.zones.leave(robot)

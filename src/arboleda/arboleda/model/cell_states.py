@@ -42,7 +42,7 @@ class Cause(str, Enum):
     """Cause for which a cell changes its state.
 
     `stuck` is a recovery that failed, a part in the effector of an idle arm, or a defect. `away` is an
-    absence of the plant, as after a suspend of its machine.
+    absence of the plant: a suspend of its machine, or its end while a task was at work.
     """
 
     TASK = "task"
@@ -65,6 +65,7 @@ NO_WAY = Phrase("cell.no_way", "{cell} is {state}: no {cause} there")
 TABLE: dict[tuple[CellState, Cause], CellState] = {
     (CellState.IDLE, Cause.TASK): CellState.EXECUTE,
     (CellState.IDLE, Cause.STUCK): CellState.HELD,
+    (CellState.IDLE, Cause.AWAY): CellState.HELD,
     (CellState.EXECUTE, Cause.ENDED): CellState.IDLE,
     (CellState.EXECUTE, Cause.STUCK): CellState.HELD,
     (CellState.EXECUTE, Cause.HOLD): CellState.HOLDING,

@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from typing import Protocol
 
 LEAST_S = 0.01
 """Shortest pause before a further try or round: a tree is ticked only so often at one instant."""
+
+
+class Clock(Protocol):
+    """The plant's time."""
+
+    now: float
+    """s; it never stands still."""
 
 
 class CellTime:
@@ -16,7 +23,7 @@ class CellTime:
     the plant's time; None while the cell is held.
     """
 
-    def __init__(self, clock: Callable[[], float]) -> None:
+    def __init__(self, clock: Clock) -> None:
         self.wakes: list[float] = []
         self.next_deadline: float | None = None
         self.paused_s = 0.0  # how long the cell was held in all, but for a hold that lasts
@@ -26,24 +33,24 @@ class CellTime:
     @property
     def now(self) -> float:
         """The cell's time, s."""
-        at = self._clock() if self._paused_at is None else self._paused_at
+        at = self._clock.now if self._paused_at is None else self._paused_at
         return at - self.paused_s
 
     @property
     def plant_now(self) -> float:
         """The plant's time, s; it never stands still."""
-        return self._clock()
+        return self._clock.now
 
     def pause(self, at: float | None = None) -> None:
         """Let the cell's time stand from now on, or from `at`, s of the plant's time."""
         if self._paused_at is None:
-            self._paused_at = self._clock() if at is None else at
+            self._paused_at = self._clock.now if at is None else at
             self._plan()
 
     def go_on(self) -> None:
         """Let the cell's time pass again."""
         if self._paused_at is not None:
-            self.paused_s += self._clock() - self._paused_at
+            self.paused_s += self._clock.now - self._paused_at
             self._paused_at = None
             self._plan()
 

@@ -15,7 +15,7 @@ from arboleda.model.plant_model import Cell, Timing
 from .cell_commands import CellCommands
 from .cell_devices import CellDevices
 from .cell_robots import CellRobots
-from .cell_time import CellTime
+from .cell_time import CellTime, Clock
 from .cell_zones import CellZones
 from .failures import Failures
 from .handling import Handling
@@ -38,7 +38,7 @@ class Context:
         cell: Cell,
         dispatcher: Dispatcher,
         zones: Zones,
-        clock: Callable[[], float],
+        clock: Clock,
         at_work: Callable[[str], bool],
     ) -> None:
         self.cell = cell

@@ -68,7 +68,7 @@ def tells_ends_again(patch: Patch) -> None:
         take_back(self, rows)
         for each in rows:
             if each.state in ENDED:
-                self.tell(self._intake.tasks[each.id])
+                self.tell(self._state.intake.tasks[each.id])
 
     patch.setattr(TaskDesk, "take_back", loudly)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.zones import NONE
 from arboleda.model.commands import Question
 from arboleda.model.messages import OperatorRequest
@@ -14,6 +13,7 @@ from arboleda.model.plant_model import Link
 from arboleda.model.recipe import matching
 from arboleda.model.sentence import Phrase
 
+from ..plant_state import PlantState
 from .scopes import VerbRefusal
 
 NO_PERSON = Phrase("refusal.no_person", "{person} is no person of this plant; people: {known}")
@@ -30,17 +30,18 @@ QUESTION_OVER = Phrase(
 class Answering:
     """Answers of the people of a plant."""
 
-    def __init__(self, dispatcher: Dispatcher, clock: Callable[[], float]) -> None:
-        self._dispatcher = dispatcher
-        self._clock = clock
+    def __init__(self, state: PlantState) -> None:
+        self._state = state
 
     def plan(self, request: OperatorRequest, person: str) -> Callable[[], None]:
         """Plan an answer to the open question of a person; one that names another question is refused."""
         id, word = request.argument("question"), str(request.argument("answer") or "")
-        people = [name for name, robot in self._dispatcher.model.robots.items() if robot.link is Link.SCREEN]
+        people = [
+            name for name, robot in self._state.dispatcher.model.robots.items() if robot.link is Link.SCREEN
+        ]
         if person not in people:
             raise VerbRefusal(NO_PERSON(person=quoted(person), known=tuple(people) or NONE()))
-        entry = self._dispatcher.ledger.question(person)
+        entry = self._state.dispatcher.ledger.question(person)
         if entry is None and id is not None:
             raise VerbRefusal(QUESTION_OVER(question=id, person=person))
         if entry is None:
@@ -54,4 +55,4 @@ class Answering:
         return partial(self._answer, person, answer)
 
     def _answer(self, person: str, answer: str) -> None:
-        self._dispatcher.answer(person, answer, self._clock())
+        self._state.dispatcher.answer(person, answer, self._state.clock.now)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from arboleda.model.cell_states import Cause, CellState
+from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Failure, OperatorRequest, Reason, TaskState
 from arboleda.model.sentence import Phrase, Sentence
 
 from ..cell import CellRun
-from ..intake import Intake
+from ..plant_state import PlantState
 from .cell_by_cell import CellByCell, Doing, in_states
 from .scopes import Scopes, VerbRefusal
 
@@ -28,16 +28,16 @@ _begun = in_states(CellState.EXECUTE, CellState.HELD)
 class Cancelling:
     """Cancelling of tasks that wait or run."""
 
-    def __init__(self, scopes: Scopes, intake: Intake, doing: Doing) -> None:
+    def __init__(self, state: PlantState, scopes: Scopes, doing: Doing) -> None:
+        self._state = state
         self._scopes = scopes
-        self._intake = intake
         self._in_cells = CellByCell(
-            doing, check=_not_cancellable, do=lambda cell, robots: _cancel(cell, CANCELLED_BY_OPERATOR)
+            doing, check=_not_cancellable, do=lambda cell, robots: cell.cancel(CANCELLED_BY_OPERATOR)
         )
 
     def plan(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
         """Plan the end of one task, or of those that run in a scope."""
-        if scope.lstrip("#") in self._intake.tasks:
+        if scope.lstrip("#") in self._state.intake.tasks:
             failure = CANCELLED_BY_CLIENT if request.client else CANCELLED_BY_OPERATOR
             return self._planned_cancel(scope.lstrip("#"), failure)
         scope = self._scopes.scope_of_tasks(scope)
@@ -45,7 +45,7 @@ class Cancelling:
         return self._in_cells.planned(robots, self._scopes.cells_in(request.verb, scope, robots))
 
     def _planned_cancel(self, id: str, failure: Failure) -> Callable[[], None]:
-        task = self._intake.tasks[id]
+        task = self._state.intake.tasks[id]
         cell = self._scopes.cells[task.order.cell]
         if task.state is TaskState.QUEUED:
             return partial(cell.drop, task, failure)
@@ -53,22 +53,10 @@ class Cancelling:
             raise VerbRefusal(TASK_ENDED(task=id, state=TASK_STATES[task.state]()))
         if why := _not_cancellable(cell, frozenset()):
             raise VerbRefusal(why)
-        return partial(_cancel, cell, failure)
+        return partial(cell.cancel, failure)
 
 
 def _not_cancellable(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
     if cell.task is None:
         return NO_RUNNING_TASK(cell=cell.cell.name)
     return _begun(cell, robots)
-
-
-def _cancel(cell: CellRun, failure: Failure) -> None:
-    """End the running task: halt, recover, then it is cancelled."""
-    cell.cancelling = True
-    if cell.task is not None:
-        cell.task.fail(failure)
-    held = cell.state is CellState.HELD
-    if held:
-        cell.become(Cause.ABANDON)
-    if held or not cell.run.recovering:
-        cell.recover()

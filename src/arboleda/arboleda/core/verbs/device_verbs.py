@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.obstacles import Make
 from arboleda.model.commands import Query, Switch
 from arboleda.model.messages import OperatorRequest, Reason
@@ -14,6 +13,7 @@ from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import OWN, Phrase, Sentence
 
 from ..cell import CellRun
+from ..plant_state import PlantState
 from ..readiness import STILL_DOING
 from ..teaching import ZONE_OF_OTHER
 from .cell_by_cell import Doing, at_rest
@@ -36,16 +36,16 @@ def works(robot: Robot) -> Iterator[tuple[str, Make]]:
 class DeviceVerbs:
     """Verbs of devices; none leads its device into a zone that a robot holds."""
 
-    def __init__(self, scopes: Scopes, dispatcher: Dispatcher, doing: Doing) -> None:
+    def __init__(self, state: PlantState, scopes: Scopes, doing: Doing) -> None:
+        self._state = state
         self._scopes = scopes
-        self._dispatcher = dispatcher
         self._doing = doing
 
     def plan(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
         """Plan one verb of one device, in the words of `works`."""
-        robot = self._dispatcher.model.robots.get(scope)
+        robot = self._state.dispatcher.model.robots.get(scope)
         if robot is None:
-            raise VerbRefusal(NO_SCOPE(scope=quoted(scope), known=(*self._dispatcher.beliefs,)))
+            raise VerbRefusal(NO_SCOPE(scope=quoted(scope), known=(*self._state.dispatcher.beliefs,)))
         work = " ".join(str(request.argument("work") or "").lower().split())
         known = dict(works(robot))
         make = next((make for words, make in known.items() if words.lower() == work), None)

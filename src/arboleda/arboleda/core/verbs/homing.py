@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from arboleda.dispatch.belief import ONLY_DRAWN, Belief
-from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.belief import ONLY_DRAWN
 from arboleda.dispatch.ledger import Entry
-from arboleda.dispatch.zones import Zones
 from arboleda.model.commands import Home
 from arboleda.model.messages import OperatorRequest
-from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import Phrase, Sentence
 
 from ..cell import CellRun
+from ..plant_state import PlantState
 from ..readiness import STILL_DOING
 from .cell_by_cell import AT_REST, Doing, at_rest
 from .scopes import Scopes, VerbRefusal
@@ -45,19 +44,10 @@ HOMED_MEANWHILE = Phrase("cell.homed_meanwhile", "{arm} was homed meanwhile")
 class Homing:
     """Homing of robots; none sets out for its reference while another robot is where it may come by."""
 
-    def __init__(
-        self,
-        scopes: Scopes,
-        dispatcher: Dispatcher,
-        zones: Zones,
-        doing: Doing,
-        clock: Callable[[], float],
-    ) -> None:
+    def __init__(self, state: PlantState, scopes: Scopes, doing: Doing) -> None:
+        self._state = state
         self._scopes = scopes
-        self._dispatcher = dispatcher
-        self._zones = zones
         self._doing = doing
-        self._clock = clock
         reached = [robot for cell in scopes.cells.values() for robot in cell.cell.reached]
         self._reached = {robot.name for robot in reached}
         self._homing = {robot.name for robot in reached if robot.homes}
@@ -79,7 +69,7 @@ class Homing:
     def home(self, name: str) -> Entry:
         """Have a robot run its homing routine; no other robot gets into its zones meanwhile."""
         cell = self._scopes.in_charge(name)
-        if not self._dispatcher.beliefs[name].is_cleared_by_homing:
+        if not self._state.dispatcher.beliefs[name].is_cleared_by_homing:
             _uproot(cell, name)
         users = [run for run in self._scopes.of_robots(frozenset([name])) if name in run.cell.zone_users]
         for run in (each for each in users if each.state in AT_REST):
@@ -88,7 +78,7 @@ class Homing:
             cell.context.devices.claim(name)
         for run in users:
             run.context.zones.claim(name)
-        return self._dispatcher.home(name, cell.cell.name, self._clock())
+        return self._state.dispatcher.home(name, cell.cell.name, self._state.clock.now)
 
     def not_free(self, robots: frozenset[str]) -> Sentence | None:
         """The reason why robots may not home: from where they stand they may cross any zone."""
@@ -97,7 +87,7 @@ class Homing:
             for name, space in cell.cell.workspaces.items():
                 for zone in sorted(space.zones) if name in robots else ():
                     for_task = cell.state in AT_REST and cell.context.zones.is_for_task(zone)
-                    holder_now = None if for_task else self._zones.holder(zone)
+                    holder_now = None if for_task else self._state.zones.holder(zone)
                     holder = holder_now or taken.setdefault(zone, name)
                     if holder != name:
                         return MAY_CROSS(arm=name, zone=zone, holder=holder)
@@ -105,7 +95,7 @@ class Homing:
 
     def _here(self, scope: str, robots: frozenset[str]) -> frozenset[str]:
         """The robots that are homed with a cell: not the shared robots that another cell holds."""
-        shared, holder = self._scopes.cells[scope].cell.shared, self._zones.holder
+        shared, holder = self._scopes.cells[scope].cell.shared, self._state.zones.holder
         here = frozenset(name for name in robots if name not in shared or holder(name) in (None, scope))
         if self._homing.isdisjoint(here) and (others := sorted(self._homing & robots)):
             raise VerbRefusal(WITH_OTHER(device=others[0], cell=holder(others[0]) or ""))
@@ -116,14 +106,14 @@ class Homing:
             if by_hand:
                 run = self._scopes.in_charge(name)
                 space = run.cell.workspaces.get(name)
-                self._dispatcher.declare_homed(name, space.home.q if space is not None else None)
+                self._state.dispatcher.declare_homed(name, space.home.q if space is not None else None)
                 _uproot(run, name)
             else:
                 self._doing.sent.append(self.home(name))
 
     def _not_homeable(self, name: str, *, by_hand: bool) -> Sentence | None:
         cell = self._scopes.alone.get(name) or self._scopes.in_charge(name)
-        belief = self._dispatcher.beliefs[name]
+        belief = self._state.dispatcher.beliefs[name]
         if refusal := at_rest(cell, frozenset()):
             return refusal
         if cell.manual.teaching is not None and not by_hand:
@@ -134,7 +124,7 @@ class Homing:
             return ONLY_DRAWN(robot=name)
         if not belief.robot.homes:
             return NO_HOMING(robot=name)
-        if work := self._dispatcher.ledger.work_of(name):
+        if work := self._state.dispatcher.ledger.work_of(name):
             return STILL_DOING(robot=name, doing=work.doing)
         robot, has_routine = belief.robot, belief.robot.evidence is Evidence.IDS
         if by_hand and robot.says_homed:
@@ -145,7 +135,7 @@ class Homing:
             return None
         if not has_routine:
             return CANNOT_REPORT(robot=name)
-        obstacle = self._dispatcher.obstacles.objection(partial(Home, robot=name))
+        obstacle = self._state.dispatcher.obstacles.objection(partial(Home, robot=name))
         return obstacle.sentence if obstacle else None
 
 
@@ -161,17 +151,19 @@ class HomingAtStart:
     The robots of a cell that holds a task of an earlier start stay where they are.
     """
 
-    def __init__(self, model: PlantModel, beliefs: dict[str, Belief], scopes: Scopes, homing: Homing) -> None:
+    def __init__(self, state: PlantState, scopes: Scopes, homing: Homing) -> None:
         held = (run for run in scopes.cells.values() if run.task is not None)
         staying = {robot.name for run in held for robot in run.cell.robots}
-        self.robots = {name for name, robot in model.robots.items() if robot.home_at_start} - staying
-        self._beliefs = beliefs
+        self.robots = {
+            name for name, robot in state.dispatcher.model.robots.items() if robot.home_at_start
+        } - staying
+        self._state = state
         self._scopes = scopes
         self._homing = homing
 
     def look(self, robot: str) -> None:
         """Home a robot that was heard, if its cell lets it."""
-        belief = self._beliefs[robot]
+        belief = self._state.dispatcher.beliefs[robot]
         if not belief.answered or belief.homed is None:
             return
         run = self._scopes.in_charge(robot)

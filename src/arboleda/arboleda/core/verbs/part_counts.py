@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.common_places import room_at, with_common_places
 from arboleda.model.messages import OperatorRequest
 from arboleda.model.outside import quoted
@@ -13,6 +12,7 @@ from arboleda.model.sentence import Phrase, Sentence, Value
 from arboleda.model.verb_scopes import whole
 
 from ..cell import CellRun
+from ..plant_state import PlantState
 from .scopes import Scopes, VerbRefusal
 
 NO_STATION = Phrase("refusal.no_station", "{station} is not a station of {cell}")
@@ -27,9 +27,9 @@ RACK_EMPTY = Phrase("refusal.rack_empty", "no part is known to be in the rack of
 class PartCounts:
     """Counts of parts that people change."""
 
-    def __init__(self, scopes: Scopes, dispatcher: Dispatcher) -> None:
+    def __init__(self, state: PlantState, scopes: Scopes) -> None:
+        self._state = state
         self._scopes = scopes
-        self._dispatcher = dispatcher
 
     def plan_unloading(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
         """Plan to empty one place or station; without either, all places of the cells."""
@@ -80,7 +80,7 @@ class PartCounts:
         everywhere = with_common_places(numbers_by_cell, [cell.cell for cell in cells.values()])
         for name, numbers in everywhere.items():
             cells[name].set_parts(numbers)
-        self._dispatcher.wake([*everywhere])
+        self._state.dispatcher.wake([*everywhere])
 
 
 def _with_place(cells: list[CellRun], scope: Value, place: str) -> CellRun:

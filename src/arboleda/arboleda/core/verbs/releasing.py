@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from arboleda.dispatch.dispatcher import Dispatcher
-from arboleda.dispatch.zones import Zones
 from arboleda.model.advice import sentence
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Failure, OperatorRequest, Reason
@@ -14,6 +12,7 @@ from arboleda.model.sentence import Phrase, Sentence
 from arboleda.resume.walk_back import NO_PART
 
 from ..cell import CellRun
+from ..plant_state import PlantState
 from ..readiness import STILL_DOING
 from .cell_by_cell import CellByCell, Doing
 from .homing import WITH_OTHER
@@ -35,19 +34,10 @@ AT_WORK = (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING)
 class Releasing:
     """Release of parts from the devices that hold them."""
 
-    def __init__(
-        self,
-        scopes: Scopes,
-        dispatcher: Dispatcher,
-        zones: Zones,
-        doing: Doing,
-        clock: Callable[[], float],
-    ) -> None:
+    def __init__(self, state: PlantState, scopes: Scopes, doing: Doing) -> None:
+        self._state = state
         self._scopes = scopes
-        self._dispatcher = dispatcher
-        self._zones = zones
         self._doing = doing
-        self._clock = clock
         self._in_cells = CellByCell(doing, check=self._not_releasable, do=self._release)
 
     def plan(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
@@ -77,8 +67,8 @@ class Releasing:
     def _empty(self, holding: list[tuple[CellRun, str]]) -> None:
         for cell, name in holding:
             _lose_part(cell, name)
-            self._dispatcher.effectors.declare_empty(self._dispatcher.beliefs[name])
-            self._dispatcher.wake([name])
+            self._state.dispatcher.effectors.declare_empty(self._state.dispatcher.beliefs[name])
+            self._state.dispatcher.wake([name])
 
     def _not_releasable(self, cell: CellRun, robots: frozenset[str]) -> Sentence | None:
         if cell.state in AT_WORK:
@@ -89,7 +79,7 @@ class Releasing:
         if not able:
             first = next(each.name for each in cell.cell.robots if each.name in robots)
             return self._none_able(robots, first)
-        obstacles = (self._dispatcher.obstacles.to_opening(name) for name in able)
+        obstacles = (self._state.dispatcher.obstacles.to_opening(name) for name in able)
         obstacle = next((each for each in obstacles if each), None)
         return NOT_OPENED(why=obstacle.sentence) if obstacle else None
 
@@ -98,9 +88,11 @@ class Releasing:
             if name in cell.cell.shared:
                 cell.context.devices.claim(name)
             _lose_part(cell, name)
-            make = self._dispatcher.model.robots[name].let_go
-            now, name_of_cell = self._clock(), cell.cell.name
-            self._doing.sent.append(self._dispatcher.send(make, name_of_cell, RELEASING(), now, by_hand=True))
+            make = self._state.dispatcher.model.robots[name].let_go
+            now, name_of_cell = self._state.clock.now, cell.cell.name
+            self._doing.sent.append(
+                self._state.dispatcher.send(make, name_of_cell, RELEASING(), now, by_hand=True)
+            )
 
     def _holders(self, cell: CellRun, robots: frozenset[str]) -> list[str]:
         """The robots that may hold parts and that this cell answers for."""
@@ -109,9 +101,9 @@ class Releasing:
 
     def _none_able(self, robots: frozenset[str], first: str) -> Sentence:
         """The reason why nothing can be released: no effector, or the device is with another cell."""
-        for device in sorted(robots.intersection(self._dispatcher.model.shared)):
-            holder = self._zones.holder(device)
-            if holder is not None and self._dispatcher.model.robots[device].held_fact is not None:
+        for device in sorted(robots.intersection(self._state.dispatcher.model.shared)):
+            holder = self._state.zones.holder(device)
+            if holder is not None and self._state.dispatcher.model.robots[device].held_fact is not None:
                 return WITH_OTHER(device=device, cell=holder)
         return NO_EFFECTOR(robot=first)
 

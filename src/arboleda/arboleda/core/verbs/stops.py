@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.cell_states import Cause, CellState
 from arboleda.model.sentence import Phrase, Sentence
 
 from ..cell import CellRun
+from ..plant_state import PlantState
 
 STAYS_STOPPED = Phrase(
     "refusal.stays_stopped", "{device} stays stopped while {cells} is; clear {cells} first"
@@ -24,15 +24,14 @@ UNTIL_RESET = (*STOPPING, CellState.CLEARING, CellState.STOPPED)
 class Stops:
     """Stops of robots in their cells. A shared device stays stopped as long as one of its cells is."""
 
-    def __init__(self, cells: dict[str, CellRun], dispatcher: Dispatcher) -> None:
-        self._cells = cells
-        self._dispatcher = dispatcher
+    def __init__(self, state: PlantState) -> None:
+        self._state = state
 
     def latch(self, cell: CellRun, robots: frozenset[str]) -> None:
         """Latch the robots of a cell: they stand, and take no command, until they are cleared."""
         for robot in cell.cell.robots:
             if robot.name in robots:
-                self._dispatcher.latches.latch(robot.name)
+                self._state.dispatcher.latches.latch(robot.name)
 
     def not_clearable(self, cell: CellRun, robots: frozenset[str]) -> Sentence | None:
         """The reason why robots of a cell cannot be cleared."""
@@ -42,9 +41,9 @@ class Stops:
         if others and others.keys() >= {each.name for each in cell.cell.robots if each.name in robots}:
             device, cells = next(iter(others.items()))
             return STAYS_STOPPED(device=device, cells=cells)
-        finishes = self._dispatcher.ledger.finishes
+        finishes = self._state.dispatcher.ledger.finishes
         mine = [each.name for each in cell.cell.robots if each.name in robots and not finishes(each.name)]
-        beliefs = [self._dispatcher.beliefs[name] for name in mine]
+        beliefs = [self._state.dispatcher.beliefs[name] for name in mine]
         online = [belief for belief in beliefs if belief.online]
         moving = tuple(belief.robot.name for belief in online if not belief.stillness.is_still)
         return NOT_STILL(robots=moving) if moving else None
@@ -56,8 +55,8 @@ class Stops:
         unstopped = {name for name in cell.cell.shared if not was_stopped(name)}
         for robot in cell.cell.robots:
             if robot.name in robots - unstopped and robot.name not in stay_stopped:
-                self._dispatcher.latches.unlatch(robot.name)
-        stopped = self._dispatcher.latches.stopped - stay_stopped.keys()
+                self._state.dispatcher.latches.unlatch(robot.name)
+        stopped = self._state.dispatcher.latches.stopped - stay_stopped.keys()
         if not any(robot.name in stopped for robot in cell.cell.robots):
             cell.become(Cause.CLEAR)
 
@@ -66,20 +65,22 @@ class Stops:
 
         Such a cell shares the robot, was stopped too, and is not cleared with it.
         """
-        stay_stopped, stopped = {}, self._dispatcher.latches.stopped - robots
+        stay_stopped, stopped = {}, self._state.dispatcher.latches.stopped - robots
         for name in cell.cell.shared:
-            cells = [each for each in self._dispatcher.model.cells_of[name] if stopped & {*each.own}]
-            others = tuple(each.name for each in cells if self._cells[each.name].state in STOPPING)
-            if name in robots and name in self._dispatcher.latches.stopped and others:
+            cells = [each for each in self._state.dispatcher.model.cells_of[name] if stopped & {*each.own}]
+            others = tuple(each.name for each in cells if self._state.cells[each.name].state in STOPPING)
+            if name in robots and name in self._state.dispatcher.latches.stopped and others:
                 stay_stopped[name] = others
         return stay_stopped
 
     def reset(self, cell: CellRun, robots: frozenset[str]) -> None:
         """End the stop of a cell that was cleared; a shared device waits for the reset of all its cells."""
         for robot in cell.cell.robots:
-            others = [each for each in self._dispatcher.model.cells_of[robot.name] if each is not cell.cell]
-            if not any(self._cells[other.name].state in UNTIL_RESET for other in others):
-                self._dispatcher.latches.forget(robot.name)
+            others = [
+                each for each in self._state.dispatcher.model.cells_of[robot.name] if each is not cell.cell
+            ]
+            if not any(self._state.cells[other.name].state in UNTIL_RESET for other in others):
+                self._state.dispatcher.latches.forget(robot.name)
         cell.become(Cause.RESET)
         cell.become(Cause.READY)
 

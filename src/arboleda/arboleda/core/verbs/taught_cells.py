@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.model.messages import Fact, Journal, OperatorRequest, Verb
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase, Sentence
@@ -13,6 +12,7 @@ from arboleda.model.sentence import Phrase, Sentence
 from .. import reasons
 from ..acts import Acts
 from ..cell import CellRun
+from ..plant_state import PlantState
 from ..teaching import NOT_TAUGHT, OTHER_TEACHES, ZONE_OF_OTHER, Teaching
 from .cell_by_cell import AT_REST
 from .scopes import NO_SCOPE, Scopes, VerbRefusal
@@ -31,9 +31,9 @@ LONGEST_NAME = 40
 class TaughtCells:
     """Manual mode of cells; the teacher's name is a fact of the memory until the teaching ends."""
 
-    def __init__(self, scopes: Scopes, dispatcher: Dispatcher, acts: Acts) -> None:
+    def __init__(self, state: PlantState, scopes: Scopes, acts: Acts) -> None:
+        self._state = state
         self._scopes = scopes
-        self._dispatcher = dispatcher
         self._acts = acts
         for cell in scopes.cells.values():
             cell.manual.when_over = partial(self._over, cell)
@@ -62,26 +62,26 @@ class TaughtCells:
         if (busy := cell.readiness.busy()) is not None:
             return busy
         for robot in (each for each in cell.cell.reached if each.goes and each.name in cell.cell.own):
-            obstacle = self._dispatcher.beliefs[robot.name].unreachable()
+            obstacle = self._state.dispatcher.beliefs[robot.name].unreachable()
             if obstacle is not None:
                 return obstacle.sentence
-            if self._dispatcher.beliefs[robot.name].moves:
+            if self._state.dispatcher.beliefs[robot.name].moves:
                 return NOT_STILL(robots=(robot.name,))
         return _zone_of_other(cell)
 
     def _teach(self, cell: CellRun, teacher: str) -> None:
         cell.context.zones.forsake()
-        self._dispatcher.memory.remember(Fact.MANUAL, cell.cell.name, teacher)
+        self._state.dispatcher.memory.remember(Fact.MANUAL, cell.cell.name, teacher)
         cell.manual.begin(Teaching(cell.context, session=self._acts.next_number, teacher=teacher))
 
     def _over(self, cell: CellRun, teaching: Teaching, why: Sentence) -> None:
         """Forget who taught a cell; journal an end that no operator has asked for."""
         name = cell.cell.name
-        self._dispatcher.memory.remember(Fact.MANUAL, name, None)
+        self._state.dispatcher.memory.remember(Fact.MANUAL, name, None)
         if why is not BY_VERB:
             sentence = TEACHING_ENDED(cell=name, teacher=teaching.teacher, why=why)
             entry = Journal(verb=Verb.AUTOMATIC, scope=name, cell=name, sentence=sentence)
-            self._dispatcher.outbox.append(entry)
+            self._state.dispatcher.outbox.append(entry)
 
 
 def not_taught(cell: CellRun, robots: frozenset[str]) -> Sentence | None:
