@@ -6,16 +6,16 @@ import json
 import sys
 from pathlib import Path
 
-from arboleda.plant_file import loader
 from arboleda.plant_file.python_uses import SourceSpot
 from arboleda.plant_file.recipe_trial import TrialResult
+from arboleda.plant_file.trial import trial
 
 
 def verdict(name: str, beside: Path | None, content: bytes, **_: bool) -> TrialResult:
     """As `recipe_trial.verdict`; this process forgets what the trial has imported of the plant."""
     before = set(sys.modules)
     try:
-        found = loader.trial(name, content, beside, _watched)
+        found = trial(name, content, beside, _watched)
     finally:
         for each in set(sys.modules) - before:
             if _is_of_a_test(each):

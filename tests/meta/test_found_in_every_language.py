@@ -36,7 +36,7 @@ def _files(folder: Path, *patterns: str) -> list[Path]:
 
 
 FILES = (
-    *_files(PACKAGE, "plant_file/*.py", "kinds/*.py"),
+    *_files(PACKAGE, "plant_file/*.py", "plant_check/*.py", "kinds/*.py"),
     *_files(PACKAGE, "wire/strict.py", "wire/payloads.py", "client/http.py"),
     *_files(PACKAGE, "bt_xml/checking.py", "bt_xml/reading.py"),
     *_files(PACKAGE, "drivers/*.py"),  # settings, and why there is no link or nothing is sent

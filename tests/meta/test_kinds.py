@@ -26,6 +26,7 @@ ABOVE = (
     "site",
     "campaigns",
     "runtime",
+    "plant_check",
     "plant_file",
     "web",
     "store",

@@ -1,5 +1,7 @@
-"""A page for whoever stands at a cell, teaches or learns is there in Spanish, too, and says there what it says
-in English. Any other page for users has one line in Spanish, that it is in English."""
+"""A page for whoever stands at a cell, teaches or learns is there in Spanish, too, and says the same.
+
+Any other page for users has one line in Spanish, that it is in English.
+"""
 
 from __future__ import annotations
 

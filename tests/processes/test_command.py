@@ -61,7 +61,7 @@ OF_OTHER_COMMANDS = {
     "arboleda.bt_xml",
     "arboleda_proofs.campaigns",
     "arboleda.plant_file.loader",
-    "arboleda.plant_file.plant_check",
+    "arboleda.plant_check.checks",
     "arboleda_proofs.playback",
     "arboleda.sim",
     "arboleda_proofs.simulator",
@@ -109,6 +109,6 @@ def test_an_everyday_command_loads_neither_the_check_of_plant_files_nor_what_pla
 
 def test_the_check_of_a_plant_file_loads_nothing_of_other_commands(tmp_path: Path) -> None:
     found = loaded(tmp_path, "check", str(Path(arboleda.__file__).with_name("plants") / "plant.yaml"))
-    assert "arboleda.plant_file.plant_check" in found
+    assert "arboleda.plant_check.checks" in found
     beside = {"arboleda.client", "arboleda.drawing", "arboleda_proofs.campaigns", "rich"}
     assert found & (OF_A_PLANT | beside) == set()

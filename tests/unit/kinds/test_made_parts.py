@@ -13,7 +13,7 @@ from arboleda.model.messages import MotionState, Report, TaskState, Undelivered
 from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import as_sentence
 from arboleda.model.verbs import Verb
-from arboleda.plant_file import advance_check, place_check
+from arboleda.plant_check import advance_check, place_check
 from arboleda.plant_file.loader import load
 
 from .test_places import PLANT as LAB

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.plant_model import PlantModel
-from arboleda.plant_file import advance_check, place_check
+from arboleda.plant_check import advance_check, place_check
 from arboleda.plant_file.loader import load
 
 PLANT = """

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
-from arboleda.plant_file import layout_check, loader
+from arboleda.plant_check import layout_check
+from arboleda.plant_file import loader
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 WORD = re.compile(r"[^\s<>=\"/]+")

@@ -14,6 +14,7 @@ from arboleda.kinds.declared import Device, Slot
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Cell, Evidence, PlantModel
 from arboleda.plant_file import loader
+from arboleda.plant_file.trial import trial
 from arboleda.runtime.rate import at_rate
 
 from ..kinds import lab
@@ -302,7 +303,7 @@ def load(folder: Path, text: str) -> PlantModel:
 
 def problems(folder: Path, text: str) -> list[str]:
     """The problems, those of the plant file without its name."""
-    found = loader.trial("plant.yaml", text.encode(), folder, lambda spot, doing: None)
+    found = trial("plant.yaml", text.encode(), folder, lambda spot, doing: None)
     if found.here or found.elsewhere:
         return [*(f"{line}:{column}: {sentence}" for line, column, sentence in found.here), *found.elsewhere]
     with pytest.raises(ConfigError) as refusal:

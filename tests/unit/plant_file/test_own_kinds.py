@@ -12,6 +12,7 @@ from arboleda.cli.main import cli
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
+from arboleda.plant_file.trial import trial
 
 SAW = """\
 from dataclasses import dataclass
@@ -181,7 +182,7 @@ def write(folder: Path, kind: str = SAW, plant: str = PLANT, recipes: str = RECI
 
 def problems(file: Path) -> list[str]:
     """What this process finds wrong, without the folder's name."""
-    found = loader.trial(file.name, file.read_bytes(), file.parent, lambda spot, doing: None)
+    found = trial(file.name, file.read_bytes(), file.parent, lambda spot, doing: None)
     told = [f"plant.yaml:{line}:{column}: {sentence}" for line, column, sentence in found.here]
     return [*told, *(each.removeprefix(f"{file.parent}/") for each in found.elsewhere)]
 

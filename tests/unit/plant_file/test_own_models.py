@@ -17,7 +17,8 @@ from arboleda.geometry.bodies import Body
 from arboleda.geometry.kinematics import Point
 from arboleda.model.messages import MotionState
 from arboleda.model.plant_model import PlantModel
-from arboleda.plant_file import layout_check, loader
+from arboleda.plant_check import layout_check
+from arboleda.plant_file import loader
 from arboleda.plant_file.robot_models import arm_models
 from arboleda.plant_file.urdf import robot_urdf, root_link
 from arboleda.testing.storage_layout import StorageLayout

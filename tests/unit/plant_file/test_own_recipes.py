@@ -14,6 +14,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.text import parse
 from arboleda.plant_file import loader, recipe_trial
 from arboleda.plant_file.python_uses import SourceSpot
+from arboleda.plant_file.trial import trial
 
 PLANT = """\
 name: lab
@@ -141,7 +142,7 @@ def write(folder: Path, recipes: str, plant: str = PLANT) -> Path:
 def problems(folder: Path, recipes: str, plant: str = PLANT) -> list[str]:
     """What this process finds wrong with the recipes, without the folder's name."""
     content = write(folder, recipes, plant).read_bytes()
-    found = loader.trial("plant.yaml", content, folder, lambda spot, doing: None)
+    found = trial("plant.yaml", content, folder, lambda spot, doing: None)
     told = [f"plant.yaml:{line}:{column}: {sentence}" for line, column, sentence in found.here]
     return [*told, *(each.removeprefix(f"{folder}/") for each in found.elsewhere)]
 

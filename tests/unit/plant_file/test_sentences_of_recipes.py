@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.plant_file import loader
+from arboleda.plant_file.trial import trial
 
 PLANT = """
 name: lab
@@ -79,7 +79,7 @@ RIGHT = (
 def problems(folder: Path, body: str) -> list[str]:
     (folder / "recipes.py").write_text(RECIPE.replace("{body}", body))
     (folder / "plant.yaml").write_text(PLANT)
-    found = loader.trial("plant.yaml", PLANT.encode(), folder, lambda spot, doing: None)
+    found = trial("plant.yaml", PLANT.encode(), folder, lambda spot, doing: None)
     assert not found.here
     return found.elsewhere
 
@@ -105,7 +105,7 @@ def same(cell, number: Number[0, 3]):
         "import parallel", "import Number, parallel"
     )
     (tmp_path / "recipes.py").write_text(code + same)
-    found = loader.trial("plant.yaml", PLANT.encode(), tmp_path, lambda spot, doing: None)
+    found = trial("plant.yaml", PLANT.encode(), tmp_path, lambda spot, doing: None)
     (sentence,) = found.elsewhere
     assert sentence.endswith("same runs itself without an end: same > same")
 
@@ -121,5 +121,5 @@ def less(cell, number: Number[0, 3]):
     (tmp_path / "recipes.py").write_text(
         RECIPE.replace("{body}", body).replace("import parallel", "import Number, parallel") + less
     )
-    found = loader.trial("plant.yaml", PLANT.encode(), tmp_path, lambda spot, doing: None)
+    found = trial("plant.yaml", PLANT.encode(), tmp_path, lambda spot, doing: None)
     assert not found.here and not found.elsewhere

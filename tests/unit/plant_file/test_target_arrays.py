@@ -8,7 +8,8 @@ import pytest
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
-from arboleda.plant_file import layout_check, loader
+from arboleda.plant_check import layout_check
+from arboleda.plant_file import loader
 
 TEXT = """name: shop
 cells:

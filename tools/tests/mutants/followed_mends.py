@@ -21,9 +21,10 @@ from tempfile import TemporaryDirectory
 from time import process_time
 
 from arboleda.model.errors import ConfigError
-from arboleda.plant_file import loader, plant_check
-from arboleda.plant_file.check_answer import check_answer
-from arboleda.plant_file.mend import Mend, edited
+from arboleda.plant_check import checks
+from arboleda.plant_check.check_answer import check_answer
+from arboleda.plant_check.mend import Mend, edited
+from arboleda.plant_file import loader
 from arboleda_make.mending.search import mend_of, texts_of
 from arboleda_proofs.campaigns.plants import Plant
 from arboleda_proofs.campaigns.proof.calm import calm_runs, run_findings
@@ -96,7 +97,7 @@ def ends_of(file: Path) -> dict[str, EndState] | None:
         declared = loader.load(file, apart=False)
     except ConfigError:
         return None
-    if plant_check.warnings(declared):
+    if checks.warnings(declared):
         return None
     model = Plant(declared=declared).model
     runs = [*calm_runs(model, scenarios(model))]

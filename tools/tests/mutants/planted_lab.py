@@ -13,7 +13,8 @@ from tempfile import TemporaryDirectory
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
-from arboleda.plant_file import loader, plant_check
+from arboleda.plant_check import checks
+from arboleda.plant_file import loader
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.run import Result, Simulation
 
@@ -46,7 +47,7 @@ def sighted(plant: Path, seeds: Iterable[int] = SEEDS) -> Sighting | None:
         model = loader.load(plant)
     except ConfigError as error:
         return Sighting(by="check", said=str(error))
-    if warnings := plant_check.warnings(model):
+    if warnings := checks.warnings(model):
         return Sighting(by="check", said=warnings[0])
     sightings = (found for level in LEVELS for found in _simulated(model, level, seeds))
     return next(sightings, None)

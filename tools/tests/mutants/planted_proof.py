@@ -17,7 +17,8 @@ from tempfile import TemporaryDirectory
 from time import process_time
 
 from arboleda.model.errors import ConfigError
-from arboleda.plant_file import loader, plant_check
+from arboleda.plant_check import checks
+from arboleda.plant_file import loader
 from arboleda_proofs.campaigns.plants import Plant
 from arboleda_proofs.campaigns.proof.calm import Calm, calm_runs
 from arboleda_proofs.campaigns.proof.outcome import Outcome
@@ -75,7 +76,7 @@ def _by_check(plant: Path, most: int) -> Iterator[Sighting]:
     except ConfigError as error:
         yield Sighting(by=CHECK, words=str(error))
         return
-    yield from (Sighting(by=CHECK, words=each) for each in plant_check.warnings(model))
+    yield from (Sighting(by=CHECK, words=each) for each in checks.warnings(model))
 
 
 def _by_calm_runs(plant: Path, most: int) -> Iterator[Sighting]:

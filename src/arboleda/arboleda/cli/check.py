@@ -15,9 +15,10 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.packages import MAKE
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import Phrase
-from arboleda.plant_file import advance_check, extensions, loader, plant_check, tree_file, unstated
-from arboleda.plant_file.check_answer import check_answer
-from arboleda.plant_file.findings import Source
+from arboleda.plant_check import advance_check, checks, unstated
+from arboleda.plant_check.check_answer import check_answer
+from arboleda.plant_check.findings import Source
+from arboleda.plant_file import extensions, loader, tree_file
 from arboleda.plant_file.user_file import check_writable
 
 from . import nodes
@@ -163,7 +164,7 @@ def _in_words(file: Path, *, ends: bool) -> None:
         model, missed = loader.load_with_offers(file)
     for note in (*loader.notes(model), *unstated.notes(model), *extensions.notes(model)):
         print(say(NOTE(file=str(file), note=finding(note))))
-    for warning in plant_check.warnings(model):
+    for warning in checks.warnings(model):
         print(say(WARNING(file=str(file), warning=finding(warning))))
     cells = tuple(cell.name for cell in model.cells)
     print(say(GOOD(file=str(file), plant=model.name, cells=cells)))

@@ -179,7 +179,7 @@ def _name(plant: Path | None) -> str:
 
 def _model(plant: Path) -> PlantModel:
     from arboleda.plant_file import (
-        loader,  # takes longer to load than most commands, and few name a plant file
-    )
+        loader,
+    )  # takes longer to load than most commands, and few name a plant file
 
     return loader.load(plant, recipes=False)

@@ -19,16 +19,15 @@ from arboleda.model.plant_model import Cell, ForeignCommands, MqttVersion, Plant
 from arboleda.model.recipe import Recipe
 from arboleda.model.recording import Recording
 
-from . import drivers, extensions, own_kinds, own_recipes, sections, user_file
+from . import drivers, extensions, own_kinds, sections, user_file
 from .brought import by_packages
 from .deadlines import check_arrivals_show
 from .declared_kinds import kinds
 from .devices import CELLS, Kinds, device_cell, is_of_devices, shared_devices
 from .document import Document, Place
 from .name_check import check_names
-from .python_uses import PythonUses, Watch
-from .recipe_check import RecipeTrial
-from .recipe_trial import TrialResult, brought
+from .python_uses import PythonUses
+from .recipe_trial import brought
 from .shapes import FileShape
 from .shared import check_homes
 from .shipped import SHIPPED, shipped
@@ -116,12 +115,12 @@ def _parsed(
     if recipes:
         code = brought(document, content, apart=apart)
         missed, brings = code.missed, code.used.drivers
-        plant = drivers.with_drivers(document, _plant(document, code.used, code.offered), code.used)
+        plant = drivers.with_drivers(document, plant_of(document, code.used, code.offered), code.used)
         plant = extensions.with_extensions(document, plant, code.used)
     elif own_kinds.needs_python(document):
         plant = _named(document)
     else:
-        plant = _plant(document, PythonUses(), _nothing)
+        plant = plant_of(document, PythonUses(), _nothing)
     document.finish(document.keys(CELLS))
     if plant is None:
         raise ConfigError((f"{document.name}: the file cannot be read as a plant",))
@@ -136,28 +135,6 @@ def _files(document: Document) -> PlantFiles:
     folder = os.path.commonpath([os.path.dirname(path) for path in paths])
     names = {path: Path(os.path.relpath(path, folder)).as_posix() for path in paths}
     return PlantFiles(plant=names[plant], contents={names[path]: each for path, each in paths.items()})
-
-
-def trial(name: str, content: bytes, folder: Path | None, watch: Watch) -> TrialResult:
-    """The problems of a plant file and of its recipes, which are built for each task that they could have.
-
-    The plant's Python files run in this process, whatever they do to it. `recipe_trial` calls this function
-    in a process of its own.
-    """
-    document, result = Document(name, content, folder), TrialResult()
-
-    def tried(cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
-        trial = RecipeTrial(document=document, used=used, watch=watch)
-        result.offers = trial.run(cells)
-        result.missed, result.unused = trial.missed, trial.unused
-        return {}
-
-    used = own_recipes.imported(document, own_recipes.listed(document), watch)
-    _plant(document, used, tried)
-    drivers.driver_uses(document, used)
-    extensions.settings_given(document, used)
-    result.here, result.elsewhere = document.problems
-    return result
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
@@ -206,7 +183,8 @@ def _named(document: Document) -> PlantModel | None:
     return None if shape is None else PlantModel(name=shape.name, cells=())
 
 
-def _plant(document: Document, used: PythonUses, recipes: Offers) -> PlantModel | None:
+def plant_of(document: Document, used: PythonUses, recipes: Offers) -> PlantModel | None:
+    """The plant of a document, with the recipes that its cells offer; None where it is none."""
     shape = document.read(FileShape)
     own_kinds.complete(document, used)
     device_kinds = Kinds(declared=kinds(document), names=document.keys(("kinds",)), used=used)

@@ -129,9 +129,9 @@ def _marked(
 def verdict(name: str, beside: Path | None, content: bytes, *, apart: bool = True) -> TrialResult:
     """The result of trying the recipes that a plant file uses, in another process, if there can be one."""
     if not (apart and HAS_PROCESSES):
-        from . import loader  # which imports this module
+        from .trial import trial  # which the plant's own process does not need
 
-        return loader.trial(name, content, beside, unwatched)
+        return trial(name, content, beside, unwatched)
     with TemporaryDirectory(prefix="arboleda-") as made:
         folder = Path(made)
         (folder / PLANT).write_bytes(content)
@@ -147,13 +147,13 @@ def verdict(name: str, beside: Path | None, content: bytes, *, apart: bool = Tru
 
 def main(name: str) -> None:
     """Run as the other process: import, build, write down the result, end."""
-    from . import loader  # which imports this module
+    from .trial import trial  # which the plant's own process does not need
 
     folder = Path(name)
     request = json.loads((folder / REQUEST).read_text("utf-8"))
     beside = None if request["folder"] is None else Path(request["folder"])
     with watching(folder, request["longest_s"], request["by_clock_s"]) as watch:
-        result = loader.trial(request["name"], (folder / PLANT).read_bytes(), beside, watch)
+        result = trial(request["name"], (folder / PLANT).read_bytes(), beside, watch)
     _write_whole(folder / RESULT, vars(result))
     os._exit(0)  # whatever threads the files have started
 

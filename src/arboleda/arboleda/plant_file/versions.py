@@ -16,7 +16,7 @@ from arboleda.host.files import sync_folder
 from arboleda.model.errors import ConfigError, StartError
 from arboleda.model.plant_files import PlantFiles
 
-from .draft_check import root_of
+from .draft import root_of
 from .tree_file import ENDING
 
 FOLDER, FACTS, CONTENTS = ".arboleda", "version.json", "files"

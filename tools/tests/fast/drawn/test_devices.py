@@ -14,7 +14,8 @@ import pytest
 from arboleda.bt_xml.running import controls
 from arboleda.bt_xml.running.node import Node, Result
 from arboleda.dispatch.obstacles import Obstacles
-from arboleda.plant_file import loader, meeting_points
+from arboleda.plant_check import meeting_points
+from arboleda.plant_file import loader
 from arboleda.recipes.place_questions import PlaceHandle
 from arboleda.trees.part_places import Places
 from arboleda_drawn import devices

@@ -8,7 +8,7 @@ from pathlib import Path
 from arboleda.extension import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recording import Recording
-from arboleda.plant_file.draft_check import root_of
+from arboleda.plant_file.draft import root_of
 from arboleda.plant_file.versions import Versions
 from arboleda.runtime.standing_by import ReadAgain
 

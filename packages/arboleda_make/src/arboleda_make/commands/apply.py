@@ -24,7 +24,8 @@ from arboleda.extension import (
     say,
     working,
 )
-from arboleda.plant_file import draft_check, loader, plant_check
+from arboleda.plant_check import checks, draft_check
+from arboleda.plant_file import loader
 from arboleda.plant_file.versions import Version, Versions, version_of, whole
 from arboleda.runtime import at_work
 from arboleda.runtime.state import Running, default_state, find_running
@@ -214,7 +215,7 @@ def _on_disk(file: Path) -> _Wanted:
     """The files as they are now; ConfigError with every problem. Prints what `check` warns of."""
     with working():
         model, files = loader.load_with_files(file)
-    for warning in plant_check.warnings(model):
+    for warning in checks.warnings(model):
         _print(say(WARNING(file=str(file), warning=finding(warning))))
     return _Wanted(version=version_of(files, at=_now()), plant_name=model.name)
 

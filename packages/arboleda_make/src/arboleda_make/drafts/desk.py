@@ -13,7 +13,7 @@ from typing import Any, Protocol
 from arboleda.drivers import plain, quoted
 from arboleda.extension import StartError
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file.draft_check import DraftCheck
+from arboleda.plant_file.draft import DraftCheck
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.versions import Version, Versions, version_of
 from arboleda.plant_file.yaml_edit import EditRefused

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from arboleda.extension import ArboledaError
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file.draft_check import root_of
+from arboleda.plant_file.draft import root_of
 from arboleda.plant_file.versions import Version
 from arboleda.runtime import at_work
 

@@ -7,7 +7,7 @@ from pathlib import Path, PurePosixPath
 
 from arboleda.drivers import quoted
 from arboleda.extension import StartError
-from arboleda.plant_file.draft_check import root_of
+from arboleda.plant_file.draft import root_of
 from arboleda.plant_file.versions import Version, Versions, write_files
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda_make.drafts.api import DraftRefused

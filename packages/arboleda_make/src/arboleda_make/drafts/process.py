@@ -15,10 +15,8 @@ from typing import Any
 from arboleda.extension import ArboledaError
 from arboleda.host.limits import give_way
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file import draft_check
-from arboleda.plant_file.draft_check import DraftCheck, Shade
+from arboleda.plant_file.draft import DraftCheck, Shade, Unstated
 from arboleda.plant_file.recipe_trial import PATH
-from arboleda.plant_file.unstated import Unstated
 
 START = PATH + "from arboleda_make.drafts import process; process.main()"
 AT_MOST_S = 300.0
@@ -80,6 +78,8 @@ class CheckProcess:
 
 def main() -> None:
     """Run as the other process: read the request, answer on the last line, end."""
+    from arboleda.plant_check import draft_check  # which the plant's own process does not need
+
     give_way(KINDNESS)
     request = json.load(sys.stdin)
     files = PlantFiles(plant=request["plant"], contents=from_texts(request["contents"]))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.plant_file.mend import Cut
+from arboleda.plant_check.mend import Cut
 
 
 @dataclass(frozen=True, kw_only=True)

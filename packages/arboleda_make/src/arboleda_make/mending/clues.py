@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.plant_file.findings import PlantFinding
+from arboleda.plant_check.findings import PlantFinding
 
 WORD = re.compile(r"[A-Za-z_]\w*")
 NUMBER = re.compile(r"(?<![\w.])\d[\d,]*(?:\.\d+)?(?![\w])")

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from arboleda.extension import ArboledaError
 from arboleda.model.plant_files import PlantFiles
+from arboleda.plant_check.mend import Cut, Mend, Texts, edit_of, edited
 from arboleda.plant_file import loader
-from arboleda.plant_file.draft_check import shaded
-from arboleda.plant_file.mend import Cut, Mend, Texts, edit_of, edited
+from arboleda.plant_file.draft import shaded
 from arboleda.recipes import WrittenRecipe
 from arboleda_proofs.campaigns.plants import Plant
 from arboleda_proofs.campaigns.proof.changed_recipe import noticed_with

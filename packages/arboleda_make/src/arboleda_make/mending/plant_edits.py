@@ -12,9 +12,9 @@ from typing import Any
 
 from arboleda.drivers import Effect, Value, shown
 from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.plant_check.mend import cut_between
 from arboleda.plant_file import yaml_edit
 from arboleda.plant_file.document import Place
-from arboleda.plant_file.mend import cut_between
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.plant_file.yaml_marks import YamlFault, YamlNode, parse
 

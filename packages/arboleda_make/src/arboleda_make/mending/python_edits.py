@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator, Sequence
 
 from arboleda.model.plant_model import Cell
-from arboleda.plant_file.mend import Cut
+from arboleda.plant_check.mend import Cut
 
 from .candidate import Candidate
 from .clues import Clues, words_of

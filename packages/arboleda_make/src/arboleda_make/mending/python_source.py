@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from arboleda.plant_file.mend import Cut
+from arboleda.plant_check.mend import Cut
 
 IN_TURN = ("work", "using", "visit")  # calls whose arguments are done one after the other
 ALONE = ("parallel", "retry", "fallback", "recover", "timeout", "repeat")  # each is one step

@@ -17,9 +17,9 @@ from pathlib import Path
 from arboleda.extension import ArboledaError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.plant_file.draft_check import shaded
-from arboleda.plant_file.findings import Checked, PlantFinding, Source, checked
-from arboleda.plant_file.mend import Mend, Texts, edit_of, edited
+from arboleda.plant_check.findings import Checked, PlantFinding, Source, checked
+from arboleda.plant_check.mend import Mend, Texts, edit_of, edited
+from arboleda.plant_file.draft import shaded
 from arboleda.plant_file.yaml_marks import YamlFault, parse
 from arboleda_proofs.campaigns.plants import Plant
 from arboleda_proofs.campaigns.proof.calm import calm_run, run_findings

@@ -8,7 +8,7 @@ from xml.sax.saxutils import quoteattr
 
 from arboleda.drivers import shown
 from arboleda.model.plant_model import Cell
-from arboleda.plant_file.mend import Cut
+from arboleda.plant_check.mend import Cut
 
 from .candidate import Candidate
 from .clues import Clues, words_of

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator
 
 from arboleda.drivers import plain
-from arboleda.plant_file.findings import Source
-from arboleda.plant_file.mend import Cut, Texts
+from arboleda.plant_check.findings import Source
+from arboleda.plant_check.mend import Cut, Texts
 
 from .candidate import Candidate
 from .clues import NUMBER, WORD, Clues

@@ -17,7 +17,8 @@ from arboleda.extension import ArboledaError, ConfigError
 from arboleda.model import text
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.plant_file import draft_check, driver_forms, loader
+from arboleda.plant_file import driver_forms, loader
+from arboleda.plant_file.draft import shaded
 from arboleda.recipes import Recipe, WrittenRecipe
 from arboleda.views import forms, tree_view
 from arboleda.web.languages import texts
@@ -41,7 +42,7 @@ class WorkshopPlant:
     def load(self, files: PlantFiles, plant_file: Path) -> tuple[str, ...]:
         """Take these files, and return their problems; with some the plant before stays."""
         opened = ExitStack()
-        shade = opened.enter_context(draft_check.shaded(files, plant_file))
+        shade = opened.enter_context(shaded(files, plant_file))
         try:
             self._model, self._drivers = loader.load_with_drivers(shade.plant_file)
         except ConfigError as error:
@@ -53,7 +54,7 @@ class WorkshopPlant:
 
     def problems(self, files: PlantFiles, plant_file: Path) -> tuple[str, ...]:
         """The problems of these files, which are not taken."""
-        with draft_check.shaded(files, plant_file) as shade:
+        with shaded(files, plant_file) as shade:
             try:
                 loader.load_with_drivers(shade.plant_file)
             except ConfigError as error:

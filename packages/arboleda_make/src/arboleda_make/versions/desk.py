@@ -18,7 +18,7 @@ from arboleda.model.messages import RevisionAnswer, RevisionName
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
-from arboleda.plant_file.draft_check import DraftCheck
+from arboleda.plant_file.draft import DraftCheck
 from arboleda.plant_file.versions import Version, Versions, version_of, whole
 from arboleda.runtime import at_work
 from arboleda.runtime.parts.orchestrator import Orchestrator, PutToWork

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file import draft_check
-from arboleda.plant_file.draft_check import Shade
+from arboleda.plant_check import draft_check
+from arboleda.plant_file.draft import Shade
 from arboleda.plant_file.loader import load_with_files
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda_make.drafts.draft import MOST_BYTES, MOST_STEPS, Draft, draft_of

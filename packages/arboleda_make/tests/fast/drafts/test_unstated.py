@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.unit.plant_file.test_unstated import GUARD, NEEDS, PLACES, PLANT, written
+from tests.unit.plant_check.test_unstated import GUARD, NEEDS, PLACES, PLANT, written
 
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file import draft_check, loader, unstated
+from arboleda.plant_check import draft_check, unstated
+from arboleda.plant_file import loader
 from arboleda_make.drafts.draft import draft_of
 from arboleda_proofs.campaigns.plants import Plant, notes
 

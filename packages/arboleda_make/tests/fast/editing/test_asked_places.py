@@ -11,7 +11,7 @@ from arboleda.bt_xml import leaves
 from arboleda.cli.nodes import of_plant
 from arboleda.core.plant import Plant
 from arboleda.model.errors import ConfigError
-from arboleda.plant_file import advance_check
+from arboleda.plant_check import advance_check
 from arboleda.plant_file.loader import load
 from arboleda_make.editing import copy_recipe
 from arboleda_proofs.simulator.judged_world import JudgedWorld

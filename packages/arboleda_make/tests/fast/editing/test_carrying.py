@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.plant_file import advance_check
+from arboleda.plant_check import advance_check
 from arboleda.plant_file.loader import load
 from arboleda_make.editing import carry, desk
 

@@ -10,9 +10,9 @@ import pytest
 from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
-from arboleda.plant_file.check_answer import check_answer
-from arboleda.plant_file.findings import Source, checked
-from arboleda.plant_file.mend import Cut, Edit, MendRefused, cut_between, edit_of, edited
+from arboleda.plant_check.check_answer import check_answer
+from arboleda.plant_check.findings import Source, checked
+from arboleda.plant_check.mend import Cut, Edit, MendRefused, cut_between, edit_of, edited
 from arboleda_make.mending.clues import clues_of
 from arboleda_make.mending.plant_edits import plant_candidates
 from arboleda_make.mending.python_source import PythonSource

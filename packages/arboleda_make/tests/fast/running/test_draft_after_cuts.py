@@ -13,7 +13,7 @@ from tests.cuts import End, each_cut
 
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import versions
-from arboleda.plant_file.draft_check import DraftCheck
+from arboleda.plant_file.draft import DraftCheck
 from arboleda.plant_file.versions import Version, Versions, version_of
 from arboleda.runtime import at_work
 from arboleda_make.drafts.desk import DraftDesk

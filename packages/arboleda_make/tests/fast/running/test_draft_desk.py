@@ -10,8 +10,7 @@ import pytest
 
 from arboleda.model.errors import StartError
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file.draft_check import DraftCheck
-from arboleda.plant_file.unstated import Unstated
+from arboleda.plant_file.draft import DraftCheck, Unstated
 from arboleda.plant_file.versions import Version, Versions
 from arboleda.runtime import at_work
 from arboleda_make.drafts.api import DraftRefused

@@ -15,7 +15,7 @@ import pytest
 from arboleda.model.assistants import AssistantLimits, Assistants, hours
 from arboleda.model.messages import RevisionAnswer
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file.draft_check import DraftCheck
+from arboleda.plant_file.draft import DraftCheck
 from arboleda.plant_file.versions import Versions
 from arboleda.runtime import at_work
 from arboleda.store.task_rows import ASSISTANT

@@ -16,7 +16,7 @@ from arboleda.core.plant import Plant
 from arboleda.geometry import bodies, kinematics
 from arboleda.model.messages import Jog, Verb
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file.draft_check import DraftCheck
+from arboleda.plant_file.draft import DraftCheck
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.runtime import at_work

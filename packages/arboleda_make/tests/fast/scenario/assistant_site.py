@@ -31,7 +31,8 @@ from arboleda.model.messages import (
 )
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.verbs import Arguments
-from arboleda.plant_file import draft_check, loader
+from arboleda.plant_check import draft_check
+from arboleda.plant_file import loader
 from arboleda.runtime import at_work
 from arboleda.runtime.parts.orchestrator import PutToWork
 from arboleda.store.task_rows import TaskQuery

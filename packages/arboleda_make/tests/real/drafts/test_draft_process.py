@@ -12,8 +12,8 @@ import pytest
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_files import PlantFiles
-from arboleda.plant_file import draft_check
-from arboleda.plant_file.draft_check import DraftCheck
+from arboleda.plant_check import draft_check
+from arboleda.plant_file.draft import DraftCheck
 from arboleda_make.drafts import process as draft_process
 from arboleda_make.drafts.process import CheckProcess
 

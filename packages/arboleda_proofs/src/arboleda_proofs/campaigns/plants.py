@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 from arboleda.model.plant_files import NO_FILES, PlantFiles
 from arboleda.model.plant_model import Link, PlantModel
-from arboleda.plant_file.unstated import unknowns
+from arboleda.plant_check.unstated import unknowns
 from arboleda_proofs.simulator.findings import Finding
 from arboleda_proofs.simulator.invariants import Invariant
 

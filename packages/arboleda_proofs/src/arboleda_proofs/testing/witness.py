@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from arboleda.engine.inspection import tasks_of
 from arboleda.model import text
 from arboleda.recipes import Order
-from arboleda.rig.rig import Rig
+from arboleda.testing import Rig
 from arboleda.wire.transport import Publication
 from arboleda_proofs.simulator.truth.arm import ArmTruth
 from arboleda_proofs.simulator.truth.grips import Switching

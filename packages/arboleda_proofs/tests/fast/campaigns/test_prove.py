@@ -18,8 +18,8 @@ from tests.lengths import length, sample
 
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
+from arboleda.plant_check.mend import Edit, edited
 from arboleda.plant_file import loader
-from arboleda.plant_file.mend import Edit, edited
 from arboleda_proofs.campaigns.proof import forks, proof_campaign
 from arboleda_proofs.campaigns.proof.between_steps import gaps, other_facts
 from arboleda_proofs.campaigns.proof.calm import Calm, calm_run, calm_runs

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from tests.unit.kinds.test_asked_places import RECIPES, written
 
-from arboleda.plant_file import advance_check
+from arboleda.plant_check import advance_check
 from arboleda.plant_file.loader import load
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 from arboleda_proofs.simulator.run import Simulation

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from tests.lengths import sample
 
-from arboleda.plant_file import advance_check
+from arboleda.plant_check import advance_check
 from arboleda_drawn import devices
 from arboleda_drawn.devices import DrawnDevices, Form, can_be_xml
 from arboleda_drawn.plants import loaded

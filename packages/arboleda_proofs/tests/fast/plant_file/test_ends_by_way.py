@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from tests.unit.plant_file.test_ends_by_way import BY_ANSWER, PLANT, SWAPPED, sorting
+from tests.unit.plant_check.test_ends_by_way import BY_ANSWER, PLANT, SWAPPED, sorting
 
 from arboleda.model.plant_model import PlantModel
 from arboleda_proofs.simulator.invariants.part_places import PLACES

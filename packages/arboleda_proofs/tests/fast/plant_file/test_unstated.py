@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from tests.unit.plant_file.test_unstated import GUARD, NEEDS, PLACES, PLANT, written
+from tests.unit.plant_check.test_unstated import GUARD, NEEDS, PLACES, PLANT, written
 from typer.testing import CliRunner
 
 from arboleda.cli.main import cli

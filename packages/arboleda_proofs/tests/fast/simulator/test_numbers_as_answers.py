@@ -9,7 +9,8 @@ import pytest
 from arboleda.bt_xml import telling
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import PlantModel
-from arboleda.plant_file import advance_check, loader
+from arboleda.plant_check import advance_check
+from arboleda.plant_file import loader
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import OrderGoal
 from arboleda_proofs.campaigns.proof.calm import calm_runs

@@ -16,8 +16,8 @@ from arboleda.host.limits import give_way
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import in_json
-from arboleda.plant_file import draft_check, loader
-from arboleda.plant_file.draft_check import Shade
+from arboleda.plant_file import loader
+from arboleda.plant_file.draft import Shade, shaded
 
 KINDNESS = 10  # that of `nice`: whatever the plant does comes first
 
@@ -55,7 +55,7 @@ def errand() -> Iterator[Errand]:
         contents={name: text.encode("utf-8", "surrogateescape") for name, text in request["files"].items()},
     )
     try:
-        with draft_check.shaded(files, Path(request["plant_file"])) as shade:
+        with shaded(files, Path(request["plant_file"])) as shade:
             yield Errand(shade=shade, folder=Path(request["folder"]), wanted=request["wanted"])
             say(ended=True)
     except ArboledaError as error:

@@ -13,7 +13,7 @@ from arboleda.engine.inspection import Question, ledger_of
 from arboleda.model.common_places import room_at, same_places
 from arboleda.model.messages import OperatorAnswer, TaskChanged
 from arboleda.model.plant_model import PlantModel
-from arboleda.plant_file.findings import PlantFinding, Source
+from arboleda.plant_check.findings import PlantFinding, Source
 from arboleda.rig.plant_process import Fuse, Side
 
 from .end_state import EndState

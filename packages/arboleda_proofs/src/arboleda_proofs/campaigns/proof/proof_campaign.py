@@ -13,7 +13,7 @@ from rich.text import Text
 from arboleda.host.packages import extra
 from arboleda.model.counting import counted
 from arboleda.model.packages import MAKE
-from arboleda.plant_file.check_answer import CheckAnswer
+from arboleda.plant_check.check_answer import CheckAnswer
 
 from ..campaign import Campaign, Runs
 from ..plants import notes

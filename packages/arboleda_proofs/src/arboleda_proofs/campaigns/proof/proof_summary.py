@@ -10,8 +10,8 @@ from typing import Any
 
 from arboleda import __version__
 from arboleda.extension import ArboledaError
-from arboleda.plant_file.check_answer import CheckAnswer
-from arboleda.plant_file.unstated import unknowns
+from arboleda.plant_check.check_answer import CheckAnswer
+from arboleda.plant_check.unstated import unknowns
 
 from .calm import Calm
 from .checks import Check, tried_checks

@@ -1,0 +1,166 @@
+"""Ends of a recipe that differ by the way it goes: `check` follows each, the simulator judges each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import PlantModel
+from arboleda.plant_check import advance_check
+from arboleda.plant_file.loader import load
+
+PLANT = """
+name: sorting
+uses: [USES]
+cells:
+  a:
+    devices:
+      arm: {kind: arm, model: scara}
+      jaw: {kind: gripper, tool_of: arm}
+      camera: {kind: camera}
+    targets:
+      home: {arm: {deg: [0, 0], mm: 0}}
+      in: {arm: {deg: [60, 20], mm: 50}}
+      press: {arm: {deg: [-60, 20], mm: 50}}
+      reject: {arm: {deg: [-90, 20], mm: 50}}
+    places: {in: {supply: true}, press: {holds: 50, output: true}, reject: {holds: 50, output: true}}
+"""
+RECIPES = """
+from arboleda.recipes import recipe, work
+
+@recipe("sort", ends_with=ENDS)
+def sort(cell):
+    arm, jaw, camera = cell.devices("arm", "jaw", "camera")
+    seen, take = camera.look(), arm.visit("in", jaw.close(width_mm=30, force_n=20))
+    ways = {"good": arm.visit("GOOD", jaw.open()), "bad": arm.visit("BAD", jaw.open())}
+    return work(seen, take, cell.choose(seen, ways), arm.home())
+"""
+ASKS_TWICE = """
+from arboleda.recipes import recipe, work
+
+@recipe("sort", ends_with=ENDS)
+def sort(cell):
+    arm, jaw, camera = cell.devices("arm", "jaw", "camera")
+    before, take = camera.look(), arm.visit("in", jaw.close(width_mm=30, force_n=20))
+    after = camera.look()
+    ways = {"good": arm.visit("GOOD", jaw.open()), "bad": arm.visit("BAD", jaw.open())}
+    homes = {"good": arm.home(), "bad": arm.home()}
+    return work(before, take, after, cell.choose(after, ways), cell.choose(before, homes))
+"""
+SELDOM = """
+from arboleda.recipes import Choice, recipe, work
+
+@recipe("sort", ends_with=ENDS)
+def sort(cell, one=Choice(*WORDS), other=Choice(*WORDS)):
+    arm, jaw = cell.devices("arm", "jaw")
+    place = "reject" if (one, other) == ("a", WORDS[-1]) else "press"
+    return work(arm.visit("in", jaw.close(width_mm=30, force_n=20)), arm.visit(place, jaw.open()), arm.home())
+"""
+FEW, MANY = "abc", "abcdefghijklmno"  # values of each of two parameters
+TREE = """
+<root BTCPP_format="4" main_tree_to_execute="Sort">
+<BehaviorTree ID="Sort"><Sequence>
+  <camera_look answer="{seen}"/>
+  <arm_visit target="in"><jaw_close width_mm="30" force_n="20"/></arm_visit>
+  <Switch2 variable="{seen}" case_1="good" case_2="bad">
+    <arm_visit target="GOOD"><jaw_open/></arm_visit>
+    <arm_visit target="BAD"><jaw_open/></arm_visit>
+    <AlwaysFailure/>
+  </Switch2>
+  <arm_home/>
+</Sequence></BehaviorTree>
+<TreeNodesModel><SubTree ID="Sort"><MetadataFields>
+  <Metadata ends_with="ENDS"/>
+</MetadataFields></SubTree></TreeNodesModel>
+</root>
+"""
+BY_ANSWER = '[{"camera.look": "good", "press": 1}, {"camera.look": "bad", "reject": 1}]'
+EITHER = '[{"press": 1}, {"reject": 1}]'
+RIGHT, SWAPPED, ONE_PLACE = ("press", "reject"), ("reject", "press"), ("press", "press")
+
+
+def sorting(
+    folder: Path, ends: str, ways: tuple[str, str] = RIGHT, *, recipe: str = RECIPES, plant: str = PLANT
+) -> PlantModel:
+    name = "sort.xml" if recipe is TREE else "recipes.py"
+    text = recipe.replace("ENDS", ends).replace("GOOD", ways[0]).replace("BAD", ways[1])
+    (folder / name).write_text(text, "utf-8")
+    (folder / "plant.yaml").write_text(plant.replace("USES", name), "utf-8")
+    return load(folder / "plant.yaml")
+
+
+def warned(plant: PlantModel) -> list[str]:
+    return [each.split(" sort ", 1)[1].partition(";")[0] for each in advance_check.warnings(plant)]
+
+
+def as_xml(ends: str) -> str:
+    """The ends as the metadata of a tree: by an answer, or one of them."""
+    return {
+        BY_ANSWER: "camera.look: good; press: 1 | camera.look: bad; reject: 1",
+        EITHER: "press: 1 | reject: 1",
+    }[ends]
+
+
+@pytest.mark.parametrize("recipe", [RECIPES, TREE], ids=["python", "xml"])
+@pytest.mark.parametrize("ends", [BY_ANSWER, EITHER], ids=["by answer", "either"])
+def test_nothing_is_said_against_a_recipe_that_ends_as_it_says_on_each_way(
+    tmp_path: Path, ends: str, recipe: str
+) -> None:
+    stated = ends if recipe is RECIPES else as_xml(ends)
+    assert warned(sorting(tmp_path, stated, recipe=recipe)) == []
+
+
+@pytest.mark.parametrize("recipe", [RECIPES, TREE], ids=["python", "xml"])
+def test_check_finds_the_parts_of_two_answers_swapped(tmp_path: Path, recipe: str) -> None:
+    stated = BY_ANSWER if recipe is RECIPES else as_xml(BY_ANSWER)
+    assert warned(sorting(tmp_path, stated, SWAPPED, recipe=recipe)) == [
+        "ends with press 0, and says that it ends with 1",
+        "ends with reject 0, and says that it ends with 1",
+        "says that it may end with camera.look good and press 1, and never ends so",
+        "says that it may end with camera.look bad and reject 1, and never ends so",
+    ]
+
+
+def test_only_the_last_question_to_a_device_has_its_last_answer(tmp_path: Path) -> None:
+    assert warned(sorting(tmp_path, BY_ANSWER, recipe=ASKS_TWICE)) == []
+    swapped = warned(sorting(tmp_path, BY_ANSWER, SWAPPED, recipe=ASKS_TWICE))
+    assert "ends with press 0, and says that it ends with 1" in swapped
+
+
+def test_check_finds_an_end_that_no_way_has(tmp_path: Path) -> None:
+    plant = sorting(tmp_path, EITHER, ONE_PLACE)
+    assert warned(plant) == ["says that it may end with reject 1, and never ends so"]
+
+
+@pytest.mark.parametrize("words", [FEW, MANY])
+def test_nothing_is_said_against_an_end_that_one_task_of_all_has(tmp_path: Path, words: str) -> None:
+    recipe = SELDOM.replace("WORDS", repr(words))
+    assert warned(sorting(tmp_path, EITHER, recipe=recipe)) == []
+
+
+def test_an_end_that_was_not_met_is_named_where_all_tasks_were_tried(tmp_path: Path) -> None:
+    recipe = SELDOM.replace("WORDS", repr(FEW)).replace('"reject" if', '"press" if')
+    plant = sorting(tmp_path, EITHER, recipe=recipe)
+    assert warned(plant) == ["says that it may end with reject 1, and never ends so"]
+
+
+def test_check_says_the_ends_of_all_ways(tmp_path: Path) -> None:
+    (said,) = advance_check.ends(sorting(tmp_path, BY_ANSWER))
+    ways = "camera.look good and press 1 or camera.look bad and reject 1 (it says so)"
+    assert said.startswith(f"a: sort ends with {ways}, ")
+
+
+@pytest.mark.parametrize(
+    ("ends", "sentence"),
+    [
+        ('[{"camera.look": "fine"}]', "sort ends with 'fine' of camera.look, which answers good, bad"),
+        ('[{"camera.loko": "bad"}]', "sort ends with 'camera.loko'"),
+        ('["press"]', "sort: ends_with is \"['press']\"; write "),
+    ],
+)
+def test_what_no_way_can_end_with_is_refused(tmp_path: Path, ends: str, sentence: str) -> None:
+    with pytest.raises(ConfigError) as refused:
+        sorting(tmp_path, ends)
+    assert sentence in str(refused.value)

@@ -1,0 +1,158 @@
+"""What `check` warns of: places that nothing guards, devices of parts without one, places that are two."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.plant_check import place_check
+from arboleda.plant_file.loader import load
+
+PLANT = """
+name: lab
+uses: [recipes.py]
+kinds:
+  oven:
+    facts: {door: [closed, open]}
+    verbs:
+      open:  {effect: motion, sets: {door: open}}
+      close: {effect: motion, sets: {door: closed}}
+      bake:  {effect: process, works_on: part, takes_s: 2}
+  clamp:
+    facts: {shut: bool}
+    verbs: {hold: {effect: switch, with: {on: bool}, sets: {shut: $on}, holds: part}}
+cells:
+  lab:
+    devices:
+      left:  {kind: arm, model: scara, base: {origin_m: [-0.6, 0], yaw_deg: 135}}
+      right: {kind: arm, model: scara, base: {origin_m: [0.6, 0], yaw_deg: 45}}
+      jaw:   {kind: gripper, tool_of: left}
+      oven:  {kind: oven}
+      clamp: {kind: clamp}
+    targets:
+      home:   {left: {deg: [0, 0], mm: 0}, right: {deg: [0, 0], mm: 0}}
+      nest:   {left: {deg: [-52.24, -87.7], mm: 80}, right: {deg: [52.24, 87.7], mm: 80}}
+      inside: {left: {deg: [60, 10], mm: 80}}
+    places:
+      nest:   {of: clamp}
+      inside: {of: oven}
+zones:
+  over_the_nest: {poses: [lab nest]}
+  in_the_oven: {poses: [lab inside], free_while: {oven: {door: open}}}
+"""
+RECIPES = """
+from arboleda.recipes import recipe, work
+
+@recipe("try")
+def attempt(cell):
+    return work(cell.device("left").home())
+"""
+IN_THE_OVEN = "  in_the_oven: {poses: [lab inside], free_while: {oven: {door: open}}}\n"
+NEEDS = "    needs: {left.go: {oven.door: open}}\nzones:\n"
+
+
+def warned(folder: Path, *edits: tuple[str, str]) -> tuple[str, ...]:
+    text = PLANT
+    for old, new in edits:
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    (folder / "recipes.py").write_text(RECIPES, "utf-8")
+    (folder / "plant.yaml").write_text(text, "utf-8")
+    return place_check.warnings(load(folder / "plant.yaml"))
+
+
+def test_nothing_is_wrong_with_a_plant_that_says_all(tmp_path: Path) -> None:
+    assert warned(tmp_path) == ()
+
+
+@pytest.mark.parametrize(
+    ("edit", "sentence"),
+    [
+        (
+            (IN_THE_OVEN, ""),
+            "lab: inside is at oven, which moves (open, close), and nothing keeps left out of there "
+            "meanwhile; a zone with this target and free_while or held_while of the device does",
+        ),
+        (
+            ("inside: {of: oven}", "inside: {}"),
+            "lab: oven works on a part (bake), and no place is of it; say where: "
+            "places: {TARGET: {of: oven}}",
+        ),
+        (
+            ("nest:   {of: clamp}", "nest:   {of: clamp, output: true}"),
+            "lab: nest is inside clamp, and an output, so it counts as empty when a task begins, whoever "
+            "has looked; leave out `output`, and say unload once it is empty",
+        ),
+        (
+            ("jaw:   {kind: gripper, tool_of: left}", "jaw:   {kind: gripper}"),
+            "lab: jaw takes hold of a part (close), and no place is of it; say where: "
+            "places: {TARGET: {of: jaw}}, or tool_of",
+        ),
+        (
+            ("right: {kind: arm, model: scara, base: {origin_m: [0.6, 0], yaw_deg: 45}}",
+             "right: {kind: arm, model: scara, base: {origin_m: [0.5, 0], yaw_deg: 45}}"),
+            "lab: nest is one place, and left and right go 100 mm apart; correct a target, or "
+            "write base: {origin_m: [x, y]}",
+        ),
+    ],
+)  # fmt: skip
+def test_it_warns(tmp_path: Path, edit: tuple[str, str], sentence: str) -> None:
+    assert warned(tmp_path, edit) == (sentence,)
+
+
+def test_a_need_guards_a_place_as_a_zone_does(tmp_path: Path) -> None:
+    assert warned(tmp_path, (IN_THE_OVEN, ""), ("zones:\n", NEEDS)) == ()
+
+
+def test_a_need_that_asks_nothing_of_the_robot_guards_no_place(tmp_path: Path) -> None:
+    needs = "    needs: {oven.close: {jaw.gripped: false}}\nzones:\n"
+    (warning,) = warned(tmp_path, (IN_THE_OVEN, ""), ("zones:\n", needs))
+    assert "nothing keeps left out of there" in warning
+
+
+COMMON = """
+name: rack
+uses: [recipes.py]
+shared:
+  arm: {kind: arm, model: scara}
+cells:
+"""
+CELL = """
+  NAME:
+    devices: {eye: {kind: sensor, name: eye_NAME, answers: [x, y]}, arm: {shared: arm}}
+    targets: {home: {arm: {deg: [0, 0], mm: 0}}, seat: {arm: {deg: [40, 20], mm: 50}}}
+    places: {seat: WORDS}
+"""
+LOOK = """
+from arboleda.recipes import recipe
+
+@recipe("look")
+def look(cell):
+    return cell.device("eye").read()
+"""
+
+
+def said_of_seat(folder: Path, *words: str) -> list[str]:
+    cells = [
+        CELL.replace("NAME", name).replace("WORDS", each) for name, each in zip("abcd", words, strict=False)
+    ]
+    (folder / "recipes.py").write_text(LOOK)
+    (folder / "plant.yaml").write_text(COMMON + "".join(cells))
+    return [each for each in place_check.warnings(load(folder / "plant.yaml")) if "seat" in each]
+
+
+def test_one_place_that_four_cells_describe_differently_is_told_once(tmp_path: Path) -> None:
+    assert said_of_seat(tmp_path, "{}", "{holds: 2}", "{holds: 2}", "{supply: true}") == [
+        "a, b, c, d: seat is one place of these cells, and is {holds: 1} (a), {holds: 2} (b, c), "
+        "{holds: 1, supply: true} (d); write the same in each"
+    ]
+
+
+def test_people_cannot_both_fill_and_empty_one_place(tmp_path: Path) -> None:
+    assert len(said_of_seat(tmp_path, "{supply: true}", "{output: true}")) == 1
+
+
+@pytest.mark.parametrize("other", ["{}", "{output: true}"])
+def test_an_output_may_be_a_plain_place_of_another_cell(tmp_path: Path, other: str) -> None:
+    assert said_of_seat(tmp_path, "{output: true}", other) == []
