@@ -21,7 +21,7 @@ from arboleda_proofs.simulator.run import NO_EXCEPTION
 
 from .mutant import SHARED, edit, mutant
 
-BEAT = """if now >= self._next_beat:
+BEAT = """if now >= self._next_beat:  # 8
         self._next_beat = now + HEARTBEAT_S
         self.dispatcher.outbox.append(Heartbeat(epoch=self.epoch))
     self._due = None"""

@@ -52,7 +52,7 @@ CORE_BUGS = (
     bug(
         CELL,
         "A recovery that failed leaves the cell ready.",
-        "            self.stuck(self.context.failures.last or unknown)\n        else:",
+        "            self.stuck(last)\n        else:",
         "            self.become(Cause.ENDED)\n        else:",
     ),
     bug(

@@ -178,8 +178,7 @@ def _name(plant: Path | None) -> str:
 
 
 def _model(plant: Path) -> PlantModel:
-    from arboleda.plant_file import (
-        loader,
-    )  # takes longer to load than most commands, and few name a plant file
+    # it takes longer to load than most commands, of which few name a plant file
+    from arboleda.plant_file import loader
 
     return loader.load(plant, recipes=False)
