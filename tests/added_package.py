@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from importlib import invalidate_caches
 from pathlib import Path
 
 COUNTER = """
@@ -53,3 +54,4 @@ def register(folder: Path, package: str, entry_points: Mapping[str, Sequence[str
     (about / "entry_points.txt").write_text("\n".join(groups), "utf-8")
     later = folder.stat().st_mtime_ns + 10**9  # however coarse the clock of the disk is
     os.utime(folder, ns=(later, later))
+    invalidate_caches()  # two packages that come within one tick of that clock have the same time
