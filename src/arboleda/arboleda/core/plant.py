@@ -1,38 +1,40 @@
 """The plant: `Plant.step(now, events) -> commands and notices` is where all state changes.
 
 **Theory of operation.** A plant has no clock, no thread and no I/O. A process (`runtime/`), the simulator or
-a test hands it what has happened, each event with its time, and carries out what it returns. The same model,
-memory, times and events give the same commands and notices; so a record of the events can be run again.
+a test hands it what has happened, each event with its time, and carries out what it returns. A plant that is
+made the same, with the same events at the same times, gives the same: so a record can be run again.
 
 A step has these phases, in this order:
 
 1. *Late departures.* A command that left late is due later. This precedes all that looks at deadlines.
-2. *Absence.* Where the plant did nothing for longer than robots wait for it, they have stopped by themselves.
-   So cells at work are held before any event is taken in, and requests go behind the reports: people mean
-   the robots as they stand now.
-3. *Events*, in order. Before each one the deadlines expire that came earlier, so a late step with many events
-   decides as punctual steps would have. A report changes what is believed of a device, and ends commands by
-   evidence. A request is judged by all reports before it, and answered at once. Both mark in `News` the cells
-   that have to be looked at.
-4. *Deadlines* up to now: commands that are late, robots that are silent.
+2. *Absence.* After more than `away_after_s` without a step, robots may have stopped by themselves, and people
+   may have gone near them. So cells at work are held before any event is taken in, unless the plant file lets
+   them go on. Tasks and verbs are taken last, as if they were asked now: people mean the robots as they are.
+3. *Events*, in order. Before each one the deadlines expire that came earlier, so in a late step a command
+   fails or succeeds as in a punctual one. A report changes what is believed of a device, and ends commands by
+   evidence. All other events are judged by the reports before them; each request has its answer in this step.
+   Events mark the cells that may have waited for them in `News`.
+4. *Deadlines* up to now, which no event has settled: commands that are late, robots that are silent.
 5. *Zones* follow what was heard: a robot that is seen outside gives its zone back, one whose place is unknown
-   has it quarantined. This precedes the trees, which ask for zones by all that was heard.
-6. *Rounds.* Each marked cell does what it can: it leaves a state that waits, ticks its tree, starts its next
-   task. One cell may give another more to do, with a zone or a shared device. So rounds go on until no cell
-   does anything. Trees send commands here, and an act of phase 3 that begins a tree ticks it once.
-7. *Acts.* What an operator asked of devices has ended by now, where this step showed it; the journal says so.
-8. *Heartbeat.* Robots stop by themselves without it, so it comes last: the step before it has ended.
+   keeps it as quarantined. This precedes the trees, which ask for zones by all that was heard.
+6. *Rounds.* Each cell that is marked, woken by its time, or whose command has ended does what it can: it
+   leaves a state that waits, ticks its tree, starts its next task. One cell may give another more to do, with
+   a zone or a shared device. So rounds go on until no cell does anything. Trees send their commands here.
+7. *Acts.* Where this step has shown how an operator's act ended, the journal says so.
+8. *Heartbeat.* Robots that hear none stop by themselves. It comes last, so a step that hangs sends none.
 
 Commands and notices are returned in the order in which they arose. Not all may leave alike:
 
-- A stop waits for nothing. It leaves before anything of its step is kept; and while a step is at work, the
-  process sends it beside the step (`departures/stop_lane.py`), which repeats it: two stops are one stop.
-- Any other command leaves once the notices for which `precedes_commands` is true are durable: a latch, a task
-  that begins. So a plant that is killed at any instant knows afterwards all that its robots were told.
-- People are told of a notice once it is durable. Other notices than these become durable behind the commands.
+- A stop waits for nothing: it leaves before anything of its step is kept. While a step is at work, the
+  process sends it beside the step (`departures/stop_lane.py`); the plant gives it again in its next step.
+- Any other command leaves once all notices for which `precedes_commands` is true are durable: a latch, a task
+  that begins. Other notices become durable behind the commands.
+- People are told of a notice once it is durable.
 
 What raises while it works for a cell ends the work of that cell, not that of the plant (`CellGuard`). What
-the parts of a plant share is in `PlantState`; `CellRun` is one cell, and changes its state by a table alone.
+the parts of a plant share is in `PlantState`: beliefs, open commands and facts of earlier starts in
+`Dispatcher`, tasks by their ids in `Intake`, zones and who holds them in `Zones`. `CellRun` is one cell, with
+its queue, task and tree; it changes its state by a table alone.
 """
 
 from __future__ import annotations
