@@ -10,10 +10,12 @@ from tempfile import TemporaryDirectory
 from real_start import running
 
 from arboleda.client import Conflict, Plant
+from arboleda.client.answers import Advice
 from arboleda_class.lessons import spoken
 
 LOOK_S = 0.1
 TEXT = "bench bake shelf_1 2"
+TAKE_OUT = "take_out"
 
 
 def await_holding(plant: Plant) -> None:
@@ -25,12 +27,21 @@ def await_holding(plant: Plant) -> None:
 def bring_back(plant: Plant) -> None:
     """Do what the plant advises, one act after the other, until the cell is at rest."""
     while (cell := plant.snapshot().cells[0]).state != "idle" or cell.advice:
-        advice = next((each for each in cell.advice if not each.refusal and not each.hand), None)
+        advice = next((each for each in cell.advice if not each.refusal), None)
         if advice is not None:
             print(f"  the cell is {cell.state}: {advice.said}")
             with suppress(Conflict):  # it is under way already
-                plant.operate(advice.do, advice.scope, by_hand=advice.by_hand)
+                act(plant, advice)
         time.sleep(1.0)
+
+
+def act(plant: Plant, advice: Advice) -> None:
+    """Do one thing that is advised. Where a person has to look, the oven is empty."""
+    if advice.do == TAKE_OUT:
+        cell, place = advice.scope.split()
+        plant.operate("unload", cell, place=place)
+    else:
+        plant.operate(advice.do, advice.scope, by_hand=advice.by_hand)
 
 
 def main() -> None:

@@ -25,7 +25,9 @@ class Event:
 class Advice:
     """Step that leads a cell out of its state."""
 
-    do: Annotated[str, "A verb; or, where `hand`: bring_back, repair, reference, check or free."]
+    do: Annotated[
+        str, "A verb; or, where `hand`: bring_back, repair, reference, check, free, take_out, leave_in."
+    ]
     hand: Annotated[bool, "Only a person at the machine can do it."]
     scope: Annotated[str, "A cell, a robot or a zone."]
     by_hand: Annotated[
