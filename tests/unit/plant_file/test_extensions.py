@@ -60,7 +60,7 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]
     register(site, "old", {"arboleda.api": ["0 = old"], "arboleda.parts": ["old = old:Parts"]})
     monkeypatch.syspath_prepend(site)
     yield
-    for each in ("shop", "sums"):
+    for each in ("broken", "shop", "sums"):
         sys.modules.pop(each, None)
 
 
@@ -167,10 +167,12 @@ def test_check_says_what_a_plant_goes_on_without(load: Load, tmp_path: Path) -> 
 
 def test_what_is_wrong_on_a_page_is_noted(load: Load, tmp_path: Path) -> None:
     page = "from arboleda.extension import Page, Value\nPAGE = Page(card=[Value('count'), 'sum'])\n"
+    installs = "import os\nos.utime(os.path.dirname(__file__), ns=(1, 1))\n"  # all packages are read anew
     (tmp_path / "site/sums.py").write_text(page, "utf-8")
+    (tmp_path / "site/broken.py").write_text(installs, "utf-8")
     groups = {"arboleda.api": ["1 = sums"], "arboleda.page": ["sums = sums:PAGE"]}
     register(tmp_path / "site", "sums", groups)
-    assert notes(load("{orders: off, broken: off}")) == [
+    assert notes(load("{orders: off}")) == [
         "Arboleda goes on without the declaration 'sum' of sums 1: one of card of the page is 'sum'; "
         "it takes Sequence[Item]"
     ]

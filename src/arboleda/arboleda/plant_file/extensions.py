@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from importlib.metadata import EntryPoint
 from typing import Any
 
 from arboleda.host.distributions import APIS
@@ -80,21 +81,25 @@ def notes(plant: PlantModel) -> list[str]:
     """A line for each piece of packages that the plant goes on without: a part that lacks settings, what is
     wrong on a page, and what breaks when it is loaded."""
     pieces = Pieces(error_text, tell=lambda _: None, off=plant.extensions_off)
-    of_the_door = {each.dist for each in entry_points(APIS)}
+    of_the_door = {_distribution(each) for each in entry_points(APIS)}
     for point in pieces.registered(PARTS):
         with pieces.calling(piece_of(point, THE_PARTS)):
-            declared = getattr(point.load(), "settings_type", None) if point.dist in of_the_door else None
-            if declared is not None:
+            declared = _distribution(point) in of_the_door and getattr(point.load(), "settings_type", None)
+            if declared:
                 settings_of(plant, package_of(point), declared)
     for point in pieces.registered(PAGE):
-        if point.dist in of_the_door:
-            from arboleda.dashboard.package_page.page import (
-                page_part,
-            )  # loads long, and few packages have one
+        if _distribution(point) in of_the_door:
+            # it takes long to load, and few packages have one
+            from arboleda.dashboard.package_page.page import page_part
 
             with pieces.calling(piece_of(point, THE_PAGE)):
                 page_part(point, pieces)
     return pieces.notes
+
+
+def _distribution(point: EntryPoint) -> str:
+    """The name of the distribution of an entry point; each reading of packages has other objects of it."""
+    return "" if point.dist is None else point.dist.name
 
 
 def _nobody(document: Document, name: str, known: list[str]) -> None:
