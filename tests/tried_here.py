@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 
 from arboleda.plant_file.python_uses import SourceSpot
+from arboleda.plant_file.recipe_check import trial
 from arboleda.plant_file.recipe_trial import TrialResult
-from arboleda.plant_file.trial import trial
 
 
 def verdict(name: str, beside: Path | None, content: bytes, **_: bool) -> TrialResult:

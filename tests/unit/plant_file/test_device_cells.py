@@ -14,7 +14,7 @@ from arboleda.kinds.declared import Device, Slot
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Cell, Evidence, PlantModel
 from arboleda.plant_file import loader
-from arboleda.plant_file.trial import trial
+from arboleda.plant_file.recipe_check import trial
 from arboleda.runtime.rate import at_rate
 
 from ..kinds import lab

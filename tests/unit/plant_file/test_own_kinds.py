@@ -12,7 +12,7 @@ from arboleda.cli.main import cli
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
-from arboleda.plant_file.trial import trial
+from arboleda.plant_file.recipe_check import trial
 
 SAW = """\
 from dataclasses import dataclass

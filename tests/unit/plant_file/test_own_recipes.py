@@ -14,7 +14,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.text import parse
 from arboleda.plant_file import loader, recipe_trial
 from arboleda.plant_file.python_uses import SourceSpot
-from arboleda.plant_file.trial import trial
+from arboleda.plant_file.recipe_check import trial
 
 PLANT = """\
 name: lab

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.plant_file.trial import trial
+from arboleda.plant_file.recipe_check import trial
 
 PLANT = """
 name: lab

@@ -29,7 +29,7 @@ ARGUMENTS = (
 
 
 def measure(root: Path, folders: Sequence[str], say: Say) -> dict[str, Any]:
-    """What each test reaches, with nothing planted."""
+    """The lines that each test reaches, with nothing planted."""
     tracer = Tracer(root / PACKAGE, MUTATED)
     watcher = _Measuring(tracer, say)
     with tracer.running():

@@ -148,9 +148,7 @@ class Plant:
         self.now = now
         dispatcher = Dispatcher(model, epoch, memory)
         if memory.get(Fact.QUARANTINE):
-            for belief in dispatcher.beliefs.values():
-                if belief.robot.goes:  # its first report may be older than its last move of an earlier start
-                    belief.stillness.doubt(until=now + SHORTEST_ABSENCE_S)
+            _doubt_stillness(dispatcher, until=now + SHORTEST_ABSENCE_S)
         self.revisions = {cell.name: 0 for cell in model.cells}
         state = PlantState(
             clock=self,
@@ -422,6 +420,13 @@ class Plant:
         self._news.changes += 1  # it may hold a cell without any other message
         for name, cell in self.cells.items():
             self._guard.run(name, partial(cell.close, drops_waiting=event.drops_waiting))
+
+
+def _doubt_stillness(dispatcher: Dispatcher, *, until: float) -> None:
+    """Doubt that robots stand: their first reports may be older than their last moves of an earlier start."""
+    for belief in dispatcher.beliefs.values():
+        if belief.robot.goes:
+            belief.stillness.doubt(until=until)
 
 
 def _requests_last(events: Sequence[Event], now: float) -> list[Event]:

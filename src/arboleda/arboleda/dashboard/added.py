@@ -131,7 +131,7 @@ class AddedParts:
         return found
 
     def _faces(self) -> Iterator[tuple[Piece, Callable[[Moment], Face]]]:
-        """What tells the changes, each as a piece that is not left out."""
+        """The faces of all sections, each as a piece that is not left out."""
         for point, part in self._parts:
             piece = piece_of(point, "the face of the page")
             if part.face is not None and piece in self._pieces:

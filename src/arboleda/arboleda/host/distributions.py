@@ -61,7 +61,7 @@ class Added:
 
 
 def installed() -> Installed:
-    """What is installed now; an installation or removal changes the time of a folder of packages."""
+    """The distributions that are there now; an installation or removal changes the time of their folder."""
     by_variable = {called(each) for each in os.environ.get(OFF, "").split(",") if each.strip()}
     return _read(tuple((each, _changed_at(each)) for each in sys.path), kept_off() | by_variable)
 

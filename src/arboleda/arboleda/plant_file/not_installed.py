@@ -1,4 +1,4 @@
-"""What a plant file names and nobody brings: the reason, with what to install.
+"""Reasons why a name of a plant file is brought by nobody, with what to install.
 
 Each start keeps in the default state directory of its plant which package brought what.
 """

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations as pairs
+from pathlib import Path
 
 from py_trees import behaviours, decorators, timers
 from py_trees.behaviour import Behaviour
@@ -25,10 +26,13 @@ from arboleda.model.tree_nodes import nodes_of
 from arboleda.recipes.errors import RoleError
 from arboleda.views import tree_view
 
+from . import drivers, extensions, own_recipes
 from .document import Document, Place, choice, closest, misnamed, nearest, shown
+from .loader import plant_of
 from .lost_steps import Made
 from .own_recipes import SECTION
 from .python_uses import LONGEST, PythonUses, SourceSpot, Watch, error_text
+from .recipe_trial import TrialResult
 
 HOW_TO_CHOOSE = "; give it to a node that lists its values, or its port a type: int, double, bool"
 WAIT = "cell.wait(seconds)"
@@ -51,6 +55,28 @@ NOT_WOKEN: Mapping[type[Behaviour], str] = {
 """By the class of a node that asks a clock, or waits to be ticked: what a recipe takes instead.
 
 The engine ticks a tree when something happens, so such a node would never be ticked again."""
+
+
+def trial(name: str, content: bytes, folder: Path | None, watch: Watch) -> TrialResult:
+    """The problems of a plant file and of its recipes, which are built for each task that they could have.
+
+    The plant's Python files run in this process, whatever they do to it. `recipe_trial` calls this function
+    in a process of its own.
+    """
+    document, result = Document(name, content, folder), TrialResult()
+
+    def tried(cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
+        trial = RecipeTrial(document=document, used=used, watch=watch)
+        result.offers = trial.run(cells)
+        result.missed, result.unused = trial.missed, trial.unused
+        return {}
+
+    used = own_recipes.imported(document, own_recipes.listed(document), watch)
+    plant_of(document, used, tried)
+    drivers.driver_uses(document, used)
+    extensions.settings_given(document, used)
+    result.here, result.elsewhere = document.problems
+    return result
 
 
 @dataclass

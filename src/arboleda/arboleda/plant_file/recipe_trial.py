@@ -129,7 +129,7 @@ def _marked(
 def verdict(name: str, beside: Path | None, content: bytes, *, apart: bool = True) -> TrialResult:
     """The result of trying the recipes that a plant file uses, in another process, if there can be one."""
     if not (apart and HAS_PROCESSES):
-        from .trial import trial  # which the plant's own process does not need
+        from .recipe_check import trial  # which the plant's own process does not need
 
         return trial(name, content, beside, unwatched)
     with TemporaryDirectory(prefix="arboleda-") as made:
@@ -147,7 +147,7 @@ def verdict(name: str, beside: Path | None, content: bytes, *, apart: bool = Tru
 
 def main(name: str) -> None:
     """Run as the other process: import, build, write down the result, end."""
-    from .trial import trial  # which the plant's own process does not need
+    from .recipe_check import trial  # which the plant's own process does not need
 
     folder = Path(name)
     request = json.loads((folder / REQUEST).read_text("utf-8"))

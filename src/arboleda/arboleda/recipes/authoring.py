@@ -242,10 +242,11 @@ def check_choices(step: Step, making: Making) -> None:
 
 def _unexpected(question: Question, known: Iterable[Wanted]) -> Sentence:
     """The sentence on an answer without a branch, or one that its device may not give."""
-    named, number = {"robot": question.name, "answer": value_text(question.answer)}, question.number
+    answer, number = value_text(question.answer), question.number
     if number is not None and number.is_limited and not number.takes(question.answer):
-        return BEYOND[number.type](**named, lower=number.lower, upper=number.upper)
-    return OTHER_ANSWER(**named, known=tuple(map(value_text, known)))
+        beyond = BEYOND[number.type]
+        return beyond(robot=question.name, answer=answer, lower=number.lower, upper=number.upper)
+    return OTHER_ANSWER(robot=question.name, answer=answer, known=tuple(map(value_text, known)))
 
 
 def _one(step: Step | Sequence[Step], where: str) -> Step:

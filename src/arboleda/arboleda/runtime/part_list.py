@@ -45,7 +45,7 @@ class PartList:
 
     @property
     def notes(self) -> list[str]:
-        """What is left out, and why: whole packages first."""
+        """A line for each piece that is left out, with the reason; whole packages first."""
         return [*left_out(), *self.pieces.notes]
 
     def make(self, assembly: Assembly, own: Iterable[Factory]) -> None:

@@ -30,7 +30,7 @@ class Counter(Part, settings=Settings):
 
         @api.get("/api/NAME")
         def counted() -> dict[str, int]:
-            """How many tasks ended so in each cell."""
+            """The number of tasks that ended so, by cell."""
             return self.kept.rows()
 
         return api

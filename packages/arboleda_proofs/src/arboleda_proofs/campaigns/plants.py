@@ -42,7 +42,7 @@ class Plant:
 
     @property
     def rules(self) -> tuple[Invariant, ...]:
-        """What must hold in it beside what must hold in every plant."""
+        """The rules of this plant, beside those of every plant."""
         return ()
 
     def smaller(self) -> Iterable[Callable[[], Plant]]:

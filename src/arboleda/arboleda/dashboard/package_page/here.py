@@ -51,7 +51,7 @@ class Here:
 
 
 def shown_by(package: str, links: Mapping[str, Any]) -> dict[str, Any]:
-    """What the parts of a package show, by its keys; each tells it under the name of its registration."""
+    """The values that parts of a package show, by key; each tells them under the name of its registration."""
     told = (news for name, news in links.items() if name.partition(".")[0] == package)
     return {key: value for news in told if isinstance(news, Mapping) for key, value in news.items()}
 
