@@ -1,8 +1,9 @@
-"""What installed packages register is read again where one was installed, and not otherwise."""
+"""Entry points of installed packages are read again where a package was installed, and not otherwise."""
 
 from __future__ import annotations
 
 import os
+import sys
 from importlib import metadata
 from pathlib import Path
 from unittest import mock
@@ -16,8 +17,8 @@ GROUP = "arboleda.test_of_packages"
 
 @pytest.fixture
 def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder for installed packages."""
-    monkeypatch.syspath_prepend(tmp_path)
+    """A folder for installed packages, the only one: other tests write into folders of the checkout."""
+    monkeypatch.setattr(sys, "path", [str(tmp_path)])
     return tmp_path
 
 
