@@ -25,10 +25,7 @@ def printed(path: Path, builder: str) -> list[str]:
     for tool in ("sh", "sed", "dirname", "mkdir"):
         (path / tool).symlink_to(str(shutil.which(tool)))
     ran = subprocess.run(
-        [FOLDER.parent / "scripts/images", "--print"],
-        env={"PATH": str(path)},
-        capture_output=True,
-        text=True,
+        [FOLDER.parent / "scripts/images", "--print"], env={"PATH": str(path)}, capture_output=True, text=True
     )
     assert ran.returncode == 0, ran.stderr
     return ran.stdout.split()

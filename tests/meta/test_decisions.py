@@ -38,10 +38,7 @@ def test_a_decision_is_short(page: Path) -> None:
     ("below", "wrong"),
     [
         ("**No longer holds:** [next](next.md).\n", []),
-        (
-            "Old.\n\n**Holds in part:** [next](next.md).\n",
-            ["**Holds in part:** [next](next.md)."],
-        ),
+        ("Old.\n\n**Holds in part:** [next](next.md).\n", ["**Holds in part:** [next](next.md)."]),
         ("*Replaced by [next](next.md).*\n", ["*Replaced by [next](next.md).*"]),
         ("**No longer holds:** [gone](gone.md).\n", ["gone.md"]),
         ("**Holds in part:** nobody knows why.\n", ["no link"]),

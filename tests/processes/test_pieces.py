@@ -150,10 +150,7 @@ last_threads.leave(0)
 )
 def test_a_worker_that_hangs_does_not_keep_the_process(begin: str, name: str) -> None:
     ended = subprocess.run(
-        [sys.executable, "-c", WORKER.format(begin=begin)],
-        capture_output=True,
-        text=True,
-        timeout=PATIENCE_S,
+        [sys.executable, "-c", WORKER.format(begin=begin)], capture_output=True, text=True, timeout=PATIENCE_S
     )
     assert ended.returncode == 0
     assert ended.stderr == f"the process ends without its thread {name}, which does not end\n"

@@ -82,9 +82,7 @@ def test_it_is_the_plant_that_was_loaded(loaded: set[str]) -> None:
 
 
 @pytest.mark.parametrize(
-    "unused",
-    [OF_THE_PAGE, OF_CLIENTS, OF_TRIALS, OF_OTHERS],
-    ids=["page", "clients", "trials", "others"],
+    "unused", [OF_THE_PAGE, OF_CLIENTS, OF_TRIALS, OF_OTHERS], ids=["page", "clients", "trials", "others"]
 )
 def test_what_it_does_not_use_is_not_loaded(loaded: set[str], unused: set[str]) -> None:
     assert unused & loaded == set()

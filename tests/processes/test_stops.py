@@ -12,13 +12,7 @@ import pytest
 from arboleda.departures import stop_lane
 from arboleda.departures.leaving import StopLeft, Unkept
 from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import (
-    Fact,
-    OperatorAnswer,
-    TaskChanged,
-    TaskState,
-    Verb,
-)
+from arboleda.model.messages import Fact, OperatorAnswer, TaskChanged, TaskState, Verb
 from arboleda.runtime.parts.orchestrator import Orchestrator
 from arboleda.runtime.parts.screens import KeptStateUnknown
 from arboleda.store.sqlite import Store

@@ -69,11 +69,7 @@ def test_a_board_that_reboots_in_a_move_fails_it(evidence: Evidence) -> None:
     assert (change.state, change.reason) == (TaskState.FAILED, Reason.LINK_LOST)
 
 
-REBOOTS = {
-    Evidence.IDS: Reason.REBOOTED,
-    Evidence.JOINTS: Reason.NOT_HOMED,
-    Evidence.STATE: Reason.NOT_HOMED,
-}
+REBOOTS = {Evidence.IDS: Reason.REBOOTED, Evidence.JOINTS: Reason.NOT_HOMED, Evidence.STATE: Reason.NOT_HOMED}
 
 
 @LEVELS

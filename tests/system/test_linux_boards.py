@@ -81,10 +81,7 @@ def desk(board: str, mosquitto: Callable[[int], Any], free_port: int) -> Iterato
 
 
 def test_tasks_are_done_with_the_firmwares_boards_which_end_with_a_plant_that_is_killed(
-    arboleda: Callable[..., Any],
-    mosquitto: Callable[[int], Any],
-    free_port: int,
-    board: str,
+    arboleda: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int, board: str
 ) -> None:
     broker = mosquitto(free_port)
     where = ("--no-ros", "--boards", "linux", "--broker", f"127.0.0.1:{free_port}")

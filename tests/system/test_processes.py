@@ -54,9 +54,7 @@ def verb(parts: Chain, name: str) -> tuple[bool, str]:
     return call.result().success, call.result().message
 
 
-def test_a_bridge_back_in_time_lets_the_cell_recover_and_work_on(
-    chain: Callable[..., Chain],
-) -> None:
+def test_a_bridge_back_in_time_lets_the_cell_recover_and_work_on(chain: Callable[..., Chain]) -> None:
     parts = chain(Evidence.IDS, stop_timeout_s=30.0)  # the bridge starts as a process of its own
     arm, mqtt = diagnosed(parts, "ra1"), diagnosed(parts, "mqtt_bridge on MQTT")
     parts.observer.wait(lambda: arm() == (OK, "ready"), "ra1 is not ready")
@@ -77,9 +75,7 @@ def test_a_bridge_back_in_time_lets_the_cell_recover_and_work_on(
     assert parts.outcome("sis_a 2C 0")["state"] == "done"
 
 
-def test_a_bridge_back_too_late_leaves_the_cell_held_until_it_is_retried(
-    chain: Callable[..., Chain],
-) -> None:
+def test_a_bridge_back_too_late_leaves_the_cell_held_until_it_is_retried(chain: Callable[..., Chain]) -> None:
     parts = chain(Evidence.IDS, stop_timeout_s=1.0)
     parts.submit("sis_a palletizing")
     parts.wait_for_step("sis_a", "move to station 8")

@@ -76,11 +76,7 @@ def test_a_plant_in_a_namespace_of_its_own_works_there_and_another_beside_it(
     observer.wait(done, "the task was not done")
     assert {
         (name, space) for name, space in observer.node.get_node_names_and_namespaces() if space != "/"
-    } == {
-        ("my_orchestrator", "/plant2"),
-        ("my_mqtt_bridge", "/plant2"),
-        ("my_virtual_devices", "/plant2"),
-    }
+    } == {("my_orchestrator", "/plant2"), ("my_mqtt_bridge", "/plant2"), ("my_virtual_devices", "/plant2")}
     assert {name for name in names(observer) if not name.startswith("/plant2/")} == {"/diagnostics"}
     words = ("-r", "__ns:=/north", "-p", f"state_dir:={tmp_path / 'north'}")
     command = (sys.executable, "-m", "arboleda_ros.nodes", "orchestrator", "--ros-args", *words)

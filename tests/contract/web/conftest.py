@@ -44,11 +44,7 @@ class Web:
         if token is not None:
             headers["authorization"] = f"Bearer {TOKENS[token]}"
         made = httpx.Client(
-            base_url=self.origin,
-            trust_env=False,
-            headers=headers,
-            timeout=PATIENCE_S,
-            verify=self.believing,
+            base_url=self.origin, trust_env=False, headers=headers, timeout=PATIENCE_S, verify=self.believing
         )
         if login is not None:
             made.headers["origin"] = self.origin

@@ -95,11 +95,7 @@ def test_on_its_own_machine(serve, plant: Plant) -> None:
 
 @pytest.mark.parametrize(
     ("said", "path", "login"),
-    [
-        ("", "", ""),
-        (SLOW, "/api/plant/stop", LOGIN),
-        (STREAM, "", LOGIN),
-    ],
+    [("", "", ""), (SLOW, "/api/plant/stop", LOGIN), (STREAM, "", LOGIN)],
     ids=["silent", "half a stop", "stream"],
 )
 def test_on_a_network(serve, plant: Plant, said: str, path: str, login: str) -> None:

@@ -28,10 +28,7 @@ def test_useless_users_are_refused(users: dict[str, str]) -> None:
 
 @pytest.mark.parametrize(
     ("trouble", "sentence"),
-    [
-        (errno.EADDRNOTAVAIL, "Cannot assign requested address"),
-        (errno.EADDRINUSE, "the port is taken"),
-    ],
+    [(errno.EADDRNOTAVAIL, "Cannot assign requested address"), (errno.EADDRINUSE, "the port is taken")],
 )
 def test_where_it_cannot_listen_is_one_sentence(
     monkeypatch: pytest.MonkeyPatch, trouble: int, sentence: str

@@ -52,10 +52,7 @@ def test_each_sentence_has_the_values_of_its_english() -> None:
             "b: at station 0, the part in the tool is 160 mm below the floor",
             "b: en estación 0, la pieza en la herramienta está 160 mm por debajo del suelo",
         ),
-        (
-            "in cell lab: home lies in zone centre",
-            "en la celda lab: home está en la zona centre",
-        ),
+        ("in cell lab: home lies in zone centre", "en la celda lab: home está en la zona centre"),
         ("Page: http://127.0.0.1:8080", "Página: http://127.0.0.1:8080"),
         (
             "HTTP API: http://127.0.0.1:41/api/plant (port 8080 is taken)",

@@ -93,11 +93,7 @@ def test_what_was_installed_is_looked_at_and_removed(systemd: Systemd, typed: Ty
 @pytest.mark.parametrize("fails", ["daemon-reload", "enable", "restart"])
 @pytest.mark.parametrize("before", [None, "[Unit]\nDescription=an older one\n"])
 def test_where_systemd_refuses_all_is_as_it_was(
-    systemd: Systemd,
-    typed: Typed,
-    written: Path,
-    fails: str,
-    before: str | None,
+    systemd: Systemd, typed: Typed, written: Path, fails: str, before: str | None
 ) -> None:
     if before is not None:
         written.parent.mkdir(parents=True)

@@ -30,10 +30,7 @@ def tree(*words: str) -> Result:
             "storage",
             ["main", "drive path 0A", "move to pick-up", "move to station 8", "recovery", "carry back"],
         ),
-        (
-            "palletizing",
-            ["main", "move to home", "move to station 8", "recovery", "settle", "part back"],
-        ),
+        ("palletizing", ["main", "move to home", "move to station 8", "recovery", "settle", "part back"]),
     ],
 )
 def test_a_recipe_is_drawn_with_its_recovery(recipe: str, steps: list[str]) -> None:

@@ -175,11 +175,7 @@ def test_a_part_is_declared_taken_out_by_hand(acts: Notes) -> None:
     [
         ({"outcome": "done", "why": None}, 0, "done: release, jaw\n"),
         ({"outcome": "failed", "why": "jaw: it is stuck"}, 3, "failed: release, jaw: jaw: it is stuck\n"),
-        (
-            {"outcome": "unchecked", "why": "not said"},
-            0,
-            "sent, not checked: release, jaw: not said\n",
-        ),
+        ({"outcome": "unchecked", "why": "not said"}, 0, "sent, not checked: release, jaw: not said\n"),
         ({"outcome": "under_way", "why": None}, 4, "still under way: release, jaw\n"),
     ],
 )

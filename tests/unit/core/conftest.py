@@ -66,10 +66,7 @@ class Hand:
         """Have every robot report that it stands still, at home unless `standing` says where."""
         for cell in self.plant.model.cells:
             layout = StorageLayout(cell)
-            self._awake(
-                layout.arm.name,
-                q=standing.get(layout.arm.name, layout.home.q),
-            )
+            self._awake(layout.arm.name, q=standing.get(layout.arm.name, layout.home.q))
             self._awake(layout.mobile.name, node=0)
 
     def _awake(self, robot: str, **where: Any) -> None:

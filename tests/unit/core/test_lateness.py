@@ -58,9 +58,7 @@ def test_a_robot_that_was_not_heard_in_time_is_late_itself(arm_moves: Any) -> No
     assert why == "nothing was heard of it for 0.9 s: its board, network or broker was late"
 
 
-def test_where_all_was_in_time_here_it_was_late_on_its_way(
-    arm_moves: Any,
-) -> None:
+def test_where_all_was_in_time_here_it_was_late_on_its_way(arm_moves: Any) -> None:
     for _ in range(10):
         arm_moves.tell("ra1", after=0.2, state=MOVING)
     assert why_short(arm_moves) == ON_THE_WAY

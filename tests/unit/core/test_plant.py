@@ -87,11 +87,7 @@ def test_a_storage_task_sends_its_commands_in_order(hand: Any) -> None:
     assert [command.on for command in plant.commands(SetEffector)] == [True, False]
     cell = plant.plant.model.cell("sis_a")
     layout = StorageLayout(cell)
-    assert (q, away.q, home.q) == (
-        layout.pickup.q,
-        cell.stations[7].q,
-        layout.home.q,
-    )
+    assert (q, away.q, home.q) == (layout.pickup.q, cell.stations[7].q, layout.home.q)
     assert len(plant.commands(SystemStart)) == 1 and not plant.commands(Stop)
 
 

@@ -71,11 +71,7 @@ def test_what_an_arm_said_just_after_a_start_does_not_free_the_zone_that_it_held
     zone = min(layout.space.zones)
     memory = {Fact.QUARANTINE: {zone: layout.arm.name}}
     plant = Plant(model, epoch=2, now=0.0, memory=memory)
-    said = {
-        "q": layout.home.q,
-        "boot_id": 1,
-        **({"homed": True} if layout.arm.says_homed else {}),
-    }
+    said = {"q": layout.home.q, "boot_id": 1, **({"homed": True} if layout.arm.says_homed else {})}
     for number in range(1, 10):
         hear(plant, number * SHORTEST_ABSENCE_S / 10, layout.arm.name, **said)
         assert plant.zones.holder(zone) == layout.arm.name

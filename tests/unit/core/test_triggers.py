@@ -16,11 +16,7 @@ CYCLE = "ra1 palletizing"
 
 @pytest.mark.parametrize(
     ("trigger", "queues", "state"),
-    [
-        (True, False, TaskState.REFUSED),
-        (True, True, TaskState.QUEUED),
-        (False, False, TaskState.QUEUED),
-    ],
+    [(True, False, TaskState.REFUSED), (True, True, TaskState.QUEUED), (False, False, TaskState.QUEUED)],
     ids=["refused", "queued by the plant file", "of a person"],
 )
 def test_a_second_request_for_the_cycle(

@@ -70,12 +70,7 @@ PAGE = PagePart(
 )
 """
 LAYOUT = view.layout(shipped())
-IN_ORDER = {
-    "cells": ["cells"],
-    "tasks": ["tasks"],
-    "log": ["events", "links"],
-    "settings": ["settings"],
-}
+IN_ORDER = {"cells": ["cells"], "tasks": ["tasks"], "log": ["events", "links"], "settings": ["settings"]}
 Install = Callable[..., None]
 Told = list[str]
 

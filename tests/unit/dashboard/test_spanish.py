@@ -49,11 +49,7 @@ def test_so_do_the_documents(name: str) -> None:
         ("a reposo, not a casa", "ir a casa", "ir a reposo"),
         ("estación, not puesto of a cell", "en el puesto {station} de {cell}", "supuesto de {cell}"),
         ("usted, not tú", "otro archivo: mira `arboleda logs`", "otro archivo: mire `arboleda logs`"),
-        (
-            "usted, not tú",
-            "aún no; prueba dentro de unos segundos",
-            "una prueba dentro de la página",
-        ),
+        ("usted, not tú", "aún no; prueba dentro de unos segundos", "una prueba dentro de la página"),
         ("la que la termine antes, in this order", "la que antes la termine", "la que la termine antes"),
     ],
 )

@@ -63,11 +63,7 @@ def test_every_word_of_the_plant_has_a_name(language: str, group: str, known: se
     ("plant", "english", "spanish"),
     [
         (steps.MOVE(pose=STATION(number=7)), "move to station 7", "ir a la estación 7"),
-        (
-            IN_RECOVERY(step=steps.MOVE(pose=HOME())),
-            "recovery: move to home",
-            "recuperación: ir a reposo",
-        ),
+        (IN_RECOVERY(step=steps.MOVE(pose=HOME())), "recovery: move to home", "recuperación: ir a reposo"),
         (belief.OFFLINE.phrase(robot="ra1"), "ra1 is offline", "ra1 está sin conexión"),
         (
             dispatcher.NO_TELEMETRY(robot="rm_sis_a", seconds=1.5, doing=paths.DRIVING(path="0B")),

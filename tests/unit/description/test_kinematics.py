@@ -57,12 +57,7 @@ def drawn(model: str) -> Robot:
 def row(theta: float, d: float, a: float, alpha: float) -> Matrix:
     """One row of a DH table: about z, along z, along x, about x."""
     ct, st, ca, sa = math.cos(theta), math.sin(theta), math.cos(alpha), math.sin(alpha)
-    return (
-        (ct, -st * ca, st * sa, a * ct),
-        (st, ct * ca, -ct * sa, a * st),
-        (0, sa, ca, d),
-        (0, 0, 0, 1),
-    )
+    return ((ct, -st * ca, st * sa, a * ct), (st, ct * ca, -ct * sa, a * st), (0, sa, ca, d), (0, 0, 0, 1))
 
 
 def scara(q1: float, q2: float, q3: float) -> Matrix:

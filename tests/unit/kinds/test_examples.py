@@ -44,9 +44,7 @@ CASES = (
     Case(folder="assembly", task=BASE, ends_with=("left to done", "left lets go", "left to home")),
     bench(task="bench weigh 10", ends_with=("pump dispense", "scale weigh")),
     bench(
-        task="bench weigh 20",
-        answers={"scale": "short"},
-        why="the scale says that too little was dispensed",
+        task="bench weigh 20", answers={"scale": "short"}, why="the scale says that too little was dispensed"
     ),
     bench(task="bench incubate 5 60", ends_with=("heater clamp", "pump rinse")),
     bench(task="bench incubate 5 40", answers={"reader": "blank"}, ends_with=("reader scan", "pump rinse")),
@@ -58,12 +56,7 @@ CASES = (
     Case(folder="own_board", task="bench fill 5", ends_with=("valve dose", "valve close")),
     Case(folder="own_board", task="bench fill 10", answers={"valve": "low"}, why="the tank is low"),
     Case(folder="own_driver", task="shop form 2", ends_with=("press open", "press measure")),
-    Case(
-        folder="own_driver",
-        task="shop form 1",
-        answers={"press": "bad"},
-        why="the part is out of measure",
-    ),
+    Case(folder="own_driver", task="shop form 1", answers={"press": "bad"}, why="the part is out of measure"),
     Case(folder="press_board", task="bench stamp 1", ends_with=("press open", "press clamp")),
     Case(folder="press_board", task="bench stamp 2", answers={"press": "absent"}, why="there is no part"),
     tree(task="cell tend slot_1 1002", ends_with=TAKEN, tries_again=frozenset({("mill", "run")})),

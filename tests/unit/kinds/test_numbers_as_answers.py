@@ -128,11 +128,7 @@ def test_an_answer_that_the_kind_does_not_have_fails_the_task(said: Any, number:
         ),
         (("< 100", ">= 100", "otherwise"), GRAMS, "choose has a way 'otherwise' that no number takes, as"),
         (("> 150 and < 120", "otherwise"), GRAMS, "choose has a way '> 150 and < 120' that no number takes"),
-        (
-            ("> 3 and < 4", "<= 3", ">= 4"),
-            INT,
-            "choose has a way '> 3 and < 4' that no number takes",
-        ),
+        (("> 3 and < 4", "<= 3", ">= 4"), INT, "choose has a way '> 3 and < 4' that no number takes"),
         (
             ("heavy", "otherwise"),
             GRAMS,

@@ -4,15 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.model.messages import (
-    Fact,
-    Journal,
-    Remember,
-    TaskChanged,
-    TaskState,
-    Verb,
-    outlives_power,
-)
+from arboleda.model.messages import Fact, Journal, Remember, TaskChanged, TaskState, Verb, outlives_power
 from arboleda.model.sentence import OWN
 
 

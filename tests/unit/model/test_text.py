@@ -17,9 +17,7 @@ SHIPPED = shipped()
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["sis_a 0B 7", "  SIS_A   0b\t7 ", "Sis_A 0B 7\n"],
-    ids=["plain", "spaces and case", "newline"],
+    "text", ["sis_a 0B 7", "  SIS_A   0b\t7 ", "Sis_A 0B 7\n"], ids=["plain", "spaces and case", "newline"]
 )
 def test_case_and_spaces_do_not_matter(text: str) -> None:
     order = parse(text, SHIPPED)

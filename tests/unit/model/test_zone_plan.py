@@ -102,7 +102,7 @@ def test_no_problem_with_poses_outside_or_passed_through() -> None:
 def test_a_place_in_a_zone_is_a_problem_with_its_pose() -> None:
     assert plan_problems(cell(station8="y").cell) == {
         "station 8": "in cell sis_a: station 8 lies in zone y; "
-        "palletizing ends and waits there, so it must be outside all zones",
+        "palletizing ends and waits there, so it must be outside all zones"
     }
 
 

@@ -51,12 +51,7 @@ def test_a_shipped_cell_is_the_one_of_the_design(shipped: PlantModel, name: str)
     arm, mqtt, twin, model, mobile, home, pickup = CELLS[name]
     cell = shipped.cell(name)
     layout = StorageLayout(cell)
-    assert (
-        layout.arm.name,
-        layout.arm.mqtt,
-        layout.arm.twin,
-        layout.arm.model,
-    ) == (arm, mqtt, twin, model)
+    assert (layout.arm.name, layout.arm.mqtt, layout.arm.twin, layout.arm.model) == (arm, mqtt, twin, model)
     assert (layout.mobile.name, layout.mobile.mqtt) == (mobile, mobile)
     assert wire_values(shipped, name, layout.home.q) == list(home)
     assert layout.pickup_of(layout.path("0B")) is layout.pickup
@@ -72,10 +67,7 @@ def test_a_station_takes_q1_from_its_column_and_q2_from_its_row(shipped: PlantMo
     for number, pose in enumerate(cell.stations):
         q1, q2, *_ = wire_values(shipped, name, pose.q)
         assert (q1, q2) == pytest.approx((10 * (number % 3), 10 * (number // 3)))
-    assert (layout.palletizing.pick, layout.palletizing.place) == (
-        layout.pickup,
-        cell.stations[8],
-    )
+    assert (layout.palletizing.pick, layout.palletizing.place) == (layout.pickup, cell.stations[8])
 
 
 def test_shipped_robots_prove_motion_by_ids_over_mqtt(shipped: PlantModel) -> None:

@@ -233,10 +233,7 @@ def test_a_rack_may_give_the_sliding_joint_and_an_approach(tmp_path: Path) -> No
 def test_without_palletizing_the_place_is_the_last_station(tmp_path: Path) -> None:
     cell = load(tmp_path, f"{ONE_CELL}stations: {{0: {{deg: [0, 10], mm: 0}}}}\n").cell("sis_a")
     layout = StorageLayout(cell)
-    assert (layout.palletizing.pick, layout.palletizing.place) == (
-        layout.pickup,
-        cell.stations[0],
-    )
+    assert (layout.palletizing.pick, layout.palletizing.place) == (layout.pickup, cell.stations[0])
 
 
 ROUND_TRIP = ONE_CELL.replace("[0, 3, 4, 7]", "[0, 3, 0]")

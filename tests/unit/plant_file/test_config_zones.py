@@ -94,13 +94,7 @@ def problems(tmp_path: Path, text: str) -> list[str]:
 
 def poses(cell: Cell) -> list[Pose]:
     layout = StorageLayout(cell)
-    return [
-        layout.home,
-        layout.pickup,
-        *cell.stations,
-        layout.palletizing.pick,
-        layout.palletizing.place,
-    ]
+    return [layout.home, layout.pickup, *cell.stations, layout.palletizing.pick, layout.palletizing.place]
 
 
 def test_the_shipped_plant_shares_nothing_and_has_the_defaults() -> None:
@@ -115,14 +109,8 @@ def test_the_shipped_plant_shares_nothing_and_has_the_defaults() -> None:
             Retry(),
             "auto",
         )
-        assert (layout.arm.piece_on_change, layout.arm.queue_triggers) == (
-            False,
-            True,
-        )
-        assert (layout.arm.home_at_start, layout.mobile.home_at_start) == (
-            False,
-            False,
-        )
+        assert (layout.arm.piece_on_change, layout.arm.queue_triggers) == (False, True)
+        assert (layout.arm.home_at_start, layout.mobile.home_at_start) == (False, False)
 
 
 def test_poses_lie_in_their_zones(tmp_path: Path) -> None:
@@ -190,11 +178,11 @@ def test_what_a_cell_and_its_robots_do_in_trouble_can_be_chosen(tmp_path: Path) 
     cell = load(tmp_path, text).cell("sis_a")
     layout = StorageLayout(cell)
     assert (cell.retry, cell.piece_check, cell.zone_wait_s) == (Retry(times=2, backoff_s=0.5), True, 5)
-    assert (
-        layout.arm.piece_on_change,
-        layout.arm.queue_triggers,
-        layout.arm.home_at_start,
-    ) == (True, False, True)
+    assert (layout.arm.piece_on_change, layout.arm.queue_triggers, layout.arm.home_at_start) == (
+        True,
+        False,
+        True,
+    )
 
 
 @pytest.mark.parametrize(("word", "check"), [("auto", "auto"), ("true", True), ("false", False)])
@@ -226,10 +214,7 @@ def alike(tmp_path: Path, zones: str) -> list[str]:
     [
         ("{poses: [a station 1]}", "station 1 lies in the zone and station 0 does not; in every joint they"),
         ("{moves: [[a station 1, a station 0]]}", "a move between station 0 and station 1 crosses the zone"),
-        (
-            "{poses: [a station 2]}",
-            "station 2 looks like the reference (all joints 0) to the arm; homing",
-        ),
+        ("{poses: [a station 2]}", "station 2 looks like the reference (all joints 0) to the arm; homing"),
     ],
 )
 def test_a_zone_that_the_tolerance_blurs_is_refused(tmp_path: Path, zones: str, sentence: str) -> None:

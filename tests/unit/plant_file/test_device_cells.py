@@ -139,12 +139,7 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
         "8:59: ",
         "only a switch holds a part",
     ),
-    "holds no bool": (
-        "{clamped: $on}",
-        "{lid: open}",
-        "9:75: ",
-        "must set exactly one fact that is a bool",
-    ),
+    "holds no bool": ("{clamped: $on}", "{lid: open}", "9:75: ", "must set exactly one fact that is a bool"),
     "never lets go": ("{clamped: $on}", "{clamped: true}", "5:5: ", "nothing lets go of the part"),
     "keeps what it holds": (
         "with: {on: bool}, sets: {clamped: $on}",
@@ -260,12 +255,7 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
         "21:8: paths",
         "no cell has an arm and a mobile robot",
     ),
-    "zone": (
-        "cells:\n",
-        "zones: {z: {poses: [bench home]}}\ncells:\n",
-        "21:21: ",
-        "bench has no targets",
-    ),
+    "zone": ("cells:\n", "zones: {z: {poses: [bench home]}}\ncells:\n", "21:21: ", "bench has no targets"),
     "no recipes": (
         "uses: [bake.py]\n",
         "",

@@ -107,12 +107,7 @@ FILES = {  # id: (text of the file, put in its place, how the only problem begin
     "syntax": ("@kind", "def f(:\n@kind", "16:1: cannot be imported: ", "SyntaxError"),
     "module": ("@kind", "import nowhere_at_all\n@kind", "16:1: cannot be imported: ", "nowhere_at_all"),
     "fact": ('{"guard": "closed"}, takes', '{"gard": "closed"}, takes', "27:1: saw: ", "did you mean guard?"),
-    "word": (
-        '"guard": [',
-        '"guard": ["¿\\"sí\\"?", ',
-        "16:1: saw: guard of saw: it is ",
-        "at most 32",
-    ),
+    "word": ('"guard": [', '"guard": ["¿\\"sí\\"?", ', "16:1: saw: guard of saw: it is ", "at most 32"),
     "computed": (
         "mm / settings",
         "mm / 0 / settings",

@@ -34,11 +34,7 @@ WRONG = {  # the file, then its line and a part of what is said
     "no joints": (robot(link("a")), 1, "no joint moves; an arm has a revolute, continuous or prismatic one"),
     "nothing moves": (robot(link("a"), link("b"), joint("j", "a b", "fixed", limit="")), 1, "no joint moves"),
     "two tips": (TWO_TIPS, 6, "two ends that move, b and c; say with tip_link which one is the arm's tool"),
-    "two fingers": (
-        FINGERS,
-        9,
-        "one is the arm's tool; if they are fingers, write tip_link: b",
-    ),
+    "two fingers": (FINGERS, 9, "one is the arm's tool; if they are fingers, write tip_link: b"),
     "two ends": (
         ONE.replace("</robot>", link("x") + joint("k", "beam x", "fixed") + "</robot>").replace(
             "</robot>", link("y") + joint("l", "beam y", "fixed") + "</robot>"

@@ -45,10 +45,7 @@ def test_the_place_of_the_page_is_guarded(page: str, heading: str, tmp_path: Pat
     left, right = plant.cells
     assert {
         space.robot.name: [*space.targets["gate"].zones] for cell in plant.cells for space in cell.spaces
-    } == {
-        "left_arm": ["gate"],
-        "right_arm": ["gate"],
-    }
+    } == {"left_arm": ["gate"], "right_arm": ["gate"]}
     assert [(each.device, each.other, each.fact) for cell in (left, right) for each in cell.needs] == [
         ("left_arm", "tray", "full"),
         ("right_arm", "tray", "full"),

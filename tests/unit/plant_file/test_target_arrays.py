@@ -56,11 +56,7 @@ MISTAKES = {
         "21:19: cells.bench.groups.stops.corners.crt: must be loader or cart",
     ),
     "no grid": ("        grid: [1, 3]\n", "", "20:"),
-    "a grid of one": (
-        "grid: [1, 3]",
-        "grid: [1, 1]",
-        "20:15: cells.bench.groups.stops.grid: an array has",
-    ),
+    "a grid of one": ("grid: [1, 3]", "grid: [1, 1]", "20:15: cells.bench.groups.stops.grid: an array has"),
     "half of them lifted": (
         "{deg: [0, 90], mm: 60, approach_mm: 40}",
         "{deg: [0, 90], mm: 60}",
@@ -71,11 +67,7 @@ MISTAKES = {
         "      pallet_3: {loader",
         '11:7: cells.bench.groups.pallet: it makes a target "pallet_3", and there is one already',
     ),
-    "a misspelt target": (
-        "[bin, pallet_12]",
-        "[bin, pallet_13]",
-        "22:19: cells.bench.groups.bins[1]: must",
-    ),
+    "a misspelt target": ("[bin, pallet_12]", "[bin, pallet_13]", "22:19: cells.bench.groups.bins[1]: must"),
 }
 
 

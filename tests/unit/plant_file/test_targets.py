@@ -106,12 +106,7 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
     "fact of an interlock": ("{door: open}}}", "{dor: open}}}", "29:", "did you mean door?"),
     "home in a zone": ("[tending vise]", "[tending home]", "29:20: ", "robots wait there"),
     "no such target in a zone": ("[tending vise]", "[tending vice]", "29:20: ", 'did you mean "vise"?'),
-    "poses that look the same": (
-        "deg: [60, 30], mm: 80",
-        "deg: [-60, 10], mm: 80",
-        "29:20: ",
-        "cannot tell",
-    ),
+    "poses that look the same": ("deg: [60, 30], mm: 80", "deg: [-60, 10], mm: 80", "29:20: ", "cannot tell"),
 }
 
 

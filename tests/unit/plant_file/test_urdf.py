@@ -20,8 +20,7 @@ EXAMPLES = Path(__file__).parents[3] / "examples/plants"
 
 
 @pytest.mark.parametrize(
-    ("robot", "root"),
-    [("ra1", "r1_base_link"), ("ra3", "r3_base_link"), ("rm_sis_b", "rm_sis_b_grid_link")],
+    ("robot", "root"), [("ra1", "r1_base_link"), ("ra3", "r3_base_link"), ("rm_sis_b", "rm_sis_b_grid_link")]
 )
 def test_a_robot_is_printed_with_the_names_it_has_in_the_plant(robot: str, root: str) -> None:
     printed = CliRunner().invoke(cli, ["urdf", robot])

@@ -103,10 +103,7 @@ def test_an_entry_is_added_to_a_list_in_lines() -> None:
         (("cells", "one", "rows", 0), ["-       - first"]),
         (
             ("cells", "one", "targets", "slot_1", "arm", "mm"),
-            [
-                "-       slot_1: {arm: {deg: [10, -5.5], mm: 80}}",
-                "+       slot_1: {arm: {deg: [10, -5.5]}}",
-            ],
+            ["-       slot_1: {arm: {deg: [10, -5.5], mm: 80}}", "+       slot_1: {arm: {deg: [10, -5.5]}}"],
         ),
         (
             ("cells", "one", "targets", "slot_1", "arm", "deg"),
@@ -134,8 +131,7 @@ def test_what_other_places_refer_to_is_not_changed_unseen(place: tuple[str | int
 
 
 @pytest.mark.parametrize(
-    ("place", "sentence"),
-    [(("name", "x"), "no such place"), (("cells", "one", "rows", 9), "no such place")],
+    ("place", "sentence"), [(("name", "x"), "no such place"), (("cells", "one", "rows", 9), "no such place")]
 )
 def test_a_place_that_cannot_be_is_named(place: tuple[str | int, ...], sentence: str) -> None:
     with pytest.raises(EditRefused, match=sentence):

@@ -70,13 +70,7 @@ def test_a_tree_made_again_is_the_same() -> None:
 
 @pytest.mark.parametrize(
     "other",
-    [
-        of(waits(2.0)),
-        of(waits(1.0), "b"),
-        of(lambda: True),
-        of(partial(later, 1.0)),
-        of(partial(later, 2.0)),
-    ],
+    [of(waits(2.0)), of(waits(1.0), "b"), of(lambda: True), of(partial(later, 1.0)), of(partial(later, 2.0))],
 )
 def test_what_a_step_has_taken_in_makes_another_tree(other: str) -> None:
     assert other != of(waits(1.0))

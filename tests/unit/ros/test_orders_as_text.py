@@ -29,13 +29,7 @@ HALT = Stop(id="7-2", robot="station", mode=StopMode.HALT)
         (
             replace(WARM, heard=512, token="0a3f9x001a01"),
             False,
-            {
-                "id": "7-1",
-                "verb": "warm",
-                "values": {"celsius": 40.5},
-                "heard": 512,
-                "token": "0a3f9x001a01",
-            },
+            {"id": "7-1", "verb": "warm", "values": {"celsius": 40.5}, "heard": 512, "token": "0a3f9x001a01"},
         ),
         (GO, False, {"verb": "go", "values": {}}),
         (HALT, False, {"id": "7-2", "stop": 2}),

@@ -11,16 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.model.messages import (
-    Course,
-    Fact,
-    Journal,
-    Reason,
-    Remember,
-    TaskAnswer,
-    TaskState,
-    Verb,
-)
+from arboleda.model.messages import Course, Fact, Journal, Reason, Remember, TaskAnswer, TaskState, Verb
 from arboleda.model.sentence import OWN
 from arboleda.store.package_table import PackageTable
 from arboleda.store.sqlite import Store

@@ -67,8 +67,7 @@ def test_no_spelling_of_another_name_is_ours(web: Caller, plant: Plant, host: st
 
 
 @pytest.mark.parametrize(
-    "origin",
-    ["http://evil.example", "null", f"https://{HOST}", "http://127.0.0.1:1", "http://127.0.0.1"],
+    "origin", ["http://evil.example", "null", f"https://{HOST}", "http://127.0.0.1:1", "http://127.0.0.1"]
 )
 def test_a_page_of_another_origin_operates_nothing(web: Caller, plant: Plant, origin: str) -> None:
     assert web.post("/api/plant/release", headers={"origin": origin}).status_code == 403

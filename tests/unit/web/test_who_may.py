@@ -199,9 +199,7 @@ def test_without_a_word_only_operators_may_do_more_than_read(
     assert {*statuses(app, asked, Role.OPERATOR).values()} == {200}
 
 
-def test_what_a_route_declares_counts_before_what_its_router_does(
-    strange: Callable[[str], FastAPI],
-) -> None:
+def test_what_a_route_declares_counts_before_what_its_router_does(strange: Callable[[str], FastAPI]) -> None:
     app = strange("/api")
     asked = {"GET /api/strict/prices", "POST /api/strict/open"}
     assert refused(app, asked, Role.VIEWER) == {"GET /api/strict/prices"}

@@ -115,9 +115,7 @@ def test_homing_is_a_motion(linked, sent) -> None:
 
 
 @pytest.mark.parametrize(
-    "ending",
-    [{"ack": 1, "done": 1}, {"refusal": "limite", "refused_seq": 1}],
-    ids=["finished", "rejected"],
+    "ending", [{"ack": 1, "done": 1}, {"refusal": "limite", "refused_seq": 1}], ids=["finished", "rejected"]
 )
 def test_the_beats_end_with_the_motion(linked, ending: dict, sent) -> None:
     linked.order(MOVE)

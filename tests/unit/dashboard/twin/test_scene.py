@@ -85,10 +85,7 @@ def test_a_zone_of_a_mobile_robot_is_around_its_node(drawings: dict[str, Body]) 
     grid = layout.mobile.grid
     turn = (math.cos(grid.origin.yaw), math.sin(grid.origin.yaw))
     x, y = grid.position(5)
-    point = (
-        grid.origin.x + x * turn[0] - y * turn[1],
-        grid.origin.y + x * turn[1] + y * turn[0],
-    )
+    point = (grid.origin.x + x * turn[0] - y * turn[1], grid.origin.y + x * turn[1] + y * turn[0])
     assert zone["zone"] == "dock" and inside(point, zone["outline"])
 
 
