@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from arboleda.bt_xml import reading, rows
-from arboleda.bt_xml.findings import Findings
-from arboleda.drawing.picture import picture
-from arboleda.drawing.svg import svg
 from arboleda.extension import ConfigError
 
 
 def picture_of(file: str, content: bytes) -> str:
     """The main tree of a file, or its first one; "" where nothing of it can be drawn."""
+    from arboleda.bt_xml import reading, rows  # which a plant without proposals does not need
+    from arboleda.bt_xml.findings import Findings
+    from arboleda.drawing.picture import picture
+    from arboleda.drawing.svg import svg
+
     try:
         forest = reading.read(file, content, Findings())
     except ConfigError:

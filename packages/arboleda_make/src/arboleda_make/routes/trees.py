@@ -22,7 +22,6 @@ from arboleda.web.schema.queries import (
     read_body,
 )
 from arboleda_make.answers.trees import Drawn, Nodes, TreeCopy, TreeFile
-from arboleda_make.editing import desk
 
 from .draft import TREES
 from .tree_answers import CopyForm, EditForm, TreeForm, operation_of
@@ -49,11 +48,15 @@ def routes(side: PlantApi) -> APIRouter:
     @api.get("", **answering(list[TreeFile]))
     async def trees() -> JSONResponse:
         """The files of trees that are recipes of this plant, as they were read."""
+        from arboleda_make.editing import desk  # which loads once somebody draws: a start does without it
+
         return PlainJson(desk.tree_files(side.model))
 
     @api.get("/palette", **answering(list[Nodes], WRONG, described(PaletteFilter)))
     async def palette(request: Request) -> JSONResponse:
         """All nodes that a tree can have in a cell: of its devices, in Python, and those of Arboleda."""
+        from arboleda_make.editing import desk
+
         wanted = query_of(request, PaletteFilter)
         words = texts(spoken([wanted.language]), "nodes")
         return PlainJson(await run_in_threadpool(desk.palette, side.model, wanted.cell, words))
@@ -61,6 +64,8 @@ def routes(side: PlantApi) -> APIRouter:
     @api.post("/check", dependencies=ASSISTANTS, **answering(Drawn, REFUSED, described_body(TreeForm)))
     async def check(request: Request) -> JSONResponse:
         """A file as an editor shows it, with what `check` says of each node in a cell."""
+        from arboleda_make.editing import desk
+
         form = read_body(await request.body(), TreeForm)
         async with turn:
             return PlainJson(await run_in_threadpool(desk.drawn, side.model, form.cell, form.text))
@@ -68,6 +73,8 @@ def routes(side: PlantApi) -> APIRouter:
     @api.post("/copy", dependencies=ASSISTANTS, **answering(TreeCopy, REFUSED, described_body(CopyForm)))
     async def copy(request: Request) -> JSONResponse:
         """A recipe in Python as a tree that does the same; refused where no tree in XML can say it."""
+        from arboleda_make.editing import desk
+
         form = read_body(await request.body(), CopyForm)
         async with turn:
             text = await run_in_threadpool(desk.copied, side.model, form.cell, form.recipe, form.name)
@@ -76,6 +83,8 @@ def routes(side: PlantApi) -> APIRouter:
     @api.post("/edit", dependencies=ASSISTANTS, **answering(Drawn, REFUSED, described_body(EditForm)))
     async def edit(request: Request) -> JSONResponse:
         """The same file after an operation, which leaves every other byte of it as it was."""
+        from arboleda_make.editing import desk
+
         form = read_body(await request.body(), EditForm)
         operation = operation_of(form.operation)
         async with turn:

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from arboleda.bt_xml import reading
-from arboleda.bt_xml.findings import Findings
-from arboleda.bt_xml.forest import Node
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.document import Place
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.yaml_marks import YamlFault, parse
 
 from .change import CELLS, KINDS, MISSING, TARGETS, VERBS, Change
+
+if TYPE_CHECKING:
+    from arboleda.bt_xml.forest import Node
 
 
 def changes(before: PlantFiles, after: PlantFiles) -> tuple[Change, ...]:
@@ -98,6 +98,9 @@ def _of_trees(name: str, before: bytes, after: bytes) -> Iterator[Change]:
 
 def _trees(name: str, content: bytes) -> dict[str, str]:
     """The trees of one file by name, as text that does not depend on its layout."""
+    from arboleda.bt_xml import reading  # which a plant without trees as XML does not need
+    from arboleda.bt_xml.findings import Findings
+
     forest = reading.read(name, content, Findings())
     return {each: _tree_text(tree.root) for each, tree in forest.trees.items()}
 

@@ -13,8 +13,8 @@ from tests.web_plant import Plant
 from arboleda.plant_file import loader
 from arboleda.web import limits
 from arboleda.web.access.auth import Role
+from arboleda_make.editing import desk
 from arboleda_make.editing.errors import EditError
-from arboleda_make.routes import trees
 
 OWN_TREE = Path(__file__).parents[5] / "examples/own_tree/plant.yaml"
 
@@ -107,7 +107,7 @@ def test_a_recipe_in_python_is_given_as_a_tree(web: Caller, monkeypatch: pytest.
             raise EditError(f"there is a recipe '{name}' already")
         return f"{name} does in {cell} what {recipe} does"
 
-    monkeypatch.setattr(trees.desk, "copied", copied)
+    monkeypatch.setattr(desk, "copied", copied)
     copy = {"cell": "hall", "recipe": "fetch"}
     made = post(web, "copy", **copy, name="by_tree").json()
     assert made == {"text": "by_tree does in hall what fetch does"}
