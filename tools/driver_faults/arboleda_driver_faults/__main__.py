@@ -20,7 +20,7 @@ from frame.telling import counts
 from frame.words import words
 
 from .dobot import DobotRig
-from .gcode import GantryRig, MarlinRig, MoonrakerRig
+from .gcode import GantryRig, LimpRig, MarlinRig, MoonrakerRig
 from .gripper import CarryRig
 from .modbus import ModbusRig
 from .nav2 import RoundRig, WaypointsRig
@@ -43,6 +43,7 @@ RIGS: dict[str, tuple[Path | None, Callable[..., Rig]]] = {
     "navigate_to_pose": (EXAMPLES / "nav2/plant.yaml", RoundRig),
     "follow_waypoints": (EXAMPLES / "nav2/plant.yaml", WaypointsRig),
     "gcode-grbl": (EXAMPLES / "gantry/bench.yaml", GantryRig),
+    "gcode-limp": (EXAMPLES / "gantry/bench.yaml", LimpRig),
     "gcode-marlin": (EXAMPLES / "gantry/marlin.yaml", MarlinRig),
     "gcode-moonraker": (EXAMPLES / "gantry/moonraker.yaml", MoonrakerRig),
     "pylabrobot": (EXAMPLES / "plate_bench/bench.yaml", ShakerRig),

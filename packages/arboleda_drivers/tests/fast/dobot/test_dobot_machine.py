@@ -6,136 +6,29 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.drivers import MotionState, Report, SetEffector, Stop, StopMode
-from arboleda.model.commands import Home
+from arboleda.drivers import MotionState, Report
 from arboleda_drivers.connections.link import CommandRequest, Opened
 from arboleda_drivers.dobot.frames import Feedback, Mode
 from arboleda_drivers.dobot.machine import DashboardReply, FeedbackData, Machine
 from arboleda_drivers.dobot.settings import Settings
 
-from .dobot_rig import ARM, GO, GOAL, Loopback
+from ..connections.arms import ARM, CLEAR, GO, GRIP, LATCH, READY, Dobot
 
-HALT = Stop(id="9-5", robot=ARM.name, mode=StopMode.HALT)
-LATCH = Stop(id="9-6", robot=ARM.name, mode=StopMode.LATCH)
-CLEAR = Stop(id="9-7", robot=ARM.name, mode=StopMode.CLEAR)
-READY = Home(id="9-2", robot=ARM.name)
-GRIP = SetEffector(id="9-3", robot=ARM.name, on=True)
 FRAME = Feedback(mode=Mode.IDLE, command=0, joints_deg=(0.0,) * 6, time_ms=1_700_000_000_000, run_ms=1000)
 
 
-def up(*faults: str, enabled: bool = True) -> Loopback:
-    joined = Loopback(*faults, enabled=enabled)
+def up(*faults: str, ready: bool = True) -> Dobot:
+    joined = Dobot(*faults, ready=ready)
     joined.wait(0.5)
     return joined
 
 
-def moving(*faults: str) -> Loopback:
+def moving(*faults: str) -> Dobot:
     """An arm that is on its way, before half of it."""
     joined = up(*faults)
     assert joined.ask(GO) is None
     joined.wait(0.2)
     return joined
-
-
-def test_a_move_is_accepted_and_done_at_its_goal() -> None:
-    joined = moving()
-    assert (joined.last.accepted, joined.last.state) == (GO.id, MotionState.MOVING)
-    joined.wait(3.0, until=lambda report: report.done is not None)
-    end = joined.last
-    assert (end.done, end.state, end.q) == (GO.id, MotionState.STOPPED, pytest.approx(GOAL, abs=1e-5))
-    assert sum(line.startswith("MovJ") for line in joined.received) == 1
-
-
-def test_a_report_comes_ten_times_a_second() -> None:
-    joined = up()
-    joined.reports.clear()
-    joined.wait(1.0)
-    assert 8 <= len(joined.reports) <= 12
-
-
-def test_an_arm_that_is_called_there_and_is_elsewhere_is_said_to_be_elsewhere() -> None:
-    joined = up("lie")
-    joined.ask(GO)
-    joined.wait(1.0)
-    assert (joined.last.done, joined.last.q) == (GO.id, (0.0,) * 6)  # the plant compares
-
-
-@pytest.mark.parametrize(
-    ("fault", "word"),
-    [
-        ("refuse", "not_executed"),
-        ("script", "script_running"),
-        ("not_tcp", "not_in_tcp_mode"),
-        ("power_off", "power_off"),
-        ("stop_button", "robot_stop_button"),
-    ],
-)
-def test_a_refusal_has_the_reason_of_the_controller(fault: str, word: str) -> None:
-    joined = up(fault)
-    joined.ask(GO)
-    joined.wait(0.1)
-    assert joined.last.rejected == GO.id and joined.last.refusal == word
-
-
-@pytest.mark.parametrize(
-    ("fault", "words"),
-    [
-        ("collision", "collision"),
-        ("alarm", "alarm 17: no joints reach that pose"),
-        ("stop_button", "alarm 116: the stop button at the robot is pressed"),
-        ("power_off", "power_off"),
-        ("second_client", "another_client_moves_it"),
-    ],
-)
-def test_a_move_that_breaks_off_fails_with_the_reason(fault: str, words: str) -> None:
-    joined = moving()
-    joined.faults.switch(fault, on=True)
-    joined.wait(1.0)
-    assert (joined.last.failed, joined.last.failure) == (GO.id, words)
-    assert joined.last.done is None
-
-
-@pytest.mark.parametrize(
-    "fault", ["mute", "frozen", "garbled", "no_replies", "nonsense_replies", "hang_up", "power_cycle"]
-)
-def test_a_controller_that_does_not_make_sense_has_no_link(fault: str) -> None:
-    joined = up(fault)
-    joined.ask(GO)
-    joined.wait(2.5)
-    assert any(report.state is MotionState.NO_LINK and report.lost for report in joined.reports)
-    assert all(report.done is None for report in joined.reports)
-
-
-def test_what_was_left_at_work_is_stopped_by_who_comes_back() -> None:
-    joined = moving()
-    joined.faults.switch("mute", on=True)
-    joined.wait(1.2)
-    joined.faults.switch("mute", on=False)
-    joined.received.clear()
-    joined.wait(2.0)
-    assert "Stop()" in joined.received and not any(line.startswith("MovJ") for line in joined.received)
-    assert (joined.last.state, joined.last.done) == (MotionState.STOPPED, None)
-
-
-def test_a_halt_ends_the_move_and_is_still_only_once_it_stands() -> None:
-    joined = moving()
-    joined.ask(HALT)
-    joined.reports.clear()
-    joined.wait(2.0, until=lambda report: report.state is MotionState.STOPPED)
-    rest = joined.last.q
-    assert rest is not None and 0 < rest[0] < GOAL[0]
-    joined.wait(1.0)
-    assert (joined.last.q, joined.last.done, joined.last.accepted) == (rest, None, HALT.id)
-
-
-def test_a_latch_is_said_until_it_is_cleared() -> None:
-    joined = up()
-    joined.ask(LATCH)
-    joined.wait(1.0)
-    assert joined.last.state is MotionState.STOP_LATCHED
-    joined.ask(CLEAR)
-    joined.wait(0.2)
-    assert joined.last.state is MotionState.STOPPED
 
 
 def test_clearing_clears_the_alarms_of_the_controller() -> None:
@@ -163,7 +56,7 @@ def test_an_alarm_is_a_fact_and_a_stop_beside_it_shows_first_so_that_it_can_be_c
 
 
 def test_getting_ready_powers_and_enables_the_arm() -> None:
-    joined = Loopback("power_off", enabled=False)
+    joined = Dobot("power_off", ready=False)
     joined.wait(0.5)
     assert (joined.last.state, joined.last.homed) == (MotionState.NOT_HOMED, False)
     joined.faults.switch("power_off", on=False)
@@ -197,56 +90,12 @@ def test_an_arm_whose_button_stays_pressed_does_not_get_ready() -> None:
     assert (joined.last.failed, joined.last.done) == (READY.id, None)
 
 
-def test_the_effector_is_the_output_that_the_controller_reads_back() -> None:
-    joined = up()
-    joined.ask(GRIP)
-    joined.wait(0.1)
-    assert (joined.last.accepted, joined.last.effector) == (GRIP.id, True)
-    stuck = up("stuck_output")
-    stuck.ask(GRIP)
-    stuck.wait(2.0)
-    assert (stuck.last.accepted, stuck.last.effector) == (None, False)
-    assert (stuck.last.rejected, stuck.last.refusal) == (GRIP.id, "output_does_not_follow")
-
-
-def test_a_grip_is_never_accepted_before_its_output_is_read_back() -> None:
-    joined = up()
-    joined.reports.clear()
-    joined.ask(GRIP)
-    joined.wait(0.5)
-    assert all(report.effector for report in joined.reports if report.accepted == GRIP.id)
-
-
-def test_a_boot_has_another_number_and_forgets_every_order() -> None:
-    joined = moving()
-    before = joined.last.boot_id
-    joined.faults.switch("power_cycle", on=True)
-    joined.wait(5.0)
-    joined.faults.switch("power_cycle", on=False)
-    joined.wait(2.0)
-    assert joined.last.boot_id != before
-    assert (joined.last.state, joined.last.accepted, joined.last.done) == (MotionState.NOT_HOMED, None, None)
-
-
 def test_a_paused_arm_counts_as_moving() -> None:
     joined = moving()
     joined.tell("Pause()")
     joined.wait(1.0)
     assert joined.last.state is MotionState.MOVING
     joined.tell("Continue()")
-    joined.wait(3.0)
-    assert joined.last.done == GO.id
-
-
-def test_nothing_leaves_without_a_connection() -> None:
-    joined = Loopback("power_cycle")
-    joined.wait(0.1)
-    assert joined.ask(GO) == "dobot is not connected"
-
-
-def test_a_torn_frame_is_left_out_and_the_next_one_counts() -> None:
-    joined = up("torn")
-    joined.ask(GO)
     joined.wait(3.0)
     assert joined.last.done == GO.id
 

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import itertools
 import json
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
 
 from tests.packages import ROOT
 
 from arboleda.kinds.joints import MoveJoints
-from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
 from arboleda.plant_file.loader import load
-from arboleda_driver_faults.stream_loopback import Loopback
 from arboleda_drivers.gcode.dialects import machine
 from arboleda_drivers.gcode.settings import Settings
 from arboleda_drivers.gcode.virtual.faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
@@ -23,6 +20,8 @@ from arboleda_drivers.gcode.virtual.grbl import BANNER, VirtualGrbl
 from arboleda_drivers.gcode.virtual.marlin import VirtualMarlin
 from arboleda_drivers.gcode.virtual.moonraker import VirtualMoonraker
 from arboleda_drivers.virtual.faults import Faults
+
+from ..connections.stream_rig import StreamRig
 
 EXAMPLES = ROOT / "examples/gantry"
 
@@ -34,78 +33,30 @@ def gantry(file: str) -> tuple[Robot, Settings]:
     return robot, robot.driver.settings
 
 
-class GcodeRig(ABC):
-    """Machine and controller, connected; `report` is the last that the plant would have."""
+class GcodeRig(StreamRig):
+    """Machine of the driver and a virtual machine of axes."""
 
     example = "bench.yaml"
     known: Mapping[str, str] = GRBL_FAULTS
 
     def __init__(self, *on: str, **changes: object) -> None:
         self.faults = Faults(self.known, on)
-        self.robot, settings = gantry(self.example)
+        robot, settings = gantry(self.example)
         settings = Settings(**{**vars(settings), **changes})  # type: ignore[arg-type]
         if not settings.homing:
-            self.robot = replace(self.robot, home_at_start=False)
-        self.reports: list[Report] = []
-        driver = machine([self.robot], settings)
-        self.line = Loopback(driver, self.controller(), self.reports.append, 100.0)
-        self._numbers = itertools.count(1)
-        self.wait(0.5)
+            robot = replace(robot, home_at_start=False)
+        super().__init__(robot, machine([robot], settings), self.controller())
 
     @abstractmethod
     def controller(self) -> VirtualGrbl | VirtualMarlin | VirtualMoonraker:
         """The virtual machine at the other end."""
 
     @property
-    def report(self) -> Report:
-        return self.reports[-1]
-
-    @property
     def written(self) -> bytes:
         return b"".join(each for each in self.line.written if each != b"?")
 
-    def wait(self, seconds: float) -> None:
-        end = self.line.now + seconds
-        while self.line.now < end:
-            self._go_on(end)
-
-    def until(self, at_most_s: float = 30.0, **fields: object) -> Report:
-        """Let time pass until a report has these values."""
-        end = self.line.now + at_most_s
-        while self.line.now < end:
-            if self.reports and all(getattr(self.report, name) == value for name, value in fields.items()):
-                return self.report
-            self._go_on(end)
-        raise AssertionError(f"no report with {fields}; the last one is {self.reports[-1:]}")
-
-    def told(self, name: str, at_most_s: float = 30.0) -> str:
-        """The word that comes with the next report of this field."""
-        end, before = self.line.now + at_most_s, len(self.reports)
-        while self.line.now < end:
-            for report in self.reports[before:]:
-                if getattr(report, name) is not None:
-                    return str(getattr(report, name))
-            self._go_on(end)
-        raise AssertionError(f"no {name}; the last report is {self.report}")
-
     def move(self, *mm: float) -> str:
-        return self.ask(MoveJoints(id=self._id(), robot=self.robot.name, q=tuple(each / 1000 for each in mm)))
-
-    def home(self) -> str:
-        return self.ask(Home(id=self._id(), robot=self.robot.name))
-
-    def stop(self, mode: StopMode = StopMode.HALT) -> str:
-        return self.ask(Stop(id=self._id(), robot=self.robot.name, mode=mode))
-
-    def ask(self, command: Command) -> str:
-        assert self.line.ask(command) is None
-        return command.id
-
-    def _id(self) -> str:
-        return f"7-{next(self._numbers)}"
-
-    def _go_on(self, end: float) -> None:
-        self.line.pass_time(min(max(self.line.next_deadline, self.line.now + 0.001), end))
+        return self.ask(MoveJoints(id=self.id(), robot=self.robot.name, q=tuple(each / 1000 for each in mm)))
 
 
 class GrblRig(GcodeRig):

@@ -6,14 +6,12 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from tests.packages import ROOT
 
 from arboleda.drivers.port import DriverError
-from arboleda.plant_file.loader import load
 from arboleda_drivers.opcua.adapter import OpcUa
 from arboleda_drivers.opcua.settings import Settings
 
-EXAMPLE = ROOT / "examples/plc_conveyor/opcua.yaml"
+from ..plc.plcs import PLCS
 
 
 @pytest.mark.requires("asyncua")
@@ -30,7 +28,7 @@ def test_a_login_that_cannot_work_is_said(
 ) -> None:
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
-    (belt,) = load(EXAMPLE).robots.values()
+    belt = PLCS["opcua"].device
     assert belt.driver is not None and isinstance(belt.driver.settings, Settings)
     driver = OpcUa(replace(belt.driver.settings, security=security, secrets="PLC"))
     with pytest.raises(DriverError, match=why):

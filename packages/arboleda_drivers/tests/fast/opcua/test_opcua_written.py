@@ -6,42 +6,33 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from tests.packages import ROOT
 
 from arboleda.drivers import MotionState, Stop, StopMode
 from arboleda.drivers.port import DriverError
-from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command
-from arboleda.plant_file.loader import load
 from arboleda_drivers.opcua.keys import Sequence, Verb
 from arboleda_drivers.opcua.machine import NodeValue, OpcUaDevice, Writing
 from arboleda_drivers.opcua.nodes import Order, Variable, Write
 from arboleda_drivers.opcua.settings import Settings
 from arboleda_drivers.plc.plc_snapshot import UnreadableValue
 
-EXAMPLE = ROOT / "examples/plc_conveyor/opcua.yaml"
+from ..plc.plcs import PLCS
+
 LOAD = Verb(write=(Write(node="i=1", value=4, type="byte"),))
 SEQUENCE = Sequence(type="int32", write="i=2", busy="i=3", done="i=4", error=Variable(node="i=5"))
 REST = {"i=2": 0, "i=3": False, "i=4": 0, "i=5": 0}
 
 
-@pytest.fixture(scope="module")
-def belt() -> Device:
-    (robot,) = load(EXAMPLE).robots.values()
-    assert isinstance(robot, Device)
-    return robot
-
-
-def made(belt: Device, **changes: Any) -> OpcUaDevice:
+def made(**changes: Any) -> OpcUaDevice:
     """A belt that is only loaded, by the variables 1 to 5."""
     given: dict[str, Any] = {"sequence": SEQUENCE, "verbs": {"load": LOAD}} | changes
-    machine = OpcUaDevice(belt, Settings(url="opc.tcp://10.0.0.7:4840", **given))
+    machine = OpcUaDevice(PLCS["opcua"].device, Settings(url="opc.tcp://10.0.0.7:4840", **given))
     machine.begin({node: REST.get(node, 0) for node in machine.places})
     return machine
 
 
-def load_command(belt: Device, id: str = "c1") -> Command:
-    return belt.kind.command(id=id, robot="belt", verb="load", values={})
+def load_command(id: str = "c1") -> Command:
+    return PLCS["opcua"].device.kind.command(id=id, robot="belt", verb="load", values={})
 
 
 def shown(**values: object) -> dict[str, object]:
@@ -49,26 +40,26 @@ def shown(**values: object) -> dict[str, object]:
     return REST | {names[name]: value for name, value in values.items()}
 
 
-def test_the_number_is_written_last_in_a_step_of_its_own(belt: Device) -> None:
+def test_the_number_is_written_last_in_a_step_of_its_own() -> None:
     value, number = (
         NodeValue(node="i=1", type="byte", value=4),
         NodeValue(node="i=2", type="int32", value=1),
     )
-    order = made(belt).order(load_command(belt))
+    order = made().order(load_command())
     assert order == Writing(steps=((value,), (number,)), begins_last=True)
 
 
-def test_without_numbers_each_value_is_a_step(belt: Device) -> None:
+def test_without_numbers_each_value_is_a_step() -> None:
     verb = Verb(write=(LOAD.write[0], replace(LOAD.write[0], node="i=6")))
-    order = made(belt, sequence=None, verbs={"load": verb}).order(load_command(belt))
+    order = made(sequence=None, verbs={"load": verb}).order(load_command())
     assert isinstance(order, Writing)
     assert [[put.node for put in step] for step in order.steps] == [["i=1"], ["i=6"]]
     assert not order.begins_last
 
 
-def test_busy_accepts_the_number_that_was_asked_for_and_the_arm_moves(belt: Device) -> None:
-    machine = made(belt)
-    machine.order(load_command(belt))
+def test_busy_accepts_the_number_that_was_asked_for_and_the_arm_moves() -> None:
+    machine = made()
+    machine.order(load_command())
     waiting = machine.report(1.0, shown(asked=1))
     working = machine.report(2.0, shown(asked=1, busy=True))
     ended = machine.report(3.0, shown(asked=1, done=1))
@@ -77,21 +68,21 @@ def test_busy_accepts_the_number_that_was_asked_for_and_the_arm_moves(belt: Devi
     assert working.state is MotionState.MOVING and ended.state is MotionState.STOPPED
 
 
-def test_a_busy_of_before_accepts_nothing(belt: Device) -> None:
-    machine = made(belt)
+def test_a_busy_of_before_accepts_nothing() -> None:
+    machine = made()
     machine.report(1.0, shown(busy=True))
-    machine.order(load_command(belt))
+    machine.order(load_command())
     assert machine.report(2.0, shown(asked=1, busy=True)).accepted is None
     machine.report(3.0, shown(asked=1))
     assert machine.report(4.0, shown(asked=1, busy=True)).accepted == "c1"
 
 
-def test_an_error_fails_the_number_that_ended_with_it_and_no_other(belt: Device) -> None:
-    machine = made(belt)
-    machine.order(load_command(belt))
+def test_an_error_fails_the_number_that_ended_with_it_and_no_other() -> None:
+    machine = made()
+    machine.order(load_command())
     failed = machine.report(1.0, shown(asked=1, done=1, error=7))
     assert (failed.failed, failed.failure, failed.done) == ("c1", "code 7", None)
-    machine.order(load_command(belt, "c2"))
+    machine.order(load_command("c2"))
     cleared = machine.report(2.0, shown(asked=2, busy=True, done=1))
     assert (cleared.failed, cleared.failure, cleared.done, cleared.accepted) == ("c1", "code 7", None, "c2")
     ended = machine.report(3.0, shown(asked=2, done=2))
@@ -103,23 +94,23 @@ def test_an_error_fails_the_number_that_ended_with_it_and_no_other(belt: Device)
 @pytest.mark.parametrize(
     ("error", "word"), [(True, "no reason given"), (False, None), ("jam", "jam"), ("", None)]
 )
-def test_an_error_may_be_a_bool_or_text(belt: Device, error: object, word: str | None) -> None:
-    machine = made(belt)
-    machine.order(load_command(belt))
+def test_an_error_may_be_a_bool_or_text(error: object, word: str | None) -> None:
+    machine = made()
+    machine.order(load_command())
     assert machine.report(1.0, shown(asked=1, done=1, error=error)).failure == word
 
 
 @pytest.mark.parametrize(("name", "value"), [("busy", 1), ("busy", None), ("error", 1.5), ("done", -1)])
-def test_no_value_of_another_type_is_a_report(belt: Device, name: str, value: object) -> None:
+def test_no_value_of_another_type_is_a_report(name: str, value: object) -> None:
     with pytest.raises(UnreadableValue, match=r"^i=[345] is "):
-        made(belt).report(1.0, shown(**{name: value}))
+        made().report(1.0, shown(**{name: value}))
 
 
-def test_a_number_that_is_asked_for_already_is_not_given(belt: Device) -> None:
+def test_a_number_that_is_asked_for_already_is_not_given() -> None:
     """The program would notice no change."""
-    machine = made(belt)
+    machine = made()
     machine.begin(shown(asked=1))
-    order = machine.order(load_command(belt))
+    order = machine.order(load_command())
     assert isinstance(order, Writing) and order.steps[-1][0].value == 2
 
 
@@ -127,25 +118,25 @@ def test_a_number_that_is_asked_for_already_is_not_given(belt: Device) -> None:
     ("type", "last", "first"),
     [("sbyte", 127, 1), ("byte", 255, 1), ("int16", 32767, 1), ("float", 65535, 1.0)],
 )
-def test_numbers_begin_anew_where_their_type_ends(belt: Device, type: Any, last: int, first: object) -> None:
-    machine = made(belt, sequence=replace(SEQUENCE, type=type))
+def test_numbers_begin_anew_where_their_type_ends(type: Any, last: int, first: object) -> None:
+    machine = made(sequence=replace(SEQUENCE, type=type))
     machine.begin(shown(asked=last, done=last))
-    order = machine.order(load_command(belt))
+    order = machine.order(load_command())
     assert isinstance(order, Writing) and order.steps[-1][0].value == first
 
 
-def test_numbers_of_a_type_of_floats_are_read_as_such(belt: Device) -> None:
-    machine = made(belt, sequence=replace(SEQUENCE, type="double"))
-    machine.order(load_command(belt))
+def test_numbers_of_a_type_of_floats_are_read_as_such() -> None:
+    machine = made(sequence=replace(SEQUENCE, type="double"))
+    machine.order(load_command())
     assert machine.report(1.0, shown(asked=1.0, done=1.0)).done == "c1"
     with pytest.raises(UnreadableValue, match=r"i=4 is 1\.5"):
         machine.report(2.0, shown(asked=1.0, done=1.5))
     with pytest.raises(UnreadableValue, match=r"i=4 is 1\.0"):
-        made(belt).report(1.0, shown(done=1.0))
+        made().report(1.0, shown(done=1.0))
 
 
-def test_a_stop_is_written_without_a_number(belt: Device) -> None:
-    machine = made(belt, halt=Order(write=(Write(node="i=9", value=True, type="bool"),)))
+def test_a_stop_is_written_without_a_number() -> None:
+    machine = made(halt=Order(write=(Write(node="i=9", value=True, type="bool"),)))
     halt = machine.order(Stop(id="s", robot="belt", mode=StopMode.HALT))
     assert halt == Writing(steps=((NodeValue(node="i=9", type="bool", value=True),),), begins_last=True)
 

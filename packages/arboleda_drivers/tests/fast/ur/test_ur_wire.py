@@ -13,7 +13,7 @@ from arboleda_drivers.ur import primary, programs, rtde
 from arboleda_drivers.ur.arm_state import Mode, Runtime, hindrance, motion_state
 from arboleda_drivers.ur.rtde import HEADER, LAYOUT, Frame, NotRtde, Packet, PacketReader
 
-from .ur_rig import ARM
+from ..connections.arms import ARM
 
 FRAME = Frame(
     timestamp_s=12.5,
