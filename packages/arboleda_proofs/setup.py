@@ -11,7 +11,13 @@ setup(
     package_dir={"": "src"},
     packages=find_packages("src"),
     package_data={
-        "arboleda_proofs": ["languages/*/*.yaml", "page/assets/*", "playback/report/*.html", "py.typed"]
+        "arboleda_proofs": [
+            "languages/*/*.yaml",
+            "page/assets/*",
+            "past/assets/*",
+            "playback/report/*.html",
+            "py.typed",
+        ]
     },
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/arboleda_proofs"]),
@@ -22,10 +28,14 @@ setup(
         "arboleda.client": ["proofs = arboleda_proofs.client:ProofsRoutes"],
         "arboleda.commands": ["proofs = arboleda_proofs.commands:COMMANDS"],
         "arboleda.extras": [
+            "btlog = arboleda_proofs.playback.btlog_export:write",
             "case = arboleda_proofs.commands.record_case:export",
         ],
         "arboleda.languages": ["proofs = arboleda_proofs"],
-        "arboleda.page": ["proofs = arboleda_proofs.page.page_part:PAGE"],
+        "arboleda.page": [
+            "proofs = arboleda_proofs.page.page_part:PAGE",
+            "proofs.past = arboleda_proofs.past.page_part:PAGE",
+        ],
         "arboleda.parts": ["proofs = arboleda_proofs.running.factories:FACTORIES"],
         "arboleda.routes": [
             "proofs.faults = arboleda_proofs.routes.faults:routes",

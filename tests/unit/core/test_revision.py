@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 
 from arboleda.core import reasons
-from arboleda.core.plant import Plant
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.messages import (
     CellRevised,
@@ -22,10 +21,7 @@ from arboleda.model.messages import (
 )
 from arboleda.model.plant_model import Cell, PlantModel, Pose, Retry, Timing
 from arboleda.model.recipe import Recipe
-from arboleda.recorder.replay import plant_of, replayed
-from arboleda.recorder.tape import TapedPlant, recorded
 from arboleda.rig.rig import Rig
-from arboleda.rig.world import World
 from arboleda.testing import shipped
 
 NEXT = RevisionName(digest="d1", number=2)
@@ -195,29 +191,6 @@ def test_a_version_that_nobody_gave_is_refused(rig: Rig) -> None:
     rig.tell(Revision(at=rig.now, version=NEXT))
     answer = [each for each in rig.sent if isinstance(each, RevisionAnswer)][-1]
     assert "no version 2" in str(answer.refusal)
-
-
-def test_a_replay_over_a_change_in_the_middle_is_the_same_to_the_last_bit() -> None:
-    model = shipped("sis_a", "sis_b")
-    world = World(model, make_plant=TapedPlant)
-    other = moved(model)
-    world.plant.versions[NEXT.digest] = other
-    world.advance(2.0)
-    for _ in range(2):
-        world.request_task("sis_a 0B 0")
-    world.advance(3.0)
-    world.tell(Revision(at=world.now, version=NEXT, by="Ana", changes=("one",)))
-    world.advance(120.0)
-    plant = world.plant
-    assert isinstance(plant, TapedPlant)
-    steps = [*recorded(plant.tape)]
-    again = plant_of(plant.beginning, model, {NEXT.digest: other})
-    assert [each.difference for each in replayed(again, steps)] == [None] * len(steps)
-    assert again.model.cell("sis_a").stations[0].q == Q
-    ignorant = [*replayed(Plant(model, epoch=1, now=0.0), [])]
-    assert ignorant == []
-    blind = [*replayed(plant_of(plant.beginning, model), steps)]
-    assert blind[-1].difference is not None
 
 
 def wish(rig: Rig, *, wanted: bool) -> None:

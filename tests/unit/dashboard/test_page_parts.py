@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import pytest
 from fastapi import FastAPI
@@ -24,6 +24,7 @@ from arboleda.dashboard.feed import Feed
 from arboleda.dashboard.page_part import GROUP
 from arboleda.dashboard.wording import words
 from arboleda.host.pieces import Pieces
+from arboleda.model.errors import ArboledaError
 from arboleda.testing import shipped
 from arboleda.views import view
 from arboleda.web.access.auth import Role
@@ -31,7 +32,7 @@ from arboleda.web.package_routes import PackageRoute
 
 CODE = """
 from arboleda.dashboard.asset_files import Assets
-from arboleda.dashboard.page_part import OtherRecord, PageAct, PagePart, Place, Section
+from arboleda.dashboard.page_part import PageAct, PagePart, Place, Section
 from arboleda.dashboard.tags import live, tag
 from arboleda.web.access.auth import Role
 
@@ -246,6 +247,45 @@ def test_of_two_sections_in_one_place_only_the_one_that_breaks_is_left_out(put: 
     assert told == [
         "Arboleda goes on without the section card of acme 1: ZeroDivisionError: division by zero"
     ]
+
+
+PAGES = """
+from arboleda.dashboard.page_part import PagePart
+from arboleda.model.errors import ArboledaError
+
+
+def refuse(request, client, plant):
+    raise ArboledaError("nothing is kept")
+
+
+PAGE = PagePart(pages={"shelf": lambda *of: "<p>shelf</p>", "none": refuse, "bad": lambda *of: 1 / 0})
+"""
+
+
+def asked(key: str) -> Any:
+    return SimpleNamespace(query_params={key: ""})
+
+
+def test_a_page_of_a_package_stands_in_place_of_the_plants_at_its_key(
+    put: Install,
+) -> None:
+    told: Told = []
+    put(PAGES)
+    parts, client, plant = loaded(told), cast(Any, None), cast(Any, Plant())
+    assert parts.page(asked("shelf"), client, plant) == "<p>shelf</p>"
+    assert parts.page(asked("tab"), client, plant) is None
+    with pytest.raises(ArboledaError, match="nothing is kept"):
+        parts.page(asked("none"), client, plant)
+    assert told == [] and parts.page(asked("bad"), client, plant) is None and "bad" not in parts.pages
+    assert "without the page bad of acme 1" in told[0]
+
+
+def test_without_proofs_whoever_asks_for_a_record_is_told_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    leave_out(monkeypatch, tmp_path / "site", *PACKAGES)
+    with pytest.raises(ArboledaError, match=r"pip install 'arboleda\[proofs\]'"):
+        loaded().page(asked("at"), cast(Any, None), cast(Any, Plant()))
 
 
 def test_a_package_is_loaded_only_when_a_page_is_made(put: Install) -> None:

@@ -16,6 +16,7 @@ from arboleda_make.proposals.api import ProposalsApi
 from arboleda_make.teaching.api import TeachApi
 from arboleda_make.trying.api import MakeApi
 from arboleda_make.versions.api import VersionsApi
+from arboleda_proofs.past.desk import OtherRecord, PastDesk
 
 
 def desks(assembly: Assembly) -> Iterator[Part]:
@@ -37,6 +38,7 @@ def _of_files(assembly: Assembly, local: LocalPlant, recording: Recording) -> li
 
     from .drafts.desk import DraftDesk
     from .drafts.plant_folder import PlantFolder
+    from .page.tried import TriedPlants
     from .proposals.desk import ProposalDesk
     from .proposals.tasks import AssistantTasks
     from .trying.bench import MakeBench
@@ -72,6 +74,9 @@ def _of_files(assembly: Assembly, local: LocalPlant, recording: Recording) -> li
     assembly.offer(DraftApi, draft)
     assembly.offer(MakeApi, make)
     assembly.offer(ProposalsApi, proposals)
+    if past := assembly.ask(PastDesk):
+        last_tried = TriedPlants(make.tried).last
+        past.others["draft"] = OtherRecord(side=last_tried, may="looking at what was tried of a draft")
     assembly.notes.append(lambda: [folder.note] if folder.note else [])
     return [draft, make, proposals]
 

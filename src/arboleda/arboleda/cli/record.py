@@ -222,9 +222,7 @@ def export(
         raise ConfigError((say(OF_ONE_TASK(file=str(output))),))
     record = reader.opened(last_of(file, plant, state))
     if output.suffix == ".btlog":
-        from arboleda.recorder import btlog_export
-
-        size = btlog_export.write(record, task or "", output)
+        size = extra("btlog", PROOFS, str(output))(record, task or "", output)
         print(plain(say(HAS_KB(file=str(output), kilobytes=f"{size / 1e3:.1f}")), LONGEST))
         return
     if output.suffix == ".yaml":

@@ -10,11 +10,15 @@ from importlib.metadata import EntryPoint
 from typing import NamedTuple
 
 from fastapi import FastAPI
+from fastapi import Request as HttpRequest
 
 from arboleda.host.packages import package_of, registered
 from arboleda.host.pieces import RUNNER, THE_PAGE, Piece, Pieces, piece_of
+from arboleda.model.errors import ArboledaError
+from arboleda.model.packages import PROOFS
 from arboleda.model.verbs import Verb
 from arboleda.web.access.auth import SUBMIT
+from arboleda.web.missing import missing
 from arboleda.web.package_routes import addresses, guarded
 
 from .added_sections import Drawing, Placed
@@ -24,10 +28,12 @@ from .faces import Face
 from .faces.moment import Moment
 from .package_page.page import page_part
 from .page_api import Layout, PageApi
-from .page_part import GROUP, OtherRecord, PageAct, PagePart, Place, Request, Section, Spot
+from .page_part import GROUP, PageAct, PagePart, Place, Request, Section, Spot
+from .toolkit import Client
 from .wording import Words
 
-SECTION, ACT, RECORD = "section", "act", "record"
+PAST = "at"  # in the address of a page on a record: the moment
+SECTION, ACT, PAGE = "section", "act", "page"
 
 
 def installed() -> set[str]:
@@ -64,7 +70,7 @@ class AddedParts:
             part,
             sections=tuple(each for each in part.sections if _tab_of(each) not in taken),
             acts={word: act for word, act in part.acts.items() if self._is_free(point, ACT, word)},
-            records={name: each for name, each in part.records.items() if self._is_free(point, RECORD, name)},
+            pages={key: each for key, each in part.pages.items() if self._is_free(point, PAGE, key)},
         )
 
     def _is_free(self, point: EntryPoint, kind: str, name: str) -> bool:
@@ -107,9 +113,27 @@ class AddedParts:
         return {word: words.say(act.asks) for word, act in self.acts.items() if act.asks}
 
     @property
-    def records(self) -> dict[str, OtherRecord]:
-        """The records by their names in the page's address."""
-        return {name: each for _, part in self._parts for name, each in part.records.items()}
+    def pages(self) -> dict[str, Piece]:
+        """The pages in place of the plant's, by their keys in its address."""
+        found = {key: piece_of(point, f"the page {key}") for point, part in self._parts for key in part.pages}
+        return {key: piece for key, piece in found.items() if piece in self._pieces}
+
+    def page(self, request: HttpRequest, client: Client, plant: PageApi) -> str | None:
+        """The HTML of the page for which this address asks; None for that of the plant."""
+        if PAST in request.query_params and PROOFS not in installed():
+            raise missing(PROOFS)
+        for key, piece in self.pages.items():
+            if key in request.query_params:
+                build = next(part.pages[key] for _, part in self._parts if key in part.pages)
+                refused = None
+                with self._pieces.calling(piece):
+                    try:
+                        return build(request, client, plant)
+                    except ArboledaError as error:  # what it has to show is not there: it does not break
+                        refused = error
+                if refused is not None:
+                    raise refused
+        return None
 
     def serve(self, server: FastAPI, plant: PageApi) -> None:
         """Add the addresses of packages to the server."""

@@ -1,11 +1,11 @@
-"""The page of a plant that has no server, such as one that runs in a browser."""
+"""Pages of a plant that answers nobody: of one that has no server, and of a record."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from . import header, links, menu, settings, tasks, timeline, trees
-from .body import Parts, body
+from . import header, links, menu, settings, tasks, timeline, told, trees
+from .body import Parts, Places, body
 from .page_api import Layout
 from .wording import Words
 
@@ -15,6 +15,12 @@ PARTS: Parts = {
     "events": timeline.of_record,
     "links": links.build,
     "settings": lambda _, words: settings.build(words, None),
+}
+OF_RECORD: Parts = {
+    "cells": trees.build,
+    "tasks": tasks.of_record,
+    "events": timeline.of_record,
+    "links": links.of_record,
 }
 
 
@@ -32,3 +38,15 @@ def lone_page(layout: Layout, wording: Words, below: Callable[[], None]) -> str:
         header=lambda places: header.build(layout, wording, places),
         footer=footer,
     )
+
+
+def record_page(
+    layout: Layout, wording: Words, role: str | None, below: Callable[[], None], *, beside: bool
+) -> str:
+    """The HTML of the page on a record, for this role; `beside` a plant that runs it has a link to that."""
+
+    def top(places: Places) -> None:
+        header.of_record(layout, wording, places, role, beside=beside)
+        told.build()
+
+    return body(layout, wording, OF_RECORD, header=top, footer=below)

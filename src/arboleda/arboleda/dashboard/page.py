@@ -16,7 +16,7 @@ from arboleda.store.task_rows import TaskQuery
 from arboleda.web.request import HISTORY, TASK
 
 from . import header, links, menu, missing_packages, settings, shell, tasks, timeline, told, trees
-from .added import AddedParts
+from .added import PAST, AddedParts
 from .added_sections import LeftOut
 from .asset_files import own
 from .body import WITHIN, Parts, Places, body
@@ -26,11 +26,7 @@ from .feed import Feed
 from .frames import Background
 from .page_api import Layout, PageApi, Seen
 from .page_part import Place, Put
-from .past import page as past_page
-from .past.frame_queue import BESIDE_S, FrameQueue
-from .past.other import LastOther
-from .past.stills import Stills
-from .shell import is_operator, language_of, role_shown
+from .shell import language_of, role_shown
 from .toolkit import Client, app, ui
 from .twin import window
 from .twin.show import Show
@@ -52,8 +48,6 @@ def mount(
     did before."""
     added = AddedParts(pieces, OWN)
     feed, show = Feed(plant, added.face, seen), Show(plant)
-    stills, turns = Stills(), FrameQueue(BESIDE_S)
-    others = {name: LastOther(partial(each.side, plant)) for name, each in added.records.items()}
     shown: dict[tuple[object, ...], tuple[Layout, str]] = {}
 
     def made(layout: Layout, language: str, role: str | None) -> str:
@@ -65,10 +59,9 @@ def mount(
         return shown[of][1]
 
     def build(request: Request, client: Client) -> str:
-        if past_page.is_of_record(request):
-            other = others.get(past_page.record_named(request)) if is_operator(request) else None
-            side, drawings = (plant, stills) if other is None else other.last()
-            return past_page.open_page(client, side, drawings, turns, request, beside=True)
+        other = added.page(request, client, plant)
+        if other is not None:
+            return other
         wording, layout = words(language_of(request)), plant.layout()
         window.open_window(client, show)
         open_page(client, Desk(client, plant, feed, wording, added.acts), feed)
@@ -76,10 +69,7 @@ def mount(
         shell.fill(layout, wording, script=own("page.js"), added=added.assets, asks=added.asks(wording))
         return html
 
-    scenes = {
-        name: window.OtherScene(last=others[name].last, may=each.may) for name, each in added.records.items()
-    }
-    window.serve(server, plant, show, stills, others=scenes)
+    window.serve(server, window.Scene(plant, show))
     _serve_tasks(server, plant, feed)
     added.serve(server, plant)
     shell.serve(server, plant.layout(), build, added.assets)
@@ -88,6 +78,7 @@ def mount(
 
 def drawn(added: AddedParts, plant: PageApi, layout: Layout, wording: Words, role: str | None) -> str:
     """The HTML of the page for a role, without a package that breaks."""
+    layout = {**layout, "recorded": layout.get("recorded", False) and PAST in added.pages}
     drawing = added.drawing(plant, layout, wording, role)
     wording = wording.also(drawing.labels)
     parts = all_parts(drawing.parts, role, drawing.put)

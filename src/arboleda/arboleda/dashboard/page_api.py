@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 from arboleda.web.plant_api import PlantApi
-
-if TYPE_CHECKING:  # without a record, the libraries that read one are not needed
-    from .past.past import Past
-    from .past.side import Start
-
 
 Layout = dict[str, Any]
 """What never changes of a plant while it runs, as plain data: its cells, robots and recipes."""
@@ -22,20 +17,13 @@ class PageApi(PlantApi, Protocol):
     """PlantApi with what only the page shows; all data is plain and never changed by the page."""
 
     def layout(self) -> Layout:
-        """`views.view.layout`: what never changes. With `recorded` there is a `past`."""
+        """`views.view.layout`: what never changes, and whether this start is `recorded`."""
 
     def positions(self) -> dict[str, Any]:
         """`views.twin_view.positions` as of now, and `now` on the plant's clock."""
 
     def urdf(self, robot: str) -> str:
         """A robot's drawing; an ArboledaError says why there is none. Takes a while."""
-
-    def past(self, epoch: int | None = None) -> Past:
-        """The record of this start, or of an earlier one, up to some seconds ago; it waits for the disk, so
-        not in the event loop. An ArboledaError says why there is none."""
-
-    def starts(self) -> list[Start]:
-        """The starts of which there are records, the last first; it waits for the disk, too."""
 
     def links(self) -> Links:
         """The connections of the plant, and what goes on beside its tasks.

@@ -17,11 +17,13 @@ from .asset_files import Assets
 from .faces import Face
 from .faces.moment import Moment
 from .page_api import Layout, PageApi
-from .past.side import PastSide
 from .wording import Text, Words
 
 if TYPE_CHECKING:
     from fastapi import FastAPI  # a page without a server needs none
+    from fastapi import Request as HttpRequest
+
+    from .toolkit import Client
 
 GROUP = "arboleda.page"
 
@@ -105,24 +107,13 @@ class PageAct:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OtherRecord:
-    """Record beside those of the plant's starts. An ArboledaError of `side` says why there is none.
-
-    Operators may look at it; `may` says in English what others may not.
-    """
-
-    side: Callable[[PageApi], PastSide]
-    may: str
-
-
-@dataclass(frozen=True, kw_only=True)
 class PagePart:
     """Part of the page that a package adds.
 
     The module `assets.script` exports `start()`, and `arrive(there)` where it wants to know to which tab,
     cell and task somebody goes. `acts` are by the words with which a script asks for them. `face` is what
-    changes over time. `serve` adds addresses to the server. `records` are by their names in the page's
-    address.
+    changes over time. `serve` adds addresses to the server. `pages` are shown in place of the plant's
+    where its address has their key; each returns the HTML of its parts, and an ArboledaError says why not.
     """
 
     assets: Assets | None = None
@@ -130,7 +121,7 @@ class PagePart:
     acts: Mapping[str, PageAct] = field(default_factory=dict)
     face: Callable[[Moment], Face] | None = None
     serve: Callable[[FastAPI, PageApi], None] | None = None
-    records: Mapping[str, OtherRecord] = field(default_factory=dict)
+    pages: Mapping[str, Callable[[HttpRequest, Client, PageApi], str]] = field(default_factory=dict)
 
 
 class Put(Protocol):

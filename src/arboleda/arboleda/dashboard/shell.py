@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 
 from fastapi import FastAPI, Request
-from fastapi.responses import Response
+from fastapi.responses import PlainTextResponse, Response
 
-from arboleda.model.errors import StartError
+from arboleda.model.errors import ArboledaError, StartError
 from arboleda.web.access.auth import Role
 from arboleda.web.api import refuse
 from arboleda.web.languages import spoken
@@ -20,11 +20,11 @@ from .body import script_data
 from .page_api import Layout
 from .page_budget import PageBudget
 from .toolkit import HTML_ESCAPE_TABLE, Client, app, ui
-from .wording import Words
+from .wording import Words, words
 
 RECONNECT_S = 30.0
 PARTS_HERE = "arboleda-parts-here"  # where the HTML of the parts is put into what NiceGUI makes
-STYLES = ("page", "twin", "record")
+STYLES = ("page", "twin")
 LANGUAGE_COOKIE = "arboleda_language"
 _here: list[FastAPI] = []
 
@@ -50,7 +50,10 @@ def serve(
     @ui.page(PAGE, title=f"{layout['plant']} · Arboleda")
     def page(request: Request, client: Client) -> Response:
         unopened.add(client)
-        parts = build(request, client)
+        try:
+            parts = build(request, client)
+        except ArboledaError as error:  # what the address names is not there
+            return PlainTextResponse(words(language_of(request)).say(error.sentence), 404)
         return _with_parts(client.build_response(request), parts)
 
     app.add_exception_handler(404, refuse)  # NiceGUI makes a page for each address that is not there

@@ -13,7 +13,7 @@ PATHS = {
         r"/api/(draft|make|proposals|teach|trees|versions)(/.*)?|/api/assistants/tasks"
         r"|/(findings|versions)\.json|/proof"
     ),
-    PROOFS: re.compile(r"/api/faults(/.*)?|/api/tasks/[^/]+/report|/report"),
+    PROOFS: re.compile(r"/api/faults(/.*)?|/api/tasks/[^/]+/report|/past/scene\.json|/report"),
 }
 
 

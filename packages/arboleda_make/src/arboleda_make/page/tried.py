@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from arboleda.dashboard.past.past import Past
-from arboleda.dashboard.past.side import Start
 from arboleda.extension import Phrase
-from arboleda.recorder import reader
 from arboleda.recorder.errors import NoRecord
-from arboleda.recorder.views import Views
+
+if TYPE_CHECKING:  # slow to load, and only needed for a record
+    from arboleda_proofs.past.past import Past
+    from arboleda_proofs.past.side import Start
 
 TITLES = {"title": "make.of_draft", "leave": "make.back", "back": {"tab": "make"}}
 NOTHING_TRIED = Phrase("record.nothing_tried", "Nothing of the draft has been tried yet.")
@@ -21,6 +22,10 @@ class TriedPlant:
     """TriedPlant: a record and its plant as PastSide; `made` tells it from another tryout."""
 
     def __init__(self, record: Path, about: Path, made: int) -> None:
+        from arboleda.recorder import reader
+        from arboleda_proofs.past.past import Past
+        from arboleda_proofs.playback.views import Views
+
         known: dict[str, Any] = json.loads(about.read_text("utf-8"))
         self.made = made
         self._layout: dict[str, Any] = known["layout"] | {"titles": TITLES}
@@ -41,13 +46,16 @@ class TriedPlant:
 
 
 class TriedPlants:
-    """TriedPlants: the last tryout, read once; for any thread."""
+    """TriedPlants: the last tryout, read once; for any thread. `tried` gives its files: its record, and what
+    is shown of its plant."""
 
-    def __init__(self) -> None:
+    def __init__(self, tried: Callable[[], tuple[Path, Path] | None]) -> None:
+        self._tried = tried
         self._known: TriedPlant | None = None
 
-    def last(self, files: tuple[Path, Path] | None) -> TriedPlant:
-        """That of these files, its record and what is shown of its plant; NoRecord if there are none."""
+    def last(self) -> TriedPlant:
+        """The last tryout; NoRecord if there is none."""
+        files = self._tried()
         if files is None:
             raise NoRecord(NOTHING_TRIED())
         try:

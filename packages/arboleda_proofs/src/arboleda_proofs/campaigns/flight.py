@@ -11,14 +11,12 @@ from tempfile import TemporaryDirectory
 from arboleda.extension import ArboledaError
 from arboleda.model.counting import counted
 from arboleda.model.recording import Limits
-from arboleda.recorder import copying, reader
-from arboleda.recorder.files import parts_in
-from arboleda.recorder.simulated_recorder import RecordNotWritten, SimulatedRecorder
-from arboleda.recorder.tape import SECOND
+from arboleda.recorder import copying, files, reader
 from arboleda.rig.world import START_S
 
 from .plants import Plant
 from .setting import MakePlant
+from .simulated_recorder import SECOND, RecordNotWritten, SimulatedRecorder
 
 SUFFIX = ".mcap"
 NOON_NS = 946_728_000 * SECOND  # 2000-01-01 12:00 UTC: a seed's record has the same times always
@@ -48,7 +46,7 @@ def recorded(file: Path, plant: Plant) -> Iterator[Flight]:
 
 
 def _copied(made: Path, file: Path) -> Iterator[str]:
-    firsts = [part.path for part in parts_in(made) if part.number == 1]
+    firsts = [part.path for part in files.parts_in(made) if part.number == 1]
     for number, first in enumerate(firsts, start=1):
         record = reader.opened(first)
         target = file if number == 1 else file.with_name(f"{file.stem}-{number}{SUFFIX}")

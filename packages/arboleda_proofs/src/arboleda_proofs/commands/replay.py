@@ -25,8 +25,8 @@ from arboleda_proofs.playback.recorded_plant import model_of, versions_of
 
 if TYPE_CHECKING:
     from arboleda.recorder.reader import Record
-    from arboleda.recorder.replay import ReplayedStep
     from arboleda.recorder.steps import RecordedStep
+    from arboleda_proofs.playback.replay import ReplayedStep
 
     from .fork import Options
 
@@ -182,9 +182,9 @@ def _nothing(record: Record, chosen: Chosen) -> Sentence:
 
 def _extent(record: Record, number: int) -> Sentence:
     """The number of its steps that were read, and the damage that ended the reading."""
-    from arboleda.recorder.reader import steps_there
+    from arboleda.recorder import reader
 
-    there = steps_there(record.paths)
+    there = reader.steps_there(record.paths)
     if there is not None and there >= number:
         return READ_OF(there=there, number=number, broken=str(record.broken))
     return READ(number=number, broken=str(record.broken))
@@ -209,7 +209,7 @@ def _fork(record: Record, options: Options) -> None:
 
 def _show(record: Record, until: str | None, task: str | None, port: int | None) -> None:
     """Show the page at the end of a task or at a time; else at the last failure."""
-    from arboleda_proofs.playback import replay_page  # its libraries take a second
+    from arboleda_proofs.past import replay_page  # its libraries take a second
 
     at_s = None if until is None else _time("--until", until, record.first.began_ns) / 1e9
     query = {"at": "task" if task else "failure" if at_s is None else f"{at_s:.3f}"}
@@ -249,7 +249,7 @@ def _time(option: str, text: str, began_ns: int) -> int:
 
 def _run(record: Record, model: PlantModel, chosen: Chosen) -> ReplayedStep | None:
     """Execute the steps again, print the changes of tasks, and return the last step."""
-    from arboleda.recorder.replay import plant_of, replayed
+    from arboleda_proofs.playback.replay import plant_of, replayed
 
     last: ReplayedStep | None = None
     pace = Pace(chosen.speed)

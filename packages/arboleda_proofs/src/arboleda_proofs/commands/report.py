@@ -47,11 +47,11 @@ def report(
     state: StateFolder = None,
 ) -> None:
     with working() as tell:
-        from arboleda.recorder.files import FOLDER
+        from arboleda.recorder import files
         from arboleda_proofs.playback.report.reading import read
         from arboleda_proofs.playback.report.report_builder import made
 
-        where = folder(plant, state) / FOLDER if record is None else record.parent
+        where = folder(plant, state) / files.FOLDER if record is None else record.parent
         found = read(task, record, where, lambda share: tell(say(READING(share=f"{share:.0%}"))))
     if found.record.missing:
         raise NoRecord(say(GONE(file=str(found.record.paths[0]))))

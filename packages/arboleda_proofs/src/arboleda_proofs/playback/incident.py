@@ -25,11 +25,11 @@ from arboleda.model.plant_model import Link, PlantModel
 from arboleda.model.verbs import as_text
 from arboleda.recipes.decorators import first_cause
 from arboleda.recorder.chapter import Chapter
-from arboleda.recorder.chapters import chapters_of
 from arboleda.recorder.reader import Record
 from arboleda.views import tree_view, twin_view
 
 from .cause import BY_KEY, Cause, Evidence, TaskCommand, cause_of
+from .chapters import chapters_of
 from .troubles import Trouble, Troubles
 
 FRAMES_S, FRAME_S = 10.0, 0.2  # span and interval of the places of devices kept

@@ -36,6 +36,16 @@ def reports(assembly: Assembly) -> Iterator[Part]:
     yield part
 
 
+def past(assembly: Assembly) -> Iterator[Part]:
+    """The page on records of this plant, where it has one."""
+    if assembly.ask(Orchestrator) is not None and assembly.options.page:
+        from arboleda_proofs.past.desk import PastDesk
+
+        is_recorded = assembly.options.recording is not None
+        assembly.offer(PastDesk, PastDesk(assembly.holdings.state.path if is_recorded else None))
+    yield from ()
+
+
 def bench(assembly: Assembly) -> Iterator[Part]:
     """The bench of virtual devices, at which faults begin and end."""
     if "devices" in assembly.parts:
@@ -79,6 +89,7 @@ def demonstration(assembly: Assembly) -> Iterator[Part]:
 FACTORIES = (
     Factory(phase=Phase.LINKS, make=bench),
     Factory(phase=Phase.REPORTS, make=reports),
+    Factory(phase=Phase.PLANT, make=past),
     Factory(phase=Phase.PLANT, make=faults),
     Factory(phase=Phase.VIEWS, make=demonstration),
 )

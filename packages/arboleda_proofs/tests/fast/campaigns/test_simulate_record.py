@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
 from arboleda.recorder import reader
-from arboleda.recorder.views import Views
+from arboleda_proofs.playback.views import Views
 
 from .test_simulate import PLANT
 

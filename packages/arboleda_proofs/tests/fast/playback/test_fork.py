@@ -14,9 +14,9 @@ from tests.lengths import sample
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.record_text import sentence_of
-from arboleda.recorder.tape import TapedPlant, recorded
 from arboleda.rig.world import World
 from arboleda.testing.plants import shipped
+from arboleda_proofs.campaigns.simulated_recorder import TapedPlant, recorded
 from arboleda_proofs.commands.fork import compared
 from arboleda_proofs.playback.fork.device_replay import befall
 from arboleda_proofs.playback.fork.plant_events import Pair

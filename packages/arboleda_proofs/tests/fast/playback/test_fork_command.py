@@ -16,10 +16,10 @@ from arboleda.plant_file import loader
 from arboleda.recorder.chapter import Chapter
 from arboleda.recorder.files import PartFile
 from arboleda.recorder.steps import TOPIC, as_json
-from arboleda.recorder.tape import TapedPlant
 from arboleda.rig.world import World
 from arboleda.runtime.rate import at_rate
 from arboleda_proofs.campaigns.plants import Plant
+from arboleda_proofs.campaigns.simulated_recorder import TapedPlant
 from arboleda_proofs.playback.fork.settings import with_settings
 
 Act = Callable[[World], None]

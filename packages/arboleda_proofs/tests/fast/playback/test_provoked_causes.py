@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from arboleda.core.plant import Plant
 from arboleda.model.messages import FaultByHand, Reason
-from arboleda.recorder.replay import plant_of
-from arboleda.recorder.tape import TapedPlant
 from arboleda.rig.world import World
 from arboleda.testing import shipped
+from arboleda_proofs.campaigns.simulated_recorder import TapedPlant
 from arboleda_proofs.playback.cause import Evidence, cause_of
 from arboleda_proofs.playback.incident import Reader
+from arboleda_proofs.playback.replay import plant_of
 from arboleda_proofs.playback.troubles import BOOT
 from arboleda_proofs.running.fault_desk import INSTANT
 from arboleda_proofs.simulator.faults import KINDS, Fault

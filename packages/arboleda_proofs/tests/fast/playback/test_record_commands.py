@@ -19,9 +19,8 @@ from arboleda.model.recording import Limits
 from arboleda.plant_file import loader
 from arboleda.recorder import copying, files, reader
 from arboleda.recorder.errors import NoRecord
-from arboleda.recorder.simulated_recorder import SimulatedRecorder
 from arboleda.recorder.steps import TOPIC
-from arboleda.recorder.tape import SECOND
+from arboleda_proofs.campaigns.simulated_recorder import SECOND, SimulatedRecorder
 from arboleda_proofs.commands import replay
 from arboleda_proofs.playback import recorded_plant
 

@@ -21,7 +21,7 @@ from arboleda.model.messages import Verb
 from arboleda.recorder import reader
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import FOLDER, parts_in
-from arboleda.recorder.views import Views
+from arboleda_proofs.playback.views import Views
 
 __all__ = ["eye"]  # a fixture
 

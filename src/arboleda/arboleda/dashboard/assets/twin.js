@@ -1,6 +1,5 @@
 // The twin on the page: asks for frames while somebody looks, and has them drawn.
 
-import { here } from "./place.js";
 import { Plant } from "./twin_plant.js";
 import { FlatView } from "./twin_flat.js";
 import { PointsView } from "./twin_points.js";
@@ -91,7 +90,7 @@ function visit(cell) {
 }
 
 async function fetchScene() {
-  const answer = await fetch(`/twin/scene.json${here().record ? `?${new URLSearchParams({ record: here().record })}` : ""}`);
+  const answer = await fetch(document.querySelector("[data-scene]")?.dataset.scene ?? "/twin/scene.json");
   const said = await answer.json();
   if (!answer.ok) throw new Error(words().twin_failed.replace("{why}", said.sentence));
   return said;

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Protocol
 
-from fastapi import FastAPI, Request, Response
+from fastapi import FastAPI, Response
 
 from arboleda.geometry import bodies
 from arboleda.model.errors import ArboledaError
-from arboleda.web.access.auth import require
 from arboleda.web.request import SCENE
 
 from ..toolkit import Client, GenericEventArguments, ui
@@ -75,39 +72,13 @@ class TwinOpening(Protocol):
     def open(self, twin: Twin) -> None: ...
 
 
-@dataclass(frozen=True, kw_only=True)
-class OtherScene:
-    """Scene of a record that is none of the plant's own, with what shows it; `may` is what only operators
-    may."""
+class Scene:
+    """Scene of a plant, made once, when somebody first wants to see it: drawing robots takes a while. `show`
+    opens then."""
 
-    last: Callable[[], tuple[DrawablePlant, TwinOpening]]
-    may: str
-
-
-def serve(
-    server: FastAPI, plant: DrawablePlant, *shows: TwinOpening, others: Mapping[str, OtherScene] | None = None
-) -> None:
-    """Answer the browser's `SCENE`, and open the shows once the first browser asks; `others` are by the names
-    of their records."""
-    store = _Store(plant, shows)
-
-    def answer(request: Request, record: str = "") -> Response:
-        other = (others or {}).get(record)
-        if other is None:
-            return store.answer()
-        require(request.scope["arboleda.role"], other.may)
-        drawn, show = other.last()
-        return _Store(drawn, (show,)).answer()
-
-    server.add_api_route(SCENE, answer, include_in_schema=False)
-
-
-class _Store:
-    """The scene, made once, when somebody first wants to see it: drawing robots takes a while."""
-
-    def __init__(self, plant: DrawablePlant, shows: Sequence[TwinOpening]) -> None:
+    def __init__(self, plant: DrawablePlant, show: TwinOpening) -> None:
         self._plant = plant
-        self._shows = shows
+        self._show = show
         self._making = threading.Lock()
         self._scene: str | None = None
 
@@ -124,9 +95,13 @@ class _Store:
         places = self._plant.layout()["places"]
         drawings = {robot["name"]: bodies.read(self._plant.urdf(robot["name"])) for robot in places["robots"]}
         twin = Twin(places, drawings)
-        for show in self._shows:
-            show.open(twin)
+        self._show.open(twin)
         return json.dumps(twin.scene)
+
+
+def serve(server: FastAPI, scene: Scene) -> None:
+    """Answer the browser's `SCENE`."""
+    server.add_api_route(SCENE, scene.answer, include_in_schema=False)
 
 
 def _json(what: Any, status: int) -> Response:

@@ -12,9 +12,9 @@ from arboleda.model.messages import ENDED, Event, OperatorRequest, TaskChanged, 
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.verbs import lasting
 from arboleda.recorder.reader import Record
-from arboleda.recorder.replay import plant_of
 from arboleda_proofs.campaigns.plants import ELSEWHERE
 from arboleda_proofs.playback.incident import AWAY_S, Reader, supervised
+from arboleda_proofs.playback.replay import plant_of
 from arboleda_proofs.playback.troubles import Troubles
 from arboleda_proofs.simulator.faults import Fault
 from arboleda_proofs.simulator.scripted_people import Act, scopes

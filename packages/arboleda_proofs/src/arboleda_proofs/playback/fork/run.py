@@ -18,11 +18,11 @@ from arboleda.model.revision import Versions
 from arboleda.recorder.plain_data import plain
 from arboleda.recorder.preamble import Beginning
 from arboleda.recorder.record_text import moment
-from arboleda.recorder.replay import ReplayedStep, first_difference
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import RecordedStep, hash_of, outcome
 from arboleda.rig.world import World
 from arboleda_proofs.campaigns.plants import ELSEWHERE
+from arboleda_proofs.playback.replay import ReplayedStep, first_difference
 from arboleda_proofs.playback.troubles import Trouble, Troubles
 from arboleda_proofs.simulator.takeover import taken_over
 

@@ -10,12 +10,12 @@ from pathlib import Path
 from arboleda.drivers import plain
 from arboleda.extension import ConfigError
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder.files import parts_in
-from arboleda.recorder.reader import Record, opened, steps_there
-from arboleda.recorder.replay import plant_of
+from arboleda.recorder import files, reader
+from arboleda.recorder.reader import Record
 from arboleda.recorder.steps import RecordedStep
 from arboleda.recorder.writing import FLUSH_S
 from arboleda_proofs.playback.incident import Incident, Reader
+from arboleda_proofs.playback.replay import plant_of
 
 from ..recorded_plant import model_of, versions_of
 
@@ -51,7 +51,7 @@ def read(
         paths = [record] if record is not None else list(_newest(folder))
         found = next((path for path in paths if _has(path, task)), None)
         if found is not None:
-            whole = opened(found)
+            whole = reader.opened(found)
             incident, steps = incident_of(task, whole, tell)
             if incident.ended_at is not None or time.monotonic() > until:
                 model = model_of(whole.first.beginning)
@@ -65,7 +65,7 @@ def read(
 def _newest(folder: Path) -> Iterator[Path]:
     """A file of each record, the newest first."""
     epochs: set[int] = set()
-    for part in reversed(parts_in(folder)):
+    for part in reversed(files.parts_in(folder)):
         if part.epoch not in epochs:
             epochs.add(part.epoch)
             yield part.path
@@ -74,7 +74,7 @@ def _newest(folder: Path) -> Iterator[Path]:
 def _has(path: Path, task: str) -> bool:
     """True if a record names the task, if only in a request."""
     word = f'"task":"{task}"'.encode()
-    return any(word in data for _, data in opened(path).raw())
+    return any(word in data for _, data in reader.opened(path).raw())
 
 
 def _is_written(path: Path) -> bool:
@@ -89,8 +89,8 @@ def incident_of(
     """
     beginning = record.first.beginning
     model = model_of(beginning)
-    plant, reader = plant_of(beginning, model, versions_of(record)), Reader(task, model)
-    there = steps_there(record.paths) or 0
+    plant, looks = plant_of(beginning, model, versions_of(record)), Reader(task, model)
+    there = reader.steps_there(record.paths) or 0
     steps: list[RecordedStep] = []
     number = 0
     for number, step in enumerate(record.steps(), start=1):
@@ -98,7 +98,7 @@ def incident_of(
             steps.append(step)
         if there and number % TOLD_STEPS == 0:
             tell(min(1.0, number / there))
-        reader.take(plant, step.unix_ns, step.now, step.events, plant.step(step.now, step.events))
-        if reader.over:
+        looks.take(plant, step.unix_ns, step.now, step.events, plant.step(step.now, step.events))
+        if looks.over:
             break
-    return reader.incident, steps if number <= MOST_KEPT else ()
+    return looks.incident, steps if number <= MOST_KEPT else ()

@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 import json
-import struct
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from arboleda.model.errors import ConfigError
+from arboleda.drivers import plain
+from arboleda.extension import ConfigError
 from arboleda.model.messages import ENDED, TaskState
-from arboleda.model.outside import plain
-from arboleda.recorder.cell_history import followed
 from arboleda.recorder.reader import Record
-from arboleda.recorder.views import Views
-from arboleda.viewers.groot2_messages import Transition, transitions
-from arboleda.viewers.groot2_tree import CellTree, Row, form_of
+from arboleda.viewers.btlog import btlog
+
+from .cell_history import followed
+from .views import Views
 
 LATER_NS = 2 * 10**9  # screens see a change a little later
 Change = tuple[int, dict[str, Any]]
-Moment = tuple[int, Sequence[Row]]  # Unix time in microseconds, and the rows of the tree
-MAGIC = b"BTCPP4-FileLogger2"
-FORMAT = 1
 OVER = {state.value for state in ENDED}
 
 
@@ -44,26 +40,7 @@ def write(record: Record, task: str, output: Path) -> int:
     return len(content)
 
 
-def btlog(moments: Iterable[Moment], *, has_succeeded: bool) -> bytes:
-    """The file of FileLogger2 of BehaviorTree.CPP for a tree's rows at each moment of a change, in order.
-
-    The first moment has rows. The file has one tree: of a task that was tried with several trees, the last.
-    """
-    every = list(moments)
-    form = next(form_of(rows) for _, rows in reversed(every) if rows)
-    mine = [(at_us, rows) for at_us, rows in every if not rows or form_of(rows) == form]
-    tree = CellTree(next(rows for _, rows in mine if rows))
-    began_us = mine[0][0]
-    changes = [
-        Transition(at_us=at_us - began_us, node=node, status=status)
-        for at_us, rows in mine
-        for node, status in tree.stand(rows, has_succeeded=has_succeeded and at_us == mine[-1][0])
-    ]
-    head = MAGIC + struct.pack("<Bi", FORMAT, len(tree.xml)) + tree.xml + struct.pack("<q", began_us)
-    return head + transitions(changes)
-
-
-def _moments(record: Record, changes: Sequence[Change]) -> Iterator[Moment]:
+def _moments(record: Record, changes: Sequence[Change]) -> Iterator[tuple[int, Sequence[dict[str, Any]]]]:
     """The task's tree at each of its changes, and once more without rows at its end."""
     views, was_mine = Views(record), False
     (began_ns, first), (ended_ns, last) = changes[0], changes[-1]

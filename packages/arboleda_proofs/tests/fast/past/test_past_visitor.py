@@ -10,12 +10,11 @@ from typing import Any
 import pytest
 from tests.threads import run_here
 
-from arboleda.dashboard.past.frame_queue import FrameQueue
-from arboleda.dashboard.past.side import Start
-from arboleda.dashboard.past.stills import Stills
-from arboleda.dashboard.past.visitor import Arrival, Visitor
 from arboleda.dashboard.wording import words
 from arboleda.recorder.errors import NoRecord
+from arboleda_proofs.past.frame_queue import FrameQueue
+from arboleda_proofs.past.side import Shown, Start
+from arboleda_proofs.past.visitor import Arrival, Visitor
 
 STARTS = [
     Start(epoch=9, began=0, is_own=False, is_same=False),
@@ -78,7 +77,7 @@ class Page:
     def __init__(self, **arrival: Any) -> None:
         self.past, self.client = FakePast(), Client()
         side: Any = SimpleNamespace(past=lambda epoch: self.past, starts=lambda: STARTS)
-        self.visitor = Visitor(self.client, side, Stills(), FrameQueue(), words("en"), Arrival(**arrival))  # type: ignore[arg-type]
+        self.visitor = Visitor(self.client, Shown(side), FrameQueue(), words("en"), Arrival(**arrival))  # type: ignore[arg-type]
         asyncio.run(self.visitor.come())
 
     def hear(self, *what: Any) -> None:

@@ -8,17 +8,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.unit.recorder.recorded import Site
 
 from arboleda.dashboard.faces import Face
 from arboleda.dashboard.page_state import PageState
-from arboleda.dashboard.past.moments import address, moment_of
-from arboleda.dashboard.past.past import Past
 from arboleda.model.messages import Verb
 from arboleda.recorder import reader
-from arboleda.recorder.views import Views
 from arboleda.views import view
-
-from ..recorder.recorded import Site
+from arboleda_proofs.past.moments import address, moment_of
+from arboleda_proofs.past.past import Past
+from arboleda_proofs.playback.views import Views
 
 pytestmark = pytest.mark.long
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from arboleda.recorder.cell_history import CellMoment
+from arboleda.dashboard import tree_memory
+from arboleda_proofs.playback.cell_history import CellMoment
 
-from ..tree_memory import EndedTree, TreeMemory
 from .moments import BESIDE_NS, nanoseconds
 
 JUST_NS = 2 * BESIDE_NS  # before a run's beginning, so that the beginning counts as a change
@@ -38,7 +38,7 @@ class TreeState:
     """A tree that has followed the first `count` changes of a run, the last of them at `at_ns`."""
 
     run: Run
-    memory: TreeMemory
+    memory: tree_memory.TreeMemory
     count: int = 0
     at_ns: int = 0
 
@@ -61,7 +61,7 @@ class TreeHistory:
         self._kept: list[Run] = []
         self._coming: dict[str, TreeState] = {}
 
-    def at(self, cell: str, at_ns: int, snapshot: Row) -> TreeMemory:
+    def at(self, cell: str, at_ns: int, snapshot: Row) -> tree_memory.TreeMemory:
         """The tree of a cell; the snapshot is that of the moment."""
         memory = self._come(cell, at_ns).memory.copy()
         row = next(each for each in snapshot["cells"] if each["name"] == cell)
@@ -72,14 +72,14 @@ class TreeHistory:
         """The tree of a cell at a moment, followed on from its last moment if that lies on the way."""
         run, come = self._run(cell, at_ns), self._coming.get(cell)
         if come is None or come.run is not run or come.at_ns > at_ns:
-            come = self._coming[cell] = TreeState(run, TreeMemory())
+            come = self._coming[cell] = TreeState(run, tree_memory.TreeMemory())
         come.see(self._looked(run, at_ns))
         return come
 
-    def ended(self, task: str, at_ns: int) -> EndedTree | None:
+    def ended(self, task: str, at_ns: int) -> tree_memory.EndedTree | None:
         """The tree of a task that had ended by then."""
         for run in (each for runs in self._runs.values() for each in runs if each.task == task):
-            memory = TreeMemory()
+            memory = tree_memory.TreeMemory()
             for looked in self._looked(run, at_ns):
                 ended = memory.see(looked.cell, looked.tasks, looked.unix_ns / 1e9)
                 if ended is not None and ended.task == task:

@@ -5,18 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from tests.unit.recorder.recorded import FILES
+
 from arboleda.model.messages import Jog, Verb
 from arboleda.model.recording import Limits
 from arboleda.recorder import reader
 from arboleda.recorder.files import parts_in
-from arboleda.recorder.replay import plant_of, replayed
-from arboleda.recorder.simulated_recorder import SimulatedRecorder
-from arboleda.recorder.tape import SECOND
-from arboleda.recorder.views import Views
 from arboleda.rig.world import PLANT, World
 from arboleda.testing.plants import shipped
-
-from .recorded import FILES
+from arboleda_proofs.campaigns.simulated_recorder import SECOND, SimulatedRecorder
+from arboleda_proofs.playback.replay import plant_of, replayed
+from arboleda_proofs.playback.views import Views
 
 BEGAN_NS = 1_790_000_000 * SECOND
 

@@ -13,12 +13,12 @@ from arboleda.model.plant_files import PlantFiles
 from arboleda.model.recording import Limits
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import part_path
-from arboleda.recorder.simulated_recorder import SimulatedRecorder
 from arboleda.rig.world import World
-from arboleda.runtime.parts import records
-from arboleda.runtime.parts.records import Records
 from arboleda.testing import shipped
 from arboleda.views import view
+from arboleda_proofs.campaigns.simulated_recorder import SimulatedRecorder
+from arboleda_proofs.past import records
+from arboleda_proofs.past.records import Records
 
 MODEL = shipped("sis_a")
 LAYOUT = view.layout(MODEL)
@@ -49,7 +49,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def shown(written: Path, tmp_path: Path) -> Records:
     """Those of the start 8."""
     shutil.copytree(written, tmp_path, dirs_exist_ok=True)
-    return Records(lambda: part_path(tmp_path, 8, 1), LAYOUT)
+    return Records(lambda: part_path(tmp_path, 8, 1), lambda: LAYOUT, str)
 
 
 def test_those_of_the_same_plant_file_can_be_chosen(shown: Records) -> None:
@@ -67,13 +67,13 @@ def test_what_this_page_cannot_show_is_a_sentence(shown: Records, epoch: int) ->
 def test_a_copy_elsewhere_stands_alone(shown: Records, tmp_path: Path) -> None:
     copy = tmp_path / "night.mcap"
     copy.write_bytes(part_path(tmp_path, 8, 1).read_bytes())
-    alone = Records(lambda: copy, LAYOUT)
+    alone = Records(lambda: copy, lambda: LAYOUT, str)
     assert alone.starts() == [] and alone.past().began == shown.past().began
 
 
 def test_a_record_that_is_written_on_grows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     world = started(tmp_path, 7)
-    grows = Records(lambda: part_path(tmp_path, 7, 1), LAYOUT)
+    grows = Records(lambda: part_path(tmp_path, 7, 1), lambda: LAYOUT, str)
     past = grows.past()
     ended, tasks = past.ended, _tasks(past)
     world.request_task("sis_a 1C 3")

@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from tests.unit.recorder.recorded import Site
 
 from arboleda.model.messages import Verb
-from arboleda.recorder import cell_history, reader
-from arboleda.recorder.views import Views
-
-from .recorded import Site
+from arboleda.recorder import reader
+from arboleda_proofs.playback import cell_history
+from arboleda_proofs.playback.views import Views
 
 
 @pytest.fixture(scope="module")

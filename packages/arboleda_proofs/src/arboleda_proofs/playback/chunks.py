@@ -18,13 +18,12 @@ from mcap.opcode import Opcode
 from mcap.records import Attachment, AttachmentIndex, Chunk, ChunkIndex, Footer, MessageIndex
 from mcap.writer import MCAP0_MAGIC as MAGIC
 
-from .files import TORN
-from .reader import HEAD, LARGEST, unpacked_bytes
+from arboleda.recorder import files, reader
 
 LoggedMessage = tuple[int, int, bytes]  # number of its channel, ns of Unix time, content
 TIMES = struct.Struct("<QQ")
 MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, time of the log, time of the publication
-FOOTER_BYTES = HEAD.size + 20
+FOOTER_BYTES = reader.HEAD.size + 20
 
 
 @dataclass(frozen=True)
@@ -68,17 +67,17 @@ class ChunkFile:
 
     def times(self, offset: int) -> list[tuple[int, int]]:
         """The messages of one channel in a chunk by its index: the time, and the place in the chunk."""
-        with suppress(*TORN):
+        with suppress(*files.TORN):
             index = self._read(Opcode.MESSAGE_INDEX, offset)
             return MessageIndex.read(ReadDataStream(BytesIO(index))).records if index else []
         return []
 
     def content(self, chunk: ChunkAt) -> bytes:
         """The content of a chunk; empty if it is damaged."""
-        with suppress(*TORN):
+        with suppress(*files.TORN):
             body = self._read(Opcode.CHUNK, chunk.offset)
             found = Chunk.read(ReadDataStream(BytesIO(body)))
-            if found.uncompressed_size > LARGEST or unpacked_bytes(found) > LARGEST:
+            if found.uncompressed_size > reader.LARGEST or reader.unpacked_bytes(found) > reader.LARGEST:
                 return b""
             data = found.data
             if found.compression == "zstd":
@@ -93,16 +92,16 @@ class ChunkFile:
     def _read(self, opcode: Opcode, offset: int) -> bytes:
         with self.path.open("rb") as file:
             file.seek(offset)
-            found, length = HEAD.unpack(file.read(HEAD.size))
-            return file.read(length) if found == opcode and length <= LARGEST else b""
+            found, length = reader.HEAD.unpack(file.read(reader.HEAD.size))
+            return file.read(length) if found == opcode and length <= reader.LARGEST else b""
 
 
 def messages(content: bytes, channels: Iterable[int], begins: int = 0) -> Iterator[LoggedMessage]:
     """The messages of these channels in a chunk, in order, from the byte `begins` on."""
     wanted = frozenset(channels)
     while begins < len(content):
-        opcode, length = HEAD.unpack_from(content, begins)
-        body = begins + HEAD.size
+        opcode, length = reader.HEAD.unpack_from(content, begins)
+        body = begins + reader.HEAD.size
         if opcode == Opcode.MESSAGE:
             channel, _, log_ns, _ = MESSAGE.unpack_from(content, body)
             if channel in wanted:
@@ -112,14 +111,14 @@ def messages(content: bytes, channels: Iterable[int], begins: int = 0) -> Iterat
 
 def _summary(file: IO[bytes]) -> FileIndex | None:
     """The index at the end of a closed file; None if there is none that can be read."""
-    with suppress(*TORN, OSError, ValueError):
+    with suppress(*files.TORN, OSError, ValueError):
         file.seek(-FOOTER_BYTES - len(MAGIC), 2)
         ends = file.tell()
         tail = file.read()
         if tail[0] != Opcode.FOOTER or not tail.endswith(MAGIC):
             return None
-        start = Footer.read(ReadDataStream(BytesIO(tail[HEAD.size :]))).summary_start
-        if not 0 < ends - start <= LARGEST:
+        start = Footer.read(ReadDataStream(BytesIO(tail[reader.HEAD.size :]))).summary_start
+        if not 0 < ends - start <= reader.LARGEST:
             return None
         file.seek(start)
         return _from_summary(file.read(ends - start), ends)
@@ -129,8 +128,8 @@ def _summary(file: IO[bytes]) -> FileIndex | None:
 def _from_summary(summary: bytes, ends: int) -> FileIndex:
     found, at = FileIndex(end=ends, whole=True), 0
     while at < len(summary):
-        opcode, length = HEAD.unpack_from(summary, at)
-        stream = ReadDataStream(BytesIO(summary[at + HEAD.size : at + HEAD.size + length]))
+        opcode, length = reader.HEAD.unpack_from(summary, at)
+        stream = ReadDataStream(BytesIO(summary[at + reader.HEAD.size : at + reader.HEAD.size + length]))
         if opcode == Opcode.CHUNK_INDEX:
             each = ChunkIndex.read(stream)
             times = each.message_start_time, each.message_end_time
@@ -138,7 +137,7 @@ def _from_summary(summary: bytes, ends: int) -> FileIndex:
         elif opcode == Opcode.ATTACHMENT_INDEX:
             attached = AttachmentIndex.read(stream)
             found.attachments.append((attached.name, attached.offset))
-        at += HEAD.size + length
+        at += reader.HEAD.size + length
     return found
 
 
@@ -146,12 +145,12 @@ def _scan(file: IO[bytes], index: FileIndex) -> None:
     """Extend the index of a file that nobody closed, from its known end on."""
     size = file.seek(0, 2)
     file.seek(index.end)
-    while len(head := file.read(HEAD.size)) == HEAD.size:
-        opcode, length = HEAD.unpack(head)
-        if index.end + HEAD.size + length > size or opcode == Opcode.DATA_END:
+    while len(head := file.read(reader.HEAD.size)) == reader.HEAD.size:
+        opcode, length = reader.HEAD.unpack(head)
+        if index.end + reader.HEAD.size + length > size or opcode == Opcode.DATA_END:
             return
         _note(file, index, opcode)
-        index.end += HEAD.size + length
+        index.end += reader.HEAD.size + length
         file.seek(index.end)
 
 

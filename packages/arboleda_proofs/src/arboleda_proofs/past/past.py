@@ -8,13 +8,12 @@ from collections.abc import Sequence
 from functools import lru_cache, partial
 from typing import Any
 
-from arboleda.recorder.cell_history import followed
-from arboleda.recorder.views import Views
+from arboleda.dashboard.faces import task, whole_page
+from arboleda.extension import Face, Moment, words
 from arboleda.views.chronicle import is_failure
+from arboleda_proofs.playback.cell_history import followed
+from arboleda_proofs.playback.views import Views
 
-from ..faces import Face, task, whole_page
-from ..faces.moment import Moment
-from ..wording import words
 from . import still
 from .moments import moment_of, nanoseconds, until_ns
 from .tree_history import TreeHistory

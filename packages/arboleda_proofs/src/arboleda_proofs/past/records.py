@@ -9,13 +9,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from arboleda.dashboard.past.past import Past
-from arboleda.dashboard.past.side import Start
-from arboleda.model.sentence import Phrase
+from arboleda.extension import Phrase
 from arboleda.recorder import files, reader
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.preamble import Beginning
-from arboleda.recorder.views import Views
+from arboleda_proofs.playback.views import Views
+
+from .past import Past
+from .side import Start
 
 FRESH_S = 5.0  # between two looks at the end of a record
 OPEN = 3  # records that are kept open, beside one another
@@ -28,25 +29,35 @@ NO_START = Phrase(
 
 
 class Records:
-    """`own` is a file of the record that is shown where none is chosen, NoRecord says why there is none.
+    """PastSide of a plant with this `layout`. `own` is a file of the record that is shown where none is
+    chosen, NoRecord says why there is none.
 
     Other records can be chosen if their plant file, and all that it uses, is the same: the page and its twin
     are made of it. For any thread; the caller waits for the disk.
     """
 
-    def __init__(self, own: Callable[[], Path], layout: dict[str, Any]) -> None:
+    def __init__(
+        self, own: Callable[[], Path], layout: Callable[[], dict[str, Any]], urdf: Callable[[str], str]
+    ) -> None:
         self._own = own
         self._layout = layout
+        self._urdf = urdf
         self._open: OrderedDict[int | None, tuple[float, Past]] = OrderedDict()
         self._beginnings: dict[int, tuple[Beginning, int] | None] = {}
         self._one = threading.Lock()
+
+    def layout(self) -> dict[str, Any]:
+        return self._layout()
+
+    def urdf(self, robot: str) -> str:
+        return self._urdf(robot)
 
     def past(self, epoch: int | None = None) -> Past:
         """The record of a start, as far as it is written; for None the page's own."""
         with self._one:
             opened = self._open.get(epoch)
             if opened is None:
-                opened = time.monotonic(), Past(Views(reader.opened(self._file(epoch))), self._layout)
+                opened = time.monotonic(), Past(Views(reader.opened(self._file(epoch))), self._layout())
             elif time.monotonic() - opened[0] > FRESH_S:
                 opened[1].grow()
                 opened = time.monotonic(), opened[1]

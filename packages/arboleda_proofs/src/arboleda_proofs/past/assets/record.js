@@ -1,9 +1,9 @@
 // The behaviour of a page on a record: which moment is shown, and the ways to other ones.
 
-import { apply, onChange, value } from "./live.js";
-import * as place from "./place.js";
-import * as shell from "./shell.js";
-import * as tree from "./tree.js";
+import { apply, onChange, value } from "../live.js";
+import * as place from "../place.js";
+import * as shell from "../shell.js";
+import * as tree from "../tree.js";
 
 const PLAY_MS = 100; // between two moments while it plays
 const GROW_MS = 5000; // a record that is written on is longer by then

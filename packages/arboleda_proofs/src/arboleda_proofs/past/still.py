@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..faces import Face, timeline
-from ..faces.moment import Moment
+from arboleda.dashboard.faces import timeline
+from arboleda.extension import Face, Moment
+
 from .moments import address, dated, moment_of
 
 Row = dict[str, Any]

@@ -14,17 +14,20 @@ from typing import Any
 
 import zstandard
 
-from .channels import CHANGES, EVENTS, VIEW
+from arboleda.recorder import channels, files, reader
+from arboleda.recorder.errors import NoRecord
+from arboleda.recorder.plain_data import value_from
+from arboleda.recorder.reader import Record
+from arboleda.recorder.rows import links_of, positions_of, snapshot_of
+
 from .chunks import ChunkFile, messages
-from .errors import NoRecord
-from .files import DIGEST, TORN, part_at, part_path
-from .plain_data import value_from
-from .reader import LARGEST, Record, channels_of
-from .rows import Row, Rows, links_of, positions_of, snapshot_of
 
 WINDOWS = 8  # half minutes of a record that are kept in memory
+KEPT = {channels.VIEW, channels.CHANGES, channels.EVENTS}
 NONE = -1  # the number of a channel that is not known
 EXACT_NS = 1000  # a time as a float of Unix seconds, as events have it, is not more exact
+Row = dict[str, Any]
+Rows = dict[str, Row]
 
 
 @dataclass(frozen=True)
@@ -124,7 +127,7 @@ class Views:
         for file in self._followed():
             chunks = file.index().chunks
             for number in range(max(0, file.index().position(began_ns)), len(chunks)):
-                places = chunks[number].indexes.get(self._channels[VIEW])
+                places = chunks[number].indexes.get(self._channels[channels.VIEW])
                 for at_ns, place in file.times(places) if places else ():
                     if at_ns > until_ns:
                         return
@@ -137,10 +140,10 @@ class Views:
             del self._files[0]
         self._know_channels()
         while self._files[-1].index().whole:
-            part = part_at(self._files[-1].path)
+            part = files.part_at(self._files[-1].path)
             if part is None:
                 break
-            following = part_path(part.path.parent, part.epoch, part.number + 1)
+            following = files.part_path(part.path.parent, part.epoch, part.number + 1)
             if not following.exists():
                 break
             self._files.append(ChunkFile(following))
@@ -150,8 +153,8 @@ class Views:
         """Read the channels from the first chunk, which a plant that just began has not written yet."""
         if not self._channels:
             path = self._files[0].path
-            self._channels = channels_of(path)
-            if self._channels and not {VIEW, CHANGES, EVENTS} <= self._channels.keys():
+            self._channels = reader.channels_of(path)
+            if self._channels and not self._channels.keys() >= KEPT:
                 raise NoRecord(f"{path} was written by an Arboleda that kept no views: replay it.")
 
     def _moment(self, unix_ns: int) -> tuple[Rows, float]:
@@ -172,7 +175,7 @@ class Views:
         """The views from the last whole one before a moment on; None if there is none."""
         for file in reversed(self._followed()):
             for number in range(file.index().position(unix_ns), -1, -1):
-                index = file.index().chunks[number].indexes.get(self._channels.get(VIEW, NONE))
+                index = file.index().chunks[number].indexes.get(self._channels.get(channels.VIEW, NONE))
                 places = [place for at, place in file.times(index) if at <= unix_ns] if index else []
                 if places and (window := self._read(file, number, places[-1])).changes:
                     return window
@@ -181,7 +184,7 @@ class Views:
     def _first(self) -> Window:
         for file in self._followed():
             for number, chunk in enumerate(file.index().chunks):
-                index = chunk.indexes.get(self._channels.get(VIEW, NONE))
+                index = chunk.indexes.get(self._channels.get(channels.VIEW, NONE))
                 places = file.times(index) if index else []
                 if places and (window := self._read(file, number, places[0][1])).changes:
                     return window
@@ -202,7 +205,7 @@ class Views:
 
     def _changes(self, file: ChunkFile, number: int, place: int) -> Iterator[ViewChange | None]:
         """The views from a place on; a None in the end if the next whole view follows."""
-        view, changes = (self._channels.get(topic, NONE) for topic in (VIEW, CHANGES))
+        view, changes = (self._channels.get(topic, NONE) for topic in (channels.VIEW, channels.CHANGES))
         first = True
         for chunk in file.index().chunks[number:]:
             begins = place if first else 0
@@ -214,7 +217,7 @@ class Views:
                 yield _change(unix_ns, data)
 
     def _times_of(self, file: ChunkFile) -> list[int]:
-        index, changes = file.index(), self._channels.get(CHANGES, NONE)
+        index, changes = file.index(), self._channels.get(channels.CHANGES, NONE)
         if file.path not in self._times:
             places = [chunk.indexes[changes] for chunk in index.chunks if changes in chunk.indexes]
             found = [at for place in places for at, _ in file.times(place)]
@@ -225,9 +228,9 @@ class Views:
 
     def _events_of(self, file: ChunkFile) -> Iterator[Row]:
         """The events in the digests of a file, and those not in a digest yet."""
-        index, channel, digested = file.index(), self._channels.get(EVENTS, NONE), 0
+        index, channel, digested = file.index(), self._channels.get(channels.EVENTS, NONE), 0
         for name, offset in index.attachments:
-            if name.startswith(DIGEST):
+            if name.startswith(files.DIGEST):
                 digested = offset
                 yield from _digest(file.attachment(offset))
         for chunk in index.chunks:
@@ -237,18 +240,18 @@ class Views:
 
 
 @contextmanager
-def _legible(files: list[ChunkFile]) -> Iterator[None]:
+def _legible(read: list[ChunkFile]) -> Iterator[None]:
     """Context that turns any error from a damaged file into a sentence."""
     try:
         yield
     except OSError as error:
         raise NoRecord(f"{error.filename} cannot be read: {error.strerror}.") from error
-    except (AttributeError, IndexError, KeyError, TypeError, ValueError, *TORN) as error:
-        raise NoRecord(f"{files[0].path}, or a file after it, is damaged.") from error
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError, *files.TORN) as error:
+        raise NoRecord(f"{read[0].path}, or a file after it, is damaged.") from error
 
 
 def _digest(content: bytes) -> list[Row]:
-    if zstandard.frame_content_size(content) > LARGEST:
+    if zstandard.frame_content_size(content) > reader.LARGEST:
         return []
     rows: list[Row] = value_from(json.loads(zstandard.decompress(content)))
     return rows

@@ -1,9 +1,12 @@
-"""The plant of a record as the page on it sees it."""
+"""The plant of a record as the page on it sees it, with the twin that is drawn of it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
+
+from arboleda.dashboard.twin import window
+from arboleda.dashboard.twin.twin import Twin
 
 if TYPE_CHECKING:  # without a record, the libraries that read one are not needed
     from .past import Past
@@ -38,3 +41,31 @@ class PastSide(Protocol):
 
     def starts(self) -> list[Start]:
         """The starts to choose from, the last first; it waits for the disk, too."""
+
+
+class Stills:
+    """Stills: draws the twin at each moment, once somebody has wanted to see it and it was opened."""
+
+    def __init__(self) -> None:
+        self._twin: Twin | None = None
+
+    @property
+    def ready(self) -> bool:
+        return self._twin is not None
+
+    def open(self, twin: Twin) -> None:
+        """Take the twin that is drawn from now on; from any thread."""
+        self._twin = twin
+
+    def at(self, past: Past, moment: int) -> dict[str, Any]:
+        """The drawing of a moment; empty before a twin was opened."""
+        return {} if self._twin is None else self._twin.still(past.positions(moment))
+
+
+class Shown:
+    """Record that is shown: its plant, and what is drawn of it."""
+
+    def __init__(self, side: PastSide) -> None:
+        self.side = side
+        self.stills = Stills()
+        self.scene = window.Scene(side, self.stills)

@@ -6,7 +6,7 @@ import re
 import struct
 from typing import Any
 
-from arboleda.recorder.btlog_export import btlog
+from arboleda.viewers.btlog import btlog
 
 BEGAN_US = 1_700_000_000_000_000
 IDLE, RUNNING, SUCCESS, FAILURE = range(4)

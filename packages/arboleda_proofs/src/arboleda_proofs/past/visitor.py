@@ -7,16 +7,13 @@ import logging
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from arboleda.model.errors import ArboledaError
+from arboleda.dashboard.toolkit import Client, GenericEventArguments
+from arboleda.extension import ArboledaError, Face, Words
 from arboleda.views.changes import changed
 
-from ..faces import Face
-from ..toolkit import Client, GenericEventArguments
-from ..wording import Words
 from .frame_queue import FrameQueue
 from .moments import dated
-from .side import PastSide, Start
-from .stills import Stills
+from .side import Shown, Start
 
 if TYPE_CHECKING:  # without a record, the libraries that read one are not needed
     from .past import Past
@@ -46,15 +43,14 @@ class Visitor:
     def __init__(
         self,
         client: Client,
-        side: PastSide,
-        stills: Stills,
+        shown: Shown,
         turns: FrameQueue,
         words: Words,
         arrival: Arrival,
     ) -> None:
         self._client = client
-        self._side = side
-        self._stills = stills
+        self._side = shown.side
+        self._stills = shown.stills
         self._turns = turns
         self._words = words
         self._arrival = arrival

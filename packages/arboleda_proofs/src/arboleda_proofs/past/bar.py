@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from ..page_api import Layout
-from ..tags import live, tag
-from ..wording import Words
+from arboleda.extension import Layout, Words, live, tag
 
 SPEEDS = (1, 4, 16, 64)
 BEFORE = {"failure_before": "‹ ✕", "event_before": "‹"}  # noqa: RUF001 - as signs on buttons
@@ -12,8 +10,9 @@ AFTER = {"event_after": "›", "failure_after": "✕ ›"}  # noqa: RUF001
 PLAY = "▶"
 
 
-def build(layout: Layout, words: Words) -> None:
-    with tag("section", id="record", classes="record", aria_label=words("record.label")):
+def build(layout: Layout, words: Words, scene: str) -> None:
+    """Draw the bar, which says from which address the script of the twin has its scene."""
+    with tag("section", id="record", classes="record", aria_label=words("record.label"), data_scene=scene):
         with tag("div", classes="record-when"):
             tag("span", words("record.was"), classes="record-was")
             live("time", "record.at", classes="record-at")

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from .plain_data import value_from
-from .rows import Row, Rows
-from .views import Views
+from arboleda.recorder.plain_data import value_from
+
+from .views import Row, Rows, Views
 
 NEEDED = ("state", "task", "tree")  # of a cell's row
 AT_ONCE_NS = 60 * 10**9  # of a span no longer than this, every view is read

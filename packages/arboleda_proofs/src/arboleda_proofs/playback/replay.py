@@ -9,11 +9,10 @@ from typing import Any
 from arboleda.engine import Plant
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.revision import Versions
-
-from .plain_data import TYPE
-from .preamble import Beginning
-from .state import state_of
-from .steps import RecordedStep, hash_of, outcome
+from arboleda.recorder.plain_data import TYPE
+from arboleda.recorder.preamble import Beginning
+from arboleda.recorder.state import state_of
+from arboleda.recorder.steps import RecordedStep, hash_of, outcome
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.unit.recorder.recorded import AtOnce, Site, beginning_of
 
 from arboleda.model.messages import Verb
 from arboleda.model.recording import Limits
@@ -15,11 +16,9 @@ from arboleda.recorder import channels, copying, files, reader, writing
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.steps import TOPIC
 from arboleda.recorder.view_log import DIGEST_S
-from arboleda.recorder.views import Views
 from arboleda.recorder.writing import Writing
 from arboleda.views.chronicle import Chronicle
-
-from .recorded import AtOnce, Site, beginning_of
+from arboleda_proofs.playback.views import Views
 
 SPANS = ("age_s", "since_s", "deadline_s", "left_s", "elapsed_s")
 

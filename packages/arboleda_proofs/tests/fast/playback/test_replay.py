@@ -8,15 +8,18 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from tests.unit.core.test_revision import NEXT, Q, moved
+from tests.unit.recorder.recorded import FILES, Site
 
-from arboleda.model.messages import Fact, TaskState, Verb
+from arboleda.engine import Plant
+from arboleda.model.messages import Fact, Revision, TaskState, Verb
 from arboleda.recorder import reader
 from arboleda.recorder.plain_data import plain
-from arboleda.recorder.replay import Difference, ReplayedStep, first_difference, plant_of, replayed
 from arboleda.recorder.steps import from_json
+from arboleda.rig.world import World
 from arboleda.testing.plants import shipped
-
-from .recorded import FILES, Site
+from arboleda_proofs.campaigns.simulated_recorder import TapedPlant, recorded
+from arboleda_proofs.playback.replay import Difference, ReplayedStep, first_difference, plant_of, replayed
 
 
 @pytest.fixture
@@ -134,3 +137,26 @@ def test_a_record_with_arguments_within_scopes_is_the_same_again(site: Site) -> 
         if each.pop("arguments", None):
             each["scope"] = "sis_a 7"
     assert from_json(step.unix_ns, json.dumps(rows).encode()) == step
+
+
+def test_a_replay_over_a_change_in_the_middle_is_the_same_to_the_last_bit() -> None:
+    model = shipped("sis_a", "sis_b")
+    world = World(model, make_plant=TapedPlant)
+    other = moved(model)
+    world.plant.versions[NEXT.digest] = other
+    world.advance(2.0)
+    for _ in range(2):
+        world.request_task("sis_a 0B 0")
+    world.advance(3.0)
+    world.tell(Revision(at=world.now, version=NEXT, by="Ana", changes=("one",)))
+    world.advance(120.0)
+    plant = world.plant
+    assert isinstance(plant, TapedPlant)
+    steps = [*recorded(plant.tape)]
+    again = plant_of(plant.beginning, model, {NEXT.digest: other})
+    assert [each.difference for each in replayed(again, steps)] == [None] * len(steps)
+    assert again.model.cell("sis_a").stations[0].q == Q
+    ignorant = [*replayed(Plant(model, epoch=1, now=0.0), [])]
+    assert ignorant == []
+    blind = [*replayed(plant_of(plant.beginning, model), steps)]
+    assert blind[-1].difference is not None
