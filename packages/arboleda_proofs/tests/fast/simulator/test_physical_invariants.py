@@ -1,4 +1,4 @@
-"""Each invariant of zones, motion, grip and stop holds for a plant that works, and bites."""
+"""Invariants of zones, motion, grip and stop hold for a plant that works, and find more than their mutant."""
 
 from __future__ import annotations
 
@@ -14,28 +14,15 @@ from tests.lengths import sample
 from arboleda.dispatch import evidence, whereabouts
 from arboleda.dispatch.evidence import CommandVerdict
 from arboleda.dispatch.ledger import Feed
-from arboleda.dispatch.whereabouts import Whereabouts
-from arboleda.dispatch.zones import Zones
 from arboleda.kinds.arm import SetEffector
-from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Home
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import Evidence, PlantModel
-from arboleda.model.sentence import Sentence
 from arboleda.rig.world import World
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
 from arboleda.testing.plants import shipped
-from arboleda.trees import steps
-from arboleda.trees.cell_commands import CellCommands
-from arboleda.trees.cell_zones import CellZones
-from arboleda.trees.context import Context
-from arboleda.trees.failures import Failures
-from arboleda.trees.handling import Handling
-from arboleda.trees.leaves import Piece, TakeZones
-from arboleda.trees.parts import Parts
 from arboleda.wire.payloads import EffectorGoal, Goal, JointsGoal, encode
-from arboleda.wire.rivals import Rivals
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 from arboleda_proofs.simulator.invariants.grips import GRIPS
@@ -165,61 +152,6 @@ def test_nothing_is_found_when_a_fault_is_handled(fault: str, after_s: float) ->
     assert watch.found == {}
 
 
-def everybody_gets_it(patch: Patch) -> Watch:
-    patch.setattr(CellZones, "take", lambda self, robot, zones, *, inside=False: True)
-    patch.setattr(CellCommands, "_objection", lambda self, command: None)
-    watch = Watch(zoned())
-    for cell in watch.world.model.cells:
-        watch.world.request_task(f"{cell.name} palletizing")
-    watch.wait(5.0)
-    return watch
-
-
-def freed_at_a_stop(patch: Patch) -> Watch:
-    patch.setattr(Whereabouts, "place", lambda self, space: space.home)
-    watch = Watch(zoned())
-    watch.carry()
-    watch.verb(Verb.STOP)
-    return watch
-
-
-def entered_unasked(patch: Patch) -> Watch:
-    patch.setattr(CellCommands, "_objection", lambda self, command: None)
-    patch.setattr(Zones, "request", lambda self, robot, zones: True)
-    watch = Watch(zoned())
-    watch.task()
-    return watch
-
-
-def told_once(patch: Patch) -> Watch:
-    said: dict[TakeZones, Sentence] = {}
-    awaited = TakeZones._awaited
-    patch.setattr(TakeZones, "_awaited", lambda self: said.setdefault(self, awaited(self)))
-    watch = Watch(zoned())
-    for cell in watch.world.model.cells:
-        watch.world.request_task(f"{cell.name} palletizing")
-    watch.wait(20.0)
-    return watch
-
-
-def moved_unhomed(patch: Patch) -> Watch:
-    watch = Watch()
-    watch.world.crash(ARM)
-    watch.world.boards[ARM].homed = True
-    watch.wait(1.0)
-    watch.task()
-    return watch
-
-
-def moved_after_a_told_boot(patch: Patch) -> Watch:
-    patch.setattr(evidence, "displaced", lambda before, belief, report: False)
-    watch = Watch(shipped("sis_a", evidence=Evidence.JOINTS, assume_homed=True))
-    watch.world.crash(ARM)
-    watch.wait(3.0)
-    watch.task()
-    return watch
-
-
 def moved_after_a_boot_that_its_joints_show(patch: Patch) -> Watch:
     patch.setattr(whereabouts, "came_back_at_zero", lambda before, belief, report, stood: False)
     watch = Watch(shipped("sis_a", evidence=Evidence.JOINTS, assume_homed=True))
@@ -229,14 +161,6 @@ def moved_after_a_boot_that_its_joints_show(patch: Patch) -> Watch:
     watch.wait(3.0)
     watch.world.power_on(ARM)
     watch.wait(10.0)
-    return watch
-
-
-def began_by_itself(patch: Patch) -> Watch:
-    watch = Watch()
-    watch.body.start(round(watch.world.now * 1e6), JointsGoal(q=(9.0, 9.0, 0.0), seq=None, epoch=None))
-    watch.world.wake(ARM)
-    watch.wait(1.0)
     return watch
 
 
@@ -250,16 +174,6 @@ def switched_by_itself(patch: Patch) -> Watch:
 def obeyed_a_stranger(patch: Patch) -> Watch:
     watch = Watch()
     watch.say(Channel.JOINTS, JointsGoal, q=(9.0, 9.0, 0.0))
-    return watch
-
-
-def beyond_its_limits(patch: Patch) -> Watch:
-    patch.setattr(ArmBody, "admits", lambda self, goal: True)
-    patch.setattr("arboleda.sim.board.SILENCE_US", 60_000_000)  # of the stranger that is about to speak
-    patch.setattr(Rivals, "answer", lambda *args, **options: False)  # the bridge would halt what it begins
-    watch = Watch()
-    watch.say(Channel.JOINTS, JointsGoal, q=(170.0, 0.0, 0.0))
-    watch.wait(5.0)
     return watch
 
 
@@ -283,33 +197,9 @@ def done_when_accepted(command: type) -> Callable[[Patch], Watch]:
     return break_it
 
 
-def never_reached(patch: Patch) -> Watch:
-    patch.setattr(evidence, "reached", lambda entry, belief: False)
-    watch = Watch()
-    watch.wait(30.0)
-    watch.task()
-    return watch
-
-
 def gripped_at_home(patch: Patch) -> Watch:
     watch = Watch()
     watch.say(Channel.EFFECTOR, EffectorGoal, on=True)
-    return watch
-
-
-def began_with_the_effector_on(patch: Patch) -> Watch:
-    patch.setattr(Parts, "holding", [])
-    watch = Watch()
-    watch.body.switch_effector(True)
-    watch.wait(1.0)
-    watch.task()
-    return watch
-
-
-def opened_on_the_way(patch: Patch) -> Watch:
-    watch = Watch()
-    watch.carry()
-    watch.say(Channel.EFFECTOR, EffectorGoal, on=False)
     return watch
 
 
@@ -325,53 +215,6 @@ def lost_for_no_reason(patch: Patch) -> Watch:
     watch.carry()
     watch.body.lose_piece()
     watch.wait(0.5)
-    return watch
-
-
-def twice(order: Any, context: Context) -> Any:
-    """A storage recipe that stores two parts."""
-    space = context.cell.taker
-    station = space.targets[order.values["station"]]
-    arm, pickup = space.robot.name, space.targets["pickup"]
-
-    def once() -> list[Any]:
-        gripped = steps.grip(context, arm, pickup, check=False)
-        return [(pickup, gripped), (station, steps.let_go(context, arm, check=False))]
-
-    return steps.task("storage", steps.tour(context, arm, [*once(), *once()]), context)
-
-
-def two_parts(patch: Patch) -> Watch:
-    watch = Watch(recipes={"storage": twice})
-    watch.task("sis_a 0B 7", wait_s=30.0)
-    return watch
-
-
-def not_brought(order: Any, context: Context) -> Any:
-    """A storage recipe that waits for no mobile robot."""
-    space = context.cell.taker
-    arm, pickup = space.robot.name, space.targets["pickup"]
-    gripped = steps.grip(context, arm, pickup, check=False)
-    return steps.task("storage", steps.tour(context, arm, [(pickup, gripped), (space.home, [])]), context)
-
-
-def taken_too_early(patch: Patch) -> Watch:
-    watch = Watch(recipes={"storage": not_brought})
-    watch.task("sis_a 0B 7")
-    return watch
-
-
-def nothing_was_done(patch: Patch) -> Watch:
-    watch = Watch(recipes={"storage": lambda order, context: steps.start(context)})
-    watch.task("sis_a 0B 7")
-    return watch
-
-
-def moved_while_latched(patch: Patch) -> Watch:
-    watch = Watch()
-    watch.verb(Verb.STOP)
-    watch.world.boards[ARM].latched = False
-    watch.say(Channel.JOINTS, JointsGoal, q=(9.0, 9.0, 0.0))
     return watch
 
 
@@ -391,68 +234,16 @@ def mobile_runs_on(patch: Patch) -> Watch:
     return watch
 
 
-def robbed_unnoticed(patch: Patch) -> Watch:
-    patch.setattr(Failures, "opened_effector", lambda self: None)
-    watch = misses_no_part(patch)
-    watch.world.request_task("sis_a 0B 7")
-    watch.wait(60.0, until=lambda: watch.body.holding and watch.body.moving)
-    watch.world.manual.open_effector(ARM)
-    watch.wait(30.0)
-    return watch
-
-
-def misses_no_part(patch: Patch) -> Watch:
-    """Nobody looks for a part on the way, nor where it belongs."""
-    patch.setattr(Parts, "lost", lambda self: None)
-    patch.setattr(Piece, "_seen", lambda self: True)
-    return Watch()
-
-
-def lost_unnoticed(patch: Patch) -> Watch:
-    watch = misses_no_part(patch)
-    watch.carry()
-    watch.body.lose_piece()
-    watch.wait(30.0)
-    return watch
-
-
-def checked_unseen(patch: Patch) -> Watch:
-    patch.setattr(Handling, "miss", lambda self, check: None)
-    watch = Watch(shipped("sis_a", evidence=Evidence.JOINTS))
-    watch.task(wait_s=60.0)
-    return watch
-
-
+# each further way to break them than the bugs that are planted in tools/tests/mutants
 BREAKS: list[tuple[str, Callable[[Patch], Watch]]] = [
-    ("one_robot_per_zone", everybody_gets_it),
-    ("zone_released_only_outside", freed_at_a_stop),
-    ("zone_entered_only_when_held", entered_unasked),
-    ("a_wait_names_its_cause", told_once),
-    ("no_unhomed_move", moved_unhomed),
-    ("no_move_after_a_boot_that_was_told", moved_after_a_told_boot),
     ("no_move_after_a_boot_that_was_told", moved_after_a_boot_that_its_joints_show),
-    ("nothing_moves_unasked", began_by_itself),
     ("nothing_moves_unasked", switched_by_itself),
     ("nothing_moves_unasked", obeyed_a_stranger),
-    ("arm_stays_within_limits", beyond_its_limits),
-    ("done_is_true", done_when_accepted(MoveJoints)),
     ("done_is_true", done_when_accepted(SetEffector)),
     ("done_is_true", done_when_accepted(Home)),
-    ("tiny_moves_succeed", never_reached),
     ("effector_on_only_for_a_part", gripped_at_home),
-    ("effector_on_only_for_a_part", began_with_the_effector_on),
-    ("effector_off_only_where_legal", opened_on_the_way),
     ("parts_conserved", a_part_from_nowhere),
     ("parts_conserved", lost_for_no_reason),
-    ("parts_are_taken_and_put_where_they_can_be", two_parts),
-    ("parts_are_taken_and_put_where_they_can_be", taken_too_early),
-    ("done_tasks_leave_nothing_behind", taken_too_early),
-    ("recipes_end_as_they_say", nothing_was_done),
-    ("done_tasks_bring_their_parts", robbed_unnoticed),
-    ("done_tasks_bring_their_parts", lost_unnoticed),
-    ("unchecked_is_as_said", checked_unseen),
-    ("latched_board_stays_still", moved_while_latched),
-    ("stop_holds", moved_while_latched),
     ("speed_never_rises_after_stop", arm_runs_on),
     ("speed_never_rises_after_stop", mobile_runs_on),
 ]
@@ -462,8 +253,3 @@ BREAKS: list[tuple[str, Callable[[Patch], Watch]]] = [
 @pytest.mark.parametrize(("name", "break_it"), BREAKS, ids=[f"{n}-{b.__name__}" for n, b in BREAKS])
 def test_it_bites(name: str, break_it: Callable[[Patch], Watch], monkeypatch: Patch) -> None:
     assert name in break_it(monkeypatch).found
-
-
-def test_every_invariant_has_something_that_breaks_it() -> None:
-    elsewhere = {"recovery_takes_its_zones"}  # it needs seeds, and has its bug in tools/tests/mutants
-    assert {name for name, _ in BREAKS} | elsewhere == {each.name for each in INVARIANTS}

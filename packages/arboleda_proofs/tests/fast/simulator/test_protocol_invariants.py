@@ -1,11 +1,12 @@
-"""Each invariant of commands, tasks, wire, liveness and books holds for a plant that works, and bites."""
+"""Invariants of commands, tasks, wire, liveness and books hold for a plant that works, and find
+more than their mutants in tools/tests/mutants.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from itertools import product
-from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -16,28 +17,22 @@ from tests.lengths import sample
 from arboleda.bt_xml import reading
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.recipe import tree_recipe
-from arboleda.core import cell, people, plant, task_desk, zone_watch
-from arboleda.core.task_queue import TaskQueue
-from arboleda.core.verbs import cancelling
-from arboleda.dispatch import belief, evidence, latches, ledger, obstacles, outlet, time_limits
+from arboleda.core import cell, people, plant, zone_watch
+from arboleda.dispatch import belief, evidence, latches, ledger, obstacles, time_limits
 from arboleda.dispatch.ledger import TABLE, Feed, State
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints
-from arboleda.kinds.joints.motion import JointMotion
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Fact, Heartbeat, TaskState, Verb
-from arboleda.model.plant_model import Evidence, ForeignCommands, PlantModel, Retry
-from arboleda.model.sentence import Phrase, as_sentence
+from arboleda.model.plant_model import Evidence, ForeignCommands, PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.recipes import recipe, work
 from arboleda.rig.world import BRIDGE, PLANT, World
 from arboleda.sim.board import Board
-from arboleda.sim.freshness import Freshness
-from arboleda.sim.receipts import Receipts
 from arboleda.testing.plants import shipped, slowed
-from arboleda.trees import cell_commands, cell_time, cell_zones, leaves
+from arboleda.trees import cell_commands, cell_zones, leaves
 from arboleda.wire import board as wire_board
 from arboleda.wire.bridge import PLANT_GONE_S
 from arboleda.wire.hop import FromPlant
@@ -270,16 +265,6 @@ def test_nothing_is_found_with_stalls_and_a_slow_line(process):
 # Commands.
 
 
-def test_no_command_to_unfit(monkeypatch, bites):
-    monkeypatch.setattr(belief.Belief, "obstacle", lambda self, was=False: None)
-    watch = Watch()
-    watch.world.crash("rm_sis_a")
-    watch.wait(0.5)
-    watch.task(wait_s=1)
-    bites(watch)
-    assert "unhomed" in watch.found["no_command_to_unfit"][0]
-
-
 @pytest.mark.parametrize(("code", "word"), [(2, "faulted"), (4, "latched")])
 def test_no_command_to_unfit__by_its_code(monkeypatch, bites, code, word):
     monkeypatch.setattr(belief.Belief, "obstacle", lambda self, was=False: None)
@@ -318,14 +303,6 @@ def test_stops_are_cleared_by_operators(monkeypatch, bites):
     bites(watch)
 
 
-def test_one_motion_per_robot(monkeypatch, bites):
-    monkeypatch.setattr(ledger.Ledger, "work_of", lambda self, robot: None)
-    watch = Watch()
-    watch.world.request_verb(Verb.HOME, "ra1")
-    watch.verb(Verb.HOME, "ra1")
-    bites(watch)
-
-
 def test_only_legal_command_states(monkeypatch, bites):
     monkeypatch.setitem(TABLE, (State.RUNNING, Feed.ACCEPTED), State.SENT)
     watch = Watch()
@@ -340,14 +317,6 @@ def test_only_legal_command_states(monkeypatch, bites):
 def feed(watch: Watch, ids: list[str]) -> None:
     for id in ids:
         watch.world.plant.dispatcher.ledger.feed(id, Feed.ACCEPTED, watch.world.now)
-
-
-def test_only_legal_command_states__lost(bites):
-    watch = Watch()
-    watch.task(wait_s=1)
-    watch.world.plant.dispatcher.ledger.entries.clear()
-    watch.wait(0.5)
-    bites(watch)
 
 
 def test_no_deadline_overrun(monkeypatch, bites):
@@ -372,32 +341,6 @@ def test_no_deadline_overrun__of_a_wait(monkeypatch, bites):
     bites(watch)
 
 
-def test_retries_bounded(monkeypatch, bites):
-    monkeypatch.setattr(
-        leaves.Act, "tries", property(lambda self: 0, lambda self, tries: None), raising=False
-    )
-    model = shipped("sis_a")
-    cells = tuple(replace(each, retry=Retry(times=1, backoff_s=0.1)) for each in model.cells)
-    watch = Watch(replace(model, cells=cells))
-    arm_of(watch).body.stuck = True
-    watch.task(wait_s=40)
-    bites(watch)
-
-
-def test_halted_moves_sent_halt(monkeypatch, bites):
-    stop = outlet.Outlet.stop
-
-    def only_latch(self: Any, robot: str, mode: StopMode) -> None:
-        if mode is not StopMode.HALT:
-            stop(self, robot, mode)
-
-    monkeypatch.setattr(outlet.Outlet, "stop", only_latch)
-    watch = Watch()
-    watch.task(wait_s=1)
-    watch.verb(Verb.CANCEL, "sis_a")
-    bites(watch)
-
-
 def test_halted_moves_sent_halt__by_a_step_left_early(monkeypatch, bites):
     monkeypatch.setattr(leaves.Act, "terminate", lambda self, status: None)
     monkeypatch.setattr(cell_commands.CellCommands, "cancel_all", lambda self: None)
@@ -408,32 +351,6 @@ def test_halted_moves_sent_halt__by_a_step_left_early(monkeypatch, bites):
 
 
 # Tasks and cells.
-
-
-def twice(state: TaskState) -> Callable[..., None]:
-    told = task_desk.TaskDesk.tell
-
-    def tell(self: Any, task: Any, request: str | None = None) -> None:
-        told(self, task, request)
-        if task.state is state:
-            told(self, task, request)
-
-    return tell
-
-
-def test_each_task_ends_once(monkeypatch, bites):
-    monkeypatch.setattr(task_desk.TaskDesk, "tell", twice(TaskState.DONE))
-    watch = Watch()
-    watch.task(wait_s=20)
-    bites(watch)
-
-
-def test_ended_tasks_stay_ended(monkeypatch, bites):
-    monkeypatch.setattr(cancelling.Cancelling, "_planned_cancel", lambda self, id, failure: lambda: None)
-    watch = Watch()
-    watch.task(f"{TASK} #one", wait_s=20)
-    watch.verb(Verb.CANCEL, "#one")
-    bites(watch)
 
 
 def test_no_task_fails_without_a_fault(monkeypatch, bites):
@@ -454,55 +371,6 @@ def test_a_task_may_fail_after_somebody_or_something_disturbed_it(monkeypatch, d
     watch.task(wait_s=30)
     assert watch.world.plant.intake.tasks.popitem()[1].failure is not None
     assert "no_task_fails_without_a_fault" not in watch.found
-
-
-def test_only_legal_task_states(monkeypatch, bites):
-    monkeypatch.setattr(task_desk.TaskDesk, "tell", twice(TaskState.RUNNING))
-    watch = Watch()
-    watch.task()
-    bites(watch)
-
-
-class LastFirst(TaskQueue):
-    def popleft(self) -> Any:
-        return self.pop()
-
-
-def test_first_come_first_served(bites):
-    watch = Watch()
-    run = watch.world.plant.cells["sis_a"]
-    run.queue = LastFirst(run.cell)
-    for _ in range(3):
-        watch.task()
-    watch.wait(20)
-    bites(watch)
-
-
-def test_cancelled_tasks_end_cancelled(monkeypatch, bites):
-    monkeypatch.setattr(
-        cell.CellRun, "cancelling", property(lambda self: False, lambda self, word: None), raising=False
-    )
-    watch = Watch()
-    watch.task(wait_s=1)
-    watch.verb(Verb.CANCEL, "sis_a", wait_s=20)
-    bites(watch)
-
-
-def test_accepted_tasks_are_kept(bites):
-    watch = Watch()
-    watch.task()
-    watch.task()
-    watch.world.plant.cells["sis_a"].queue.clear()
-    watch.wait(0.5)
-    bites(watch)
-
-
-def test_only_legal_cell_states(bites):
-    watch = Watch()
-    watch.task()
-    watch.world.plant.cells["sis_a"].state = CellState.ABORTED
-    watch.wait(0.5)
-    bites(watch)
 
 
 def test_only_legal_cell_states__of_a_stop_that_was_forgotten(bites):
@@ -546,19 +414,6 @@ def test_every_request_is_answered(monkeypatch, bites):
     bites(watch)
 
 
-def broken(order: Any, context: Any) -> Any:
-    raise KeyError("a defect")
-
-
-def test_nothing_moves_after_an_absence(bites, monkeypatch):
-    monkeypatch.setattr(plant.Plant, "_come_back", lambda self, away_s: None)
-    watch = Watch()
-    watch.task("sis_a palletizing", wait_s=1.0)
-    watch.world.stall("plant", 3.0)
-    watch.wait(10.0)
-    bites(watch)
-
-
 @pytest.mark.parametrize("verb", [Verb.RETRY, Verb.ABANDON, Verb.CANCEL])
 def test_nothing_moves_after_an_absence__unless_an_operator_says_so(verb):
     watch = Watch()
@@ -570,90 +425,7 @@ def test_nothing_moves_after_an_absence__unless_an_operator_says_so(verb):
     assert watch.found == {}
 
 
-def test_no_internal_failure(bites):
-    watch = Watch(recipes={"storage": broken})
-    watch.task()
-    bites(watch)
-
-
-def test_sentences_are_for_people(monkeypatch, bites):
-    wrong = Phrase("text.form", "KeyError('storage')")
-    monkeypatch.setattr("arboleda.model.text._form", lambda plant: wrong())
-    watch = Watch()
-    watch.task("")
-    bites(watch)
-
-
 # The wire.
-
-
-def test_executed_numbers_rise(monkeypatch, bites):
-    def no_objection(self: Receipts, goal: Any) -> None:
-        self.epoch = goal.epoch
-
-    monkeypatch.setattr(Receipts, "objection", no_objection)
-    monkeypatch.setattr(Receipts, "repeats", lambda self, goal: False)
-    watch = Watch()
-    watch.world.broker.clients["ra_1"].down.troubles.append(lambda message: [0.0, 0.0])
-    watch.task(wait_s=15)
-    bites(watch)
-
-
-def test_nothing_of_an_old_epoch_has_effect(monkeypatch, bites):
-    objection = Receipts.objection
-
-    def forget(self: Receipts, goal: Any) -> str | None:
-        self.least = self.epoch
-        return objection(self, goal)
-
-    monkeypatch.setattr(Receipts, "objection", forget)
-    watch = Watch()
-    watch.task(wait_s=15)
-    last = watch.world.obeyed["ra_1"]
-    watch.world.publish(Publication(topic="ra_1/latido", payload=b'{"epoca":%d}' % (last.epoch + 1)))
-    payload = b'{"efector":1,"seq":%d,"epoca":%d}' % (last.seq + 1, last.epoch)
-    watch.world.publish(Publication(topic="ra_1/efector", payload=payload))
-    watch.wait(0.5)
-    bites(watch)
-
-
-def test_nothing_late_has_effect(monkeypatch, bites):
-    monkeypatch.setattr(Freshness, "covers", lambda self, now_us, number: True)
-    watch = Watch()
-    watch.world.broker.clients["ra_1"].down.troubles.append(lambda message: [2.5])
-    watch.task(wait_s=15)
-    bites(watch)
-
-
-def test_commands_say_what_was_heard(monkeypatch, bites):
-    monkeypatch.setattr(outlet.Outlet, "leave", lambda self, command, token: self._outbox.append(command))
-    watch = Watch()
-    watch.task(wait_s=15)
-    bites(watch)
-
-
-def test_no_repeat_has_effect(monkeypatch, bites):
-    receive = Board.receive
-
-    def believe(self: Any, now_us: int, delivery: Any) -> None:
-        receive(self, now_us, delivery._replace(retain=False))
-
-    monkeypatch.setattr(Board, "receive", believe)
-    watch = Watch()
-    payload = b'{"efector":1,"seq":9,"epoca":999}'
-    watch.world.publish(Publication(topic="ra_1/efector", payload=payload, retain=True))
-    watch.wait(0.5)
-    assert watch.found == {}
-    watch.world.crash("ra_1")
-    watch.wait(0.5)
-    bites(watch)
-
-
-def test_wire_targets_legal(monkeypatch, bites):
-    monkeypatch.setattr(JointMotion, "quantised", lambda self, q: tuple(q))
-    watch = Watch()
-    watch.task(wait_s=15)
-    bites(watch)
 
 
 @pytest.mark.parametrize(
@@ -678,26 +450,6 @@ def test_wire_targets_legal__on_the_wire(bites, topic, payload, words):
     assert any(words in sentence for sentence in watch.found["wire_targets_legal"])
 
 
-def test_nothing_retained_on_commands(monkeypatch, bites):
-    publication = wire_board.Board._publication
-    monkeypatch.setattr(
-        wire_board.Board,
-        "_publication",
-        lambda *args, **more: publication(*args, **more)._replace(retain=True),
-    )
-    watch = Watch()
-    watch.task(wait_s=1)
-    bites(watch)
-
-
-def test_payload_size(bites):
-    watch = Watch()
-    clients = watch.world.broker.clients
-    watch.world.publish(Publication(topic="ra_1/efector", payload=b" " * 513), clients[BRIDGE])
-    watch.wait(0.1)
-    bites(watch)
-
-
 @pytest.mark.parametrize("q", [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)])
 def test_published_joints_are_reported(monkeypatch, bites, q):
     watch = Watch(slowed(shipped("sis_a"), 4))
@@ -706,67 +458,12 @@ def test_published_joints_are_reported(monkeypatch, bites, q):
     bites(watch)
 
 
-def test_published_joints_are_reported__by_a_belief_that_lags(monkeypatch, bites):
-    kept = tuple(name for name in belief.MERGED if name != "node")
-    monkeypatch.setattr(belief, "MERGED", kept)
-    monkeypatch.setattr(belief, "_merged", attrgetter(*kept))
-    watch = Watch()
-    watch.task(wait_s=10)
-    bites(watch)
-
-
-def test_nothing_shown_before_heard(monkeypatch, bites):
-    init = belief.Belief.__init__
-
-    def at_home(self: Any, *args: Any) -> None:
-        init(self, *args)
-        self.position = self.q = (0.0, 0.0, 0.0)
-
-    watch = Watch()
-    monkeypatch.setattr(belief.Belief, "__init__", at_home)
-    watch.world.crash(PLANT)
-    watch.wait(0.5)
-    bites(watch)
-
-
 # Liveness and books.
-
-
-def test_running_tree_has_waker(monkeypatch, bites):
-    monkeypatch.setattr(cell_time.CellTime, "wake_at", lambda self, at: None)
-    watch = Watch()
-    watch.task()
-    bites(watch)
 
 
 def test_running_tree_has_waker__in_a_cell_whose_time_stands_still(bites):
     watch = Watch()
     watch.world.plant.cells["sis_a"].context.time.pause()
-    watch.task()
-    bites(watch)
-
-
-def test_time_stands_still_only_when_held(monkeypatch, bites):
-    monkeypatch.setattr(cell_time.CellTime, "go_on", lambda self: None)
-    watch = Watch()
-    watch.task(wait_s=1)
-    watch.verb(Verb.HOLD, "sis_a", wait_s=3)
-    assert watch.found == {}
-    watch.verb(Verb.RESUME, "sis_a", wait_s=3)
-    bites(watch)
-
-
-def test_no_tree_outlives_its_work(monkeypatch, bites):
-    monkeypatch.setattr(cell.CellRun, "interrupt", lambda self, failure: None)
-    watch = Watch()
-    watch.task(wait_s=1)
-    watch.verb(Verb.STOP, "sis_a")
-    bites(watch)
-
-
-def test_no_starvation(monkeypatch, bites):
-    monkeypatch.setattr(cell.CellRun, "not_ready", property(lambda self: as_sentence("its muse")))
-    watch = Watch()
     watch.task()
     bites(watch)
 
@@ -1053,14 +750,6 @@ def test_at_rest_at_end(bites, act):
     assert watch.found == {}
     act(watch)
     watch.wait(0.5)
-    watch.end()
-    bites(watch)
-
-
-def test_nothing_waits_at_end(bites):
-    watch = Watch()
-    for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):
-        watch.verb(verb, "sis_a", wait_s=1)
     watch.end()
     bites(watch)
 
