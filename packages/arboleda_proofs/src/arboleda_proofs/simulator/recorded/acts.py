@@ -1,4 +1,7 @@
-"""Acts of operators on each cell since it worked last, as long as nothing else happened to it."""
+"""Acts of operators on each cell since it worked last, as long as nothing else happened to it.
+
+`advice_leads_out` finds by it a cell that is advised to retry for ever, after a reboot.
+"""
 
 from __future__ import annotations
 

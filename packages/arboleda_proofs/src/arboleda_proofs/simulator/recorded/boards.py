@@ -1,4 +1,7 @@
-"""Record of the messages that reached boards and bridge, and of the commands that boards carried out."""
+"""Record of the messages that reached boards and bridge, and of the commands that boards carried out.
+
+`nothing_late_has_effect` finds by it a board that takes whatever telemetry a command names for fresh.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Record of each cell after its last step, and of the leaves that run in it."""
+"""Record of each cell after its last step, and of the leaves that run in it.
+
+`running_tree_has_waker` finds by it a dwell that does not ask to be woken.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Promises of each cell just before somebody asked for a task that several of them can do."""
+"""Promises of each cell just before somebody asked for a task that several of them can do.
+
+`tasks_go_to_the_best_cell` finds by it a task that goes to the worst of its cells.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Every command that the plant sent and that has not ended, by its id."""
+"""Every command that the plant sent and that has not ended, by its id.
+
+`no_deadline_overrun` finds by it a cancel that gives a command more time instead of the time of a halt.
+"""
 
 from __future__ import annotations
 

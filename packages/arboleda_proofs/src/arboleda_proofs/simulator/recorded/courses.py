@@ -1,4 +1,7 @@
-"""Courses of tasks, as the statuses of their trees show them pass by pass."""
+"""Courses of tasks, as the statuses of their trees show them pass by pass.
+
+`courses_are_as_seen` finds by it the time for which a task is held counted as its work.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The commands of other nodes that a bridge has taken in, until people are told of them."""
+"""The commands of other nodes that a bridge has taken in, until people are told of them.
+
+`commands_of_others_are_told` finds by it a bridge that refuses what others command, and tells nobody.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Reports of robots as the plant takes them in, and what by them speaks against a command."""
+"""Reports of robots as the plant takes them in, and what by them speaks against a command.
+
+`published_joints_are_reported` finds by it a plant that does not take over where a robot is on its way.
+"""
 
 from __future__ import annotations
 

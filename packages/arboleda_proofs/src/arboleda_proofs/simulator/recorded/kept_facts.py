@@ -1,4 +1,7 @@
-"""Facts that the plant has kept for its next start, as it told its disk."""
+"""Facts that the plant has kept for its next start, as it told its disk.
+
+`kept_before_it_leaves` finds by it a latch that is remembered only after it left.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Record of the leaders of a plant with two hosts, apart from what these believe themselves."""
+"""Record of the leaders of a plant with two hosts, apart from what these believe themselves.
+
+`history_is_one` finds by it a store that takes what a leader of before writes.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Stops of operators at robots and cells, from the stop until clear and reset, over all starts."""
+"""Stops of operators at robots and cells, from the stop until clear and reset, over all starts.
+
+`verbs_do_what_they_say` finds by it a cell that is cleared with one of its robots.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,8 @@
 """Proofs: what the reports of one step prove of each open command, by rules written down here once more.
 
 The rules are slower and plainer than the plant's, and none of its books is read.
+
+`proofs_end_commands` finds by it a device fault that fails only motions.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Comparison for a step in which all requests were refused and nothing else happened: nothing may change."""
+"""Comparison for a step in which all requests were refused and nothing else happened: nothing may change.
+
+`rejected_input_changes_nothing` finds by it a verb that is in the journal before it is known to be possible.
+"""
 
 from __future__ import annotations
 

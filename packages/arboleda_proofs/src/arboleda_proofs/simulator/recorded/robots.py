@@ -1,4 +1,7 @@
-"""Record of what each robot has told the plant and of operators' stops; no belief of the plant is read."""
+"""Record of what each robot has told the plant and of operators' stops; no belief of the plant is read.
+
+`believed_as_said` finds by it a robot of which it is not believed that it is homed again.
+"""
 
 from __future__ import annotations
 

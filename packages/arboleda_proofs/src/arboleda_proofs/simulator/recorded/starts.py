@@ -1,4 +1,7 @@
-"""Record of what was told and carried out of each task over all starts of the plant."""
+"""Record of what was told and carried out of each task over all starts of the plant.
+
+`no_step_is_done_twice` finds by it a task that begins from its first step after a restart.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Record of moves that reach the bridge before a stop or halt although the plant gave them after it."""
+"""Record of moves that reach the bridge before a stop or halt although the plant gave them after it.
+
+`no_move_after_its_halt` finds by it a halt that overtakes its move on another topic.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Every task by what the plant said of it: `TaskChanged`, in order."""
+"""Every task by what the plant said of it: `TaskChanged`, in order.
+
+`each_task_ends_once` finds by it a task of which it is told twice that it ended.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""People who teach, by what they asked for and what was answered: who holds a button, and since when not."""
+"""People who teach, by what they asked for and what was answered: who holds a button, and since when not.
+
+`a_lost_teacher_stops_the_robot` finds by it goals as far as the teacher wants to go, which nobody halts.
+"""
 
 from __future__ import annotations
 

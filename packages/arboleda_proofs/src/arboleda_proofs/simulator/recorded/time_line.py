@@ -1,4 +1,7 @@
-"""The time line that the pages of a plant would show, snapshot after snapshot."""
+"""The time line that the pages of a plant would show, snapshot after snapshot.
+
+`screens_show_what_is` finds by it a time line that says when an act was seen, not when it was done.
+"""
 
 from __future__ import annotations
 

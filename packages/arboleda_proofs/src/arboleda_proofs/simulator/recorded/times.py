@@ -1,4 +1,7 @@
-"""Record of the times in which cells stood and in which the plant ran, over all starts."""
+"""Record of the times in which cells stood and in which the plant ran, over all starts.
+
+`oee_is_as_seen` finds by it a task that counts though it was done before the time asked for.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Record of what was kept of tasks at work, and of what the plant that found it makes of that."""
+"""Record of what was kept of tasks at work, and of what the plant that found it makes of that.
+
+`tasks_go_on_from_what_was_kept` finds by it a device that has booted since, at which nobody looks.
+"""
 
 from __future__ import annotations
 

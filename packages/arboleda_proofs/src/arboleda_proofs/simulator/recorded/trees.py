@@ -1,4 +1,7 @@
-"""Looks into the trees of cells at work: who sends something, and from time to time all."""
+"""Looks into the trees of cells at work: who sends something, and from time to time all.
+
+`retries_bounded` finds by it a step that is tried once more than allowed.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Cells for which nobody has asked for anything since the plant was away, or since it started."""
+"""Cells for which nobody has asked for anything since the plant was away, or since it started.
+
+`nothing_moves_after_an_absence` finds by it a plant that was away and goes on as if it had not been.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Record of cells, zones and tasks just before an operator's verb came in."""
+"""Record of cells, zones and tasks just before an operator's verb came in.
+
+`refusals_are_foretold` finds by it a verb that is refused though nobody foretells that.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Robots that wait for shared zones, and for how long."""
+"""Robots that wait for shared zones, and for how long.
+
+`zone_requests_end` finds by it an arm that waits for its zones twice as long as it may.
+"""
 
 from __future__ import annotations
 

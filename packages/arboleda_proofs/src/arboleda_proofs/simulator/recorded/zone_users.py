@@ -1,4 +1,7 @@
-"""Record of each robot of a cell that gets into shared zones: how long it waits for them, how it recovers."""
+"""Record of each robot of a cell that gets into shared zones: how long it waits for them, how it recovers.
+
+`recovery_takes_its_zones` finds by it a recovery from an unknown place that is planned as from home.
+"""
 
 from __future__ import annotations
 
