@@ -21,9 +21,8 @@ from arboleda.cli.complaint import complain, status_of
 from arboleda.extension import ArboledaError
 from arboleda.plant_file.user_file import check_new, check_writable
 from arboleda_proofs.campaigns import screen, single_seed
-from arboleda_proofs.campaigns.defaults import CYCLES, LEVEL, SEED, SEEDS
-from arboleda_proofs.campaigns.exclusions import exclusion
 from arboleda_proofs.campaigns.flight import SUFFIX
+from arboleda_proofs.campaigns.options import CYCLES, LEVEL, SEED, SEEDS, exclusion
 from arboleda_proofs.campaigns.plants import Plant, PlantRotation, Plants
 from arboleda_proofs.campaigns.request import Request
 from arboleda_proofs.campaigns.seed_campaign import SeedCampaign

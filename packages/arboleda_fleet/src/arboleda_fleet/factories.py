@@ -60,7 +60,7 @@ def cell_times(assembly: Assembly) -> Iterator[Part]:
     if plant is None:
         return
     from .oee.cell_times import CellTimes
-    from .oee.desk import OeeDesk
+    from .oee.rows import OeeDesk
 
     part = CellTimes(held.memory.times, plant.calendar.unix_s)
     plant.observers.append(part.stepped)

@@ -1,16 +1,28 @@
-"""The rows of a plant's memory from which the OEE of its cells is computed."""
+"""OEE of a plant's cells from the rows of its memory, and the OeeApi of the plant in this process."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 
 from arboleda.extension import ArboledaError
 from arboleda.oee.figures import Downtime, Oee, PastTask, PastTimes, PlantRun, Shortest, oee
 from arboleda.store.task_rows import Database, History
 
-from .api import OeeQuery
+from .api import OeeApi, OeeQuery
 
 NOTHING = PastTimes(works=[], runs=[], downs=[], shortest={})
+
+
+class OeeDesk(OeeApi):
+    """For threads of a server, which wait for the disk."""
+
+    def __init__(self, history: History, cells: Sequence[str]) -> None:
+        self._history = history
+        self._cells = cells
+
+    def oee(self, query: OeeQuery) -> list[Oee]:
+        return figures(self._history, query, time.time(), self._cells)
 
 
 def figures(history: History, query: OeeQuery, now_s: float, cells: Sequence[str] | None = None) -> list[Oee]:

@@ -18,8 +18,8 @@ from arboleda.plant_file import loader
 from arboleda_proofs.simulator.checks import BadFaults
 from arboleda_proofs.simulator.levels import LEVELS
 
-from .defaults import CYCLES, LEVEL, SEED, SEEDS
 from .faults_file import FaultsFile, line_of, read
+from .options import CYCLES, LEVEL, SEED, SEEDS
 from .plants import Plant, PlantRotation, Plants, notes, unjudged
 from .setting import Setting
 

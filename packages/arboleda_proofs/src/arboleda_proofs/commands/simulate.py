@@ -12,8 +12,7 @@ from arboleda.cli.language import language
 from arboleda.cli.plant_options import IN_FOLDER, plant_here
 from arboleda.extension import Phrase, StoreAddress, say
 from arboleda.plant_file.user_file import check_new, check_writable
-from arboleda_proofs.campaigns.defaults import CYCLES, LEVEL, SEED, SEEDS
-from arboleda_proofs.campaigns.exclusions import exclusion
+from arboleda_proofs.campaigns.options import CYCLES, LEVEL, SEED, SEEDS, exclusion
 from arboleda_proofs.simulator.levels import LEVELS
 
 HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, and judge every step.

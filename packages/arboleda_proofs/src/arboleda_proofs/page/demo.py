@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from arboleda.extension import Face, Moment, Request, Spot, tag
-from arboleda_proofs.running.demonstration_api import DemonstrationApi
+from arboleda_proofs.running.api import DemonstrationApi
 
 END = "end_demo"
 LINES = ("cells", "trouble", "more")

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from arboleda.extension import Layout, PageApi, Sentence, Spot, Words, rows, tag
-from arboleda_proofs.running.faults_api import FaultsApi
+from arboleda_proofs.running.api import FaultsApi
 
 LASTING_S = (2, 5, 15, 60)
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from arboleda.extension import Assets, Face, Moment, PageAct, PagePart, Place, Role, Section
 
-from . import demo, fault_acts, fault_form, fault_rows, reports
+from . import demo, fault_acts, fault_form, reports
 
 
 def face(moment: Moment) -> Face:
     """The faults that go on, and whether a demonstration does."""
-    return fault_rows.face(moment) | demo.face(moment)
+    return fault_acts.face(moment) | demo.face(moment)
 
 
 PAGE = PagePart(

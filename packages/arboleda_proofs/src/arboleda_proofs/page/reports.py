@@ -15,7 +15,7 @@ from arboleda.extension import ArboledaError, PageApi, Spot, Words, words
 from arboleda.model.packages import PROOFS
 from arboleda.web.access import login
 from arboleda.web.missing import missing
-from arboleda_proofs.running.reports_api import ReportsApi
+from arboleda_proofs.running.api import ReportsApi
 
 PATH = "/report"
 LOOK_S = 1

@@ -15,7 +15,7 @@ from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, answering, described_body, read_body
 from arboleda_proofs.answers import FaultList, ProvokedFault
-from arboleda_proofs.running.faults_api import FaultRefused, FaultsApi
+from arboleda_proofs.running.api import FaultRefused, FaultsApi
 
 OPERATORS = [needs(Role.OPERATOR, "provoking a fault")]
 NOT_HERE = "This process has no devices, so no faults can be provoked at them."

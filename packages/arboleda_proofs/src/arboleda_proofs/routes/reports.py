@@ -19,7 +19,7 @@ from arboleda.web.schema.bodies import Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, answering
 from arboleda_proofs.answers import TaskReport
-from arboleda_proofs.running.reports_api import ReportsApi
+from arboleda_proofs.running.api import ReportsApi
 
 DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
 EARLIER = "The report was written by an earlier version; its page is at /report."

@@ -11,9 +11,7 @@ from arboleda.runtime.parts.devices import DeviceBench, DevicesPart
 from arboleda.runtime.parts.orchestrator import Orchestrator
 from arboleda.runtime.parts.part import Part
 from arboleda.runtime.registry import Assembly, Factory, Phase
-from arboleda_proofs.running.demonstration_api import DemonstrationApi
-from arboleda_proofs.running.faults_api import FaultsApi
-from arboleda_proofs.running.reports_api import ReportsApi
+from arboleda_proofs.running.api import DemonstrationApi, FaultsApi, ReportsApi
 
 
 def reports(assembly: Assembly) -> Iterator[Part]:

@@ -14,7 +14,7 @@ from arboleda.drivers import Robot
 from arboleda.extension import ArboledaError, Phrase, Sentence
 from arboleda.model.messages import Event, FaultByHand
 from arboleda.model.plant_model import PlantModel
-from arboleda_proofs.running.faults_api import BegunFault, FaultOffer, FaultRefused, FaultsApi
+from arboleda_proofs.running.api import BegunFault, FaultOffer, FaultRefused, FaultsApi
 from arboleda_proofs.simulator.fault_bench import (
     FaultBench,
     MishapBegins,

@@ -17,7 +17,7 @@ from arboleda.extension import ArboledaError, Phrase
 from arboleda.host.limits import BEHIND
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.text import ID
-from arboleda_proofs.running.reports_api import ReportsApi
+from arboleda_proofs.running.api import ReportsApi
 
 LOG = logging.getLogger(__name__)
 FOLDER = "reports"

@@ -15,7 +15,7 @@ from tests.web_plant import plant as plant
 from arboleda.client import NotFound
 from arboleda.client import Plant as Client
 from arboleda_proofs.client import Proofs
-from arboleda_proofs.running.reports_api import ReportsApi
+from arboleda_proofs.running.api import ReportsApi
 
 ROUTES = routes_of_package("proofs")
 METHODS = methods_of(Proofs)

@@ -13,7 +13,7 @@ from tests.guarded_plant import PRESENT, shared_app
 
 from arboleda.web.access.auth import Role
 from arboleda_proofs.routes import faults
-from arboleda_proofs.running.faults_api import BegunFault, FaultRefused, FaultsApi
+from arboleda_proofs.running.api import BegunFault, FaultRefused, FaultsApi
 
 BEGUN = BegunFault(number=1, robot="ra1", kind="no_grip", about="Grip beside the part", left_s=600.0)
 NO_GRIP = {"kind": "no_grip", "robot": "ra1", "seconds": 600}

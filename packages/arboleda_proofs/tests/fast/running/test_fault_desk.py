@@ -12,8 +12,8 @@ from arboleda.sim.devices import Devices
 from arboleda.testing import Rig, shipped
 from arboleda.views.chronicle import Chronicle
 from arboleda.views.view import snapshot
+from arboleda_proofs.running.api import FaultRefused
 from arboleda_proofs.running.fault_desk import FaultDesk
-from arboleda_proofs.running.faults_api import FaultRefused
 from arboleda_proofs.simulator.fault_bench import FaultBench
 from arboleda_proofs.simulator.mishaps import MISHAPS
 

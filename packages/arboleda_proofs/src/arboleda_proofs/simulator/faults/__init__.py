@@ -13,7 +13,6 @@ from . import (
     operators,
     orchestrators,
     processes,
-    sensors,
     teachers,
     telemetry,
 )
@@ -44,7 +43,6 @@ FAMILIES = (
     devices,
     telemetry,
     effectors,
-    sensors,
     links,
     processes,
     orchestrators,
@@ -62,7 +60,7 @@ OF_BOARDS = {name: kind for name, kind in KINDS.items() if isinstance(kind, Boar
 OF_DEVICES = tuple(kind.name for kind in devices.KINDS)
 """The kinds that befall devices of declared kinds alone: nobody in the packaged plants."""
 
-OF_WORK = tuple(kind.name for family in (devices, effectors, sensors) for kind in family.KINDS)
+OF_WORK = tuple(kind.name for family in (devices, effectors) for kind in family.KINDS)
 """The kinds in which a device or an effector does its work badly, or says so falsely."""
 
 OF_PLACES = ("operator_load",)

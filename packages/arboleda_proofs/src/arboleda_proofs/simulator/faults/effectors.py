@@ -1,11 +1,19 @@
-"""Faults of an effector and of the part that it handles."""
+"""Faults of an effector, of the part that it handles, and of its piece sensor, where boards report that."""
 
 from __future__ import annotations
 
+from typing import Any
+
+from arboleda.rig.world import World
+
+from ..chance import Dice
 from . import targets
 from .board_site import BoardSite
-from .kind import End, Fault, board_kind
+from .false_telemetry import deceive
+from .kind import End, Fault, board_kind, kind, words
 from .shared_effects import hold
+
+SEES = {"a piece": 1, "nothing": 0}
 
 
 @board_kind(targets=targets.hands, seconds=(1.0, 30.0))
@@ -38,10 +46,28 @@ def opened_effector(world: BoardSite, fault: Fault) -> None:
     world.manual.open_effector(fault.target)
 
 
+@kind(targets=targets.feelers, words=words(*SEES), seconds=(0.5, 15.0))
+def piece_false(world: World, fault: Fault) -> End:
+    """A piece sensor sees the same whatever is there."""
+    return deceive(world, fault.target, ("piece",), lambda fields: {**fields, "pieza": SEES[fault.word]})
+
+
+@kind(targets=targets.feelers, seconds=(0.5, 15.0), amount=(0.1, 0.9))
+def piece_flicker(world: World, fault: Fault) -> End:
+    """A piece sensor is wrong now and then; `amount` is the share of wrong values."""
+    dice = Dice(fault.seed, "flicker")
+
+    def flicker(row: dict[str, Any]) -> dict[str, Any]:
+        wrong = dice.chance(fault.amount) and "pieza" in row
+        return {**row, "pieza": 1 - row["pieza"]} if wrong else row
+
+    return deceive(world, fault.target, ("piece",), flicker)
+
+
 def _keep(world: BoardSite, fault: Fault, attribute: str, value: bool) -> End:
     body = targets.arm_body(world, fault.target)
     setattr(body, attribute, value)
     return hold(world, attribute, fault.target, lambda: setattr(body, attribute, not value))
 
 
-KINDS = (no_grip, stuck_effector, no_part, lost_part, opened_effector)
+KINDS = (no_grip, stuck_effector, no_part, lost_part, opened_effector, piece_false, piece_flicker)

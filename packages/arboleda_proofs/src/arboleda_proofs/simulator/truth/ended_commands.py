@@ -1,10 +1,10 @@
-"""Changes in the plant's books of its commands: which ended in this step, and how."""
+"""Changes in the plant's books of its commands: which ended in this step, and how; answers to queries."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.drivers import Command
+from arboleda.drivers import Command, Value
 from arboleda.engine import Entry, State
 from arboleda.engine.inspection import ledger_of
 from arboleda.model.plant_model import APART_S
@@ -86,3 +86,27 @@ class Books:
     def calm_since(self, at: float) -> bool:
         """True if nothing that a fault did can have touched what happened since then."""
         return not self._world.faults_active and self._world.last_fault_at < at - CALM_S
+
+
+class LastAnswers:
+    """The last answer of each device to each query of each cell.
+
+    It is the answer that counted: `an_answer_is_to_its_question` judges that the device gave it.
+    """
+
+    def __init__(self) -> None:
+        self._last: dict[tuple[str, str], tuple[float, Value]] = {}  # when it was asked, s, and the answer
+
+    def take(self, booked: EndedCommand) -> None:
+        """Take in a query that has ended."""
+        entry, command = booked.entry, booked.command
+        if booked.done and entry.answer is not None:
+            self._last[entry.cell, f"{command.robot}.{command.word}"] = booked.sent_at, entry.answer
+
+    def since(self, began: float, cell: str) -> dict[str, Value]:
+        """The last answers, as of `camera.look`, to what a cell asked since `began`, in s."""
+        return {
+            what: answer
+            for (asker, what), (asked_at, answer) in self._last.items()
+            if asker == cell and asked_at >= began
+        }

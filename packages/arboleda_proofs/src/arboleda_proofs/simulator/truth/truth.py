@@ -15,9 +15,8 @@ from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
 from ..commands import goal as goal_of
-from .ended_commands import EndedCommand
+from .ended_commands import EndedCommand, LastAnswers
 from .grips import GripsTruth
-from .last_answers import LastAnswers
 from .part_places import PlacesTruth
 from .refused_commands import RefusedCommands
 from .robots import RobotsTruth

@@ -1,10 +1,11 @@
-"""Options of a simulation that exclude each other, for every command that has them."""
+"""Options of a simulation: their defaults, and which exclude each other, for every command that has them."""
 
 from __future__ import annotations
 
 from arboleda.extension import Phrase
 from arboleda_proofs.simulator.levels import CRASHES
 
+SEED, SEEDS, CYCLES, LEVEL = 1, 20, 50, "normal"
 ONE_SEED = Phrase("cli.simulate.one_seed", "--trace and --record are for one seed; choose it with --seed")
 STANDBY_OR_REVISIONS = Phrase(
     "cli.simulate.standby_or_revisions", "--standby and --revisions exclude each other"

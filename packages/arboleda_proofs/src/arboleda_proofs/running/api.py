@@ -1,4 +1,4 @@
-"""Faults by hand at virtual devices as the web server sees them: what can be provoked, begun and ended."""
+"""What the web server sees of a plant that runs: faults by hand, reports of failures, the demonstration."""
 
 from __future__ import annotations
 
@@ -53,3 +53,20 @@ class FaultsApi(Protocol):
     @abstractmethod
     def end(self, robot: str = "", number: int | None = None) -> Sequence[BegunFault]:
         """End the faults of a robot ("": of all), or the one of this number; those that went on."""
+
+
+class ReportsApi(Protocol):
+    """Reports of one plant."""
+
+    @abstractmethod
+    def report(self, task: str) -> str | None:
+        """The report on a failed task, as one HTML file; None: it is being written now, ask again. It waits
+        for the disk; an ArboledaError says why there is none."""
+
+
+class DemonstrationApi(Protocol):
+    """Demonstration: it gives tasks until somebody ends it."""
+
+    @abstractmethod
+    def end(self) -> None:
+        """Give no more tasks and have nothing fail any more; from any thread."""
