@@ -13,6 +13,7 @@ setup(
     install_requires=["setuptools"],
     extras_require={"test": ["pytest"]},
     entry_points={
+        "arboleda.extras": ["ros_log = arboleda_ros.record_log:RosLog"],
         "arboleda.links": ["ros = arboleda_ros.link:connect"],
         "console_scripts": [
             "orchestrator = arboleda_ros.nodes:orchestrator",

@@ -14,11 +14,10 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.recording import Limits
 from arboleda.recorder.files import FOLDER, parts_in
 from arboleda.recorder.preamble import Beginning
-from arboleda.recorder.ros_log import RosLog
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import Step
 from arboleda.recorder.view_log import ViewSnapshot
-from arboleda.recorder.writing import Writing
+from arboleda.recorder.writing import Writing, ros_logs
 from arboleda.rig import world
 from arboleda.rig.rig import Rig
 from arboleda.testing.plants import shipped
@@ -31,7 +30,7 @@ DEFAULT = Limits()
 
 def with_everything(path: Path, patch: pytest.MonkeyPatch) -> Site:
     """One whose records have all channels, as those of running plants."""
-    return Site(path, patch, logs=[RosLog(shipped())])
+    return Site(path, patch, logs=ros_logs(shipped()))
 
 
 def beginning_of(

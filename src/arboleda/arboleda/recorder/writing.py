@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Protocol
 
+from arboleda.host.packages import EXTRAS, entry_points
+from arboleda.model.plant_model import PlantModel
 from arboleda.model.recording import Limits
 
 from .channels import OURS, Channel
@@ -31,6 +33,11 @@ class Log(Protocol):
     def saw(self, snapshot: ViewSnapshot) -> Iterator[Message | None]: ...
     def whole(self) -> Iterator[Message | None]:
         """The whole view so far, for the beginning of a file."""
+
+
+def ros_logs(model: PlantModel) -> list[Log]:
+    """What writes the record of this plant for tools of ROS 2, too."""
+    return [each.load()(model) for each in entry_points(EXTRAS) if each.name == "ros_log"]
 
 
 class Writing:

@@ -35,7 +35,6 @@ NEEDED_THEN = (
     "arboleda.runtime.parts.page",
     "arboleda.dashboard.page",
     "arboleda.recorder.recorder",
-    "arboleda.recorder.ros_log",
     "arboleda.recorder.view_log",
     "arboleda.recorder.writing",
 )

@@ -14,11 +14,10 @@ from arboleda.model.plant_files import NO_FILES, PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recording import Limits
 from arboleda.recorder.preamble import Beginning
-from arboleda.recorder.ros_log import RosLog
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import RecordedStep, Step, hash_of, outcome
 from arboleda.recorder.view_log import ViewSnapshot
-from arboleda.recorder.writing import Writing
+from arboleda.recorder.writing import Writing, ros_logs
 from arboleda.views import twin_view, view
 
 SECOND = 1_000_000_000
@@ -139,7 +138,7 @@ class SimulatedRecorder:
             raise RecordNotWritten(error) from error
 
     def _opened(self, plant: RecordingPlant) -> Writing:
-        logs = [RosLog(plant.model)]
+        logs = ros_logs(plant.model)
         self._writing = Writing(
             self._folder, plant.beginning, self._limits, logs, unix_ns=lambda: self._now_ns
         )

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 import logging
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
-from arboleda.dashboard.toolkit import Client, GenericEventArguments
+from arboleda.dashboard.toolkit import Client
 from arboleda.extension import ArboledaError, Face, Words
 from arboleda.views.changes import changed
 
@@ -35,6 +35,12 @@ class Arrival:
     at_its_end: bool = False
     cell: str | None = None
     epoch: int | None = None
+
+
+class Event(Protocol):
+    """Event of a script, with what it says."""
+
+    args: Any
 
 
 class Visitor:
@@ -92,7 +98,7 @@ class Visitor:
             self._shown["past/span"] = span
             self._tell({"past/span": span})
 
-    async def hear(self, event: GenericEventArguments) -> None:
+    async def hear(self, event: Event) -> None:
         """Take one event of the page: [what, of, cell]; anything else is ignored."""
         args = event.args if isinstance(event.args, list) else [event.args]
         what, of, cell = [*args, None, None, None][:3]

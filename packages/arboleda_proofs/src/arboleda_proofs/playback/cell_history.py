@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from arboleda.recorder.plain_data import value_from
+from arboleda.recorder import plain_data
 
 from .views import Row, Rows, Views
 
@@ -51,7 +51,7 @@ def _between(views: Views, cell: str, first: At, last: At) -> Iterator[CellMomen
 
 def _changes(views: Views, cell: str, first: At, until_ns: int) -> Iterator[CellMoment]:
     after_ns, known = first[0], dict(first[1])
-    made = {key: value_from(row) for key, row in known.items()}
+    made = {key: plain_data.value_from(row) for key, row in known.items()}
     for change in views.changes(after_ns, until_ns):
         news = {key: {**known.get(key, {}), **row} for key, row in _of(change.rows, cell).items()}
         news = {key: row for key, row in news.items() if known.get(key) != row}
@@ -59,7 +59,7 @@ def _changes(views: Views, cell: str, first: At, until_ns: int) -> Iterator[Cell
         for key in gone:
             del known[key], made[key]
         known.update(news)
-        made.update({key: value_from(row) for key, row in news.items()})
+        made.update({key: plain_data.value_from(row) for key, row in news.items()})
         if news or gone:
             yield _looked(change.unix_ns, made, cell)
 

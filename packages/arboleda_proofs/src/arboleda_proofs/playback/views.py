@@ -14,9 +14,8 @@ from typing import Any
 
 import zstandard
 
-from arboleda.recorder import channels, files, reader
+from arboleda.recorder import channels, files, plain_data, reader
 from arboleda.recorder.errors import NoRecord
-from arboleda.recorder.plain_data import value_from
 from arboleda.recorder.reader import Record
 from arboleda.recorder.rows import links_of, positions_of, snapshot_of
 
@@ -236,7 +235,7 @@ class Views:
         for chunk in index.chunks:
             if chunk.offset > digested and channel in chunk.indexes:
                 for _, _, data in messages(file.content(chunk), (channel,)):
-                    yield value_from(json.loads(data))
+                    yield plain_data.value_from(json.loads(data))
 
 
 @contextmanager
@@ -253,7 +252,7 @@ def _legible(read: list[ChunkFile]) -> Iterator[None]:
 def _digest(content: bytes) -> list[Row]:
     if zstandard.frame_content_size(content) > reader.LARGEST:
         return []
-    rows: list[Row] = value_from(json.loads(zstandard.decompress(content)))
+    rows: list[Row] = plain_data.value_from(json.loads(zstandard.decompress(content)))
     return rows
 
 

@@ -130,9 +130,8 @@ def _record(assembly: Assembly, made: Orchestrator) -> None:
     try:  # its libraries are needed only where a record is written
         from arboleda.recorder.files import FOLDER
         from arboleda.recorder.recorder import Recorder
-        from arboleda.recorder.ros_log import RosLog
         from arboleda.recorder.view_log import ViewLog
-        from arboleda.recorder.writing import Writing
+        from arboleda.recorder.writing import Writing, ros_logs
     except ImportError as error:
         LOG.warning("no record is written: %s; the plant goes on without it", error)
         return
@@ -148,7 +147,7 @@ def _record(assembly: Assembly, made: Orchestrator) -> None:
         files=wanted.files,
     )
     view = ViewLog(assembly.holdings.past_acts, assembly.links)
-    logs = [RosLog(assembly.model)]
+    logs = ros_logs(assembly.model)
     folder = assembly.holdings.state.path / FOLDER
     recorder = Recorder(Writing(folder, beginning, wanted.limits, logs, view=view, ran_s=made.keeping.ran_s))
     made.screens.recorder = recorder

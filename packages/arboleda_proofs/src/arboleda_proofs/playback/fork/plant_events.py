@@ -10,11 +10,11 @@ from typing import Any
 
 from arboleda.engine.inspection import LABELS
 from arboleda.model.verbs import Verb, as_text
-from arboleda.recorder.plain_data import TYPE
+from arboleda.recorder import plain_data
 
 Words = Callable[[Any], str]
 UNTOLD = frozenset(
-    {TYPE, "robot", *LABELS}
+    {plain_data.TYPE, "robot", *LABELS}
 )  # keys of a command that its line has anyway, or that are not compared
 TASK = "task "
 NUMBERS = 4  # digits of a number
@@ -63,12 +63,12 @@ def happenings(at: float, messages: Iterable[Mapping[str, Any]], words: Words) -
     `words` turns a sentence that is plain data into text.
     """
     for row in messages:
-        if row[TYPE] == "TaskChanged" and row["task"]:
+        if row[plain_data.TYPE] == "TaskChanged" and row["task"]:
             why = words(row.get("sentence"))
             sentence = f"{row['state']} {row['text']} (id {row['task']})" + (f": {why}" if why else "")
             what = f"{row['state']} {row.get('reason', '')}"
             yield PlantEvent(at=at, stream=f"{TASK}{row['task']}", what=what, text=sentence, cell=row["cell"])
-        elif row[TYPE] == "OperatorAnswer":
+        elif row[plain_data.TYPE] == "OperatorAnswer":
             why = words(row.get("refusal"))
             arguments = tuple((name, value) for name, value in row.get("arguments", ()))
             request = f"{row['verb']} {as_text(Verb(row['verb']), row['scope'], arguments)}"
@@ -82,8 +82,8 @@ def happenings(at: float, messages: Iterable[Mapping[str, Any]], words: Words) -
 def _command(at: float, row: Mapping[str, Any]) -> PlantEvent:
     values = {key: value for key, value in row.items() if key not in UNTOLD}
     shown = " ".join(f"{key}={_short(value)}" for key, value in values.items())
-    what = json.dumps([row[TYPE], values], sort_keys=True)
-    sentence = f"{row['robot']} {row[TYPE]} {shown}".strip()
+    what = json.dumps([row[plain_data.TYPE], values], sort_keys=True)
+    sentence = f"{row['robot']} {row[plain_data.TYPE]} {shown}".strip()
     return PlantEvent(at=at, stream=row["robot"], what=what, text=sentence)
 
 

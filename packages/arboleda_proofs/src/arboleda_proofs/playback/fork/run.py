@@ -15,7 +15,7 @@ from arboleda.model.messages import ENDED, Event
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.model.recipe import Builders
 from arboleda.model.revision import Versions
-from arboleda.recorder.plain_data import plain
+from arboleda.recorder import plain_data
 from arboleda.recorder.preamble import Beginning
 from arboleda.recorder.record_text import moment
 from arboleda.recorder.state import state_of
@@ -155,7 +155,7 @@ def _execute(
 
 
 def _plain(messages: Iterable[Any]) -> list[dict[str, Any]]:
-    return [plain(each) for each in messages]
+    return [plain_data.plain(each) for each in messages]
 
 
 def _leaves(messages: Iterable[dict[str, Any]]) -> list[tuple[str, str]]:

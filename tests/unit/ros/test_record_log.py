@@ -15,14 +15,14 @@ from mcap.records import Schema
 from mcap_ros2.decoder import DecoderFactory
 
 from arboleda.model.messages import Report, Verb
-from arboleda.recorder import cdr, ros_types
-from arboleda.recorder.ros_log import DIAGNOSTICS, RosLog
-from arboleda.recorder.ros_types import JOINT_STATE, STRING, UINT8
 from arboleda.recorder.steps import Step
 from arboleda.testing.plants import shipped
 from arboleda.views.diagnostics import diagnostics
+from arboleda_ros import cdr, record_types
+from arboleda_ros.record_log import DIAGNOSTICS, RosLog
+from arboleda_ros.record_types import JOINT_STATE, STRING, UINT8
 
-from .recorded import Site
+from ..recorder.recorded import Site
 
 TEXTS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=9)
 
@@ -46,7 +46,7 @@ def site(tmp_path_factory: pytest.TempPathFactory, log: RosLog) -> Site:
 
 
 def decoded(type: str, data: bytes) -> Any:
-    schema = Schema(id=1, name=type, encoding="ros2msg", data=ros_types.DEFINITIONS[type].encode())
+    schema = Schema(id=1, name=type, encoding="ros2msg", data=record_types.DEFINITIONS[type].encode())
     decode = DecoderFactory().decoder_for("cdr", schema)
     assert decode is not None
     return decode(data)
@@ -102,7 +102,7 @@ def test_a_file_begins_with_what_was_said_last(site: Site, log: RosLog) -> None:
         message_read = decoded(UINT8 if topic.endswith("motion_state") else JOINT_STATE, again[topic])
         fields = [name for name in ("data", "name", "position") if hasattr(message_read, name)]
         assert [getattr(message_read, name) for name in fields] == [getattr(message, name) for name in fields]
-    whole = decoded(ros_types.DIAGNOSTICS, again[DIAGNOSTICS])
+    whole = decoded(record_types.DIAGNOSTICS, again[DIAGNOSTICS])
     assert len(whole.status) == len(site.model.robots) + len(site.model.cells)
 
 
@@ -135,7 +135,7 @@ STATUSES = st.tuples(TEXTS, TEXTS, st.integers(0, 3), TEXTS, st.dictionaries(TEX
 
 @given(st.lists(STATUSES, max_size=3))
 def test_diagnostics_of_any_texts_are_read_back(statuses: list[cdr.Status]) -> None:
-    message_read = decoded(ros_types.DIAGNOSTICS, cdr.diagnostics(5, statuses))
+    message_read = decoded(record_types.DIAGNOSTICS, cdr.diagnostics(5, statuses))
     assert [
         (
             each.name,

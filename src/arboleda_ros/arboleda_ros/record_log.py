@@ -9,16 +9,17 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
-from arboleda.model.messages import Report, TaskChanged
-from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.drivers import Report, Robot
+from arboleda.model.messages import TaskChanged
+from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import in_json
+from arboleda.recorder.steps import Step
+from arboleda.recorder.view_log import ViewSnapshot
 from arboleda.views import view
-from arboleda.views.diagnostics import Diagnostic, diagnostics
+from arboleda.views.diagnostics import diagnostics
+from arboleda_ros import cdr, record_types
 
-from . import cdr, ros_types
-from .steps import Step
-from .view_log import Message, ViewSnapshot
-
+Message = tuple[str, int, bytes]  # topic, ns of Unix time, content
 TASK_STATUS, DIAGNOSTICS = "/task_status", "/diagnostics"
 DIAGNOSED_NS = 1_000_000_000  # between two looks at the diagnostics
 
@@ -28,13 +29,13 @@ class RosLog:
 
     def __init__(self, model: PlantModel) -> None:
         self._robots = {robot.name: _Topics(robot) for robot in model.robots.values()}
-        self._statuses: dict[str, Diagnostic] = {}
+        self._statuses: dict[str, cdr.Status] = {}
         self._snapshot: dict[str, Any] | None = None  # nobody has looked at its diagnostics yet
         self._ns = self._diagnosed_ns = 0
         self.channels = (
             *(channel for robot in self._robots.values() for channel in robot.channels),
-            ros_types.channel(TASK_STATUS, ros_types.STRING, depth=100, is_kept=True),
-            ros_types.channel(DIAGNOSTICS, ros_types.DIAGNOSTICS),
+            record_types.channel(TASK_STATUS, record_types.STRING, depth=100, is_kept=True),
+            record_types.channel(DIAGNOSTICS, record_types.DIAGNOSTICS),
         )
 
     def stepped(self, step: Step) -> Iterator[Message | None]:
@@ -84,9 +85,9 @@ class _Topics:
         self._message = cdr.JointStates(robot.joint_states.joints) if stands else None
         self._position: tuple[float, ...] | None = None
         self._last_state: int | None = None
-        self.channels = [ros_types.channel(self._state, ros_types.UINT8)]
+        self.channels = [record_types.channel(self._state, record_types.UINT8)]
         if stands:
-            self.channels.append(ros_types.channel(self._joints, ros_types.JOINT_STATE))
+            self.channels.append(record_types.channel(self._joints, record_types.JOINT_STATE))
 
     def news_of(self, report: Report, unix_ns: int) -> Iterator[Message]:
         """The messages for the news in a report; none for a report that the plant rejects, too."""

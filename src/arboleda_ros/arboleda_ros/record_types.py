@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .channels import Channel
+from arboleda.recorder.channels import Channel
 
 BETWEEN = "=" * 80 + "\nMSG: "
 TIME = f"{BETWEEN}builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
