@@ -9,18 +9,10 @@ from arboleda.model.commands import Switch
 from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 
+from ..plants import plant_text
 from .restarts import ENDED
 
-PLANT = """
-name: shelf
-uses: [recipes.py]
-cells:
-  bay:
-    devices: {arm: {kind: arm, model: scara}}
-    targets:
-      home: {arm: {deg: [0, 0], mm: 0}}
-      rack: {arm: {deg: [30, 20], mm: 80, approach_mm: 30}}
-"""
+PLANT = plant_text(__file__, "part_back")
 RECIPES = """
 from arboleda.recipes import recipe, work
 

@@ -13,25 +13,10 @@ from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 from arboleda.trees.tree_run import step_of
 
+from ..plants import plant_text
 from .restarts import ENDED, restart
 
-PLANT = """
-name: assays
-uses: [recipes.py, tree.xml]
-kinds:
-  mover:
-    facts: {plate: bool, out: bool}
-    verbs:
-      put_away: {effect: motion, sets: {out: false}, takes_s: 4}
-      take_out: {effect: motion, sets: {out: true}, takes_s: 1}
-  reader:
-    facts: {lid: [open, closed]}
-    verbs:
-      open: {effect: switch, sets: {lid: open}, takes_s: 1}
-      read: {effect: process, takes_s: 1, at_most_s: 3}
-cells:
-  bench: {devices: {mover: {kind: mover}, reader: {kind: reader}}}
-"""
+PLANT = plant_text(__file__, "recover")
 RECIPES = """
 from arboleda.recipes import parallel, recipe, work
 

@@ -10,20 +10,10 @@ from arboleda.model.messages import Reason, TaskState
 from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 
+from ..plants import plant_text
 from .restarts import ENDED
 
-PLANT = """
-name: rounds
-uses: [rounds.py, tree.xml]
-kinds:
-  lamp:
-    facts: {lit: bool}
-    verbs:
-      light: {effect: switch, with: {on: bool}, sets: {lit: $on}}
-      blink: {effect: process, takes_s: 1, needs: {lit: true}}
-cells:
-  bench: {devices: {lamp: {kind: lamp}}}
-"""
+PLANT = plant_text(__file__, "rounds")
 RECIPE = """
 from arboleda.recipes import recipe
 

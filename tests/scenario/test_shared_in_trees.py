@@ -10,34 +10,10 @@ from arboleda.model.messages import TaskState, Verb
 from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 
+from ..plants import plant_text
 from .restarts import ENDED, restart
 
-PLANT = """name: shop
-kinds:
-  lift:
-    facts: {at: [low, high]}
-    verbs:
-      up:   {effect: motion, sets: {at: high}, takes_s: 2}
-      down: {effect: motion, sets: {at: low}, takes_s: 2}
-  lamp:
-    facts: {lit: bool}
-    verbs:
-      light: {effect: switch, with: {on: bool}, sets: {lit: $on}}
-uses: [ride.xml]
-shared:
-  lift: {kind: lift}
-cells:
-  below:
-    devices:
-      lamp: {kind: lamp, name: lamp_1}
-      lift: {shared: lift}
-      ana: {kind: person}
-  above:
-    devices:
-      lamp: {kind: lamp, name: lamp_2}
-      lift: {shared: lift}
-      ana: {kind: person, name: eva}
-"""
+PLANT = plant_text(__file__, "shared_in_trees")
 ASKS = '<ana_ask question="Ready?" answers="yes" answer="{said}"/>'
 UP = "<lift_up/>"
 TREES = {

@@ -8,19 +8,9 @@ from arboleda.core.plant import Plant
 from arboleda.model.messages import MotionState, OperatorRequest, Report, Verb
 from arboleda.plant_file.loader import load
 
-LONELY = """
-name: lonely
-uses: [recipes.py]
-cells:
-  yard:
-    devices: {one: {kind: mobile, evidence: joints}}
-    targets:
-      home: {one: {node: 6}}
-      gate: {one: {node: 3}}
-      far: {one: {node: 0}}
-zones:
-  gate: {poses: [yard gate]}
-"""
+from ..plants import plant_text
+
+LONELY = plant_text(__file__, "zones_of_mobiles")
 THERE_AND_BACK = """
 from arboleda.recipes import recipe, work
 

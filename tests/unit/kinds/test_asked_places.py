@@ -11,30 +11,9 @@ from arboleda.model.errors import ConfigError
 from arboleda.plant_file.loader import load
 from arboleda.recipes.place_questions import PlaceHandle, PlaceQuestion
 
-PLANT = """
-name: hands
-uses: [recipes.py]
-shared:
-  arm: {kind: arm, model: scara}
-  jaw: {kind: gripper, tool_of: arm}
-cells:
-  left:
-    devices: {arm: {shared: arm}, jaw: {shared: jaw}, ana: {kind: person}}
-    targets:
-      home: {arm: {deg: [0, 0], mm: 0}}
-      in_1: {arm: {deg: [60, 20], mm: 50}}
-      pass: {arm: {deg: [30, 60], mm: 50}}
-    places: {in_1: {supply: true}, pass: {}}
-    recipes: [give]
-  right:
-    devices: {arm: {shared: arm}, jaw: {shared: jaw}, bob: {kind: person}}
-    targets:
-      home: {arm: {deg: [0, 0], mm: 0}}
-      pass: {arm: {deg: [30, 60], mm: 50}}
-      out_1: {arm: {deg: [-60, 20], mm: 50}}
-    places: {pass: {}, out_1: {output: true}}
-    recipes: [take]
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "asked_places")
 RECIPES = """
 from arboleda.recipes import recipe, work
 

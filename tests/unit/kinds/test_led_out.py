@@ -16,6 +16,7 @@ from arboleda.model.plant_model import Link
 from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 
+from ...plants import plant_text
 from .example_trials import OF_STORAGE, Case, Shop
 from .test_examples import CASES, PLAIN
 
@@ -94,20 +95,7 @@ def test_a_stop_in_any_verb_and_a_reboot_are_led_out_of_by_buttons_alone(case: C
     assert_led_out(case, CASES)
 
 
-APART = """
-name: apart
-uses: [recipes.py]
-cells:
-  aa:
-    devices:
-      left: {kind: arm, model: scara, evidence: joints, assume_homed: true}
-      right: {kind: arm, model: scara, base: {origin_m: [0.6, 0]}}
-    targets:
-      home: {left: {deg: [0, 0], mm: 0}, right: {deg: [0, 0], mm: 0}}
-      nest: {left: {deg: [60, 10], mm: 50}, right: {deg: [-60, 10], mm: 50}}
-zones:
-  z: {poses: [aa nest]}
-"""
+APART = plant_text(__file__, "led_out")
 SWAP = """
 from arboleda.recipes import recipe, work
 

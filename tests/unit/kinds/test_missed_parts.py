@@ -11,21 +11,10 @@ from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.verbs import Verb
 from arboleda.plant_file.loader import load
 
+from ...plants import plant_text
 from .lab import Bench
 
-PLANT = """
-name: lab
-uses: [recipes.py]
-cells:
-  lab:
-    devices: {mover: {kind: arm, model: scara}}
-    targets:
-      home: {mover: {deg: [0, 0], mm: 0}}
-      nest: {mover: {deg: [-60, 10], mm: 80}}
-      vise: {mover: {deg: [-30, 10], mm: 80}}
-      bin: {mover: {deg: [30, 40], mm: 80}}
-    places: {nest: {}, vise: {}, bin: {holds: 2, output: true}}
-"""
+PLANT = plant_text(__file__, "missed_parts")
 RECIPE = """
 from arboleda.recipes import Pick, Place, recipe, work
 

@@ -10,32 +10,10 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Reason
 from arboleda.plant_file.loader import load
 
+from ...plants import plant_text
 from .lab import Bench
 
-PLANT = """
-name: lab
-uses: [recipes.py]
-kinds:
-  reader:
-    facts: {lid: [open, closed]}
-    verbs:
-      open:  {effect: motion, sets: {lid: open}, takes_s: 1}
-      close: {effect: motion, sets: {lid: closed}, takes_s: 3}
-      read:  {effect: query, answers: [clear, cloudy], takes_s: 0.5}
-  lamp:
-    facts: {lit: bool}
-    verbs:
-      light: {effect: switch, with: {on: bool}, sets: {lit: $on}, needs: {reader.lid: closed}}
-cells:
-  bench:
-    devices:
-      reader: {kind: reader}
-      lamp: {kind: lamp}
-      jaw: {kind: gripper}
-    needs:
-      jaw.close: {reader.lid: open}
-      reader.read: {lamp.lit: true}
-"""
+PLANT = plant_text(__file__, "needs_of_others")
 RECIPES = """
 from arboleda.recipes import parallel, recipe, work
 

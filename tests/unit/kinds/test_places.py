@@ -21,42 +21,10 @@ from arboleda.rig.world import PLANT as PLANT_PROCESS
 from arboleda.views import view
 from arboleda.wire.transport import Publication
 
+from ...plants import plant_text
 from .lab import Bench
 
-PLANT = """
-name: lab
-uses: [recipes.py]
-kinds:
-  hand:
-    facts: {closed: bool}
-    verbs:
-      close: {effect: switch, sets: {closed: true}, holds: part, takes_s: 0.2, at_most_s: 1}
-      open:  {effect: switch, sets: {closed: false}, holds: part, takes_s: 0.2}
-  oven:
-    facts: {clamped: bool}
-    verbs:
-      clamp: {effect: switch, with: {on: bool}, sets: {clamped: $on}, holds: part}
-      bake:  {effect: process, takes_s: 2, works_on: part}
-cells:
-  lab:
-    devices:
-      mover: {kind: arm, model: scara}
-      hand: {kind: hand, tool_of: mover}
-      oven: {kind: oven}
-    targets:
-      home: {mover: {deg: [0, 0], mm: 0}}
-      rack_1: {mover: {deg: [60, 10], mm: 80}}
-      rack_2: {mover: {deg: [70, 10], mm: 80}}
-      nest: {mover: {deg: [-60, 10], mm: 80}}
-      inside: {mover: {deg: [-30, 10], mm: 80}}
-      bin: {mover: {deg: [30, 40], mm: 80}}
-    groups: {racks: [rack_1, rack_2]}
-    places:
-      racks: {supply: true}
-      nest: {}
-      inside: {of: oven}
-      bin: {holds: 2, output: true}
-"""
+PLANT = plant_text(__file__, "places")
 
 
 def written(folder: Path, plant: str, body: str) -> Path:
@@ -159,17 +127,7 @@ def test_a_part_that_a_hand_holds_in_a_device_is_there_for_it(tmp_path: Path) ->
     assert lab.places.counts == {"rack_1": 0, "rack_2": 1, "nest": 0, "inside": 0, "bin": 1}
 
 
-CARTED = """
-name: hall
-uses: [recipes.py]
-kinds:
-  lift: {facts: {at: [low, high]}, verbs: {roll_in: {effect: process, works_on: part, takes_s: 1}}}
-cells:
-  lab:
-    devices: {mover: {kind: mobile, grid: {pitch_mm: 400}}, hand: {kind: lift}, oven: {kind: lift}}
-    targets: {home: {mover: {node: 6}}, platform: {mover: {node: 0}}, bay: {mover: {node: 3}}}
-    places: {platform: {of: oven}}
-"""
+CARTED = plant_text(__file__, "places_carted")
 
 
 @pytest.mark.parametrize(("at", "sentence"), [("platform", None), ("bay", "none is known to be at platform")])
@@ -294,21 +252,7 @@ def test_a_wrong_place_is_named_with_what_is_allowed(
     assert any(problem in each for each in caught.value.problems), caught.value.problems
 
 
-SHARE_A_LAMP = """
-name: two
-uses: [recipes.py]
-kinds: {lamp: {facts: {lit: bool}, verbs: {put: {effect: switch, with: {lit: bool}, sets: {lit: $lit}}}}}
-shared: {our_lamp: {kind: lamp}}
-cells:
-  left:
-    devices: {arm: {kind: arm, model: scara}, lamp: {shared: our_lamp}}
-    targets: {home: {arm: {deg: [0, 0], mm: 0}}, nest: {arm: {deg: [40, 20], mm: 40}}}
-    places: {nest: {}}
-  right:
-    devices: {arm: {kind: arm, name: arm_2, model: scara}, lamp: {shared: our_lamp}}
-    targets: {home: {arm: {deg: [0, 0], mm: 0}}, nest: {arm: {deg: [40, 20], mm: 40}}}
-    places: {nest: {}}
-"""
+SHARE_A_LAMP = plant_text(__file__, "places_share_a_lamp")
 
 
 def test_a_cell_that_shares_a_device_has_places_of_its_own(tmp_path: Path) -> None:
@@ -329,31 +273,7 @@ def test_a_cell_that_shares_a_device_has_places_of_its_own(tmp_path: Path) -> No
     assert parts() == {"left": 1, "right": 0}
 
 
-SHARE_AN_ARM = """
-name: two
-uses: [recipes.py]
-kinds:
-  hand:
-    facts: {closed: bool}
-    verbs:
-      close: {effect: switch, sets: {closed: true}, holds: part, takes_s: 0.2}
-      open:  {effect: switch, sets: {closed: false}, holds: part, takes_s: 0.2}
-shared:
-  arm: {kind: arm, model: scara}
-  hand: {kind: hand, tool_of: arm}
-cells:
-  left:
-    devices: {arm: {shared: arm}, hand: {shared: hand}, ana: {kind: person}}
-    targets: &targets
-      home: {arm: {deg: [0, 0], mm: 0}}
-      nest: {arm: {deg: [40, 20], mm: 40}}
-      bin: {arm: {deg: [-40, 20], mm: 40}}
-    places: {nest: {}, bin: {holds: 9, output: true}}
-  right:
-    devices: {arm: {shared: arm}, hand: {shared: hand}, bob: {kind: person}}
-    targets: *targets
-    places: {nest: {}}
-"""
+SHARE_AN_ARM = plant_text(__file__, "places_share_an_arm")
 
 
 def test_a_person_who_sees_to_a_place_that_cells_share_has_seen_to_it_for_all_of_them(tmp_path: Path) -> None:

@@ -8,21 +8,9 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 
-PLANT = """
-name: lab
-uses: [recipes.py]
-cells:
-  lab:
-    devices:
-      loader: {kind: arm, model: scara}
-    targets:
-      home: {loader: {deg: [0, 0], mm: 0}}
-      feed: {loader: {deg: [60, 20], mm: 80}}
-      nest: {loader: {deg: [-60, 20], mm: 80}}
-    places:
-      feed: {supply: true}
-      nest: {holds: 2}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "places_after_a_power_cut")
 RECIPES = """
 from arboleda.recipes import recipe, work
 

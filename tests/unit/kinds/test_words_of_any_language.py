@@ -20,24 +20,11 @@ from arboleda.wire.status import from_status, to_status
 from arboleda.wire.topics import Channel
 from arboleda_ros import order
 
+from ...plants import plant_text
 from ..dashboard.conftest import LINKS
 from .lab import Bench
 
-PLANT = """\
-name: alfar
-uses: [recetas.py]
-kinds:
-  horno:
-    facts: {puerta: [abierta, cerrada, entreabierta], carga: [vacía, leña, 炭]}
-    verbs:
-      cargar: {effect: process, with: {con: [leña, 炭]}, sets: {carga: $con}, takes_s: 1}
-      vaciar: {effect: process, sets: {carga: vacía}, needs: {puerta: abierta}, takes_s: 1}
-      mirar:  {effect: query, answers: [sí, no]}
-cells:
-  taller:
-    devices:
-      horno: {kind: horno}
-"""
+PLANT = plant_text(__file__, "words_of_any_language")
 RECIPES = """\
 from arboleda.recipes import Choice, Kit, recipe, work
 

@@ -9,27 +9,10 @@ import pytest
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file.loader import load
 
+from ...plants import plant_text
 from .lab import Bench
 
-PLANT = """
-name: lab
-uses: [recipes.py]
-kinds:
-  ram:
-    facts: {at: [up, down]}
-    verbs:
-      press: {effect: motion, sets: {at: down}, takes_s: 3}
-      lift:  {effect: motion, sets: {at: up}, takes_s: 1}
-  feeder:
-    verbs:
-      push: {effect: process, takes_s: 2}
-      blow: {effect: process, takes_s: 1}
-cells:
-  press:
-    devices: {ram: {kind: ram}, feeder: {kind: feeder}}
-zones:
-  mouth: {free_while: {ram: {at: up}}, held_while: {feeder: [push]}}
-"""
+PLANT = plant_text(__file__, "zones_of_devices")
 RECIPES = """
 from arboleda.recipes import parallel, recipe, work
 

@@ -10,50 +10,10 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_check import advance_check
 from arboleda.plant_file.loader import load
 
-PLANT = """
-name: lab
-uses: [recipes.py]
-kinds:
-  reader:
-    facts: {lid: [closed, open], clamped: bool}
-    verbs:
-      open:  {effect: motion, sets: {lid: open}}
-      close: {effect: motion, sets: {lid: closed}}
-      clamp: {effect: switch, with: {on: bool}, sets: {clamped: $on}, holds: part}
-      read:  {effect: query, answers: [clear, unclear], needs: {lid: closed}, works_on: part}
-cells:
-  lab:
-    devices:
-      loader: {kind: arm, model: scara}
-      jaw: {kind: gripper, tool_of: loader}
-      reader: {kind: reader}
-    targets:
-      home: {loader: {deg: [0, 0], mm: 0}}
-      rack: {loader: {deg: [60, 10], mm: 80, approach_mm: 20}}
-      nest: {loader: {deg: [-60, 10], mm: 80, approach_mm: 20}}
-      drawer: {loader: {deg: [-30, 10], mm: 80, approach_mm: 20}}
-      bin: {loader: {deg: [30, 40], mm: 80, approach_mm: 20}}
-    places:
-      rack: {supply: true}
-      nest: {}
-      drawer: {of: reader}
-      bin: {holds: 20, output: true}
-zones:
-  in_the_reader: {poses: [lab drawer], free_while: {reader: {lid: open}}}
-"""
-STORAGE = """
-name: store
-uses: [recipes.py]
-paths: {0A: [0, 3, 6], 0B: [0, 3, 4, 7]}
-stations: {0: {deg: [0, 10], mm: 50}}
-cells:
-  sis_a:
-    arm: {name: ra1, model: scara, link: mqtt, evidence: ids, base: {yaw_deg: 220.6}}
-    mobile: {name: rm_sis_a, link: mqtt, evidence: ids, grid: {origin_m: [-0.1, -1.366], pitch_mm: 100}}
-    home: {deg: [0, 0], mm: 0}
-    pickup: {deg: [45, 10], mm: 0}
-    pickups: {A: {deg: [44.09, 0.9], mm: 0}}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "advance_check")
+STORAGE = plant_text(__file__, "advance_check_storage")
 INTO = 'take("rack"), reader.open(), put("drawer"), reader.close()'
 OUT = 'reader.open(), take("drawer"), put("bin"), reader.close(), loader.home()'
 BRING_BACK = 'loader.brings_back_to("bin") or cell.wait(1)'
@@ -372,20 +332,7 @@ def test_what_an_advice_says_can_be_written(tmp_path: Path) -> None:
     assert warned(tmp_path, f"{INTO}, loader.home()", decorator) == []
 
 
-NUMBERS = """
-name: lab
-uses: [recipes.py]
-kinds:
-  scale: {verbs: {weigh: {effect: query, answers: number}, look: {effect: query, answers: [good, bad]}}}
-  gate:
-    facts: {at: [middle, left, right], pinned: bool}
-    verbs:
-      turn: {effect: motion, with: {to: [middle, left, right]}, sets: {at: $to}}
-      pin: {effect: motion, needs: {at: left}, sets: {pinned: true}}
-cells:
-  line:
-    devices: {scale: {kind: scale}, gate: {kind: gate}}
-"""
+NUMBERS = plant_text(__file__, "advance_check_numbers")
 CHOICES = """
 from arboleda.recipes import recipe, work
 

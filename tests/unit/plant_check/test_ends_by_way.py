@@ -11,22 +11,9 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_check import advance_check
 from arboleda.plant_file.loader import load
 
-PLANT = """
-name: sorting
-uses: [USES]
-cells:
-  a:
-    devices:
-      arm: {kind: arm, model: scara}
-      jaw: {kind: gripper, tool_of: arm}
-      camera: {kind: camera}
-    targets:
-      home: {arm: {deg: [0, 0], mm: 0}}
-      in: {arm: {deg: [60, 20], mm: 50}}
-      press: {arm: {deg: [-60, 20], mm: 50}}
-      reject: {arm: {deg: [-90, 20], mm: 50}}
-    places: {in: {supply: true}, press: {holds: 50, output: true}, reject: {holds: 50, output: true}}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "ends_by_way")
 RECIPES = """
 from arboleda.recipes import recipe, work
 

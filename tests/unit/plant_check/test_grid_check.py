@@ -6,23 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from ...plants import plant_text
 from .test_meeting_points import warned
 
-PLANT = """
-name: crossing
-uses: [recipes.py]
-cells:
-  bay:
-    devices:
-      left: {kind: mobile, grid: {origin_m: [0, 0]}}
-      two:  {kind: mobile, grid: {origin_m: [0.4, 0], yaw_deg: 90}}
-    targets:
-      home:   {left: {node: 0}, two: {node: 8}}
-      gate:   {left: {node: 5}}
-      middle: {left: {node: 4}}
-zones:
-  crossing: {poses: [bay gate]}
-"""
+PLANT = plant_text(__file__, "grid_check")
 
 
 def test_the_node_is_told_with_what_keeps_the_other_off(tmp_path: Path) -> None:

@@ -15,20 +15,12 @@ from arboleda.plant_check.layout_mends import moved_grid
 from arboleda.plant_file import loader
 from arboleda.testing import shipped
 
+from ...plants import plant_text
+
 ROOT = Path(__file__).parents[3]
 EXAMPLES = sorted((ROOT / "examples" / "plants").glob("*.yaml"))
 PAGES = ("docs/how-to/plant-file.md", "docs/how-to/test-your-plant.md")
-GOOD = """\
-name: good
-paths: {0B: [0, 3, 4, 7]}
-stations: {0: {deg: [0, 10], mm: 40}, 1: {deg: [5, 10], mm: 40}}
-cells:
-  a:
-    arm: {name: ra, model: scara, link: mqtt, evidence: ids, base: {yaw_deg: 40.6}}
-    mobile: {name: ma, link: mqtt, evidence: ids, grid: {origin_m: [0.2, 1.566], yaw_deg: 180}}
-    home: {deg: [0, 0], mm: 0}
-    pickup: {deg: [45, 10], mm: 0}
-"""
+GOOD = plant_text(__file__, "layout_check")
 OTHER = """\
   b:
     arm: {name: rb, model: cr10a, link: mqtt, evidence: ids, base: {origin_m: [0.75, -1.2], yaw_deg: 32.71}}

@@ -9,21 +9,9 @@ from typer.testing import CliRunner
 
 from arboleda.cli.main import cli
 
-PLANT = """
-name: pair
-uses: [recipes.py]
-cells:
-  bay:
-    devices:
-      left:  {kind: arm, model: scara, base: {origin_m: [0, 0]}}
-      right: {kind: arm, model: scara, base: {origin_m: [2.19888, 0.08893], yaw_deg: 180}}
-      cart:  {kind: mobile, grid: {origin_m: [1, 1]}}
-    targets:
-      home:   {left: {deg: [90, 0], mm: 0}, right: {deg: [90, 0], mm: 0}, cart: {node: 0}}
-      middle: {left: {deg: [20, -40], mm: 80}}
-      over:   {right: {deg: [20, -40], mm: 80}}
-      far:    {left: {deg: [100, 10], mm: 80}, cart: {node: 3}}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "meeting_points")
 RECIPES = """
 from arboleda.recipes import recipe
 
@@ -120,18 +108,7 @@ def test_two_heights_over_one_place_are_two_targets(tmp_path: Path) -> None:
     assert warned(tmp_path, PLANT + more + ZONE) == []
 
 
-RACK = """
-name: rack
-paths: {AZ: [7], B1: [3]}
-cells:
-  lab:
-    arm: {name: arm, model: scara, link: mqtt, evidence: ids}
-    mobile: {name: cart, model: mobile, link: mqtt, evidence: ids}
-    home: {deg: [0, 0], mm: 0}
-    pickup: {deg: [52.3, 52.7], mm: 27.3}
-    pickups: {"1": {deg: [52.3, 52.7], mm: 27.3}}
-    stations: {"0": {deg: [52.3, 52.7], mm: 27.3}, "1": {deg: [140.5, 74.5], mm: 75}}
-"""
+RACK = plant_text(__file__, "meeting_points_rack")
 
 
 def test_a_station_where_parts_are_picked_up_is_told_and_two_exits_may_be_met_at_one_place(

@@ -9,6 +9,7 @@ import pytest
 from arboleda.plant_check import passed_over
 from arboleda.plant_file.loader import load
 
+from ...plants import plant_text
 from .test_advance_check_of_trees import (
     CLOSE,
     HOME,
@@ -79,19 +80,7 @@ def test_a_question_about_something_else_is_none_about_the_work(tmp_path: Path, 
     assert "a failure of reader close" in found
 
 
-PUMP = """
-name: pump
-uses: [pour.xml]
-kinds:
-  pump:
-    facts: {ml: int, lid: [shut, open]}
-    verbs:
-      pour: {effect: process, takes_s: 1}
-      shut: {effect: motion, sets: {lid: shut}, takes_s: 1}
-      look: {effect: query, answers: [wet, dry]}
-cells:
-  a: {devices: {pump: {kind: pump}}}
-"""
+PUMP = plant_text(__file__, "passed_over")
 
 
 @pytest.mark.parametrize(

@@ -9,38 +9,9 @@ import pytest
 from arboleda.plant_check import place_check
 from arboleda.plant_file.loader import load
 
-PLANT = """
-name: lab
-uses: [recipes.py]
-kinds:
-  oven:
-    facts: {door: [closed, open]}
-    verbs:
-      open:  {effect: motion, sets: {door: open}}
-      close: {effect: motion, sets: {door: closed}}
-      bake:  {effect: process, works_on: part, takes_s: 2}
-  clamp:
-    facts: {shut: bool}
-    verbs: {hold: {effect: switch, with: {on: bool}, sets: {shut: $on}, holds: part}}
-cells:
-  lab:
-    devices:
-      left:  {kind: arm, model: scara, base: {origin_m: [-0.6, 0], yaw_deg: 135}}
-      right: {kind: arm, model: scara, base: {origin_m: [0.6, 0], yaw_deg: 45}}
-      jaw:   {kind: gripper, tool_of: left}
-      oven:  {kind: oven}
-      clamp: {kind: clamp}
-    targets:
-      home:   {left: {deg: [0, 0], mm: 0}, right: {deg: [0, 0], mm: 0}}
-      nest:   {left: {deg: [-52.24, -87.7], mm: 80}, right: {deg: [52.24, 87.7], mm: 80}}
-      inside: {left: {deg: [60, 10], mm: 80}}
-    places:
-      nest:   {of: clamp}
-      inside: {of: oven}
-zones:
-  over_the_nest: {poses: [lab nest]}
-  in_the_oven: {poses: [lab inside], free_while: {oven: {door: open}}}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "place_check")
 RECIPES = """
 from arboleda.recipes import recipe, work
 
@@ -111,13 +82,7 @@ def test_a_need_that_asks_nothing_of_the_robot_guards_no_place(tmp_path: Path) -
     assert "nothing keeps left out of there" in warning
 
 
-COMMON = """
-name: rack
-uses: [recipes.py]
-shared:
-  arm: {kind: arm, model: scara}
-cells:
-"""
+COMMON = plant_text(__file__, "place_check_common")
 CELL = """
   NAME:
     devices: {eye: {kind: sensor, name: eye_NAME, answers: [x, y]}, arm: {shared: arm}}

@@ -9,20 +9,9 @@ import pytest
 from arboleda.plant_check import advance_check
 from arboleda.plant_file.loader import load
 
-PLANT = """
-name: share
-uses: [recipes.py]
-kinds:
-  stand:
-    facts: {locked: bool, at: [low, high]}
-    verbs:
-      lock: {effect: switch, with: {on: bool}, sets: {locked: $on}, holds: part}
-      lift: {effect: motion, with: {to: [low, high]}, sets: {at: $to}}
-shared:
-  stand: {kind: stand}
-cells:
-  a: {devices: {clock: {kind: sensor, answers: [night, day]}, stand: {shared: stand}}}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "shared_ends")
 RECIPES = """
 from arboleda.recipes import recipe, work
 

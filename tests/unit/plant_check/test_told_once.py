@@ -12,6 +12,8 @@ from arboleda.plant_check import checks
 from arboleda.plant_file import loader
 from arboleda.plant_file.problems import counted, told_once
 
+from ...plants import plant_text
+
 PLANT = """
 name: lights
 uses: [recipes.py]
@@ -68,21 +70,7 @@ def test_what_a_file_has_in_place_of_a_cells_name_is_taken_as_it_is_written() ->
     assert told_once(sentences, names) == sentences
 
 
-PRESSES = """
-name: presses
-uses: [recipes.py]
-kinds:
-  press:
-    facts: {door: [open, shut]}
-    verbs:
-      open: {effect: motion, sets: {door: open}}
-      shut: {effect: motion, sets: {door: shut}}
-      press: {effect: process, needs: {door: shut}}
-cells:
-  a: {devices: {press: {kind: press, name: press_a}}}
-  b: {devices: {press: {kind: press, name: press_b}}}
-  c: {devices: {press: {kind: press, name: press_c}}}
-"""
+PRESSES = plant_text(__file__, "told_once_presses")
 
 
 def test_one_mistake_in_three_cells_whose_devices_have_other_names_is_one_line_with_a_count(

@@ -12,29 +12,9 @@ from arboleda.plant_check.mend import edited
 from arboleda.plant_check.offers import offers
 from arboleda.plant_file import loader
 
-PLANT = """
-name: lab
-uses: [recipes.py]
-kinds:
-  oven:
-    facts: {door: [closed, open]}
-    verbs:
-      open:  {effect: motion, sets: {door: open}}
-      close: {effect: motion, sets: {door: closed}}
-      bake:  {effect: process, takes_s: 5}
-cells:
-  lab:
-    devices:
-      loader: {kind: arm, model: scara}
-      jaw: {kind: gripper, tool_of: loader}
-      oven: {kind: oven}
-    targets:
-      home: {loader: {deg: [0, 0], mm: 0}}
-      rack: {loader: {deg: [60, 10], mm: 80, approach_mm: 20}}
-      inside: {loader: {deg: [-60, 10], mm: 80, approach_mm: 20}}
-zones:
-  in_the_oven: {poses: [lab inside]}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "unstated")
 RECIPE = """
 from arboleda.recipes import recipe, work
 

@@ -9,16 +9,9 @@ import pytest
 from arboleda.plant_check import checks
 from arboleda.plant_file import loader
 
-PLANT = """
-name: lights
-uses: [recipes.py]
-kinds:
-  lamp:
-    facts: {lit: bool}
-    verbs: {light: {effect: switch, with: {on: bool}, sets: {lit: $on}}, blink: {effect: process, takes_s: 1}}
-cells:
-  a: {devices: {lamp: {kind: lamp}}}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "unused_steps")
 RECIPE = """
 from arboleda.recipes import Choice, parallel, recipe, work
 

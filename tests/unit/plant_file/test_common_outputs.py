@@ -10,30 +10,9 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_check import advance_check, place_check
 from arboleda.plant_file.loader import load
 
-PLANT = """
-name: rack
-uses: [recipes.py]
-shared:
-  arm: {kind: arm, model: scara}
-  jaw: {kind: gripper, tool_of: arm}
-cells:
-  press:
-    devices: {former: {kind: sensor}, arm: {shared: arm}, jaw: {shared: jaw}}
-    zone_wait_s: 600
-    targets:
-      home: {arm: {deg: [0, 0], mm: 0}}
-      in: {arm: {deg: [60, 20], mm: 50}}
-      rack: {arm: {deg: [-60, 20], mm: 50}}
-    places: {in: {supply: true}, rack: {holds: 2, output: true}}
-  wash:
-    devices: {washer: {kind: sensor}, arm: {shared: arm}, jaw: {shared: jaw}}
-    zone_wait_s: 600
-    targets:
-      home: {arm: {deg: [0, 0], mm: 0}}
-      rack: {arm: {deg: [-60, 20], mm: 50}}
-      bin: {arm: {deg: [-90, 20], mm: 50}}
-    places: {rack: {holds: 2}, bin: {holds: 50, output: true}}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "common_outputs")
 RECIPES = """
 from arboleda.recipes import recipe, work
 

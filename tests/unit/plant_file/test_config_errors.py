@@ -11,56 +11,10 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.testing.storage_layout import StorageLayout
 
-PLANT = """\
-name: small
-mqtt_version: 3.1.1
-timing: {dwell_s: 0.2}
-paths:
-  0B: [0, 3, 4, 7]
-stations:
-  0: {deg: [0, 10], mm: 40, approach_mm: 20}
-  1: {deg: [15, 10], mm: 40}
-palletizing: {pick: pickup, place: station 1}
-cells:
-  sis_a:
-    arm:
-      name: ra1
-      model: scara
-      mqtt: ra_1
-      twin: r1
-      link: mqtt
-      evidence: ids
-      limits: {q1_deg: [-90, 90]}
-      speeds: {q3_mm_s: 30}
-      tolerance: {deg: [1, 1], mm: 1}
-      timeout_s: 12
-    mobile:
-      name: rm_sis_a
-      link: mqtt
-      evidence: ids
-      grid: {pitch_mm: 200}
-    home: {deg: [0, 0], mm: 0}
-    pickup: {deg: [45, 10], mm: 0}
-    queue_limit: 5
-    drive_to_start: false
-  sis_c:
-    arm: {name: ra3, model: cr10a, link: mqtt, evidence: ids}
-    mobile: {name: rm_sis_c, link: ros, evidence: state}
-    home: {deg: [0, 0, 0, 0, 0, 0]}
-    pickup: {deg: [35, 10, 0, 0, 0, 0]}
-    stations: {columns_q1_deg: [0, 10, 20], rows_q2_deg: [0, 10, 20]}
-    palletizing: {pick: station 0, place: pickup}
-"""
-ONE_CELL = """\
-name: one
-paths: {0B: [0, 3, 4, 7]}
-cells:
-  sis_a:
-    arm: {name: ra1, model: scara, link: mqtt, evidence: ids}
-    mobile: {name: rm_sis_a, link: mqtt, evidence: ids}
-    home: {deg: [0, 0], mm: 0}
-    pickup: {deg: [45, 10], mm: 0}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "config_errors")
+ONE_CELL = plant_text(__file__, "config_errors_one_cell")
 RACK = "stations: {columns_q1_deg: [0, 10, 20], rows_q2_deg: [0, 10, 20]}"
 
 MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has in it)

@@ -11,16 +11,9 @@ from arboleda.model.plant_model import Cell
 from arboleda.plant_file import loader
 from arboleda.testing.storage_layout import StorageLayout
 
-TEXT = """\
-name: p
-paths: {0A: [0, 3, 6], 1B: [1, 4, 7], 2c: [2, 5, 8]}
-stations: {0: {deg: [0, 10], mm: 40}}
-cells:
-  a:
-    arm: {name: ra1, model: scara, link: mqtt, evidence: ids}
-    mobile: {name: rm, link: mqtt, evidence: ids}
-    home: {deg: [0, 0], mm: 0}
-"""
+from ...plants import plant_text
+
+TEXT = plant_text(__file__, "config_pickups")
 ONE = "    pickup: {deg: [45, 10], mm: 0}\n"
 TWO = "    pickups:\n      A: {deg: [40, 5], mm: 0}\n      c: {deg: [50, 5], mm: 10, approach_mm: 5}\n"
 B = "      B: {deg: [1, 1], mm: 0}\n"

@@ -17,36 +17,10 @@ from arboleda.plant_file import loader
 from arboleda.plant_file.recipe_check import trial
 from arboleda.runtime.rate import at_rate
 
+from ...plants import plant_text
 from ..kinds import lab
 
-KINDS = """\
-name: lab
-uses: [bake.py]
-kinds:
-  oven:
-    facts: {lid: [open, closed], clamped: bool, dose: [5, 10, 20]}
-    verbs:
-      open:  {effect: motion, sets: {lid: open}, takes_s: 1, at_most_s: 3}
-      close: {effect: motion, sets: {lid: closed}, takes_s: 1, at_most_s: 3}
-      clamp: {effect: switch, with: {on: bool}, sets: {clamped: $on}, holds: part}
-      bake:
-        effect: process
-        with: {dose: [5, 10, 20]}
-        sets: {dose: $dose}
-        needs: {lid: closed, clamped: true}
-        takes_s: 20
-        at_most_s: 30
-        on_stop: finish
-  eye:
-    verbs:
-      look: {effect: query, answers: [good, bad], takes_s: 0.5}
-cells:
-  bench:
-    devices:
-      oven: {kind: oven}
-      eye:  {kind: eye, evidence: ids}
-    queue_limit: 5
-"""
+KINDS = plant_text(__file__, "device_cells")
 
 MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has in it)
     "no name of a kind": (

@@ -18,36 +18,10 @@ from arboleda.recipes import Kit, RecipeError
 from arboleda.recipes.handles import Step
 from arboleda.testing import Rig
 
-SHORT = """name: hall
-cells:
-  bay:
-    arm: {name: ra, model: scara, link: mqtt, evidence: ids}
-    mobile: {name: cart, link: mqtt, evidence: ids}
-    home: {deg: [0, 0], mm: 0}
-    pickup: {deg: [45, 10], mm: 0}
-    pickups: {A: {deg: [50, 10], mm: 0}}
-    paths: {0A: [0, 3, 6], 0B: [0, 3, 4, 7]}
-    stations: {0: {deg: [0, 20], mm: 100}, 1: {deg: [10, 20], mm: 100}}
-    palletizing: {pick: pickup a, place: station 1}
-"""
-LONG = """name: hall
-cells:
-  bay:
-    devices:
-      arm: {kind: arm, name: ra, model: scara, link: mqtt, evidence: ids}
-      mobile: {kind: mobile, name: cart, link: mqtt, evidence: ids}
-    targets:
-      home: {arm: {deg: [0, 0], mm: 0}, mobile: {node: 0}}
-      pickup: {arm: {deg: [45, 10], mm: 0}}
-      pickup_a: {arm: {deg: [50, 10], mm: 0}}
-      station_0: {arm: {deg: [0, 20], mm: 100}}
-      station_1: {arm: {deg: [10, 20], mm: 100}}
-    groups:
-      stations: [station_0, station_1]
-      palletizing: [pickup_a, station_1]
-    paths: {mobile: {0A: [0, 3, 6], 0B: [0, 3, 4, 7]}}
-    handover: {taker: arm, giver: mobile, at: pickup, by_path: {0A: pickup_a}}
-"""
+from ...plants import plant_text
+
+SHORT = plant_text(__file__, "handovers_short")
+LONG = plant_text(__file__, "handovers_long")
 MISTAKES = {  # what is in LONG, what is put in its place, what the problem says
     "no such robot": ("paths: {mobile:", "paths: {arm:", 'must be mobile, is "arm"'),
     "a jump": ("[0, 3, 6]", "[0, 6]", "node 6 is no neighbour of node 0"),

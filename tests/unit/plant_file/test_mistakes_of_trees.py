@@ -9,21 +9,9 @@ import pytest
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file.loader import load
 
-PLANT = """
-name: shop
-uses: [go.xml]
-kinds:
-  press:
-    facts: {door: [open, shut]}
-    verbs:
-      open: {effect: motion, sets: {door: open}}
-      push: {effect: process, with: {kn: int}, takes_s: 2}
-cells:
-  a:
-    devices: {press: {kind: press}, mover: {kind: arm, model: scara}}
-    targets: {home: {mover: {deg: [0, 0], mm: 0}}, in: {mover: {deg: [60, 10], mm: 80}}}
-    places: {in: {}}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "mistakes_of_trees")
 VISIT = "<mover_visit target='{}'><press_open/></mover_visit>"
 
 

@@ -16,18 +16,9 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Link, PlantModel, Robot
 from arboleda.plant_file import drivers, loader
 
-PLANT = """\
-name: lab
-uses: [recipes.py, drivers/my_plc.py]
-kinds:
-  oven:
-    verbs:
-      heat: {effect: process}
-cells:
-  bench:
-    devices:
-      oven: {kind: oven, driver: {my_plc: {host: 10.0.0.7, slots: [1, 2]}}}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "own_drivers")
 USE = "driver: {my_plc: {host: 10.0.0.7, slots: [1, 2]}}"
 RECIPES = """\
 from arboleda.recipes import recipe
@@ -327,18 +318,7 @@ def test_without_recipes_a_plant_file_is_read_without_its_drivers(load: Callable
     assert found.link is Link.DRIVER and found.driver is None
 
 
-STORAGE = """\
-name: racks
-uses: [drivers/my_plc.py]
-paths: {0B: [0, 3, 4, 7]}
-stations: {0: {deg: [20, 10], mm: 50}}
-cells:
-  sis_a:
-    arm: {name: ra1, model: scara, driver: {my_plc: {host: 10.0.0.7}}, evidence: ids}
-    mobile: {name: rm1, link: mqtt, evidence: ids}
-    home: {deg: [0, 0], mm: 0}
-    pickup: {deg: [45, 10], mm: 0}
-"""
+STORAGE = plant_text(__file__, "own_drivers_storage")
 ITS_USE = "driver: {my_plc: {host: 10.0.0.7}}"
 
 

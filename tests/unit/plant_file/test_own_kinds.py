@@ -14,6 +14,8 @@ from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
 from arboleda.plant_file.recipe_check import trial
 
+from ...plants import plant_text
+
 SAW = """\
 from dataclasses import dataclass
 
@@ -51,15 +53,7 @@ def bar(cell, mm: Number[10, 300]):
     saw = cell.device("saw")
     return work(saw.close(), saw.cut(mm=mm, blade="wood"))
 """
-PLANT = """\
-name: shop
-uses: [kinds/saw.py, recipes.py]
-cells:
-  bench:
-    devices:
-      saw: {kind: saw, mm_s: 10}
-      eye: {kind: camera}
-"""
+PLANT = plant_text(__file__, "own_kinds")
 MISTAKES = {  # id: (text of the plant file, put in its place, how the only problem begins, words in it)
     "unknown key": (
         "mm_s",

@@ -16,24 +16,9 @@ from arboleda.plant_file import loader, recipe_trial
 from arboleda.plant_file.python_uses import SourceSpot
 from arboleda.plant_file.recipe_check import trial
 
-PLANT = """\
-name: lab
-uses: [recipes.py]
-kinds:
-  oven:
-    facts: {lid: [open, closed]}
-    verbs:
-      close: {effect: motion, sets: {lid: closed}}
-      heat: {effect: process, with: {celsius: [40, 60]}}
-  eye:
-    verbs:
-      look: {effect: query, answers: [good, bad]}
-cells:
-  bench:
-    devices:
-      oven: {kind: oven}
-      eye: {kind: eye}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "own_recipes")
 SECOND = """\
   shelf:
     devices:

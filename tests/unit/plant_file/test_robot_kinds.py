@@ -11,6 +11,8 @@ from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
 from arboleda.plant_file.shipped_kinds import COME_WITH_IT
 
+from ...plants import plant_text
+
 CART = """\
 from dataclasses import dataclass
 
@@ -40,18 +42,7 @@ from arboleda.recipes import Target, recipe, work
 def fetch(cell, at: Target):
     return work(cell.device("cart").visit(at))
 """
-PLANT = """\
-name: yard
-uses: [cart.py, recipes.py]
-cells:
-  bay:
-    devices:
-      cart: {kind: cart, loaded: true, mm_s: 100}
-      eye: {kind: camera}
-    targets:
-      home: {cart: {node: 0}}
-      dock: {cart: {node: 8}}
-"""
+PLANT = plant_text(__file__, "robot_kinds")
 ENTRY = "[arboleda.kinds]\ncart = acme_carts:cart\n"
 
 

@@ -8,18 +8,9 @@ import pytest
 
 from arboleda.plant_file.recipe_check import trial
 
-PLANT = """
-name: lab
-uses: [recipes.py]
-kinds:
-  reader:
-    facts: {lid: [open, closed]}
-    verbs:
-      close: {effect: switch, sets: {lid: closed}, takes_s: 1}
-      open: {effect: switch, sets: {lid: open}, takes_s: 1}
-      look: {effect: query, answers: [a, b], takes_s: 1}
-cells: {one: {devices: {reader: {kind: reader}}}}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "sentences_of_recipes")
 RECIPE = """
 from arboleda.recipes import parallel, recipe, work
 

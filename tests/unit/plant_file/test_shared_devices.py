@@ -17,33 +17,9 @@ from arboleda.views import view
 from arboleda.views.chronicle import Chronicle
 from arboleda.views.view import devices_once
 
-TEXT = """name: shop
-kinds:
-  lift:
-    facts: {at: [low, high]}
-    verbs:
-      up:   {effect: motion, sets: {at: high}, takes_s: 2}
-      down: {effect: motion, sets: {at: low}, takes_s: 2}
-      hug:  {effect: switch, with: {on: bool}, sets: {at: high}}
-  lamp:
-    facts: {lit: bool}
-    verbs:
-      light: {effect: switch, with: {on: bool}, sets: {lit: $on}}
-shared:
-  lift: {kind: lift, evidence: facts}
-  porter: {kind: person}
-cells:
-  below:
-    devices:
-      lamp: {kind: lamp, name: lamp_1}
-      lift: {shared: lift}
-      porter: {shared: porter}
-  above:
-    devices:
-      lamp: {kind: lamp, name: lamp_2}
-      hoist: {shared: lift}
-      porter: {shared: porter}
-"""
+from ...plants import plant_text
+
+TEXT = plant_text(__file__, "shared_devices")
 MISTAKES = {
     "a name that there is not": (
         "hoist: {shared: lift}",

@@ -10,35 +10,9 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 
-TEXT = """name: shop
-kinds:
-  lamp:
-    facts: {lit: bool}
-    verbs:
-      light: {effect: switch, with: {on: bool}, sets: {lit: $on}}
-shared:
-  robot: {kind: arm, model: scara, base: {origin_m: [0, 0]}}
-  jaw:   {kind: gripper, tool_of: robot}
-cells:
-  left:
-    devices:
-      lamp:  {kind: lamp, name: lamp_1}
-      robot: {shared: robot}
-      jaw:   {shared: jaw}
-    targets:
-      home: {robot: {deg: [0, 0], mm: 0}}
-      feed: {robot: {deg: [10, 0], mm: 50}}
-  right:
-    devices:
-      lamp: {kind: lamp, name: lamp_2}
-      arm:  {shared: robot}
-      jaw:  {shared: jaw}
-    targets:
-      home: {arm: {deg: [0, 0], mm: 0}}
-      vise: {arm: {deg: [-10, 0], mm: 50}}
-zones:
-  table: {poses: [left feed, right vise]}
-"""
+from ...plants import plant_text
+
+TEXT = plant_text(__file__, "shared_robots")
 MISTAKES = {
     "another home": (
         "home: {arm: {deg: [0, 0], mm: 0}}",

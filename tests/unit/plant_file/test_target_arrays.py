@@ -11,29 +11,9 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_check import layout_check
 from arboleda.plant_file import loader
 
-TEXT = """name: shop
-cells:
-  bench:
-    devices:
-      loader: {kind: arm, model: scara}
-      cart: {kind: mobile}
-    targets:
-      home: {loader: {deg: [0, 0], mm: 0}, cart: {node: 0}}
-      bin: {loader: {deg: [40, 40], mm: 0}}
-    groups:
-      pallet:
-        grid: [3, 4]
-        corners:
-          loader:
-            - {deg: [0, 60], mm: 80, approach_mm: 40}
-            - {deg: [30, 60], mm: 80, approach_mm: 40}
-            - {deg: [0, 90], mm: 60, approach_mm: 40}
-            - {deg: [30, 90], mm: 60, approach_mm: 40}
-      stops:
-        grid: [1, 3]
-        corners: {cart: [{node: 3}, {node: 5}]}
-      bins: [bin, pallet_12]
-"""
+from ...plants import plant_text
+
+TEXT = plant_text(__file__, "target_arrays")
 MISTAKES = {
     "too few corners": (
         "            - {deg: [30, 90], mm: 60, approach_mm: 40}\n",

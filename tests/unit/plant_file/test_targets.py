@@ -11,39 +11,10 @@ from arboleda.model.messages import Verb
 from arboleda.model.plant_model import Interlock, PlantModel
 from arboleda.plant_file import loader
 
+from ...plants import plant_text
 from ..kinds.lab import Bench
 
-PLANT = """\
-name: shop
-uses: [recipes.py]
-kinds:
-  gripper:
-    facts: {gripped: bool}
-    verbs:
-      close: {effect: switch, sets: {gripped: true}, holds: part}
-      open:  {effect: switch, sets: {gripped: false}, holds: part}
-  mill:
-    facts: {door: [open, closed]}
-    verbs:
-      open:  {effect: motion, sets: {door: open}, takes_s: 2}
-      close: {effect: motion, sets: {door: closed}, takes_s: 2}
-cells:
-  tending:
-    devices:
-      loader:  {kind: arm, model: scara}
-      jaw:     {kind: gripper, tool_of: loader}
-      mill:    {kind: mill}
-      shuttle: {kind: mobile}
-      ana:     {kind: person}
-    targets:
-      home:   {loader: {deg: [0, 0], mm: 0}, shuttle: {node: 0}}
-      feed_1: {loader: {deg: [60, 10], mm: 80, approach_mm: 40}}
-      feed_2: {loader: {deg: [60, 30], mm: 80}, shuttle: {node: 8}}
-      vise:   {loader: {deg: [-60, 10], mm: 80}}
-    groups: {pallet: [feed_1, feed_2]}
-zones:
-  inside: {poses: [tending vise], free_while: {mill: {door: open}}}
-"""
+PLANT = plant_text(__file__, "targets")
 RECIPES = """\
 from arboleda.recipes import Target, recipe, work
 

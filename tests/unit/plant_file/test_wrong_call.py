@@ -9,14 +9,9 @@ import pytest
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file.loader import load
 
-PLANT = """
-name: shop
-uses: [recipes.py]
-kinds:
-  press: {facts: {door: [open, shut]}, verbs: {open: {effect: motion, sets: {door: open}}}}
-cells:
-  a: {devices: {press: {kind: press}}}
-"""
+from ...plants import plant_text
+
+PLANT = plant_text(__file__, "wrong_call")
 RECIPES = """
 from arboleda.recipes import recipe, work
 
