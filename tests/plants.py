@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
 from functools import cache
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
+import pytest
 import yaml
+
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.recipe import Recipe
+from arboleda.plant_file import loader
+from arboleda.recipes import Kit, recipe
 
 
 def plant_text(test: str, name: str) -> str:
@@ -15,10 +24,48 @@ def plant_text(test: str, name: str) -> str:
     return _documents(Path(test).with_name("plants.yaml"))[name]
 
 
-def rows(test: str, name: str) -> dict[str, Any]:
-    """The rows of that name in `rows.yaml`, each by what it is about."""
-    found: dict[str, Any] = _sections(Path(test).with_name("rows.yaml"))[name]
-    return found
+def rows(test: str, name: str, file: str = "rows.yaml") -> Any:
+    """The rows of that name in `rows.yaml`: a list, or each by what it is about."""
+    return _sections(Path(test).with_name(file))[name]
+
+
+def changed(text: str, *changes: tuple[str, str]) -> str:
+    """The text with something else in each of these places, the first of its kind."""
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return text
+
+
+def written(folder: Path, plant: str, recipes: str = "", beside: Mapping[str, str] = {}) -> Path:
+    """A plant file in the folder, with its `recipes.py` and other files beside it."""
+    for name, content in {"recipes.py": recipes, **beside, "plant.yaml": plant}.items():
+        if content:
+            (folder / name).write_text(content, "utf-8")
+    return folder / "plant.yaml"
+
+
+def read(folder: Path, plant: str, recipes: str = "", beside: Mapping[str, str] = {}) -> PlantModel:
+    return loader.load(written(folder, plant, recipes, beside))
+
+
+def refused(folder: Path, plant: str, recipes: str = "", beside: Mapping[str, str] = {}) -> list[str]:
+    """The problems of a plant: in its own file from the line on, in others with their names."""
+    with pytest.raises(ConfigError) as refusal:
+        read(folder, plant, recipes, beside)
+    here = f"{folder}/"
+    return [each.removeprefix(here).removeprefix("plant.yaml:") for each in refusal.value.problems]
+
+
+def made(name: str, build: Callable[..., Any]) -> Recipe:
+    """A recipe of one expression: a function of the cell and, by their roles, of devices of it."""
+    roles = [*signature(build).parameters][1:]
+
+    @recipe(name)
+    def attempt(cell: Kit):  # type: ignore[no-untyped-def]
+        return build(cell, *map(cell.device, roles))
+
+    return attempt
 
 
 @cache
@@ -28,6 +75,6 @@ def _documents(file: Path) -> dict[str, str]:
 
 
 @cache
-def _sections(file: Path) -> dict[str, dict[str, Any]]:
-    found: dict[str, dict[str, Any]] = yaml.safe_load(file.read_text("utf-8"))
+def _sections(file: Path) -> dict[str, Any]:
+    found: dict[str, Any] = yaml.safe_load(file.read_text("utf-8"))
     return found

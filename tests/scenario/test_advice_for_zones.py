@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.messages import Verb
-from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 
 from ..following import advised, follow, works
+from ..plants import read
 
 LEFT = "left: {kind: arm, model: scara, %s}"
 RIGHT = "right: {kind: arm, model: scara, base: {origin_m: [0.6, 0]}, %s}"
@@ -71,9 +71,7 @@ PLANTS = {
 
 def stopped_in_the_zone(folder: Path, plant: str, left: str, right: str) -> Rig:
     """Left is stopped at its target in the zone, and the board of right has booted."""
-    (folder / "recipes.py").write_text(RECIPES, "utf-8")
-    (folder / "plant.yaml").write_text(plant % (left, right), "utf-8")
-    rig = Rig(load(folder / "plant.yaml"))
+    rig = Rig(read(folder, plant % (left, right), RECIPES))
     rig.wait(1.0)
     for robot in ("left", "right"):
         if rig.plant.dispatcher.obstacles.of(robot) is not None:

@@ -6,10 +6,9 @@ from pathlib import Path
 
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Switch
-from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 
-from ..plants import plant_text
+from ..plants import plant_text, read
 from .restarts import ENDED
 
 PLANT = plant_text(__file__, "part_back")
@@ -24,9 +23,7 @@ def fetch(cell):
 
 
 def test_a_part_is_put_down_at_its_target_by_way_of_its_approach(tmp_path: Path) -> None:
-    (tmp_path / "plant.yaml").write_text(PLANT)
-    (tmp_path / "recipes.py").write_text(RECIPES)
-    rig = Rig(load(tmp_path / "plant.yaml"))
+    rig = Rig(read(tmp_path, PLANT, RECIPES))
     rig.wait(5.0)
     rack = rig.model.cell("bay").workspaces["arm"].targets["rack"]
     told: list[object] = []

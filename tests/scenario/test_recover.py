@@ -9,11 +9,10 @@ import pytest
 
 from arboleda.model.commands import Switch, Work
 from arboleda.model.messages import Reason, TaskState, Verb
-from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 from arboleda.trees.tree_run import step_of
 
-from ..plants import plant_text
+from ..plants import plant_text, read
 from .restarts import ENDED, restart
 
 PLANT = plant_text(__file__, "recover")
@@ -33,10 +32,7 @@ BOTH = f"{UNCLEAR}; and the rescue failed: {PLATE}"
 
 
 def written(folder: Path, *, python: str = "mover.put_away()", xml: str = "<mover_put_away/>") -> Rig:
-    (folder / "plant.yaml").write_text(PLANT)
-    (folder / "recipes.py").write_text(RECIPES.format(body=python))
-    (folder / "tree.xml").write_text(TREE.format(body=xml))
-    rig = Rig(load(folder / "plant.yaml"))
+    rig = Rig(read(folder, PLANT, RECIPES.format(body=python), beside={"tree.xml": TREE.format(body=xml)}))
     rig.wait(5.0)
     return rig
 

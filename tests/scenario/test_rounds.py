@@ -7,10 +7,9 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.messages import Reason, TaskState
-from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 
-from ..plants import plant_text
+from ..plants import plant_text, read
 from .restarts import ENDED
 
 PLANT = plant_text(__file__, "rounds")
@@ -43,12 +42,8 @@ def ended(folder: Path, recipe: str, body: str) -> Rig:
     """The plant once a task of this recipe, in Python or as XML, has ended."""
     other = "lamp.light(on=True)" if recipe == "tree" else "<lamp_blink/>"
     python, xml = (other, body) if recipe == "tree" else (body, other)
-    (folder / "plant.yaml").write_text(PLANT)
-    (folder / "rounds.py").write_text(RECIPE.format(body=python))
-    (folder / "tree.xml").write_text(
-        f'<root BTCPP_format="4"><BehaviorTree ID="Tree">{xml}</BehaviorTree></root>'
-    )
-    rig = Rig(load(folder / "plant.yaml"))
+    tree = f'<root BTCPP_format="4"><BehaviorTree ID="Tree">{xml}</BehaviorTree></root>'
+    rig = Rig(read(folder, PLANT, beside={"rounds.py": RECIPE.format(body=python), "tree.xml": tree}))
     rig.wait(3.0)
     rig.submit(f"bench {recipe} #one")
     rig.wait(60.0, until=lambda: rig.outcomes()["one"].state in ENDED)

@@ -7,10 +7,9 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.messages import TaskState, Verb
-from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 
-from ..plants import plant_text
+from ..plants import plant_text, read
 from .restarts import ENDED, restart
 
 PLANT = plant_text(__file__, "shared_in_trees")
@@ -31,9 +30,8 @@ HELD = {
 def asking(folder: Path, body: str) -> Rig:
     up = '<BehaviorTree ID="Up"><Sequence><lift_up/></Sequence></BehaviorTree>'
     tree = f'<BehaviorTree ID="T">{body}</BehaviorTree>'
-    (folder / "ride.xml").write_text(f'<root BTCPP_format="4" main_tree_to_execute="T">{tree}{up}</root>')
-    (folder / "plant.yaml").write_text(PLANT)
-    rig = Rig(load(folder / "plant.yaml"))
+    ride = f'<root BTCPP_format="4" main_tree_to_execute="T">{tree}{up}</root>'
+    rig = Rig(read(folder, PLANT, beside={"ride.xml": ride}))
     rig.wait(5.0)
     rig.submit("below ride #one")
     assert rig.wait(20.0, until=lambda: rig.plant.dispatcher.ledger.question("ana") is not None)

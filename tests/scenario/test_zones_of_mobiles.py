@@ -6,9 +6,8 @@ from pathlib import Path
 
 from arboleda.core.plant import Plant
 from arboleda.model.messages import MotionState, OperatorRequest, Report, Verb
-from arboleda.plant_file.loader import load
 
-from ..plants import plant_text
+from ..plants import plant_text, read
 
 LONELY = plant_text(__file__, "zones_of_mobiles")
 THERE_AND_BACK = """
@@ -22,9 +21,7 @@ def go(cell):
 
 
 def test_a_person_who_puts_it_home_gives_back_its_zone_though_nobody_sees_it(tmp_path: Path) -> None:
-    (tmp_path / "plant.yaml").write_text(LONELY.replace("joints", "state"), "utf-8")
-    (tmp_path / "recipes.py").write_text(THERE_AND_BACK, "utf-8")
-    plant = Plant(load(tmp_path / "plant.yaml"), epoch=7, now=0.0)
+    plant = Plant(read(tmp_path, LONELY.replace("joints", "state"), THERE_AND_BACK), epoch=7, now=0.0)
     assert plant.zones.request("one", frozenset({"gate"}))
     plant.step(0.1, [Report(at=0.1, robot="one", state=MotionState.STOPPED, epoch=1, plant=7)])
     assert plant.zones.holder("gate") == "one"

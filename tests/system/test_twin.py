@@ -28,9 +28,10 @@ from arboleda.wire.values import Telemetry
 
 from ..chromium import FEW_FRAMES, browsers, people
 from ..patience import PATIENCE_S
+from ..plants import written
 from ..unit.description import drawn
 from ..unit.kinds.test_places import PLANT as PARTS_AT_PLACES
-from ..unit.kinds.test_places import written
+from ..unit.kinds.test_places import recipe_of
 from .conftest import Process, paths
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright", "xacro", "urdf_parser_py")]
@@ -302,7 +303,7 @@ def close_to(drawn: Sequence[Sequence[float]], wanted: Sequence[Sequence[float]]
 
 
 def test_parts_are_drawn_at_their_places_and_in_the_hand(tmp_path: Path, look: Any, look_flat: Any) -> None:
-    file = written(tmp_path, PARTS_AT_PLACES, 'take("rack_1"), put("nest")')
+    file = written(tmp_path, PARTS_AT_PLACES, recipe_of('take("rack_1"), put("nest")'))
     model = loader.load(file)
     robot = Place(model, "mover")
     (space,) = model.cells[0].spaces

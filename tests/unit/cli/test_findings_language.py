@@ -13,6 +13,8 @@ from arboleda.model.sentence import Phrase
 from arboleda.web.languages import contents
 from arboleda.web.languages.templates import Templates
 
+from ...plants import rows
+
 SENTENCES: dict[str, str] = contents("es", "findings")["sentences"]
 
 
@@ -26,53 +28,7 @@ def test_each_sentence_has_the_values_of_its_english() -> None:
 
 @pytest.mark.parametrize(
     ("english", "spanish"),
-    [
-        (
-            "0 of 2 seeds, 2 min, 16 cycles, 1/s, 65 faults",
-            "0 de 2 semillas, 2 min, 16 ciclos, 1/s, 65 fallos",
-        ),
-        ("uses: gone, tend.xml", "uses: quitado, tend.xml"),
-        ("cell lab, places: new, gate (supply)", "celda lab, places: nuevo, gate (supply)"),
-        (
-            "zone nest, free_while: new, oven (door open): who is in a zone is not counted anew "
-            "while the plant runs",
-            "zona nest, free_while: nuevo, oven (door open): mientras la planta está en marcha no se "
-            "vuelve a contar quién está en una zona",
-        ),
-        (
-            "a: pick-up is 46 mm beside a part on ma at node 7, where path 0B ends",
-            "a: la recogida está a 46 mm de una pieza sobre ma en el nodo 7, donde termina el camino 0B",
-        ),
-        (
-            "b: pick-up A is 41 mm above the top of a part on mb at node 7, where path 0B ends",
-            "b: la recogida A está 41 mm por encima de la parte superior de una pieza sobre mb en el nodo 7, "
-            "donde termina el camino 0B",
-        ),
-        (
-            "b: at station 0, the part in the tool is 160 mm below the floor",
-            "b: en estación 0, la pieza en la herramienta está 160 mm por debajo del suelo",
-        ),
-        ("in cell lab: home lies in zone centre", "en la celda lab: home está en la zona centre"),
-        ("Page: http://127.0.0.1:8080", "Página: http://127.0.0.1:8080"),
-        (
-            "HTTP API: http://127.0.0.1:41/api/plant (port 8080 is taken)",
-            "API HTTP: http://127.0.0.1:41/api/plant (el puerto 8080 está ocupado)",
-        ),
-        (
-            "The certificate a.pem expires on 2027-01-01; make a new one, e.g. with mkcert",
-            "El certificado a.pem vence el 2027-01-01; haga uno nuevo, p. ej. con mkcert",
-        ),
-        ("OPC UA: opc.tcp://127.0.0.1:4840, read only", "OPC UA: opc.tcp://127.0.0.1:4840, solo lectura"),
-        (
-            'plant.yaml:25:18: cells.studio.queue_limit: must be a whole number, is "five"',
-            'plant.yaml:25:18: cells.studio.queue_limit: debe ser un número entero; es "five"',
-        ),
-        (
-            'table.turn.needs: there is no fact "clmp"; did you mean "clamp"?; facts: angle, clamp',
-            'table.turn.needs: no hay ningún dato "clmp"; ¿quiso decir "clamp"?; datos: angle, clamp',
-        ),
-        ("836 runs", "836 ejecuciones"),
-    ],
+    rows(__file__, "findings"),
 )
 def test_a_finding_is_said_in_spanish(english: str, spanish: str) -> None:
     assert findings("es")(english) == spanish

@@ -14,6 +14,8 @@ from arboleda.cli.main import cli
 from arboleda.cli.overview import SECTIONS
 from arboleda.web.languages import FIRST, LANGUAGES, contents
 
+from ...plants import rows
+
 OTHERS = [each for each in LANGUAGES if each != FIRST]
 OF_TYPER = "Show this message and exit."
 SHELLS = "--install-completion", "--show-completion"
@@ -99,26 +101,7 @@ def test_no_english_is_left_in_the_help_of_a_command(
 
 @pytest.mark.parametrize(
     ("arguments", "said"),
-    [
-        (["up", "--port", "x"], "Valor no válido para '--port': se espera un número entero"),
-        (["up", "--port", "0"], "Valor no válido para '--port': el mínimo es 1"),
-        (["up", "--port", "70000"], "Valor no válido para '--port': el máximo es 65535"),
-        (["up", "--rate", "x"], "Valor no válido para '--rate': se espera un número"),
-        (
-            ["tree", "storage", "--format", "gif"],
-            "Valor no válido para '--format': 'gif' no es uno de estos: 'ascii', 'svg', 'png', 'dot', 'xml'.",
-        ),
-        (["up", "--stor"], "No existe la opción --stor (opciones parecidas: --host, --port, --store)"),
-        (["up", "--zzz"], "No existe la opción --zzz"),
-        (["upp"], "No existe el comando 'upp'. ¿Quiso decir 'up'?"),
-        (["zzzzzz"], "No existe el comando 'zzzzzz'."),
-        (["answer"], "Falta el argumento 'PERSONA'."),
-        (["load", "lab"], "Valor no válido para 'LUGAR': falta"),
-        (["FILE"], "No existe el comando 'FILE'."),
-        (["stop", "a", "b"], "Sobra en los argumentos: b"),
-        (["up", "--port"], "La opción '--port' necesita un valor."),
-        (["up", "--demo=3"], "La opción '--demo' no lleva valor."),
-    ],
+    rows(__file__, "wrong_arguments"),
 )
 def test_wrong_arguments_are_refused_in_the_language(
     arguments: list[str], said: str, spanish: None, capsys: pytest.CaptureFixture[str]

@@ -15,6 +15,8 @@ from arboleda.model.recipe import Parameter, Recipe
 from arboleda.model.text import example, parse, spelled
 from arboleda.testing import shipped
 
+from ...plants import rows
+
 
 def colours(cell: Cell) -> Sequence[str]:
     return ["red", "green"]
@@ -138,25 +140,7 @@ def test_named_values_are_spelled_in_their_order() -> None:
 
 @pytest.mark.parametrize(
     ("asked", "sentence"),
-    [
-        ({"recipe": "pait"}, "'pait' is not a recipe of sis_a; there are paint, rest; did you mean paint?"),
-        ({}, "the task names no recipe of sis_a; there are paint, rest; write <cell> paint"),
-        ({"recipe": "paint"}, "paint of sis_a needs a value for colour, program"),
-        (
-            {"recipe": "paint", "values": {"color": "red"}},
-            "'color' is not a parameter of paint; there are colour, program; did you mean colour?",
-        ),
-        (
-            {"recipe": "rest", "values": {"colour": 1}},
-            "rest of sis_a takes no values, and 'colour' was given",
-        ),
-        (
-            {"recipe": "paint", "values": {"colour": "red green", "program": 1001}},
-            "colour of sis_a cannot be 'red green'; there are red, green",
-        ),
-        ({"recipe": "rest", "id": "a b"}, "'#a b' is not a task id"),
-        ({"recipe": "rest", "id": "t-1"}, "'#t-1' is not a task id; ids that start with t- are made by"),
-    ],
+    rows(__file__, "wrong_forms"),
 )
 def test_a_wrong_form_is_refused_with_the_word_that_is_wrong(asked: dict[str, Any], sentence: str) -> None:
     with pytest.raises(TextError) as refused:

@@ -13,10 +13,9 @@ from tests.readying import due, make_ready
 from arboleda.model.commands import Command, Query, Stop
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import Link
-from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 
-from ...plants import plant_text
+from ...plants import plant_text, read
 from .example_trials import OF_STORAGE, Case, Shop
 from .test_examples import CASES, PLAIN
 
@@ -111,9 +110,7 @@ def swap(cell):
 def test_an_arm_that_only_a_person_homes_is_led_out_of_the_zone_of_another(
     tmp_path: Path, at: float, device: str
 ) -> None:
-    (tmp_path / "recipes.py").write_text(SWAP)
-    (tmp_path / "plant.yaml").write_text(APART)
-    rig = Rig(load(tmp_path / "plant.yaml"), now=0.0)
+    rig = Rig(read(tmp_path, APART, SWAP), now=0.0)
     rig.wait(2.0)
     rig.submit("aa swap")
     rig.wait(at - 2.0)

@@ -14,10 +14,10 @@ from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import as_sentence
 from arboleda.model.verbs import Verb
 from arboleda.plant_check import advance_check, place_check
-from arboleda.plant_file.loader import load
 
+from ...plants import read
 from .test_places import PLANT as LAB
-from .test_places import Lab, advice, written
+from .test_places import Lab, advice, recipe_of
 
 PLANT = LAB.replace(
     "  oven:\n    facts",
@@ -62,24 +62,24 @@ def test_whether_a_part_is_on_the_bed_is_asked_after_a_failure(tmp_path: Path, r
     ],
 )
 def test_check_knows_what_is_made(tmp_path: Path, body: str, sentence: str) -> None:
-    warnings = advance_check.warnings(load(written(tmp_path, PLANT, body)))
+    warnings = advance_check.warnings(read(tmp_path, PLANT, recipe_of(body)))
     assert any(sentence in each for each in warnings), warnings
 
 
 def test_check_finds_nothing_wrong_with_a_part_that_is_made_and_taken(tmp_path: Path) -> None:
-    assert advance_check.warnings(load(written(tmp_path, PLANT, PRINT))) == ()
+    assert advance_check.warnings(read(tmp_path, PLANT, recipe_of(PRINT))) == ()
 
 
 def test_check_misses_the_place_of_what_is_made(tmp_path: Path) -> None:
     plant = PLANT.replace("inside: {of: oven}", "inside: {}")
-    (warning,) = place_check.warnings(load(written(tmp_path, plant, PRINT)))
+    (warning,) = place_check.warnings(read(tmp_path, plant, recipe_of(PRINT)))
     assert warning.startswith("lab: oven makes a part (print), and no place is of it; say where: ")
 
 
 def test_only_a_process_makes_a_part(tmp_path: Path) -> None:
     plant = PLANT.replace("effect: process, makes: part", "effect: motion, makes: part")
     with pytest.raises(ConfigError, match="only a process makes a part, and this is a motion"):
-        load(written(tmp_path, plant, PRINT))
+        read(tmp_path, plant, recipe_of(PRINT))
 
 
 def test_nothing_is_made_of_an_order_that_the_device_refuses(tmp_path: Path) -> None:

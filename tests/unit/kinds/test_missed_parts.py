@@ -9,9 +9,8 @@ import pytest
 
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.verbs import Verb
-from arboleda.plant_file.loader import load
 
-from ...plants import plant_text
+from ...plants import plant_text, read
 from .lab import Bench
 
 PLANT = plant_text(__file__, "missed_parts")
@@ -37,15 +36,9 @@ IN_THE_VISE = {"nest": 0, "vise": 1, "bin": 0}
 Happens = Callable[[Bench], None]
 
 
-def written(folder: Path, body: str, before: str = "", plant: str = PLANT) -> Path:
-    (folder / "recipes.py").write_text(RECIPE.format(body=body, before=before), "utf-8")
-    (folder / "plant.yaml").write_text(plant, "utf-8")
-    return folder / "plant.yaml"
-
-
-def lab(file: Path) -> Bench:
+def lab(folder: Path, body: str, before: str = "", plant: str = PLANT) -> Bench:
     """The lab with a part in its nest, and a task."""
-    bench = Bench(load(file))
+    bench = Bench(read(folder, plant, RECIPE.format(body=body, before=before)))
     bench.wait(1.0)
     assert bench.operate(Verb.LOAD, "lab", place="nest") is None
     bench.submit("lab try")
@@ -94,7 +87,7 @@ def loses_it(bench: Bench) -> None:
 @pytest.mark.parametrize("before", ["", TO_THE_BIN], ids=["back", "to_the_bin"])
 @pytest.mark.parametrize("body", [CHECKED, FAILS], ids=["checked", "unchecked"])
 def test_a_part_that_a_hand_missed_is_a_question_where_it_was(tmp_path: Path, body: str, before: str) -> None:
-    bench = lab(written(tmp_path, body, before))
+    bench = lab(tmp_path, body, before)
     closes_beside(bench)
     assert ended(bench).state is TaskState.FAILED
     assert (counts(bench), asked(bench)) == (THERE, ("nest",))
@@ -106,14 +99,14 @@ def test_a_part_that_a_hand_missed_is_a_question_where_it_was(tmp_path: Path, bo
 def test_a_task_that_looks_at_no_sensor_puts_nothing_where_its_hand_had_none(
     tmp_path: Path, happens: Happens, left: dict[str, int]
 ) -> None:
-    bench = lab(written(tmp_path, UNCHECKED))
+    bench = lab(tmp_path, UNCHECKED)
     happens(bench)
     assert ended(bench).state is TaskState.DONE
     assert counts(bench) == left
 
 
 def test_a_hand_that_says_on_its_way_that_it_is_empty_holds_no_part_in_the_books(tmp_path: Path) -> None:
-    bench = lab(written(tmp_path, UNCHECKED))
+    bench = lab(tmp_path, UNCHECKED)
     closes_beside(bench)
     body = bench.machines["mover"]
     assert bench.wait(60.0, lambda: body.effector and body.moving)
@@ -123,7 +116,7 @@ def test_a_hand_that_says_on_its_way_that_it_is_empty_holds_no_part_in_the_books
 
 
 def test_a_sensor_that_is_late_has_the_hand_take_the_part_after_all(tmp_path: Path) -> None:
-    bench = lab(written(tmp_path, UNCHECKED))
+    bench = lab(tmp_path, UNCHECKED)
     body = bench.machines["mover"]
     assert bench.wait(60.0, lambda: body.holding and body.moving)
     body.holding = False
@@ -135,7 +128,7 @@ def test_a_sensor_that_is_late_has_the_hand_take_the_part_after_all(tmp_path: Pa
 
 def test_where_nothing_is_checked_the_books_follow_the_effector(tmp_path: Path) -> None:
     plant = PLANT.replace("    places:", "    piece_check: false\n    places:")
-    bench = lab(written(tmp_path, UNCHECKED, plant=plant))
+    bench = lab(tmp_path, UNCHECKED, plant=plant)
     closes_beside(bench)
     assert ended(bench).state is TaskState.DONE
     assert counts(bench) == IN_THE_VISE
@@ -145,7 +138,7 @@ def test_where_nothing_is_checked_the_books_follow_the_effector(tmp_path: Path) 
 def test_what_a_slow_sensor_said_before_the_arm_left_counts_for_nothing(
     tmp_path: Path, seconds: float
 ) -> None:
-    bench = lab(written(tmp_path, UNCHECKED))
+    bench = lab(tmp_path, UNCHECKED)
     said_at = [bench.now]
 
     def slowly(piece: bool | None) -> bool | None:
@@ -160,7 +153,7 @@ def test_what_a_slow_sensor_said_before_the_arm_left_counts_for_nothing(
 
 
 def test_a_part_that_a_sensor_sees_lie_there_as_the_arm_leaves_was_not_in_the_hand(tmp_path: Path) -> None:
-    bench = lab(written(tmp_path, FAILS))
+    bench = lab(tmp_path, FAILS)
     closes_beside(bench)
     body = bench.machines["mover"]
     left_at: list[float] = []
@@ -176,7 +169,7 @@ def test_a_part_that_a_sensor_sees_lie_there_as_the_arm_leaves_was_not_in_the_ha
 
 
 def test_a_word_of_an_earlier_boot_of_the_board_counts_for_nothing(tmp_path: Path) -> None:
-    bench = lab(written(tmp_path, UNCHECKED))
+    bench = lab(tmp_path, UNCHECKED)
     body = bench.machines["mover"]
     assert bench.wait(60.0, lambda: body.holding and body.moving)
     bench.wait(0.3)
@@ -191,7 +184,7 @@ def test_a_word_of_an_earlier_boot_of_the_board_counts_for_nothing(tmp_path: Pat
 def test_a_restart_leaves_a_hand_empty_that_is_closed_and_has_no_part(
     tmp_path: Path, happens: Happens, left: dict[str, int]
 ) -> None:
-    bench = lab(written(tmp_path, WAITS))
+    bench = lab(tmp_path, WAITS)
     happens(bench)
     body = bench.machines["mover"]
     assert bench.wait(60.0, lambda: body.effector and body.moving)
@@ -206,7 +199,7 @@ def test_a_restart_leaves_a_hand_empty_that_is_closed_and_has_no_part(
 
 
 def test_a_sensor_that_sees_the_part_only_after_a_restart_has_the_hand_take_it(tmp_path: Path) -> None:
-    bench = lab(written(tmp_path, BY_HOME))
+    bench = lab(tmp_path, BY_HOME)
     body = bench.machines["mover"]
     sees = [True]
     says(bench, lambda piece: bool(piece) and sees[0])
@@ -223,7 +216,7 @@ def test_a_sensor_that_sees_the_part_only_after_a_restart_has_the_hand_take_it(t
 
 
 def test_a_hand_whose_sensor_fails_for_a_moment_knows_where_it_took_its_part(tmp_path: Path) -> None:
-    bench = lab(written(tmp_path, FAILS))
+    bench = lab(tmp_path, FAILS)
     body = bench.machines["mover"]
     sees = [True]
     says(bench, lambda piece: bool(piece) and sees[0])
@@ -237,7 +230,7 @@ def test_a_hand_whose_sensor_fails_for_a_moment_knows_where_it_took_its_part(tmp
 
 
 def test_a_dead_sensor_lets_no_hand_open_where_another_part_lies(tmp_path: Path) -> None:
-    bench = lab(written(tmp_path, UNCHECKED))
+    bench = lab(tmp_path, UNCHECKED)
     assert bench.operate(Verb.LOAD, "lab", place="vise") is None
     says(bench, lambda piece: False)
     assert bench.outcome(300.0).state is TaskState.FAILED
@@ -246,7 +239,7 @@ def test_a_dead_sensor_lets_no_hand_open_where_another_part_lies(tmp_path: Path)
 
 
 def test_a_hand_that_missed_its_part_may_open_where_that_still_lies(tmp_path: Path) -> None:
-    bench = lab(written(tmp_path, BACK))
+    bench = lab(tmp_path, BACK)
     closes_beside(bench)
     assert ended(bench).state is TaskState.DONE
     assert counts(bench) == THERE

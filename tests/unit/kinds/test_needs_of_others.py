@@ -6,11 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Reason
-from arboleda.plant_file.loader import load
 
-from ...plants import plant_text
+from ...plants import changed, plant_text, read, refused
 from .lab import Bench
 
 PLANT = plant_text(__file__, "needs_of_others")
@@ -43,22 +41,9 @@ def hasty(cell):
 
 @pytest.fixture
 def bench(tmp_path: Path) -> Bench:
-    here = Bench(load(written(tmp_path, PLANT)))
+    here = Bench(read(tmp_path, PLANT, RECIPES))
     here.wait(1.0)
     return here
-
-
-def written(folder: Path, plant: str) -> Path:
-    (folder / "recipes.py").write_text(RECIPES, "utf-8")
-    (folder / "plant.yaml").write_text(plant, "utf-8")
-    return folder / "plant.yaml"
-
-
-def problems(folder: Path, old: str, new: str) -> list[str]:
-    assert old in PLANT
-    with pytest.raises(ConfigError) as caught:
-        load(written(folder, PLANT.replace(old, new, 1)))
-    return [each.partition(": ")[2] for each in caught.value.problems]
 
 
 def test_a_verb_leaves_while_its_need_is_met(bench: Bench) -> None:
@@ -124,5 +109,5 @@ def test_a_verb_is_refused_while_the_other_device_is_not_heard(bench: Bench) -> 
     ],
 )
 def test_a_wrong_need_is_named_with_what_is_allowed(tmp_path: Path, old: str, new: str, problem: str) -> None:
-    found = problems(tmp_path, old, new)
+    found = refused(tmp_path, changed(PLANT, (old, new)), RECIPES)
     assert any(problem in each for each in found), found

@@ -13,22 +13,20 @@ from arboleda.dispatch.belief import Belief
 from arboleda.model.advice import in_words
 from arboleda.model.cell_states import CellState
 from arboleda.model.commands import FRESH_S
-from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Reason, TaskState
 from arboleda.model.verbs import Verb
-from arboleda.plant_file.loader import load
 from arboleda.rig.world import PLANT as PLANT_PROCESS
 from arboleda.views import view
 from arboleda.wire.transport import Publication
 
-from ...plants import plant_text
+from ...plants import plant_text, read, refused
 from .lab import Bench
 
 PLANT = plant_text(__file__, "places")
 
 
-def written(folder: Path, plant: str, body: str) -> Path:
-    code = f"""
+def recipe_of(body: str) -> str:
+    return f"""
 from arboleda.recipes import recipe, work
 
 @recipe("try")
@@ -37,16 +35,13 @@ def attempt(cell):
     take, put = lambda at: mover.visit(at, hand.close()), lambda at: mover.visit(at, hand.open())
     return work({body})
 """
-    (folder / "recipes.py").write_text(code, "utf-8")
-    (folder / "plant.yaml").write_text(plant, "utf-8")
-    return folder / "plant.yaml"
 
 
 class Lab:
     """Bench with a recipe whose steps a test writes."""
 
     def __init__(self, folder: Path, body: str, plant: str = PLANT) -> None:
-        self.bench = Bench(load(written(folder, plant, body)))
+        self.bench = Bench(read(folder, plant, recipe_of(body)))
         self.bench.wait(1.0)
         self.places = self.bench.plant.cells["lab"].context.places
 
@@ -135,8 +130,7 @@ def test_a_cart_has_brought_a_part_where_it_stands_only(
     tmp_path: Path, at: str, sentence: str | None
 ) -> None:
     body = f'mover.visit("{at}", oven.roll_in())'
-    file = written(tmp_path, CARTED, body)
-    bench = Bench(load(file))
+    bench = Bench(read(tmp_path, CARTED, recipe_of(body)))
     bench.wait(1.0)
     bench.submit("lab try")
     end = bench.outcome(300.0)
@@ -247,9 +241,8 @@ def test_a_wrong_place_is_named_with_what_is_allowed(
 ) -> None:
     assert PLANT.count(old) >= 1
     head, mark, tail = PLANT.partition("    places:\n")
-    with pytest.raises(ConfigError) as caught:
-        load(written(tmp_path, head + mark + tail.replace(old, new, 1), "mover.home()"))
-    assert any(problem in each for each in caught.value.problems), caught.value.problems
+    found = refused(tmp_path, head + mark + tail.replace(old, new, 1), recipe_of("mover.home()"))
+    assert any(problem in each for each in found), found
 
 
 SHARE_A_LAMP = plant_text(__file__, "places_share_a_lamp")
@@ -258,9 +251,7 @@ SHARE_A_LAMP = plant_text(__file__, "places_share_a_lamp")
 def test_a_cell_that_shares_a_device_has_places_of_its_own(tmp_path: Path) -> None:
     head = "from arboleda.recipes import recipe\n\n"
     recipe = '@recipe("look")\ndef look(cell):\n    return cell.device("arm").go("nest")\n'
-    (tmp_path / "recipes.py").write_text(head + recipe, "utf-8")
-    (tmp_path / "plant.yaml").write_text(SHARE_A_LAMP, "utf-8")
-    bench = Bench(load(tmp_path / "plant.yaml"))
+    bench = Bench(read(tmp_path, SHARE_A_LAMP, head + recipe))
     bench.wait(1.0)
 
     def parts() -> dict[str, int]:
@@ -280,9 +271,7 @@ def test_a_person_who_sees_to_a_place_that_cells_share_has_seen_to_it_for_all_of
     head = "from arboleda.recipes import recipe, work\n\n"
     steps = 'arm.visit("nest", hand.close()), arm.visit("bin", hand.open())'
     body = f'    arm, hand = cell.devices("arm", "hand")\n    return work({steps})\n'
-    (tmp_path / "recipes.py").write_text(f'{head}@recipe("clear")\ndef clear(cell):\n{body}', "utf-8")
-    (tmp_path / "plant.yaml").write_text(SHARE_AN_ARM, "utf-8")
-    bench = Bench(load(tmp_path / "plant.yaml"))
+    bench = Bench(read(tmp_path, SHARE_AN_ARM, f'{head}@recipe("clear")\ndef clear(cell):\n{body}'))
     bench.wait(1.0)
 
     def parts() -> dict[str, int]:
@@ -299,9 +288,7 @@ def test_a_person_who_sees_to_a_place_that_cells_share_has_seen_to_it_for_all_of
 
 
 def test_a_place_is_loaded_with_no_more_than_each_cell_that_shares_it_has_room_for(tmp_path: Path) -> None:
-    (tmp_path / "recipes.py").write_text(HANDED_OVER, "utf-8")
-    (tmp_path / "plant.yaml").write_text(SUPPLIED_ON_THE_RIGHT, "utf-8")  # 9 on the left, 1 on the right
-    bench = Bench(load(tmp_path / "plant.yaml"))
+    bench = Bench(read(tmp_path, SUPPLIED_ON_THE_RIGHT, HANDED_OVER))
     bench.wait(1.0)
     too_many = bench.operate(Verb.LOAD, "left", place="bin", parts=2)
     assert too_many == "bin of left holds 1 to 1 parts, not 2"
@@ -472,9 +459,7 @@ def rest(cell):
 
 
 def test_what_another_cell_puts_at_a_place_of_both_is_no_question_to_this_one(tmp_path: Path) -> None:
-    (tmp_path / "recipes.py").write_text(HANDED_OVER, "utf-8")
-    (tmp_path / "plant.yaml").write_text(SUPPLIED_ON_THE_RIGHT, "utf-8")
-    bench = Bench(load(tmp_path / "plant.yaml"))
+    bench = Bench(read(tmp_path, SUPPLIED_ON_THE_RIGHT, HANDED_OVER))
     bench.wait(1.0)
     ends = []
     for task in ("left fail", "right bring"):

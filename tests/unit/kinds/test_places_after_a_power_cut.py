@@ -5,10 +5,9 @@ from __future__ import annotations
 import pytest
 
 from arboleda.model.plant_model import PlantModel
-from arboleda.plant_file.loader import load
 from arboleda.testing import Rig
 
-from ...plants import plant_text
+from ...plants import plant_text, read
 
 PLANT = plant_text(__file__, "places_after_a_power_cut")
 RECIPES = """
@@ -24,9 +23,7 @@ def bring(cell):
 @pytest.fixture(scope="module")
 def model(tmp_path_factory: pytest.TempPathFactory) -> PlantModel:
     folder = tmp_path_factory.mktemp("lab")
-    (folder / "plant.yaml").write_text(PLANT, "utf-8")
-    (folder / "recipes.py").write_text(RECIPES, "utf-8")
-    return load(folder / "plant.yaml")
+    return read(folder, PLANT, RECIPES)
 
 
 def parts_after_a_cut(model: PlantModel, at_s: float) -> int | None:

@@ -6,10 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.model.errors import ConfigError
-from arboleda.plant_file.loader import load
-
-from ...plants import plant_text
+from ...plants import changed, plant_text, read, refused
 from .lab import Bench
 
 PLANT = plant_text(__file__, "zones_of_devices")
@@ -54,15 +51,9 @@ TREE = """
 """
 
 
-def written(folder: Path, plant: str) -> Path:
-    (folder / "recipes.py").write_text(RECIPES, "utf-8")
-    (folder / "plant.yaml").write_text(plant, "utf-8")
-    return folder / "plant.yaml"
-
-
 @pytest.fixture
 def press(tmp_path: Path) -> Bench:
-    here = Bench(load(written(tmp_path, PLANT)))
+    here = Bench(read(tmp_path, PLANT, RECIPES))
     here.wait(1.0)
     return here
 
@@ -96,10 +87,8 @@ def test_a_verb_is_not_told_into_a_zone_that_stays_taken(press: Bench) -> None:
 def test_a_device_that_is_asked_is_in_the_zone_until_it_has_answered(tmp_path: Path, recipe: str) -> None:
     asks = "look: {effect: query, answers: [free, jammed], takes_s: 2}\n      push:"
     plant = PLANT.replace("push:", asks, 1).replace("[push]", "[look]").replace("[rec", "[tree.xml, rec")
-    path = written(tmp_path, plant)
-    (tmp_path / "recipes.py").write_text(RECIPES + (LOOKS if recipe == "look" else ""), "utf-8")
-    (tmp_path / "tree.xml").write_text(TREE, "utf-8")
-    here = Bench(load(path))
+    recipes = RECIPES + (LOOKS if recipe == "look" else "")
+    here = Bench(read(tmp_path, plant, recipes, {"tree.xml": TREE}))
     here.wait(1.0)
     here.submit(f"press {recipe}")
     assert here.wait(1.0, lambda: "feeder look" in here.told)
@@ -118,7 +107,5 @@ def test_a_device_that_is_asked_is_in_the_zone_until_it_has_answered(tmp_path: P
     ],
 )
 def test_a_wrong_word_is_named_with_what_is_allowed(tmp_path: Path, old: str, new: str, problem: str) -> None:
-    assert old in PLANT
-    with pytest.raises(ConfigError) as caught:
-        load(written(tmp_path, PLANT.replace(old, new, 1)))
-    assert any(problem in each for each in caught.value.problems), caught.value.problems
+    found = refused(tmp_path, changed(PLANT, (old, new)), RECIPES)
+    assert any(problem in each for each in found), found

@@ -10,7 +10,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_check import advance_check
 from arboleda.plant_file.loader import load
 
-from ...plants import plant_text
+from ...plants import plant_text, read
 
 PLANT = plant_text(__file__, "advance_check")
 STORAGE = plant_text(__file__, "advance_check_storage")
@@ -33,9 +33,7 @@ def attempt(cell):
     seen = reader.read()
     return work({body})
 """
-    (folder / "recipes.py").write_text(code, "utf-8")
-    (folder / "plant.yaml").write_text(PLANT, "utf-8")
-    return load(folder / "plant.yaml")
+    return read(folder, PLANT, code)
 
 
 def warned(folder: Path, body: str, decorator: str = '"try"') -> list[str]:
@@ -303,9 +301,7 @@ def attempt(cell, path=Path(), station=Slot("stations")):
     arm.brings_back_to(pickup)
     return work(mobile.follow(path), arm.tour(Pick(pickup), Place(station), "home"))
 """
-    (tmp_path / "recipes.py").write_text(code, "utf-8")
-    (tmp_path / "plant.yaml").write_text(STORAGE, "utf-8")
-    assert advance_check.warnings(load(tmp_path / "plant.yaml")) == ()
+    assert advance_check.warnings(read(tmp_path, STORAGE, code)) == ()
 
 
 ADVICE = {
@@ -358,7 +354,5 @@ BY_150 = '{"> 150": [], "> 120 and <= 150": %s, "otherwise": %s}'
 def test_two_choices_by_one_question_go_by_the_same_answer(
     tmp_path: Path, verb: str, first: str, then: str, *, is_sound: bool
 ) -> None:
-    (tmp_path / "plant.yaml").write_text(NUMBERS, "utf-8")
-    (tmp_path / "recipes.py").write_text(CHOICES % (verb, first, then), "utf-8")
-    found = advance_check.warnings(load(tmp_path / "plant.yaml"))
+    found = advance_check.warnings(read(tmp_path, NUMBERS, CHOICES % (verb, first, then)))
     assert ["which needs at of gate to be left" in each for each in found] == [True] * (not is_sound)

@@ -8,8 +8,8 @@ import pytest
 
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_check import advance_check
-from arboleda.plant_file.loader import load
 
+from ...plants import read
 from .test_advance_check import PLANT
 
 TREE = """<root BTCPP_format="4" main_tree_to_execute="Main"><BehaviorTree ID="Main"><Sequence>
@@ -46,9 +46,8 @@ def if_clear(then: str, otherwise: str) -> str:
 
 
 def written(folder: Path, body: str, more: str = "") -> PlantModel:
-    (folder / "attempt.xml").write_text(TREE.format(body=body, more=more), "utf-8")
-    (folder / "plant.yaml").write_text(PLANT.replace("recipes.py", "attempt.xml"), "utf-8")
-    return load(folder / "plant.yaml")
+    tree = TREE.format(body=body, more=more)
+    return read(folder, PLANT.replace("recipes.py", "attempt.xml"), beside={"attempt.xml": tree})
 
 
 def warned(folder: Path, body: str, more: str = "") -> list[str]:
@@ -192,6 +191,5 @@ def test_a_node_in_python_names_where_parts_are_brought_back_to(tmp_path: Path) 
     assert "with a part that goes back to drawer after a failure" in found
     (tmp_path / "nodes.py").write_text(BACK, "utf-8")
     plant = PLANT.replace("recipes.py", "nodes.py, attempt.xml")
-    (tmp_path / "attempt.xml").write_text(TREE.format(body=f'<BringsBackTo target="bin"/>{early}', more=""))
-    (tmp_path / "plant.yaml").write_text(plant, "utf-8")
-    assert advance_check.warnings(load(tmp_path / "plant.yaml")) == ()
+    tree = TREE.format(body=f'<BringsBackTo target="bin"/>{early}', more="")
+    assert advance_check.warnings(read(tmp_path, plant, beside={"attempt.xml": tree})) == ()

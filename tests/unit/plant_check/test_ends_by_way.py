@@ -9,9 +9,8 @@ import pytest
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_check import advance_check
-from arboleda.plant_file.loader import load
 
-from ...plants import plant_text
+from ...plants import plant_text, read
 
 PLANT = plant_text(__file__, "ends_by_way")
 RECIPES = """
@@ -74,8 +73,7 @@ def sorting(
     name = "sort.xml" if recipe is TREE else "recipes.py"
     text = recipe.replace("ENDS", ends).replace("GOOD", ways[0]).replace("BAD", ways[1])
     (folder / name).write_text(text, "utf-8")
-    (folder / "plant.yaml").write_text(plant.replace("USES", name), "utf-8")
-    return load(folder / "plant.yaml")
+    return read(folder, plant.replace("USES", name))
 
 
 def warned(plant: PlantModel) -> list[str]:

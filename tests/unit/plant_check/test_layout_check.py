@@ -15,7 +15,7 @@ from arboleda.plant_check.layout_mends import moved_grid
 from arboleda.plant_file import loader
 from arboleda.testing import shipped
 
-from ...plants import plant_text
+from ...plants import plant_text, rows
 
 ROOT = Path(__file__).parents[3]
 EXAMPLES = sorted((ROOT / "examples" / "plants").glob("*.yaml"))
@@ -42,61 +42,7 @@ def warned(tmp_path: Path) -> Warned:
     return read
 
 
-WRONG = {  # text in the file, put in its place, what is said
-    "beside its node": (
-        "[0.2, 1.566]",
-        "[0.2, 1.52]",
-        "a: pick-up is 46 mm beside a part on ma at node 7, where path 0B ends"
-        "; write origin_m: [0.199, 1.566] of its grid",
-    ),
-    "above the part": (
-        "[35, 10, 145.5, -65.5, -90, 0]",
-        "[35, 4.2, 144.33, -58.53, -90, 0]",
-        "b: pick-up is 41 mm above the top of a part on mb at node 7, where path 0B ends"
-        "; teach it 41 mm lower",
-    ),
-    "into the part": (
-        "pickup: {deg: [45, 10], mm: 0}",
-        "pickup: {deg: [45, 10], mm: 80}",
-        "a: pick-up is 78 mm below the top of a part on ma at node 7, where path 0B ends; write mm: 2",
-    ),
-    "out of reach": (
-        "[0.2, 1.566]",
-        "[0.2, 2.566]",
-        "a: node 7 is out of reach, 2.17 m away; ra reaches 1.17 m (path 0B)"
-        "; write origin_m: [0.199, 1.566] of its grid",
-    ),
-    "stations in each other": (
-        "1: {deg: [5, 10]",
-        "1: {deg: [1, 10]",
-        "a: station 0 and 1 are 20 mm apart; a part is 24 mm wide and 40 mm high; put them 24 mm apart",
-    ),
-    "below the floor": (
-        "0, -132.69, 42.69",
-        "-60, -90, 60",
-        "b: at station 0, the part in the tool is 160 mm below the floor; teach it 160 mm higher",
-    ),
-    "bases": (
-        "base: {origin_m: [0.75, -1.2], yaw_deg: 32.71}",
-        "base: {origin_m: [0.2, 0], yaw_deg: 32.71}",
-        "the base of ra and the base of rb overlap; move one of them by 45 mm",
-    ),
-    "a base on a grid": (
-        "grid: {origin_m: [0.55, -2.104]}",
-        "grid: {origin_m: [0.55, -1.4]}",
-        "the base of rb and the grid of mb overlap; move one of them by 345 mm",
-    ),
-    "grids": (
-        "grid: {origin_m: [0.55, -2.104]}",
-        "grid: {origin_m: [0.1, 1.4]}",
-        "the grid of ma and the grid of mb overlap; move one of them by 200 mm",
-    ),
-    "a station on a grid": (
-        "grid: {origin_m: [0.55, -2.104]}",
-        "grid: {origin_m: [0.75, 0.6]}",
-        "a: station 0 stands on the grid of mb; move one of them by 136 mm",
-    ),
-}
+WRONG = rows(__file__, "layout_check")
 
 
 @pytest.mark.sampled(6)

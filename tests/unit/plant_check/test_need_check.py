@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from arboleda.plant_check import checks
-from arboleda.plant_file.loader import load
+
+from ...plants import read
 
 PLANT = """
 name: lab
@@ -46,6 +47,5 @@ SILENT = "of oven, and oven reports no facts (evidence: state); it is always ref
 def test_it_names_verbs_that_need_what_a_device_never_reports(
     tmp_path: Path, own: str, evidence: str, said: list[str]
 ) -> None:
-    (tmp_path / "turn.xml").write_text(TREE, "utf-8")
-    (tmp_path / "plant.yaml").write_text(PLANT.format(own=own, evidence=evidence), "utf-8")
-    assert list(checks.unmet_needs(load(tmp_path / "plant.yaml"))) == said
+    plant = read(tmp_path, PLANT.format(own=own, evidence=evidence), beside={"turn.xml": TREE})
+    assert list(checks.unmet_needs(plant)) == said

@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 
 from arboleda.plant_check import passed_over
-from arboleda.plant_file.loader import load
 
-from ...plants import plant_text
+from ...plants import plant_text, read
 from .test_advance_check_of_trees import (
     CLOSE,
     HOME,
@@ -95,11 +94,8 @@ PUMP = plant_text(__file__, "passed_over")
 def test_of_work_that_sets_no_fact_answers_may_tell_and_facts_that_no_verb_sets(
     tmp_path: Path, asks: str, is_told: bool
 ) -> None:
-    (tmp_path / "pour.xml").write_text(
-        TREE.format(body=f"<ForceSuccess><pump_pour/></ForceSuccess>{asks}", more="")
-    )
-    (tmp_path / "plant.yaml").write_text(PUMP)
-    assert bool(passed_over.warnings(load(tmp_path / "plant.yaml"))) is is_told
+    tree = TREE.format(body=f"<ForceSuccess><pump_pour/></ForceSuccess>{asks}", more="")
+    assert bool(passed_over.warnings(read(tmp_path, PUMP, beside={"pour.xml": tree}))) is is_told
 
 
 @pytest.mark.parametrize(

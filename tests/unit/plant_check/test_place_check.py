@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 
 from arboleda.plant_check import place_check
-from arboleda.plant_file.loader import load
 
-from ...plants import plant_text
+from ...plants import changed, plant_text, read
 
 PLANT = plant_text(__file__, "place_check")
 RECIPES = """
@@ -24,13 +23,7 @@ NEEDS = "    needs: {left.go: {oven.door: open}}\nzones:\n"
 
 
 def warned(folder: Path, *edits: tuple[str, str]) -> tuple[str, ...]:
-    text = PLANT
-    for old, new in edits:
-        assert text.count(old) == 1
-        text = text.replace(old, new)
-    (folder / "recipes.py").write_text(RECIPES, "utf-8")
-    (folder / "plant.yaml").write_text(text, "utf-8")
-    return place_check.warnings(load(folder / "plant.yaml"))
+    return place_check.warnings(read(folder, changed(PLANT, *edits), RECIPES))
 
 
 def test_nothing_is_wrong_with_a_plant_that_says_all(tmp_path: Path) -> None:
@@ -102,9 +95,8 @@ def said_of_seat(folder: Path, *words: str) -> list[str]:
     cells = [
         CELL.replace("NAME", name).replace("WORDS", each) for name, each in zip("abcd", words, strict=False)
     ]
-    (folder / "recipes.py").write_text(LOOK)
-    (folder / "plant.yaml").write_text(COMMON + "".join(cells))
-    return [each for each in place_check.warnings(load(folder / "plant.yaml")) if "seat" in each]
+    plant = read(folder, COMMON + "".join(cells), LOOK)
+    return [each for each in place_check.warnings(plant) if "seat" in each]
 
 
 def test_one_place_that_four_cells_describe_differently_is_told_once(tmp_path: Path) -> None:

@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 
 from arboleda.plant_check import advance_check
-from arboleda.plant_file.loader import load
 
-from ...plants import plant_text
+from ...plants import plant_text, read
 
 PLANT = plant_text(__file__, "shared_ends")
 RECIPES = """
@@ -27,9 +26,7 @@ HOLDS = f"{GIVES}write stand.lock(on=False) before"
 
 def checked(folder: Path, body: str, ends: str = "{}") -> tuple[list[str], list[str]]:
     """What is warned of, and what is said of the end."""
-    (folder / "plant.yaml").write_text(PLANT)
-    (folder / "recipes.py").write_text(RECIPES.replace("BODY", body).replace("ENDS", ends))
-    plant = load(folder / "plant.yaml")
+    plant = read(folder, PLANT, RECIPES.replace("BODY", body).replace("ENDS", ends))
     warned = [each.split(":1: ")[1] for each in advance_check.warnings(plant)]
     return warned, list(advance_check.ends(plant))
 

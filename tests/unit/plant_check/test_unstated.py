@@ -12,7 +12,7 @@ from arboleda.plant_check.mend import edited
 from arboleda.plant_check.offers import offers
 from arboleda.plant_file import loader
 
-from ...plants import plant_text
+from ...plants import changed, plant_text, read, written
 
 PLANT = plant_text(__file__, "unstated")
 RECIPE = """
@@ -41,6 +41,8 @@ def oven(settings: Oven) -> Kind:
     }
     return Kind(facts={"door": ["closed", "open"]}, verbs=verbs)
 """
+OVEN = PLANT[PLANT.index("kinds:") : PLANT.index("cells:")]
+OF_PYTHON = changed(PLANT, (OVEN, ""), ("[recipes.py]", "[recipes.py, kinds.py]"))
 PLACES = "lab: nothing is known of where parts lie"
 GUARD = "lab: nothing is known of who else is in the zone in_the_oven of loader"
 NEEDS = "lab: nothing is known of what bake of oven needs"
@@ -51,43 +53,36 @@ STATED = (
 ).replace("zones:", "    places: {rack: {supply: true}, inside: {of: oven}}\nzones:")
 
 
-def written(folder: Path, plant: str) -> Path:
-    (folder / "recipes.py").write_text(RECIPE)
-    (folder / "plant.yaml").write_text(plant)
-    return folder / "plant.yaml"
-
-
 def test_nothing_is_offered_where_all_of_it_is_stated(tmp_path: Path) -> None:
-    assert unstated.notes(loader.load(written(tmp_path, STATED))) == ()
+    assert unstated.notes(read(tmp_path, STATED, RECIPE)) == ()
 
 
 def test_work_may_need_nothing(tmp_path: Path) -> None:
     free = PLANT.replace("takes_s: 5", "takes_s: 5, needs: {}")
-    assert NEEDS not in unstated.unknowns(loader.load(written(tmp_path, free)))
+    assert NEEDS not in unstated.unknowns(read(tmp_path, free, RECIPE))
 
 
 @pytest.mark.parametrize(("more", "is_known"), [("", False), (", needs={}", True)])
 def test_work_of_a_kind_in_python_may_need_nothing(tmp_path: Path, more: str, is_known: bool) -> None:
-    oven = PLANT[PLANT.index("kinds:") : PLANT.index("cells:")]
-    file = written(tmp_path, PLANT.replace(oven, "").replace("[recipes.py]", "[recipes.py, kinds.py]"))
-    (tmp_path / "kinds.py").write_text(KIND.replace("takes_s=5", f"takes_s=5{more}"))
-    assert (NEEDS not in unstated.unknowns(loader.load(file))) is is_known
+    kinds = {"kinds.py": KIND.replace("takes_s=5", f"takes_s=5{more}")}
+    plant = read(tmp_path, OF_PYTHON, RECIPE, kinds)
+    assert (NEEDS not in unstated.unknowns(plant)) is is_known
 
 
 def test_a_zone_with_two_robots_guards_them(tmp_path: Path) -> None:
-    other = PLANT.replace(
-        "      oven: {kind: oven}\n", "      oven: {kind: oven}\n      cart: {kind: mobile}\n"
+    both = changed(
+        PLANT,
+        ("      oven: {kind: oven}\n", "      oven: {kind: oven}\n      cart: {kind: mobile}\n"),
+        ("      rack:", "      gate: {cart: {node: 3}}\n      rack:"),
+        ("home: {loader: {deg: [0, 0], mm: 0}}", "home: {loader: {deg: [0, 0], mm: 0}, cart: {node: 0}}"),
+        ("[lab inside]", "[lab inside, lab gate]"),
     )
-    both = other.replace("      rack:", "      gate: {cart: {node: 3}}\n      rack:").replace(
-        "home: {loader: {deg: [0, 0], mm: 0}}", "home: {loader: {deg: [0, 0], mm: 0}, cart: {node: 0}}"
-    )
-    model = loader.load(written(tmp_path, both.replace("[lab inside]", "[lab inside, lab gate]")))
-    assert GUARD not in unstated.unknowns(model)
+    assert GUARD not in unstated.unknowns(read(tmp_path, both, RECIPE))
 
 
 @pytest.mark.parametrize("number", range(3))
 def test_an_offer_is_edits_of_which_each_alone_states_it(tmp_path: Path, number: int) -> None:
-    file = written(tmp_path, PLANT)
+    file = written(tmp_path, PLANT, RECIPE)
     offer = offers(file.name, PLANT, loader.load(file))[number]
     for edit in offer.edits:
         file.write_text(edited({file.name: PLANT}, [edit])[file.name])
@@ -95,9 +90,7 @@ def test_an_offer_is_edits_of_which_each_alone_states_it(tmp_path: Path, number:
 
 
 def test_no_edit_is_offered_for_what_is_to_stand_in_another_file(tmp_path: Path) -> None:
-    oven = PLANT[PLANT.index("kinds:") : PLANT.index("cells:")]
-    file = written(tmp_path, PLANT.replace(oven, "").replace("[recipes.py]", "[recipes.py, kinds.py]"))
-    (tmp_path / "kinds.py").write_text(KIND)
+    file = written(tmp_path, OF_PYTHON, RECIPE, {"kinds.py": KIND})
     found = offers(file.name, file.read_text(), loader.load(file))
     assert [each.sentence for each in found] == [PLACES, GUARD]
     of_draft = draft_check.check(PlantFiles(plant=file.name, contents={file.name: file.read_bytes()}), file)

@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 
 from arboleda.plant_check import checks
-from arboleda.plant_file import loader
 
-from ...plants import plant_text
+from ...plants import plant_text, read
 
 PLANT = plant_text(__file__, "unused_steps")
 RECIPE = """
@@ -23,9 +22,7 @@ def x(cell, how: Choice["once", "twice"]):
 
 
 def warned(folder: Path, body: str) -> list[str]:
-    (folder / "recipes.py").write_text(RECIPE + body)
-    (folder / "plant.yaml").write_text(PLANT)
-    return [each.partition("recipes.py:")[2] for each in checks.warnings(loader.load(folder / "plant.yaml"))]
+    return [each.partition("recipes.py:")[2] for each in checks.warnings(read(folder, PLANT, RECIPE + body))]
 
 
 def test_a_step_with_a_name_that_stands_nowhere_is_warned_of_once(tmp_path: Path) -> None:

@@ -8,9 +8,8 @@ import pytest
 
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_check import advance_check, place_check
-from arboleda.plant_file.loader import load
 
-from ...plants import plant_text
+from ...plants import plant_text, read
 
 PLANT = plant_text(__file__, "common_outputs")
 RECIPES = """
@@ -32,9 +31,7 @@ def clean(cell):
 
 
 def rack(folder: Path, plant: str = PLANT) -> PlantModel:
-    (folder / "recipes.py").write_text(RECIPES, "utf-8")
-    (folder / "plant.yaml").write_text(plant, "utf-8")
-    return load(folder / "plant.yaml")
+    return read(folder, plant, RECIPES)
 
 
 def test_check_has_nothing_against_it(tmp_path: Path) -> None:

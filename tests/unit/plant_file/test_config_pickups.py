@@ -11,7 +11,7 @@ from arboleda.model.plant_model import Cell
 from arboleda.plant_file import loader
 from arboleda.testing.storage_layout import StorageLayout
 
-from ...plants import plant_text
+from ...plants import plant_text, rows
 
 TEXT = plant_text(__file__, "config_pickups")
 ONE = "    pickup: {deg: [45, 10], mm: 0}\n"
@@ -73,22 +73,7 @@ def test_palletizing_and_zones_name_the_pick_up_of_an_exit(tmp_path: Path) -> No
     assert StorageLayout(read).space.zones == {"z"}
 
 
-MISTAKES = {
-    "none": ("", "6:5: cells.a", 'the key "pickup" is missing'),
-    "one exit left": (TWO, "cells.a.pickups: ", "the exit B of the paths has no pick-up"),
-    "no such exit": (ONE + "    pickups: {D: {deg: [1, 1], mm: 0}}\n", "pickups.D: ", "there is A, B or C"),
-    "the same exit twice": (
-        ONE + "    pickups: {A: {deg: [1, 1], mm: 0}, a: {deg: [1, 1], mm: 0}}\n",
-        "pickups.a: ",
-        'the same exit as "A"',
-    ),
-    "outside limits": (
-        ONE + "    pickups: {A: {deg: [1, 999], mm: 0}}\n",
-        "A.deg[1]: ",
-        "999 deg is outside",
-    ),
-    "empty": (ONE + "    pickups: {}\n", "cells.a.pickups: ", "at least 1 value"),
-}
+MISTAKES = rows(__file__, "config_pickups")
 
 
 @pytest.mark.parametrize(("text", "where", "why"), MISTAKES.values(), ids=MISTAKES)

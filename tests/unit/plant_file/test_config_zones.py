@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.model.errors import ConfigError
-from arboleda.model.plant_model import Cell, Crossing, PlantModel, Pose, Retry, Timing
+from arboleda.model.plant_model import Cell, Crossing, Pose, Retry, Timing
 from arboleda.plant_file import loader
 from arboleda.testing.storage_layout import StorageLayout
+
+from ...plants import changed, read, refused, rows
 
 DOCS = Path(__file__).parents[3] / "docs" / "how-to" / "plant-file.md"
 PLANT = files("arboleda").joinpath("plants/plant.yaml").read_text("utf-8")
@@ -25,71 +26,8 @@ zones:
       - [SIS_A  station 2, sis_a home]
       - [sis_b pickup, sis_b home]
 """
-MISTAKES = {  # id: (text in ZONES, put in its place, the sentence starts with, and has in it)
-    "unknown cell": ("sis_a pickup", "sis_aa pickup", "3:13: zones.centre.poses[0]", 'did you mean "sis_a"?'),
-    "no cell": ("sis_a pickup", "''", "3:13: ", 'must be a cell and one of its poses, as "sis_a pickup"'),
-    "unknown pose": ("sis_a pickup", "sis_a pick-up", "3:13: ", 'did you mean "pickup"?'),
-    "no pose": ("sis_a pickup", "sis_a", "3:13: ", "targets of sis_a are home, pickup"),
-    "unknown station": ("sis_b station 4]", "sis_b station 9]", "3:27: ", 'is "sis_b station 9"'),
-    "pose in a move": ("[sis_a home", "[sis_a hom", "4:14: zones.centre.moves[0][0]", 'mean "home"?'),
-    "pose twice": ("sis_b station 4]\n    moves: ", "SIS_A pickup]\n    moves: ", "3:27: ", "is there twice"),
-    "move twice": ("sis_b pickup, sis_b home", "sis_a home, sis_a station 2", "9:9: ", "no difference"),
-    "two cells": ("sis_b pickup, sis_b", "sis_b pickup, sis_a", "9:9: ", "these are of sis_b and sis_a"),
-    "no way": ("sis_b pickup, sis_b home", "sis_b home, sis_b home", "9:9: ", "these are the same pose"),
-    "inside": ("sis_b pickup, sis_b", "sis_b station 4, sis_b", "9:10: ", "lies in the zone itself"),
-    "one end": ("[sis_b pickup, sis_b home]", "[sis_b pickup]", "9:9: ", "at least 2 values, has 1"),
-    "empty zone": ("  rack:\n", "  hall: {}\n  rack:\n", "5:9: zones.hall", "this one is empty"),
-    "zone of nothing": ("  rack:\n", "  hall:\n  rack:\n", "5:8: zones.hall", "must be a mapping"),
-    "unknown key": ("    poses: [sis_b", "    pose: [sis_b", "6:5: ", 'did you mean "poses"?'),
-    "zone name": ("  rack:", "  Rack 1:", "5:3: zones.Rack 1", "a zone's name must be"),
-    "name of a robot": ("  rack:", "  ra1:", "zones.ra1", "is already that of cells.sis_a.arm.name"),
-    "home inside": ("sis_a pickup", "sis_c home", "3:13: ", "cell sis_c: home lies in zone centre"),
-    "place inside": ("[sis_b station 4]", "[sis_b station 8]", "6:13: ", "station 8 lies in zone rack"),
-}  # fmt: skip
-KEYS = {  # id: (text in the shipped file, put in its place, the sentence has in it)
-    "too many retries": ("    pickup:", "    retry: {times: 11}\n    pickup:", "must be at most 10, is 11"),
-    "half a retry": ("    pickup:", "    retry: {times: 1.5}\n    pickup:", "must be a whole number"),
-    "retry before": ("    pickup:", "    retry: {backoff_s: -1}\n    pickup:", "at least 0, is -1"),
-    "retry key": ("    pickup:", "    retry: {time: 1}\n    pickup:", 'did you mean "times"?'),
-    "retry as number": ("    pickup:", "    retry: 3\n    pickup:", "must be a mapping"),
-    "piece check": ("    pickup:", "    piece_check: yes\n    pickup:", 'auto, true or false, is "yes"'),
-    "piece check as number": ("    pickup:", "    piece_check: 1\n    pickup:", "auto, true or false, is 1"),
-    "a fast teacher": ("    pickup:", "    teach: {deg_s: 31}\n    pickup:", "must be at most 30, is 31"),
-    "a teacher who stands": ("    pickup:", "    teach: {mm_s: 0}\n    pickup:", "must be more than 0, is 0"),
-    "short patience": (
-        "    pickup:",
-        "    teach: {ends_after_s: 9}\n    pickup:",
-        "must be at least 10, is 9",
-    ),
-    "teaching in words": ("    pickup:", "    teach: slow\n    pickup:", "must be a mapping"),
-    "no wait": ("    pickup:", "    zone_wait_s: 0\n    pickup:", "must be more than 0, is 0"),
-    "long settle": ("paths:", "timing: {effector_timeout_s: 0.1}\npaths:", "is 0.1, else an effector that"),
-    "long debounce": ("paths:", "timing: {piece_debounce_s: 2}\npaths:", "piece_wait_s, which is 2"),
-    "trigger": ("      twin:", "      trigger_when_busy: refused\n      twin:", 'did you mean "refuse"?'),
-    "homed and to be homed": (
-        "      twin:",
-        "      assume_homed: true\n      home_at_start: true\n      twin:",
-        "contradicts assume_homed: true",
-    ),
-    "homing unproven": (
-        "evidence: ids\n      base",
-        "evidence: joints\n      home_at_start: true\n      base",
-        "needs evidence: ids; joints cannot prove",
-    ),
-}
-
-
-def load(tmp_path: Path, text: str) -> PlantModel:
-    file = tmp_path / "plant.yaml"
-    file.write_text(text, "utf-8")
-    return loader.load(file)
-
-
-def problems(tmp_path: Path, text: str) -> list[str]:
-    """The problems without the name of the file."""
-    with pytest.raises(ConfigError) as refusal:
-        load(tmp_path, text)
-    return [problem.removeprefix(f"{tmp_path / 'plant.yaml'}:") for problem in refusal.value.problems]
+MISTAKES = rows(__file__, "zones")
+KEYS = rows(__file__, "keys_of_cells")
 
 
 def poses(cell: Cell) -> list[Pose]:
@@ -114,7 +52,7 @@ def test_the_shipped_plant_shares_nothing_and_has_the_defaults() -> None:
 
 
 def test_poses_lie_in_their_zones(tmp_path: Path) -> None:
-    plant = load(tmp_path, ZONES + PLANT)
+    plant = read(tmp_path, ZONES + PLANT)
     assert plant.zones == ("centre", "rack")
     inside = {
         (cell.name, pose.name): pose.zones for cell in plant.cells for pose in poses(cell) if pose.zones
@@ -123,13 +61,13 @@ def test_poses_lie_in_their_zones(tmp_path: Path) -> None:
 
 
 def test_palletizing_knows_the_zones_of_its_poses(tmp_path: Path) -> None:
-    cell = load(tmp_path, ZONES + PLANT).cell("sis_a")
+    cell = read(tmp_path, ZONES + PLANT).cell("sis_a")
     layout = StorageLayout(cell)
     assert layout.palletizing.pick == layout.pickup
 
 
 def test_a_crossing_names_every_zone_between_its_ends(tmp_path: Path) -> None:
-    plant = load(tmp_path, ZONES + PLANT)
+    plant = read(tmp_path, ZONES + PLANT)
     both, rack = frozenset({"centre", "rack"}), frozenset({"rack"})
     assert StorageLayout(plant.cell("sis_a")).space.crossings == (
         Crossing(a="home", b="station 2", zones=both),
@@ -142,7 +80,7 @@ def test_a_crossing_names_every_zone_between_its_ends(tmp_path: Path) -> None:
 
 def test_the_zones_of_the_page_are_some(tmp_path: Path) -> None:
     example = next(part for part in DOCS.read_text("utf-8").split("```") if part.startswith("yaml\nzones:"))
-    assert load(tmp_path, example.removeprefix("yaml\n") + PLANT).zones == ("centre",)
+    assert read(tmp_path, example.removeprefix("yaml\n") + PLANT).zones == ("centre",)
 
 
 @pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES)
@@ -150,24 +88,23 @@ def test_a_mistake_in_a_zone_is_named_with_its_line(
     tmp_path: Path, mistake: tuple[str, str, str, str]
 ) -> None:
     old, new, start, words = mistake
-    assert old in ZONES
-    found = problems(tmp_path, ZONES.replace(old, new, 1) + PLANT)
+    found = refused(tmp_path, changed(ZONES, (old, new)) + PLANT)
     assert [start in problem and words in problem for problem in found] == [True], found
 
 
 @pytest.mark.parametrize("section", ["zones:\n", "zones: {}\n", "zones: [centre]\n"])
 def test_a_section_without_zones_is_refused(tmp_path: Path, section: str) -> None:
-    assert len(problems(tmp_path, section + PLANT)) == 1
+    assert len(refused(tmp_path, section + PLANT)) == 1
 
 
 def test_a_cell_that_cannot_be_read_says_so_once(tmp_path: Path) -> None:
-    found = problems(tmp_path, ZONES + PLANT.replace("deg: [45, 10]", "deg: [45]"))
+    found = refused(tmp_path, ZONES + PLANT.replace("deg: [45, 10]", "deg: [45]"))
     assert len(found) == 1 and "turning joints" in found[0]
 
 
 def test_mistakes_in_zones_and_in_cells_are_reported_together(tmp_path: Path) -> None:
     text = ZONES.replace("sis_a pickup", "sis_c home") + PLANT.replace("deg: [35, 10]", "deg: [35]")
-    assert ["lies in zone" in problem for problem in problems(tmp_path, text)] == [True, False]
+    assert ["lies in zone" in problem for problem in refused(tmp_path, text)] == [True, False]
 
 
 def test_what_a_cell_and_its_robots_do_in_trouble_can_be_chosen(tmp_path: Path) -> None:
@@ -175,7 +112,7 @@ def test_what_a_cell_and_its_robots_do_in_trouble_can_be_chosen(tmp_path: Path) 
     of_arm = ("piece_on_change: true", "trigger_when_busy: refuse", "home_at_start: true", "twin:")
     text = PLANT.replace("    pickup:", "".join(f"    {key}\n" for key in of_cell).rstrip(), 1)
     text = text.replace("      twin:", "".join(f"      {key}\n" for key in of_arm).rstrip(), 1)
-    cell = load(tmp_path, text).cell("sis_a")
+    cell = read(tmp_path, text).cell("sis_a")
     layout = StorageLayout(cell)
     assert (cell.retry, cell.piece_check, cell.zone_wait_s) == (Retry(times=2, backoff_s=0.5), True, 5)
     assert (layout.arm.piece_on_change, layout.arm.queue_triggers, layout.arm.home_at_start) == (
@@ -188,25 +125,24 @@ def test_what_a_cell_and_its_robots_do_in_trouble_can_be_chosen(tmp_path: Path) 
 @pytest.mark.parametrize(("word", "check"), [("auto", "auto"), ("true", True), ("false", False)])
 def test_whether_pieces_are_checked_can_be_chosen(tmp_path: Path, word: str, check: object) -> None:
     text = PLANT.replace("    pickup:", f"    piece_check: {word}\n    pickup:", 1)
-    assert load(tmp_path, text).cell("sis_a").piece_check == check
+    assert read(tmp_path, text).cell("sis_a").piece_check == check
 
 
 def test_the_times_of_a_piece_check_can_be_chosen(tmp_path: Path) -> None:
-    plant = load(tmp_path, "timing: {piece_wait_s: 3, piece_debounce_s: 0}\n" + PLANT)
+    plant = read(tmp_path, "timing: {piece_wait_s: 3, piece_debounce_s: 0}\n" + PLANT)
     assert plant.timing == Timing(piece_wait_s=3, piece_debounce_s=0)
 
 
 @pytest.mark.parametrize("mistake", KEYS.values(), ids=KEYS)
 def test_a_mistake_in_a_key_of_a_cell_is_named(tmp_path: Path, mistake: tuple[str, str, str]) -> None:
     old, new, words = mistake
-    assert old in PLANT
-    found = problems(tmp_path, PLANT.replace(old, new, 1))
+    found = refused(tmp_path, changed(PLANT, (old, new)))
     assert [words in problem for problem in found] == [True], found
 
 
 def alike(tmp_path: Path, zones: str) -> list[str]:
     """What is refused of an arm whose stations 0 and 1 are just within twice its tolerance."""
-    return problems(tmp_path, TOLERANT.format(tolerance=WIDE) + zones)
+    return refused(tmp_path, TOLERANT.format(tolerance=WIDE) + zones)
 
 
 @pytest.mark.parametrize(
@@ -226,7 +162,7 @@ def test_a_zone_that_the_tolerance_blurs_is_refused(tmp_path: Path, zones: str, 
     "zones", ["{poses: [a station 1, a station 0]}", "{moves: [[a station 1, a pickup]]}"]
 )
 def test_poses_that_look_the_same_and_lie_in_the_same_zones_are_taken(tmp_path: Path, zones: str) -> None:
-    cell = load(tmp_path, TOLERANT.format(tolerance=WIDE) + f"zones:\n  z: {zones}\n").cell("a")
+    cell = read(tmp_path, TOLERANT.format(tolerance=WIDE) + f"zones:\n  z: {zones}\n").cell("a")
     layout = StorageLayout(cell)
     named = {"station 0", "station 1"}
     assert {pose.name for pose in layout.space.poses if pose.zones} in (set(), named)
@@ -237,14 +173,14 @@ def test_poses_that_look_the_same_and_lie_in_the_same_zones_are_taken(tmp_path: 
 
 def test_a_pose_in_a_zone_beyond_twice_the_tolerance_is_taken(tmp_path: Path) -> None:
     zones = "zones:\n  z: {poses: [a station 1]}\n"
-    assert load(tmp_path, TOLERANT.format(tolerance="{deg: [3, 2.24], mm: 5}") + zones).zones == ("z",)
+    assert read(tmp_path, TOLERANT.format(tolerance="{deg: [3, 2.24], mm: 5}") + zones).zones == ("z",)
 
 
 def test_the_point_above_a_pose_counts_as_the_pose(tmp_path: Path) -> None:
     text = TOLERANT.format(tolerance=WIDE).replace(
         "1: {deg: [45, 49.5], mm: 60}", "1: {deg: [45, 49.5], mm: 90, approach_mm: 30}"
     )
-    (found,) = problems(tmp_path, text + "zones:\n  z: {poses: [a station 1]}\n")
+    (found,) = refused(tmp_path, text + "zones:\n  z: {poses: [a station 1]}\n")
     assert "station 1 lies in the zone and station 0 does not" in found
 
 

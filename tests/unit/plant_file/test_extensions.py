@@ -21,6 +21,8 @@ from arboleda.plant_file.extensions import notes, settings_of
 from arboleda.runtime.build import Options, build
 from arboleda.testing import shipped
 
+from ...plants import rows
+
 PLANT = (Path(__file__).parents[3] / "examples/plants/by_hand.yaml").read_text("utf-8")
 CODE = """
 from dataclasses import dataclass
@@ -88,30 +90,7 @@ def test_a_package_gets_its_settings_as_the_dataclass_that_it_declares(load: Loa
 
 @pytest.mark.parametrize(
     ("extensions", "column", "told"),
-    [
-        (
-            "{ordres: {}}",
-            14,
-            'extensions: no installed package is called "ordres"; did you mean "orders"?; there are ',
-        ),
-        (
-            "{orders: {cell: lab, mots: 1}}",
-            34,
-            'the key "mots" is not known; did you mean "most"?; known: cell',
-        ),
-        (
-            "{orders: {cell: lab, most: many}}",
-            40,
-            'extensions.orders.most: must be a whole number, is "many"',
-        ),
-        ("{orders: {most: 1}}", 22, 'extensions.orders: the key "cell" is missing'),
-        ("{orders: {cell: lab, most: 0}}", 22, "extensions.orders: most must be at least 1"),
-        ("{orders: on}", 22, 'extensions.orders: must be off, or a mapping of its settings, is "on"'),
-        ("{plain: {cell: lab}}", 21, "extensions.plain: the extension plain has no settings"),
-        ("{views: {cell: lab}}", 21, "extensions.views: the extension views has no settings"),
-        ("{broken: {}}", 22, "extensions.broken: broken cannot be imported: RuntimeError: no luck"),
-        ("[orders]", 13, "extensions: must be a mapping (key: value), is a list"),
-    ],
+    rows(__file__, "extensions"),
 )
 def test_what_is_wrong_is_told_at_its_place(load: Load, extensions: str, column: int, told: str) -> None:
     with pytest.raises(ConfigError) as refused:

@@ -9,39 +9,17 @@ from pathlib import Path
 import pytest
 
 from arboleda.core.plant import Plant
-from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskState
-from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.model.plant_model import Cell
 from arboleda.model.sentence import NOTHING
-from arboleda.plant_file import loader
 from arboleda.recipes import Kit, RecipeError
 from arboleda.recipes.handles import Step
 from arboleda.testing import Rig
 
-from ...plants import plant_text
+from ...plants import plant_text, read
 
 SHORT = plant_text(__file__, "handovers_short")
-LONG = plant_text(__file__, "handovers_long")
-MISTAKES = {  # what is in LONG, what is put in its place, what the problem says
-    "no such robot": ("paths: {mobile:", "paths: {arm:", 'must be mobile, is "arm"'),
-    "a jump": ("[0, 3, 6]", "[0, 6]", "node 6 is no neighbour of node 0"),
-    "no such taker": ("taker: arm", "taker: amr", 'did you mean "arm"?'),
-    "a cart that takes": ("taker: arm, giver: mobile", "taker: mobile, giver: arm", "must be arm, is"),
-    "no such target": ("at: pickup,", "at: pikup,", 'did you mean "pickup"?'),
-    "no such path": ("by_path: {0A:", "by_path: {1A:", "must be a path of mobile: 0A or 0B"),
-    "no stations": (
-        "stations: [station_0, station_1]\n      palletizing: [pickup_a",
-        "racks: [pickup_a",
-        "offers no recipe: storage needs",
-    ),
-    "no such key": ("at: pickup,", "from: pickup,", '"from"'),
-}
-
-
-def load(folder: Path, text: str) -> PlantModel:
-    path = folder / "plant.yaml"
-    path.write_text(text, "utf-8")
-    return loader.load(path)
+LONG = plant_text(__file__, "handovers")
 
 
 def of_targets(cell: Cell) -> object:
@@ -54,7 +32,7 @@ def of_targets(cell: Cell) -> object:
 
 
 def test_both_forms_are_the_same_cell(tmp_path: Path) -> None:
-    short, long = (load(tmp_path, text).cell("bay") for text in (SHORT, LONG))
+    short, long = (read(tmp_path, text).cell("bay") for text in (SHORT, LONG))
     arm, mobile = short.spaces
     ways = {name: pose for name, pose in arm.targets.items() if name not in ("pickup_b",)}
     poses = tuple(replace(pose, name=name, title=NOTHING) for name, pose in ways.items())
@@ -64,7 +42,7 @@ def test_both_forms_are_the_same_cell(tmp_path: Path) -> None:
 
 
 def test_the_recipes_of_storage_run_in_a_cell_of_devices(tmp_path: Path) -> None:
-    rig = Rig(load(tmp_path, LONG))
+    rig = Rig(read(tmp_path, LONG))
     for text in ("bay 0A 1", "bay palletizing", "bay 0B 0"):
         rig.submit(text)
     rig.wait(600, until=lambda: rig.plant.at_rest and not rig.plant.cells["bay"].queue)
@@ -72,12 +50,12 @@ def test_the_recipes_of_storage_run_in_a_cell_of_devices(tmp_path: Path) -> None
 
 
 def test_the_case_of_a_path_does_not_matter(tmp_path: Path) -> None:
-    assert load(tmp_path, LONG.replace("by_path: {0A:", "by_path: {0a:")) == load(tmp_path, LONG)
+    assert read(tmp_path, LONG.replace("by_path: {0A:", "by_path: {0a:")) == read(tmp_path, LONG)
 
 
 def wrong(folder: Path, step: Callable[[Kit], Step]) -> str:
     """The sentence with which a recipe of the cell in LONG is refused."""
-    run = Plant(load(folder, LONG), epoch=1, now=0.0).cells["bay"]
+    run = Plant(read(folder, LONG), epoch=1, now=0.0).cells["bay"]
     with pytest.raises(RecipeError) as refused:
         step(Kit(run.context))
     return str(refused.value)
@@ -85,7 +63,7 @@ def wrong(folder: Path, step: Callable[[Kit], Step]) -> str:
 
 def test_a_tour_or_a_path_that_cannot_be_is_refused(tmp_path: Path) -> None:
     zoned = LONG.replace("name: hall\n", "name: hall\nzones: {rack: {poses: [bay station_0]}}\n")
-    run = Plant(load(tmp_path, zoned), epoch=1, now=0.0).cells["bay"]
+    run = Plant(read(tmp_path, zoned), epoch=1, now=0.0).cells["bay"]
     with pytest.raises(
         RecipeError, match="a tour has to end outside all zones, and station_0 lies in zone rack"
     ):
@@ -93,12 +71,3 @@ def test_a_tour_or_a_path_that_cannot_be_is_refused(tmp_path: Path) -> None:
     assert "it has no stops" in wrong(tmp_path, lambda cell: cell.device("arm").tour())
     assert "no path '9Z'" in wrong(tmp_path, lambda cell: cell.device("mobile").follow("9Z"))
     assert "no group of targets 'shelf'" in wrong(tmp_path, lambda cell: cell.group("shelf"))
-
-
-@pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES)
-def test_a_mistake_is_named(tmp_path: Path, mistake: tuple[str, str, str]) -> None:
-    old, new, words = mistake
-    assert old in LONG
-    with pytest.raises(ConfigError) as refused:
-        load(tmp_path, LONG.replace(old, new, 1))
-    assert any(words in problem for problem in refused.value.problems), refused.value.problems

@@ -16,7 +16,7 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Link, PlantModel, Robot
 from arboleda.plant_file import drivers, loader
 
-from ...plants import plant_text
+from ...plants import plant_text, rows
 
 PLANT = plant_text(__file__, "own_drivers")
 USE = "driver: {my_plc: {host: 10.0.0.7, slots: [1, 2]}}"
@@ -119,46 +119,7 @@ def test_robots_have_drivers_too(load: Callable[..., PlantModel]) -> None:
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("use", "place", "told"),
-    [
-        (
-            "driver: my_plk",
-            "cells.bench.devices.oven.driver",
-            'is "my_plk"; did you mean "my_plc"?; one of your own',
-        ),
-        (
-            "driver: 7",
-            "cells.bench.devices.oven.driver",
-            "must be the name of a driver, or one name with its",
-        ),
-        (
-            "driver: my_plc",
-            "cells.bench.devices.oven.driver",
-            "the driver my_plc needs host; write driver: {my",
-        ),
-        (
-            "driver: {my_plc: {port: 1}}",
-            "cells.bench.devices.oven.driver.my_plc",
-            'the key "host" is missing',
-        ),
-        (
-            "driver: {my_plc: {host: a, prt: 1}}",
-            "cells.bench.devices.oven.driver.my_plc",
-            'did you mean "port"?',
-        ),
-        (
-            "driver: {my_plc: {host: a, port: x}}",
-            "cells.bench.devices.oven.driver.my_plc.port",
-            'must be a whole number, is "x"',
-        ),
-        (
-            "driver: {my_plc: {host: a, port: 65536}}",
-            "cells.bench.devices.oven.driver.my_plc",
-            "port is beyond 65535",
-        ),
-        ("driver: {plain: {host: a}}", "cells.bench.devices.oven.driver.plain", "plain has no settings"),
-        ("driver: none", "cells.bench.devices.oven.driver", "must be mqtt or ros or a driver of your own"),
-        ("link: mqtt, driver: plain", "cells.bench.devices.oven.driver", "keep one of them"),
-    ],
+    rows(__file__, "uses_of_drivers"),
 )
 def test_a_use_that_is_wrong_is_told_with_its_place(
     load: Callable[..., PlantModel], use: str, place: str, told: str
@@ -346,17 +307,7 @@ def test_its_mobile_robot_may_have_one_of_a_package(
 
 @pytest.mark.parametrize(
     ("use", "begin", "words"),
-    [
-        (
-            "driver: {my_plc: {hst: x}}",
-            "plant.yaml:7:54: cells.sis_a.arm.driver.my_plc: ",
-            'did you mean "host"',
-        ),
-        ("driver: my_pcl", "plant.yaml:7:44: cells.sis_a.arm.driver: ", 'did you mean "my_plc"'),
-        ("driver: plain, link: mqtt", "plant.yaml:7:44: cells.sis_a.arm.driver: ", "keep one of them"),
-        ("drivr: plain", "plant.yaml:7:36: cells.sis_a.arm: ", 'did you mean "driver"'),
-        ("timeout_s: 5", "plant.yaml:7:10: cells.sis_a.arm: ", 'the key "link" is missing'),
-    ],
+    rows(__file__, "uses_of_drivers_in_storage"),
 )
 def test_what_is_wrong_with_it_is_told_with_its_place(
     load: Callable[..., PlantModel], use: str, begin: str, words: str

@@ -14,7 +14,7 @@ from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
 from arboleda.plant_file.recipe_check import trial
 
-from ...plants import plant_text
+from ...plants import plant_text, rows
 
 SAW = """\
 from dataclasses import dataclass
@@ -54,110 +54,7 @@ def bar(cell, mm: Number[10, 300]):
     return work(saw.close(), saw.cut(mm=mm, blade="wood"))
 """
 PLANT = plant_text(__file__, "own_kinds")
-MISTAKES = {  # id: (text of the plant file, put in its place, how the only problem begins, words in it)
-    "unknown key": (
-        "mm_s",
-        "mms",
-        "6:24: cells.bench.devices.saw: ",
-        'the key "mms" is not known; did you mean "mm_s"',
-    ),
-    "allowed keys": (
-        "mm_s",
-        "mms",
-        "6:24: ",
-        "known: blades, driver, evidence, kind, link, mm_s, mqtt, name, stop, tool_of",
-    ),
-    "type": ("10", "fast", "6:30: cells.bench.devices.saw.mm_s: ", 'must be a number, is "fast"'),
-    "own rule": ("10", "-1", "6:12: cells.bench.devices.saw: ", "mm_s must be more than 0, is -1"),
-    "list": (
-        "mm_s: 10",
-        "blades: 7",
-        "6:32: cells.bench.devices.saw.blades: ",
-        "must be a list [a, b, ...], is 7",
-    ),
-    "items": (
-        "mm_s: 10",
-        "blades: [a, 7]",
-        "6:36: cells.bench.devices.saw.blades[1]: ",
-        "must be text, is 7",
-    ),
-    "kind": ("kind: saw", "kind: sow", "6:19: ", 'is "sow"; did you mean "saw"?'),
-    "kind of nobody": ("kind: saw", "kind: xyz", "6:19: ", "one of your own is declared under"),
-    "shipped": ("{kind: camera}", "{kind: camera, answer: [a]}", "7:27: ", 'did you mean "answers"?'),
-    "shipped rule": (
-        "{kind: camera}",
-        "{kind: camera, answers: [a, a]}",
-        "7:12: cells.bench.devices.eye: ",
-        "camera: look.answers 'a' is there twice",
-    ),
-    "shipped names": (
-        "{kind: camera}",
-        "{kind: conveyor, sensors: [class]}",
-        "7:12: ",
-        'the name "class" is a word of Python',
-    ),
-}
-FILES = {  # id: (text of the file, put in its place, how the only problem begins, words in it)
-    "syntax": ("@kind", "def f(:\n@kind", "16:1: cannot be imported: ", "SyntaxError"),
-    "module": ("@kind", "import nowhere_at_all\n@kind", "16:1: cannot be imported: ", "nowhere_at_all"),
-    "fact": ('{"guard": "closed"}, takes', '{"gard": "closed"}, takes', "27:1: saw: ", "did you mean guard?"),
-    "word": ('"guard": [', '"guard": ["¿\\"sí\\"?", ', "16:1: saw: guard of saw: it is ", "at most 32"),
-    "computed": (
-        "mm / settings",
-        "mm / 0 / settings",
-        "23:1: saw: ",
-        "ZeroDivisionError: division by zero, with mm=10",
-    ),
-    "raises": ("    verbs = {", "    1 / 0\n    verbs = {", "18:1: saw: ", "ZeroDivisionError"),
-    "exits": (
-        "    verbs = {",
-        "    raise SystemExit(3)\n    verbs = {",
-        "18:1: saw: ",
-        "it ends the program",
-    ),
-    "settings raise": (
-        "        if self.mm_s <= 0:",
-        "        if self.mms <= 0:",
-        "12:1: saw: ",
-        "AttributeError",
-    ),
-    "too long": ("at_most_s=60", "at_most_s=29", "27:1: saw: cut.at_most_s: ", "takes_s, which is 30; is 29"),
-    "no kind": ("return Kind(", "return 7 or Kind(", "16:1: saw: ", "saw returns 7; a kind returns Kind"),
-    "not frozen": ("frozen=True, ", "", "16:1: cannot be imported: ", "its settings are a frozen dataclass"),
-    "taken key": (
-        "    mm_s: float = 20.0",
-        "    name: str\n    mm_s: float = 20.0",
-        "17:1: ",
-        "name is a key of every device",
-    ),
-    "unknown hint": (
-        "mm_s: float",
-        'mm_s: "flot"',
-        "16:1: the settings of saw cannot be read: ",
-        "'flot' is not defined",
-    ),
-    "odd hint": (
-        "mm_s: float",
-        "mm_s: KindError",
-        "16:1: the settings of saw have a type ",
-        "it can give bool, int",
-    ),
-    "verb of a step": ('"cut":', '"says":', "16:1: saw: ", 'the name "says" is taken'),
-    "fact of Python": (
-        'facts={"guard"',
-        'facts={"class": int, "guard"',
-        "16:1: saw: ",
-        'the name "class" is a word of',
-    ),
-    "reserved": ('@kind("saw")', '@kind("arm")', "16:1: ", 'the kind "arm" comes with Arboleda'),
-    "no name": ('@kind("saw")', '@kind("A saw")', "16:1: ", '"A saw" cannot be the name of a kind'),
-    "function twice": (
-        '@kind("saw")',
-        '@kind("x")\ndef saw() -> Kind: ...\n\n@kind("saw")',
-        "20:1: ",
-        "the function saw is there twice",
-    ),
-}
+FILES = rows(__file__, "files_of_kinds")
 
 
 def write(folder: Path, kind: str = SAW, plant: str = PLANT, recipes: str = RECIPES) -> Path:
@@ -250,16 +147,6 @@ def test_a_kind_of_a_file_stands_for_the_one_that_comes_with_it(tmp_path: Path) 
         )
     )
     assert "cut" in plant.robots["saw"].kind.verbs  # type: ignore[attr-defined]
-
-
-@pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES)
-def test_settings_that_a_kind_does_not_take_are_named_with_their_place(
-    tmp_path: Path, mistake: tuple[str, str, str, str]
-) -> None:
-    old, new, start, words = mistake
-    assert old in PLANT
-    (found,) = problems(write(tmp_path, plant=PLANT.replace(old, new, 1)))
-    assert found.startswith(f"plant.yaml:{start}") and words in found
 
 
 @pytest.mark.parametrize("mistake", FILES.values(), ids=FILES)

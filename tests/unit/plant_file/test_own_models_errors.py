@@ -10,6 +10,7 @@ import pytest
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
 
+from ...plants import rows
 from .own_arms import GANTRY, ONE, TENDER, joint, link, robot, swing, tender, written
 
 TWO_TIPS = robot(*map(link, "abc"), joint("left", "a b"), joint("right", "a c"))
@@ -200,46 +201,7 @@ def test_an_encoding_that_nobody_knows_is_one_sentence(tmp_path: Path) -> None:
         swing(tmp_path, '<?xml version="1.0" encoding="klingon"?>' + ONE)
 
 
-IN_THE_PLANT = {  # what `model:` says, and a part of what is said of it
-    "an unknown key": (
-        "{file: one.urdf, tipp_link: x}",
-        '"tipp_link" is not known; did you mean "tip_link"?',
-    ),
-    "no file": ("{tip_link: x}", 'arm.model: the key "file" is missing'),
-    "a number": ("7", "must be cr10a, scara or a file beside this one (models/my_arm.urdf), is 7"),
-    "an unknown tip": (
-        "{file: one.urdf, tip_link: beams}",
-        '5:55: cells.a.arm.model.tip_link: must be a link of the file, is "beams"; did you mean "beam"?',
-    ),
-    "an unknown base": ("{file: one.urdf, base_link: x}", 'base_link: must be a link of the file, is "x"'),
-    "a tip below the base": (
-        "{file: one.urdf, base_link: beam, tip_link: post}",
-        "model.tip_link: the link post does not hang on beam",
-    ),
-    "a joint that is not there": (
-        "{file: one.urdf, steps: {q2_deg: 1}}",
-        '"q2_deg" is not known; did you mean "q1_deg"?; known: q1_deg',
-    ),
-    "the wrong unit": ("{file: one.urdf, accelerations: {q1_mm_s2: 1}}", "known: q1_deg_s2"),
-    "a step of nothing": ("{file: one.urdf, steps: {q1_deg: 0}}", "steps.q1_deg: must be more than 0, is 0"),
-    "a step too small": (
-        "{file: one.urdf, steps: {q1_deg: 0.0001}}",
-        "a motor step that is not from 0.001 deg or mm",
-    ),
-    "a crawl": ("{file: one.urdf, accelerations: {q1_deg_s2: 1e-9}}", "more than a day for its whole way"),
-    "no speed anywhere": (
-        "{file: idle.urdf}",
-        "no velocity for swing; write speeds: {q1_deg_s: 30} beside model, but with the numbers of its maker",
-    ),
-    "an endless ramp": (
-        "{file: wide.urdf, steps: {q1_deg: 0.001}, accelerations: {q1_deg_s2: 0.01}}",
-        "the joint swing needs more than 250000 motor steps to its full speed",
-    ),
-    "a tool of two numbers": (
-        "{file: one.urdf, tool: {xyz_mm: [0, 0]}}",
-        "tool.xyz_mm: must have at least 3 values, has 2",
-    ),
-}
+IN_THE_PLANT = rows(__file__, "models_in_a_plant")
 
 
 @pytest.mark.parametrize(("model", "words"), IN_THE_PLANT.values(), ids=IN_THE_PLANT)

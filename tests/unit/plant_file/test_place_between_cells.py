@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.plant_file import loader
+from ...plants import read
 
 PAGES = Path(__file__).parents[3] / "docs/how-to"
 RECIPES = """
@@ -39,9 +39,7 @@ def test_the_place_of_the_page_is_guarded(page: str, heading: str, tmp_path: Pat
     offers = shown.replace("  right:\n", "    recipes: [give]\n  right:\n").replace(
         "zones:", "    recipes: [take]\nzones:"
     )
-    (tmp_path / "recipes.py").write_text(RECIPES, "utf-8")
-    (tmp_path / "plant.yaml").write_text(f"name: hand_over\nuses: [recipes.py]\n{offers}", "utf-8")
-    plant = loader.load(tmp_path / "plant.yaml")
+    plant = read(tmp_path, f"name: hand_over\nuses: [recipes.py]\n{offers}", RECIPES)
     left, right = plant.cells
     assert {
         space.robot.name: [*space.targets["gate"].zones] for cell in plant.cells for space in cell.spaces

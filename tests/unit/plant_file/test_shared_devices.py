@@ -5,76 +5,23 @@ from __future__ import annotations
 from io import StringIO
 from pathlib import Path
 
-import pytest
 from rich.console import Console
 
 from arboleda.cli.screen import table
 from arboleda.core.plant import Plant
-from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda.views import view
 from arboleda.views.chronicle import Chronicle
 from arboleda.views.view import devices_once
 
-from ...plants import plant_text
+from ...plants import plant_text, written
 
 TEXT = plant_text(__file__, "shared_devices")
-MISTAKES = {
-    "a name that there is not": (
-        "hoist: {shared: lift}",
-        "hoist: {shared: left}",
-        "25:23: cells.above.devices.hoist.shared: must be lift or porter",
-        'did you mean "lift"?',
-    ),
-    "more than its name": (
-        "hoist: {shared: lift}",
-        "hoist: {shared: lift, evidence: ids}",
-        "25:",
-        'the key "evidence" is not known',
-    ),
-    "nobody has it": (
-        "  porter: {kind: person}",
-        "  porter: {kind: person}\n  bell: {kind: lamp}",
-        "16:3: shared.bell: ",
-        "no cell has it",
-    ),
-    "twice in a cell": (
-        "hoist: {shared: lift}",
-        "hoist: {shared: lift}\n      jack: {shared: lift}",
-        "26:7: cells.above.devices.jack: ",
-        "lift is in this cell already",
-    ),
-    "a cell without any of its own": (
-        "      lamp: {kind: lamp, name: lamp_2}\n",
-        "",
-        "23:5: cells.above.devices: ",
-        "at least one of its own",
-    ),
-    "another name": (
-        "{kind: lift, evidence: facts}",
-        "{kind: lift, name: elevator}",
-        "14:22: shared.lift.name: ",
-        "its key is its name",
-    ),
-    "the name of a cell": (
-        "\n  lift: {kind: lift, evid",
-        "\n  below: {kind: lift, evid",
-        "14:3: shared.below: ",
-        'the name "below" is already that of cells.below',
-    ),
-    "no section": (
-        "shared:\n  lift: {kind: lift, evidence: facts}\n  porter: {kind: person}\n",
-        "",
-        "17:22: cells.below.devices.lift.shared: ",
-        'there is no "shared" at the top of the file',
-    ),
-}
 
 
 def load(tmp_path: Path, text: str = TEXT) -> PlantModel:
-    (tmp_path / "plant.yaml").write_text(text, "utf-8")
-    return loader.load(tmp_path / "plant.yaml", recipes=False)
+    return loader.load(written(tmp_path, text), recipes=False)
 
 
 def test_one_device_is_in_two_cells_in_roles_of_their_own(tmp_path: Path) -> None:
@@ -84,16 +31,6 @@ def test_one_device_is_in_two_cells_in_roles_of_their_own(tmp_path: Path) -> Non
     assert [cell.name for cell in model.cells_of["lift"]] == ["below", "above"]
     assert list(model.robots) == ["lamp_1", "lift", "porter", "lamp_2"]
     assert model.cell("above").own == ("lamp_2",)
-
-
-@pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES)
-def test_a_mistake_is_named_with_its_line(tmp_path: Path, mistake: tuple[str, str, str, str]) -> None:
-    old, new, start, words = mistake
-    assert old in TEXT
-    with pytest.raises(ConfigError) as refusal:
-        load(tmp_path, TEXT.replace(old, new, 1))
-    found = [each.removeprefix(f"{tmp_path}/plant.yaml:") for each in refusal.value.problems]
-    assert [each for each in found if each.startswith(start) and words in each], found
 
 
 def test_screens_show_it_once_and_who_has_it(tmp_path: Path) -> None:

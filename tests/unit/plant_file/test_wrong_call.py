@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.errors import ConfigError
-from arboleda.plant_file.loader import load
 
-from ...plants import plant_text
+from ...plants import plant_text, read
 
 PLANT = plant_text(__file__, "wrong_call")
 RECIPES = """
@@ -33,10 +32,8 @@ CALLS = {
 
 
 def refusal(folder: Path, body: str) -> str:
-    (folder / "recipes.py").write_text(RECIPES.replace("BODY", body))
-    (folder / "plant.yaml").write_text(PLANT)
     with pytest.raises(ConfigError) as refused:
-        load(folder / "plant.yaml")
+        read(folder, PLANT, RECIPES.replace("BODY", body))
     (problem,) = refused.value.problems
     return problem.removeprefix(f"{folder}/recipes.py:7:1: go cannot be built: ")
 
@@ -61,10 +58,8 @@ TREE = """<root BTCPP_format="4"><BehaviorTree ID="Go"><Sequence>
 
 
 def test_all_nodes_of_a_tree_that_no_device_makes_are_told_at_once_each_kind_once(tmp_path: Path) -> None:
-    (tmp_path / "go.xml").write_text(TREE)
-    (tmp_path / "plant.yaml").write_text(PLANT.replace("recipes.py", "go.xml"))
     with pytest.raises(ConfigError) as refused:
-        load(tmp_path / "plant.yaml")
+        read(tmp_path, PLANT.replace("recipes.py", "go.xml"), beside={"go.xml": TREE})
     said = [each.removeprefix(f"{tmp_path}/go.xml:").partition(";")[0] for each in refused.value.problems]
     assert said == [
         "2:1: go: no device of a makes a node press_opne",

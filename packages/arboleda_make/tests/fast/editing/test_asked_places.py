@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.unit.kinds.test_asked_places import PLANT, RECIPES, written
+from tests.plants import read
+from tests.unit.kinds.test_asked_places import PLANT, RECIPES
 
 from arboleda.bt_xml import leaves
 from arboleda.cli.nodes import of_plant
@@ -97,7 +98,7 @@ def test_the_nodes_of_a_plant_have_the_places_of_all_its_cells(tmp_path: Path) -
 
 def test_a_recipe_that_asks_for_parts_is_drawn_and_does_the_same(tmp_path: Path) -> None:
     asks = 'return work(cell.place("pass").has_room(), cell.place'
-    model = load(written(tmp_path, RECIPES.replace("return work(cell.place", asks)))
+    model = read(tmp_path, PLANT, RECIPES.replace("return work(cell.place", asks))
     cells = Plant(model, epoch=0, now=0.0).cells
     texts = [
         copy_recipe.tree(model, cells[cell].context, recipe, f"{recipe}_2").replace(

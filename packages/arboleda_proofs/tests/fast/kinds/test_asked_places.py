@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.unit.kinds.test_asked_places import RECIPES, written
+from tests.plants import read
+from tests.unit.kinds.test_asked_places import PLANT, RECIPES
 
 from arboleda.plant_check import advance_check
-from arboleda.plant_file.loader import load
 from arboleda_proofs.simulator.judged_world import JudgedWorld
 from arboleda_proofs.simulator.run import Simulation
 
@@ -20,7 +20,7 @@ def ends(watched: JudgedWorld) -> list[tuple[str, str]]:
 
 
 def test_a_cell_waits_for_the_part_that_the_other_one_brings_and_leaves_the_arm_to_it(tmp_path: Path) -> None:
-    watched = JudgedWorld(load(written(tmp_path)))
+    watched = JudgedWorld(read(tmp_path, PLANT, RECIPES))
     watched.world.request_task("right take")
     watched.world.advance(1.0)
     assert watched.world.plant.zones.holder("arm") is None
@@ -31,7 +31,7 @@ def test_a_cell_waits_for_the_part_that_the_other_one_brings_and_leaves_the_arm_
 
 
 def test_a_question_to_a_place_has_a_way_for_each_answer(tmp_path: Path) -> None:
-    watched = JudgedWorld(load(written(tmp_path)))
+    watched = JudgedWorld(read(tmp_path, PLANT, RECIPES))
     watched.world.request_task("left give")
     watched.world.advance(6.0)
     watched.world.request_task("left give")
@@ -41,7 +41,7 @@ def test_a_question_to_a_place_has_a_way_for_each_answer(tmp_path: Path) -> None
 
 
 def test_a_wait_for_a_part_that_does_not_come_names_its_place(tmp_path: Path) -> None:
-    watched = JudgedWorld(load(written(tmp_path)))
+    watched = JudgedWorld(read(tmp_path, PLANT, RECIPES))
     watched.world.request_task("right take")
     watched.world.advance(9.0)
     assert ends(watched) == [("failed", "no part came to pass within 8 s")]
@@ -49,7 +49,7 @@ def test_a_wait_for_a_part_that_does_not_come_names_its_place(tmp_path: Path) ->
 
 @pytest.mark.long
 def test_nothing_is_found_in_two_cells_that_hand_parts_over(tmp_path: Path) -> None:
-    model = load(written(tmp_path, RECIPES.replace("at_most_s=8", "at_most_s=60")))
+    model = read(tmp_path, PLANT, RECIPES.replace("at_most_s=8", "at_most_s=60"))
     assert advance_check.warnings(model) == ()
     result = Simulation(model, 2, lambda minute: []).run(cycles=4)
     assert result.broken is None and not result.findings and result.outcomes["deadline"] == 1

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.unit.kinds.test_places import PLANT, written
+from tests.plants import read
+from tests.unit.kinds.test_places import PLANT, recipe_of
 
-from arboleda.plant_file.loader import load
 from arboleda_proofs.simulator.faults.kind import Fault
 from arboleda_proofs.simulator.people import Attendant
 from arboleda_proofs.simulator.run import Simulation
@@ -26,7 +26,7 @@ def test_a_task_gets_what_people_keep(
 ) -> None:
     if not sees_to_it:
         monkeypatch.setattr(Attendant, "_keep_places", lambda self, cell: None)
-    model = load(written(tmp_path, PLANT, WAITS.format(place, what)))
+    model = read(tmp_path, PLANT, recipe_of(WAITS.format(place, what)))
     faults = [Fault(kind=f"operator_{verb}", at=at, target="lab", word=place) for at in (3.0, 5.5, 8.0)]
     broken = Simulation(model, 1, explicit(faults)).run(cycles=2).broken
     assert (broken is None) is sees_to_it

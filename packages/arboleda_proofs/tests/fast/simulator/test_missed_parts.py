@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from tests.unit.kinds.test_missed_parts import CHECKED, PLANT, UNCHECKED, written
+from tests.plants import read
+from tests.unit.kinds.test_missed_parts import CHECKED, PLANT, RECIPE, UNCHECKED
 
 from arboleda.dispatch.effectors import Effectors
-from arboleda.plant_file.loader import load
 from arboleda_proofs.simulator.faults.kind import Fault
 from arboleda_proofs.simulator.run import Result, Simulation
 from arboleda_proofs.simulator.shrink import explicit
@@ -19,7 +19,7 @@ SUPPLY = PLANT.replace("nest: {}, vise: {}", "nest: {supply: true}, vise: {holds
 
 def run(folder: Path, body: str, kind: str, at: Sequence[float], plant: str = SUPPLY) -> Result:
     faults = [Fault(kind=kind, at=each, seconds=20.0, target="mover") for each in at]
-    model = load(written(folder, body, plant=plant))
+    model = read(folder, plant, RECIPE.format(body=body, before=""))
     return Simulation(model, 1, explicit(faults)).run(cycles=6)
 
 

@@ -7,10 +7,10 @@ from __future__ import annotations
 import re
 
 import pytest
-from tests.unit.kinds.test_places import PLANT, written
+from tests.plants import read
+from tests.unit.kinds.test_places import PLANT, recipe_of
 
 from arboleda.model.plant_model import Evidence, PlantModel
-from arboleda.plant_file.loader import load
 from arboleda.testing import shipped
 from arboleda_proofs.simulator.faults.kind import Fault
 from arboleda_proofs.simulator.run import Result, Simulation
@@ -44,7 +44,7 @@ def plants(tmp_path_factory: pytest.TempPathFactory) -> dict[str, PlantModel]:
     return {
         "told": shipped("sis_a", evidence=Evidence.IDS),
         "timed": shipped("sis_a", evidence=Evidence.JOINTS),
-        "tool": load(written(tmp_path_factory.mktemp("lab"), PLANT, body)),
+        "tool": read(tmp_path_factory.mktemp("lab"), PLANT, recipe_of(body)),
     }
 
 
