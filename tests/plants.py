@@ -1,9 +1,11 @@
-"""Plants that tests read: plant files in `plants.yaml` and rows of data in `rows.yaml`, beside the tests."""
+"""Plants of tests: their plant files in `plants.yaml` and rows of data in `rows.yaml`, beside the tests; and
+kinds, devices and recipes in a line."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cache
 from inspect import signature
 from pathlib import Path
@@ -12,8 +14,10 @@ from typing import Any
 import pytest
 import yaml
 
+from arboleda.kinds import Kind, Verb
+from arboleda.kinds.declared import Device, DeviceKind
 from arboleda.model.errors import ConfigError
-from arboleda.model.plant_model import PlantModel
+from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.plant_file import loader
 from arboleda.recipes import Kit, recipe
@@ -66,6 +70,17 @@ def made(name: str, build: Callable[..., Any]) -> Recipe:
         return build(cell, *map(cell.device, roles))
 
     return attempt
+
+
+def kind_of(name: str, facts: Mapping[str, object], **verbs: Verb) -> DeviceKind:
+    return replace(Kind(facts=facts, verbs=verbs).declared, name=name)
+
+
+def device_of(kind: DeviceKind, name: str = "", **more: Any) -> Device:
+    """A device with a board of its name, which is that of its kind if nothing else is said."""
+    name = name or kind.name
+    said = {"mqtt": name, "link": Link.MQTT, "evidence": Evidence.IDS, "timeout_s": 5.0, **more}
+    return Device(name=name, kind=kind, **said)
 
 
 @cache

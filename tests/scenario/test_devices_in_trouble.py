@@ -14,6 +14,7 @@ from arboleda.rig.network import keeps_its_place
 from arboleda.rig.world import BRIDGE, PLANT, World
 from arboleda.sim.machine import MachineBody
 
+from ..plants import made
 from ..unit.kinds.station import plant
 
 ENDED = (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED)
@@ -27,10 +28,7 @@ def all_at_once(cell: Kit):  # type: ignore[no-untyped-def]
     return parallel(station.light(on=True), station.go(), station.weigh())
 
 
-@recipe("warm")
-def warm(cell: Kit):  # type: ignore[no-untyped-def]
-    station = cell.device("station")
-    return work(station.go(), station.warm(celsius=40.5))
+warm = made("warm", lambda cell, station: work(station.go(), station.warm(celsius=40.5)))
 
 
 MADE_TRUE = {"all": {"at": "right"}, "warm": {"at": "right", "celsius": 40.5}}

@@ -22,6 +22,7 @@ from arboleda.views import view
 from arboleda.wire.transport import Publication
 
 from ..lengths import sample
+from ..plants import made
 from ..unit.kinds.example_trials import EXAMPLES
 from ..unit.kinds.lab import model as bench
 from ..unit.kinds.tending import plant
@@ -46,10 +47,7 @@ def both(cell: Kit):  # type: ignore[no-untyped-def]
     return work(parallel(left.go("feed_2"), work(right.go("feed"), right.home()), shuttle.go("store")))
 
 
-@recipe("thrice")
-def thrice(cell: Kit):  # type: ignore[no-untyped-def]
-    left = cell.device("left")
-    return cell.repeat(work(left.go("feed_2"), left.home()), 3)
+thrice = made("thrice", lambda cell, left: cell.repeat(work(left.go("feed_2"), left.home()), 3))
 
 
 @recipe("carry")
@@ -64,10 +62,7 @@ def late(cell: Kit):  # type: ignore[no-untyped-def]
     return cell.timeout(work(left.go("feed_2"), cell.wait(4.0), left.home()), 6.0)
 
 
-@recipe("wave")
-def wave(cell: Kit):  # type: ignore[no-untyped-def]
-    left, jaw = cell.devices("left", "jaw")
-    return work(jaw.open(), left.go("feed_2"), left.home())
+wave = made("wave", lambda cell, left, jaw: work(jaw.open(), left.go("feed_2"), left.home()))
 
 
 @recipe("behind_a_door")
@@ -308,12 +303,7 @@ def test_work_that_ended_behind_a_lost_link_is_not_begun_again_by_a_retry_that_n
 def test_another_recipe_of_that_name_is_not_walked_into() -> None:
     rig = begin(plant(thrice), "tending thrice")
     rig.wait(0.5)
-
-    @recipe("thrice")
-    def twice(cell: Kit):  # type: ignore[no-untyped-def]
-        left = cell.device("left")
-        return cell.repeat(work(left.go("feed_2"), left.home()), 2)
-
+    twice = made("thrice", lambda cell, left: cell.repeat(work(left.go("feed_2"), left.home()), 2))
     restart(rig, plant(twice), after_s=1.0)
     rig.wait(1.0)
     said = "its recipe or the plant file has changed since it began: abandon tending"

@@ -6,16 +6,14 @@ from tests.following import follow
 
 from arboleda.model.messages import MotionState, Reason, Report, TaskState
 from arboleda.model.sentence import OWN
-from arboleda.recipes import recipe
 
+from ...plants import made
 from ..kinds.lab import Bench, model
 
 WHY = OWN(text="its driver plc has said nothing for 1.5 s")
 
 
-@recipe("shut")
-def shut(cell):  # type: ignore[no-untyped-def]
-    return cell.device("oven").close()
+shut = made("shut", lambda cell: cell.device("oven").close())
 
 
 def lost(robot: str, at: float) -> Report:

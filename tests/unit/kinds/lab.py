@@ -2,55 +2,34 @@
 
 from __future__ import annotations
 
-from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, Slot
-from arboleda.model.commands import Command, OnStop
+from typing import Any
+
+from arboleda.kinds import Verb, motion, process, query, switch
+from arboleda.kinds.declared import DeviceKind
+from arboleda.model.commands import Command
 from arboleda.model.messages import TaskChanged
-from arboleda.model.plant_model import Cell, Evidence, Link, PlantModel
+from arboleda.model.plant_model import Cell, Evidence, PlantModel
 from arboleda.recipes import Choice, Kit, recipe, work
 from arboleda.rig.rig import Rig
 
-LID = FactType(type=str, words=("open", "closed"), first="open")
-DOSE = FactType(type=int, words=(5, 10, 20), first=5)
-ON = FactType(type=bool, first=False)
-OVEN = DeviceKind(
-    name="oven",
-    facts={"lid": LID, "clamped": ON, "dose": DOSE},
-    verbs={
-        "open": DeviceVerb(
-            name="open", effect=Effect.MOTION, sets=(("lid", "open"),), takes_s=1.0, at_most_s=3.0
-        ),
-        "close": DeviceVerb(
-            name="close", effect=Effect.MOTION, sets=(("lid", "closed"),), takes_s=1.0, at_most_s=3.0
-        ),
-        "clamp": DeviceVerb(
-            name="clamp",
-            effect=Effect.SWITCH,
-            parameters=(("on", ON),),
-            sets=(("clamped", Slot(name="on")),),
-            at_most_s=2.0,
-            holds=True,
-        ),
-        "bake": DeviceVerb(
-            name="bake",
-            effect=Effect.PROCESS,
-            parameters=(("dose", DOSE),),
-            sets=(("dose", Slot(name="dose")),),
-            needs=(("lid", "closed"), ("clamped", True)),
-            takes_s=20.0,
-            at_most_s=30.0,
-            on_stop=OnStop.FINISH,
-        ),
-    },
-)
-EYE = DeviceKind(
-    name="eye",
-    facts={},
-    verbs={
-        "look": DeviceVerb(
-            name="look", effect=Effect.QUERY, takes_s=0.5, at_most_s=2.0, answers=("good", "bad")
-        )
-    },
-)
+from ...plants import device_of, kind_of
+
+FACTS = {"lid": ["open", "closed"], "clamped": bool, "dose": [5, 10, 20]}
+VERBS = {
+    "open": motion(sets={"lid": "open"}, takes_s=1.0, at_most_s=3.0),
+    "close": motion(sets={"lid": "closed"}, takes_s=1.0, at_most_s=3.0),
+    "clamp": switch(parameters={"on": bool}, sets={"clamped": "$on"}, at_most_s=2.0, holds_part=True),
+    "bake": process(
+        parameters={"dose": [5, 10, 20]},
+        sets={"dose": "$dose"},
+        needs={"lid": "closed", "clamped": True},
+        takes_s=20.0,
+        at_most_s=30.0,
+        finishes=True,
+    ),
+}
+OVEN = kind_of("oven", FACTS, **VERBS)
+EYE = kind_of("eye", {}, look=query(answers=["good", "bad"], takes_s=0.5, at_most_s=2.0))
 
 
 @recipe("bake")
@@ -69,16 +48,18 @@ def careless(cell: Kit):  # type: ignore[no-untyped-def]
     return work(oven.clamp(on=True), oven.bake(dose=5))
 
 
-def model(*recipes: object, evidence: Evidence = Evidence.IDS) -> PlantModel:
+def oven_of(**verbs: Verb) -> DeviceKind:
+    """An oven with other verbs, or more of them."""
+    return kind_of("oven", FACTS, **{**VERBS, **verbs})
+
+
+def model(
+    *recipes: object, evidence: Evidence = Evidence.IDS, oven: DeviceKind = OVEN, eye: DeviceKind = EYE
+) -> PlantModel:
     """A bench whose oven proves its work at this level; who looks names the question that it answers."""
-    oven = Device(name="oven", mqtt="oven", link=Link.MQTT, evidence=evidence, timeout_s=30.0, kind=OVEN)
-    eye = Device(name="eye", mqtt="eye", link=Link.MQTT, evidence=Evidence.IDS, timeout_s=2.0, kind=EYE)
-    bench = Cell(
-        name="bench",
-        queue_limit=5,
-        members=(("oven", oven), ("eye", eye)),
-        recipes=recipes or (bake, careless),  # type: ignore[arg-type]
-    )
+    oven_, eye_ = device_of(oven, evidence=evidence, timeout_s=30.0), device_of(eye, timeout_s=2.0)
+    offered: Any = recipes or (bake, careless)
+    bench = Cell(name="bench", queue_limit=5, members=(("oven", oven_), ("eye", eye_)), recipes=offered)
     return PlantModel(name="lab", cells=(bench,))
 
 

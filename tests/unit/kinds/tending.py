@@ -2,39 +2,24 @@
 
 from __future__ import annotations
 
+from arboleda.kinds import switch
 from arboleda.kinds.arm import Arm
-from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, Slot
 from arboleda.kinds.floor import Placement
 from arboleda.kinds.joints import Joint
 from arboleda.kinds.mobile import Grid, Mobile
 from arboleda.model.plant_model import Cell, Evidence, Link, PlantModel, Pose, Robot, Workspace
 from arboleda.model.recipe import Recipe
 
-HELD = FactType(type=bool, first=False)
-GRIPPER = DeviceKind(
-    name="gripper",
-    facts={"gripped": HELD},
-    verbs={
-        "close": DeviceVerb(
-            name="close", effect=Effect.SWITCH, sets=(("gripped", True),), at_most_s=2.0, holds=True
-        ),
-        "open": DeviceVerb(
-            name="open", effect=Effect.SWITCH, sets=(("gripped", False),), at_most_s=2.0, holds=True
-        ),
-    },
+from ...plants import device_of, kind_of
+
+GRIPPER = kind_of(
+    "gripper",
+    {"gripped": bool},
+    close=switch(sets={"gripped": True}, at_most_s=2.0, holds_part=True),
+    open=switch(sets={"gripped": False}, at_most_s=2.0, holds_part=True),
 )
-LAMP = DeviceKind(
-    name="lamp",
-    facts={"lit": HELD},
-    verbs={
-        "light": DeviceVerb(
-            name="light",
-            effect=Effect.SWITCH,
-            parameters=(("on", HELD),),
-            sets=(("lit", Slot(name="on")),),
-            at_most_s=2.0,
-        )
-    },
+LAMP = kind_of(
+    "lamp", {"lit": bool}, light=switch(parameters={"on": bool}, sets={"lit": "$on"}, at_most_s=2.0)
 )
 IDS = {"link": Link.MQTT, "evidence": Evidence.IDS}
 HOME, FEED, FEED_2, VISE = (0.0, 0.0), (0.5, 0.2), (0.5, 0.4), (-0.5, 0.3)
@@ -52,21 +37,14 @@ def arm(name: str) -> Arm:
 def plant(*recipes: Recipe) -> PlantModel:
     """Both loaders reach the vise, which lies in the zone `vise`; the left one holds with its gripper."""
     left, right = arm("left"), arm("right")
-    jaw = Device(name="jaw", mqtt="jaw", **IDS, timeout_s=5.0, kind=GRIPPER)
-    lamp = Device(name="lamp", mqtt="lamp", **IDS, timeout_s=5.0, kind=LAMP)
+    jaw, lamp = device_of(GRIPPER, "jaw"), device_of(LAMP)
     grid = Grid(origin=Placement(x=0.0, y=0.0), pitch=0.2)
     shuttle = Mobile(name="shuttle", mqtt="shuttle", **IDS, timeout_s=5.0, model="m", grid=grid, speed=0.5)
-    members: tuple[tuple[str, Robot], ...] = (
-        ("left", left),
-        ("right", right),
-        ("jaw", jaw),
-        ("lamp", lamp),
-        ("shuttle", shuttle),
-    )
+    devices: tuple[Robot, ...] = (left, right, jaw, lamp, shuttle)
     cell = Cell(
         name="tending",
         queue_limit=5,
-        members=members,
+        members=tuple((each.name, each) for each in devices),
         spaces=(_space(left, tool=jaw), _space(right), _grid(shuttle)),
         arrays=(("pallet", ("feed", "feed_2")),),
         zone_wait_s=10.0,

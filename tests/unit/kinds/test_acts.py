@@ -9,12 +9,11 @@ from typing import Any
 import pytest
 
 from arboleda.core import reasons
-from arboleda.kinds.declared import Device, DeviceKind
 from arboleda.model.advice import Hand, sentence
 from arboleda.model.cell_states import CellState
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Journal, Outcome, Reason, Verb
-from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.model.plant_model import Evidence
 from arboleda.rig import faults
 from arboleda.rig.rig import Rig
 from arboleda.sim.arm import ArmBody
@@ -22,7 +21,7 @@ from arboleda.testing import shipped
 from arboleda.views.chronicle import Chronicle
 from arboleda.views.view import snapshot
 
-from .lab import OVEN, Bench, model
+from .lab import VERBS, Bench, model, oven_of
 from .tending import plant
 from .test_recipes_of_robots import load
 
@@ -291,25 +290,14 @@ def test_the_next_word_of_the_device_itself_counts_again() -> None:
 
 
 def test_what_cannot_let_go_as_it_stands_is_emptied_by_hand() -> None:
-    clamp = replace(OVEN.verbs["clamp"], needs=(("lid", "open"),))
-    kind = replace(OVEN, verbs={**OVEN.verbs, "clamp": clamp})
-    here = Bench(with_oven(model(), kind))
+    oven = oven_of(clamp=replace(VERBS["clamp"], needs={"lid": "open"}))
+    here = Bench(model(oven=oven))
     here.manual.set_facts("oven", (("lid", "closed"), ("clamped", True)))
     assert here.wait(5.0, lambda: bool(here.plant.advice("bench")))
     first, second, *_ = here.plant.advice("bench")
     assert (first.do, first.by_hand, first.refusal) == (Verb.RELEASE, True, None)
     assert str(second.refusal) == "oven needs lid to be open, and says closed: it cannot let go"
     assert follow(here) == ["release by hand", "resume"]
-
-
-def with_oven(plant: PlantModel, kind: DeviceKind) -> PlantModel:
-    """The same bench with an oven of another kind."""
-    (bench,) = plant.cells
-    members = tuple(
-        (role, replace(each, kind=kind) if role == "oven" and isinstance(each, Device) else each)
-        for role, each in bench.members
-    )
-    return replace(plant, cells=(replace(bench, members=members),))
 
 
 def test_nobody_takes_out_what_is_not_held_or_at_work() -> None:

@@ -22,6 +22,7 @@ from arboleda.wire.payloads import Telemetry, encode
 from arboleda.wire.rejections import Rejection
 from arboleda.wire.transport import Connection, Delivery, Publication
 
+from ...plants import made
 from .lab import EYE, OVEN, Bench, model
 from .station import STATION, plant
 
@@ -32,10 +33,7 @@ def all_at_once(cell: Kit):  # type: ignore[no-untyped-def]
     return parallel(station.light(on=True), station.go(), station.weigh())
 
 
-@recipe("warm")
-def warm(cell: Kit):  # type: ignore[no-untyped-def]
-    station = cell.device("station")
-    return work(station.go(), station.warm(celsius=40.5))
+warm = made("warm", lambda cell, station: work(station.go(), station.warm(celsius=40.5)))
 
 
 def telemetry(publication: Publication) -> bool:
@@ -157,10 +155,7 @@ def test_a_boot_fails_the_work_that_it_forgot() -> None:
 
 @pytest.mark.parametrize("evidence", [Evidence.JOINTS, Evidence.STATE], ids=lambda level: level.value)
 def test_a_device_without_numbers_proves_its_work_by_what_it_says(evidence: Evidence) -> None:
-    @recipe("go")
-    def go(cell: Kit):  # type: ignore[no-untyped-def]
-        return cell.device("station").go()
-
+    go = made("go", lambda cell: cell.device("station").go())
     here = Bench(plant(go, evidence=evidence))
     here.submit("bench go")
     ended(here)

@@ -7,41 +7,26 @@ from typing import Any
 
 from tests.following import advised, follow
 
-from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
-from arboleda.model.commands import FRESH_S, OnStop
+from arboleda.kinds import motion, process, switch
+from arboleda.model.commands import FRESH_S
 from arboleda.model.messages import Fact, MotionState, Reason, Verb
 from arboleda.model.plant_model import Cell, Interlock, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.wire.transport import Publication
 
+from ...plants import device_of, kind_of, made
 from .lab import Bench
-from .tending import IDS, LAMP, plant
+from .tending import LAMP, plant
 
-DOOR = FactType(type=str, words=("open", "closed"), first="open")
 SHUT_S = 0.6
-MILL = DeviceKind(
-    name="mill",
-    facts={"door": DOOR},
-    verbs={
-        "open": DeviceVerb(
-            name="open", effect=Effect.MOTION, sets=(("door", "open"),), takes_s=2.0, at_most_s=8.0
-        ),
-        "close": DeviceVerb(
-            name="close", effect=Effect.MOTION, sets=(("door", "closed"),), takes_s=2.0, at_most_s=8.0
-        ),
-        "shut": DeviceVerb(
-            name="shut", effect=Effect.SWITCH, sets=(("door", "closed"),), takes_s=0.1, at_most_s=SHUT_S
-        ),
-        "seal": DeviceVerb(
-            name="seal",
-            effect=Effect.PROCESS,
-            sets=(("door", "closed"),),
-            takes_s=0.1,
-            at_most_s=SHUT_S,
-            on_stop=OnStop.FINISH,
-        ),
-    },
+MILL = kind_of(
+    "mill",
+    {"door": ["open", "closed"]},
+    open=motion(sets={"door": "open"}, takes_s=2.0, at_most_s=8.0),
+    close=motion(sets={"door": "closed"}, takes_s=2.0, at_most_s=8.0),
+    shut=switch(sets={"door": "closed"}, takes_s=0.1, at_most_s=SHUT_S),
+    seal=process(sets={"door": "closed"}, takes_s=0.1, at_most_s=SHUT_S, finishes=True),
 )
 
 
@@ -49,7 +34,7 @@ def with_mill(*recipes: Recipe) -> PlantModel:
     """The tending cell and a mill around its vise, into which arms reach only while its door is open."""
     model = plant(*recipes)
     (cell,) = model.cells
-    mill = Device(name="mill", mqtt="mill", **IDS, timeout_s=5.0, kind=MILL)
+    mill = device_of(MILL)
     lock = Interlock(device="mill", zone="vise", free_while=(("door", "open"),))
     cell = replace(cell, members=(*cell.members, ("mill", mill)), interlocks=(lock,))
     return replace(model, cells=(cell,))
@@ -115,10 +100,7 @@ def test_a_silent_machine_keeps_its_zone() -> None:
 
 
 def test_a_machine_keeps_its_zone_as_long_as_it_may_obey_an_order_that_is_still_on_its_way() -> None:
-    @recipe("shut")
-    def shut(cell: Kit):  # type: ignore[no-untyped-def]
-        return work(cell.device("mill").shut())
-
+    shut = made("shut", lambda cell: work(cell.device("mill").shut()))
     here = Bench(with_mill(shut))
     late: list[Publication] = []
 
@@ -142,12 +124,7 @@ def test_a_machine_keeps_its_zone_as_long_as_it_may_obey_an_order_that_is_still_
 
 def test_a_machine_that_was_told_to_halt_keeps_its_zone_while_its_next_order_is_on_its_way() -> None:
     """It moves still, on its last order."""
-
-    @recipe("other")
-    def other(cell: Kit):  # type: ignore[no-untyped-def]
-        mill = cell.device("mill")
-        return cell.fallback(mill.close(), mill.open())
-
+    other = made("other", lambda cell, mill: cell.fallback(mill.close(), mill.open()))
     here = Bench(with_mill(other))
     here.machines["mill"].lasts = lambda goal: 60.0
     here.submit("tending other")
@@ -162,11 +139,7 @@ def test_a_machine_that_was_told_to_halt_keeps_its_zone_while_its_next_order_is_
 
 def order_lost(verb: str) -> Bench:
     """A task tells the mill something that never comes to it."""
-
-    @recipe("told")
-    def told(cell: Kit):  # type: ignore[no-untyped-def]
-        return work(getattr(cell.device("mill"), verb)())
-
+    told = made("told", lambda cell: work(getattr(cell.device("mill"), verb)()))
     here = Bench(with_mill(told))
     here.lost = lambda publication: publication.topic == "mill/orden"
     here.submit("tending told")
@@ -187,11 +160,7 @@ def test_reports_that_do_not_name_an_order_free_no_zone_once_it_was_called_off()
 
 def test_work_that_no_stop_ends_keeps_the_zone_of_its_machine_past_its_deadline() -> None:
     """Nothing halts it, and what is reported may be of before it came."""
-
-    @recipe("seal")
-    def seal(cell: Kit):  # type: ignore[no-untyped-def]
-        return work(cell.device("mill").seal())
-
+    seal = made("seal", lambda cell: work(cell.device("mill").seal()))
     here = Bench(with_mill(seal))
     here.lost = lambda publication: publication.topic == "mill/orden"
     here.submit("tending seal")
@@ -210,10 +179,7 @@ def test_an_order_that_never_came_frees_the_zone_of_its_machine_in_the_end() -> 
 
 
 def test_a_motion_into_a_zone_that_is_not_held_is_refused_whatever_the_tree_says() -> None:
-    @recipe("blind")
-    def blind(cell: Kit):  # type: ignore[no-untyped-def]
-        return work(*without_zones(cell.device("left").visit("vise")))
-
+    blind = made("blind", lambda cell: work(*without_zones(cell.device("left").visit("vise"))))
     here = Bench(with_mill(blind))
     here.submit("tending blind")
     assert here.outcome().reason is Reason.ZONE_UNAVAILABLE
@@ -223,11 +189,7 @@ def test_a_motion_into_a_zone_that_is_not_held_is_refused_whatever_the_tree_says
 
 
 def test_a_door_that_may_hit_an_arm_is_not_closed_whatever_the_tree_says() -> None:
-    @recipe("blind")
-    def blind(cell: Kit):  # type: ignore[no-untyped-def]
-        left, mill = cell.devices("left", "mill")
-        return left.visit("vise", *without_zones(mill.close()))
-
+    blind = made("blind", lambda cell, left, mill: left.visit("vise", *without_zones(mill.close())))
     here = Bench(with_mill(blind))
     here.submit("tending blind")
     assert here.outcome().reason is Reason.ZONE_UNAVAILABLE
@@ -258,16 +220,11 @@ def without_zones(step: Any) -> list[Any]:
     return parts
 
 
-SLIDE = FactType(type=str, words=("left", "right"), first="left")
-GATE = DeviceKind(
-    name="gate",
-    facts={"at": SLIDE},
-    verbs={
-        f"go_{at}": DeviceVerb(
-            name=f"go_{at}", effect=Effect.MOTION, sets=(("at", at),), takes_s=2.0, at_most_s=8.0
-        )
-        for at in ("left", "right")
-    },
+GATE = kind_of(
+    "gate",
+    {"at": ["left", "right"]},
+    go_left=motion(sets={"at": "left"}, takes_s=2.0, at_most_s=8.0),
+    go_right=motion(sets={"at": "right"}, takes_s=2.0, at_most_s=8.0),
 )
 
 
@@ -282,7 +239,7 @@ def with_gate() -> PlantModel:
     """A gate that is always in the way: of the vise on its left, of the feed on its right."""
     model = with_mill(slide)
     (cell,) = model.cells
-    gate = Device(name="gate", mqtt="gate", **IDS, timeout_s=5.0, kind=GATE)
+    gate = device_of(GATE)
     locks = (
         Interlock(device="gate", zone="vise", free_while=(("at", "right"),)),
         Interlock(device="gate", zone="feed", free_while=(("at", "left"),)),
@@ -310,7 +267,7 @@ def with_shared_gate() -> PlantModel:
     """The same gate, which a cell that does nothing has, too."""
     model = with_gate()
     (cell,) = model.cells
-    lamp = Device(name="other_lamp", mqtt="other_lamp", **IDS, timeout_s=5.0, kind=LAMP)
+    lamp = device_of(LAMP, "other_lamp")
     members = (("lamp", lamp), ("gate", cell.roles["gate"]))
     idle = Cell(name="other", queue_limit=5, members=members, shared=("gate",), interlocks=cell.interlocks)
     return replace(model, cells=(replace(cell, shared=("gate",)), idle))

@@ -10,13 +10,14 @@ import pytest
 
 import arboleda.kinds as public
 from arboleda.kinds import Kind, KindError, Number, WrittenKind, kind, motion, process, query, switch
-from arboleda.kinds.declared import Device, DeviceKind, UseError, VerbCall
+from arboleda.kinds.declared import DeviceKind, UseError, VerbCall
 from arboleda.kinds.shipped import SHIPPED
 from arboleda.model.facts import Value
-from arboleda.model.plant_model import Evidence, Link
 from arboleda.sim.machine import MachineBody
 from arboleda.wire import mqtt_limits
 from arboleda.wire.payloads import OrderGoal
+
+from ...plants import device_of, kind_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -244,7 +245,7 @@ def test_a_gripper_closes_with_a_width_and_a_force_and_lets_go() -> None:
     body = MachineBody(made)
     done(body, "close", width_mm=30.0, force_n=40.0)
     assert body.facts == {"gripped": True, "width_mm": 30.0, "force_n": 40.0}
-    device = Device(name="jaw", mqtt="jaw", link=Link.MQTT, evidence=Evidence.IDS, timeout_s=5.0, kind=made)
+    device = device_of(made, "jaw")
     off = device.let_go(id="1")
     assert isinstance(off, VerbCall) and off.verb == "open" and device.held_fact == "gripped"
     with pytest.raises(
@@ -256,26 +257,14 @@ def test_a_gripper_closes_with_a_width_and_a_force_and_lets_go() -> None:
 
 
 def test_an_effector_grips_and_lets_go_without_being_told_more() -> None:
-    cup = Device(
-        name="cup", mqtt="cup", link=Link.MQTT, evidence=Evidence.IDS, timeout_s=5.0, kind=shipped("effector")
-    )
+    cup = device_of(shipped("effector"), "cup")
     on, off = cup.grip(id="1"), cup.let_go(id="2")
     assert (on.sets, off.sets) == ((("on", True),), (("on", False),))
 
 
 def test_a_part_can_be_let_go_by_a_verb_that_has_other_parameters() -> None:
-    vise = Kind(
-        facts={"shut": bool},
-        verbs={
-            "set": switch(
-                parameters={"shut": bool, "force": Number(5, 40)}, sets={"shut": "$shut"}, holds_part=True
-            )
-        },
-    )
-    device = Device(
-        name="vise", mqtt="vise", link=Link.MQTT, evidence=Evidence.IDS, timeout_s=5.0, kind=vise.declared
-    )
-    off = device.let_go(id="1")
+    grip = switch(parameters={"shut": bool, "force": Number(5, 40)}, sets={"shut": "$shut"}, holds_part=True)
+    off = device_of(kind_of("vise", {"shut": bool}, set=grip)).let_go(id="1")
     assert isinstance(off, VerbCall) and off.values == (("shut", False), ("force", 5)) and off.grips is False  # type: ignore[attr-defined]
 
 

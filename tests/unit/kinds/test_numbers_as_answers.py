@@ -8,50 +8,33 @@ from typing import Any
 
 import pytest
 
-from arboleda.kinds import KindError, Number, query
+from arboleda.kinds import KindError, Number, motion, query
 from arboleda.kinds.authoring import Kind
-from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
+from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType
 from arboleda.kinds.ranges import apart, comparison
 from arboleda.kinds.rules import INT, NUMBER
 from arboleda.model.messages import Reason, TaskState
-from arboleda.model.plant_model import Cell, Evidence, Link, PlantModel
+from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.recipes import Kit, recipe, work
 
-from .lab import Bench, model
+from ...plants import device_of, kind_of, made
+from .lab import Bench
 
 GRAMS = FactType(type=float, first=0.0, lower=0.0, upper=500.0)
-GATE = DeviceKind(
-    name="gate",
-    facts={"tilt": NUMBER, "at": FactType(type=str, words=("away", "left", "middle", "right"), first="away")},
-    verbs={
-        each: DeviceVerb(name=each, effect=Effect.MOTION, sets=(("at", each),), takes_s=1.0, at_most_s=3.0)
-        for each in ("left", "middle", "right")
-    },
+WAYS = ("left", "middle", "right")
+GATE = kind_of(
+    "gate",
+    {"tilt": float, "at": ["away", *WAYS]},
+    **{each: motion(sets={"at": each}, takes_s=1.0, at_most_s=3.0) for each in WAYS},
 )
 
 
-def scale(number: FactType = GRAMS) -> DeviceKind:
+def line(recipe: Any, number: FactType = GRAMS) -> PlantModel:
     weigh = DeviceVerb(name="weigh", effect=Effect.QUERY, number=number, takes_s=0.5, at_most_s=2.0)
-    return DeviceKind(name="scale", facts={}, verbs={"weigh": weigh})
-
-
-def line(made: Any, number: FactType = GRAMS) -> PlantModel:
-    members = tuple(
-        (
-            kind.name,
-            Device(
-                name=kind.name,
-                mqtt=kind.name,
-                link=Link.MQTT,
-                evidence=Evidence.IDS,
-                timeout_s=5.0,
-                kind=kind,
-            ),
-        )
-        for kind in (scale(number), GATE)
-    )
+    scale = DeviceKind(name="scale", facts={}, verbs={"weigh": weigh})
+    members = tuple((kind.name, device_of(kind)) for kind in (scale, GATE))
     return PlantModel(
-        name="sorter", cells=(Cell(name="line", queue_limit=5, members=members, recipes=(made,)),)
+        name="sorter", cells=(Cell(name="line", queue_limit=5, members=members, recipes=(recipe,)),)
     )
 
 
@@ -173,10 +156,7 @@ def test_numbers_that_tell_ranges_apart_have_the_limits_and_one_between_each_two
     ],
 )
 def test_a_comparison_that_no_fact_can_meet_is_refused(make: Callable[[Any], Any], sentence: str) -> None:
-    @recipe("sort")
-    def sort(cell: Kit):  # type: ignore[no-untyped-def]
-        return make(cell.device("gate"))
-
+    sort = made("sort", lambda cell: make(cell.device("gate")))
     here = Bench(line(sort))
     here.submit("line sort")
     assert sentence in str(here.outcome().sentence)
@@ -184,10 +164,7 @@ def test_a_comparison_that_no_fact_can_meet_is_refused(make: Callable[[Any], Any
 
 @pytest.mark.parametrize(("tilt", "state"), [(12.5, TaskState.DONE), (10.0, TaskState.FAILED)])
 def test_a_fact_is_compared(tilt: float, state: TaskState) -> None:
-    @recipe("sort")
-    def sort(cell: Kit):  # type: ignore[no-untyped-def]
-        return work(cell.device("gate").says(tilt="> 10"), cell.device("gate").left())
-
+    sort = made("sort", lambda cell: work(cell.device("gate").says(tilt="> 10"), cell.device("gate").left()))
     here = Bench(line(sort))
     here.machines["gate"].facts["tilt"] = tilt
     here.wait(1.0)
@@ -199,10 +176,7 @@ def test_a_fact_is_compared(tilt: float, state: TaskState) -> None:
 
 
 def test_a_fact_is_waited_for_until_its_comparison_is_true() -> None:
-    @recipe("sort")
-    def sort(cell: Kit):  # type: ignore[no-untyped-def]
-        return cell.device("gate").becomes(tilt=">= 10", at_most_s=5)
-
+    sort = made("sort", lambda cell: cell.device("gate").becomes(tilt=">= 10", at_most_s=5))
     here = Bench(line(sort))
     here.submit("line sort")
     here.wait(3.0)
@@ -222,7 +196,3 @@ def test_a_virtual_device_answers_a_number_of_the_type() -> None:
         KindError, match=r"virtual of weigh answers 7.0; its answers are a number from 0 to 5"
     ):
         Kind(verbs={"weigh": query(answers=Number(0.0, 5.0), virtual=lambda facts: 7.0)})
-
-
-def test_words_are_chosen_by_as_before() -> None:
-    assert Bench(model()).machines["eye"].kind.verbs["look"].answer_type.words == ("good", "bad")

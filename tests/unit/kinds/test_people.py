@@ -17,6 +17,7 @@ from arboleda.recipes import Kit, RecipeError, recipe, work
 from arboleda.trees.context import MOST_ANSWERS
 from arboleda.views import view
 
+from ...plants import made
 from .lab import Bench
 from .tending import plant
 
@@ -71,10 +72,7 @@ def test_the_task_goes_on_with_the_answer() -> None:
 
 @pytest.mark.parametrize("word", ["sí", "SÍ", "si\u0301"])
 def test_an_answer_may_have_any_letters(word: str) -> None:
-    @recipe("full")
-    def full(cell: Kit):  # type: ignore[no-untyped-def]
-        return cell.device("ana").ask("¿Está lleno?", ["sí", "no"], at_most_s=60.0)
-
+    full = made("full", lambda cell: cell.device("ana").ask("¿Está lleno?", ["sí", "no"], at_most_s=60.0))
     here = Bench(attended(full))
     here.submit("tending full")
     assert here.wait(10.0, lambda: question(here) is not None)

@@ -22,6 +22,7 @@ from arboleda.model.text import parse
 from arboleda.recipes import Choice, Kit, Number, RecipeError, Target, parallel, recipe, work
 from arboleda.recipes.decorators import Inverted
 
+from ...plants import made
 from .lab import Bench
 from .tending import plant
 
@@ -132,11 +133,7 @@ def test_a_recipe_says_where_a_recovery_brings_what_a_robot_holds() -> None:
 
 
 def test_two_arms_work_at_the_same_time_and_take_turns_in_a_zone() -> None:
-    @recipe("both")
-    def both(cell: Kit):  # type: ignore[no-untyped-def]
-        left, right = cell.devices("left", "right")
-        return parallel(left.visit("vise"), right.visit("vise"))
-
+    both = made("both", lambda cell, left, right: parallel(left.visit("vise"), right.visit("vise")))
     here = Bench(plant(both))
     holders = set()
     here.submit("tending both")
@@ -148,11 +145,7 @@ def test_two_arms_work_at_the_same_time_and_take_turns_in_a_zone() -> None:
 
 
 def test_a_mobile_robot_goes_to_its_targets_over_its_grid() -> None:
-    @recipe("drive")
-    def drive(cell: Kit):  # type: ignore[no-untyped-def]
-        shuttle = cell.device("shuttle")
-        return work(shuttle.go("store"), shuttle.home())
-
+    drive = made("drive", lambda cell, shuttle: work(shuttle.go("store"), shuttle.home()))
     here = Bench(plant(drive))
     here.submit("tending drive")
     assert here.outcome().state.value == "done"
@@ -191,10 +184,7 @@ def test_numbers_and_names_in_the_text_of_a_task() -> None:
     ids=["target", "verb", "too many values"],
 )
 def test_words_that_are_wrong_are_named(make: Callable[[Kit], Any], sentence: str) -> None:
-    @recipe("wrong")
-    def wrong(cell: Kit):  # type: ignore[no-untyped-def]
-        return make(cell)
-
+    wrong = made("wrong", make)
     here = Bench(plant(wrong))
     here.submit("tending wrong")
     assert sentence in str(here.outcome().sentence)
@@ -203,11 +193,7 @@ def test_words_that_are_wrong_are_named(make: Callable[[Kit], Any], sentence: st
 
 def attempts(make: Callable[[Kit, Any], Any], times: int) -> tuple[Bench, list[float]]:
     """A task with a step that the lamp gives up so many times; when it did it, or gave it up."""
-
-    @recipe("try")
-    def tries(cell: Kit):  # type: ignore[no-untyped-def]
-        return make(cell, cell.device("lamp").light(on=True))
-
+    tries = made("try", lambda cell: make(cell, cell.device("lamp").light(on=True)))
     here, asked = Bench(plant(tries)), []
 
     def fails(order: Any) -> str | None:
@@ -263,10 +249,7 @@ def test_an_inverted_step_fails_where_its_step_does_not() -> None:
 
 
 def test_a_timeout_leaves_its_step() -> None:
-    @recipe("slow")
-    def slow(cell: Kit):  # type: ignore[no-untyped-def]
-        return cell.timeout(cell.device("left").go("feed_2"), 0.2)
-
+    slow = made("slow", lambda cell: cell.timeout(cell.device("left").go("feed_2"), 0.2))
     here = Bench(plant(slow))
     here.submit("tending slow")
     assert here.outcome().reason is Reason.DEADLINE
@@ -274,10 +257,7 @@ def test_a_timeout_leaves_its_step() -> None:
 
 
 def test_a_recipe_is_a_step_of_another() -> None:
-    @recipe("twice")
-    def twice(cell: Kit):  # type: ignore[no-untyped-def]
-        return work(cell.run(load, blank="feed"), cell.run(load, blank="feed_2"))
-
+    twice = made("twice", lambda cell: work(cell.run(load, blank="feed"), cell.run(load, blank="feed_2")))
     here = Bench(plant(twice))
     here.submit("tending twice")
     assert here.outcome(240.0).state.value == "done"
@@ -377,11 +357,7 @@ def test_an_arm_that_was_silent_when_its_work_failed_rises_once_it_is_heard() ->
 
 
 def test_an_arm_goes_up_once_where_its_work_is_tried_again() -> None:
-    @recipe("again")
-    def again(cell: Kit):  # type: ignore[no-untyped-def]
-        left = cell.device("left")
-        return cell.retry(left.visit("feed", cell.fail("no blanks")), times=1)
-
+    again = made("again", lambda cell, left: cell.retry(left.visit("feed", cell.fail("no blanks")), times=1))
     here = Bench(lifting(again))
     here.submit("tending again")
     assert here.outcome().state is TaskState.FAILED

@@ -10,7 +10,7 @@ import pytest
 from tests.following import advised, follow, works
 
 from arboleda.core.plant import Plant
-from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
+from arboleda.kinds import motion
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.plant_model import Cell, PlantModel
@@ -21,17 +21,15 @@ from arboleda.recipes.errors import RecipeError
 from arboleda.trees.hand_over import HandOver
 from arboleda.trees.tree_run import step_of
 
+from ...plants import device_of, kind_of, made
 from .lab import Bench
-from .tending import IDS, LAMP
+from .tending import LAMP
 
-AT = FactType(type=str, words=("low", "high"), first="low")
-LIFT = DeviceKind(
-    name="lift",
-    facts={"at": AT},
-    verbs={
-        name: DeviceVerb(name=name, effect=Effect.MOTION, sets=(("at", at),), takes_s=2.0, at_most_s=6.0)
-        for name, at in (("up", "high"), ("down", "low"))
-    },
+LIFT = kind_of(
+    "lift",
+    {"at": ["low", "high"]},
+    up=motion(sets={"at": "high"}, takes_s=2.0, at_most_s=6.0),
+    down=motion(sets={"at": "low"}, takes_s=2.0, at_most_s=6.0),
 )
 
 
@@ -46,10 +44,10 @@ def ride(cell: Kit):  # type: ignore[no-untyped-def]
 
 def plant(*recipes: Recipe, wait_s: float = 30.0) -> PlantModel:
     """`below` and `above`, each with a lamp of its own, and the lift that both have."""
-    lift = Device(name="lift", mqtt="lift", **IDS, timeout_s=5.0, kind=LIFT)
+    lift = device_of(LIFT)
     cells = []
     for name in ("below", "above"):
-        lamp = Device(name=f"{name}_lamp", mqtt=f"{name}_lamp", **IDS, timeout_s=5.0, kind=LAMP)
+        lamp = device_of(LAMP, f"{name}_lamp")
         members = (("lamp", lamp), ("lift", lift))
         cell = Cell(name=name, queue_limit=5, members=members, shared=("lift",), zone_wait_s=wait_s)
         cells.append(replace(cell, recipes=recipes or (ride,)))
@@ -121,9 +119,7 @@ def alone(cell: Kit, role=Choice("hoist", "lift")):  # type: ignore[no-untyped-d
 
 def hoisting() -> Bench:
     """Three cells that share a hoist and a lift: `one` has the lift, and `two` waits for both."""
-    shared = [
-        (name, Device(name=name, mqtt=name, **IDS, timeout_s=5.0, kind=LIFT)) for name in ("hoist", "lift")
-    ]
+    shared = [(name, device_of(LIFT, name)) for name in ("hoist", "lift")]
     cell = Cell(name="one", queue_limit=5, members=tuple(shared), shared=("hoist", "lift"), zone_wait_s=30.0)
     cells = [replace(cell, name=name, recipes=(both, alone)) for name in ("one", "two", "three")]
     here = Bench(PlantModel(name="shop", cells=tuple(cells)))
@@ -410,10 +406,7 @@ def test_a_recipe_can_say_itself_how_long_it_needs_it() -> None:
 def test_what_would_let_a_cell_wait_with_something_in_its_hands_is_refused(
     build: Callable[..., object], why: str | None
 ) -> None:
-    @recipe("wrong")
-    def wrong(cell: Kit):  # type: ignore[no-untyped-def]
-        return build(cell, cell.device("lift"))
-
+    wrong = made("wrong", lambda cell: build(cell, cell.device("lift")))
     here = Bench(plant(wrong))
     context = here.plant.cells["below"].context
     order = here.plant.intake.task("below wrong", lambda orders: (orders[0], NOTHING)).order

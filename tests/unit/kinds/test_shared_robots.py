@@ -8,7 +8,6 @@ import pytest
 from tests.following import advised, follow
 
 from arboleda.core.plant import Plant
-from arboleda.kinds.declared import Device
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.plant_model import Cell, Interlock, PlantModel, Pose, Workspace
@@ -17,8 +16,9 @@ from arboleda.model.whole_cells import whole_cell
 from arboleda.recipes import Kit, recipe, work
 from arboleda.views import view
 
+from ...plants import device_of
 from .lab import Bench
-from .tending import FEED, GRIPPER, HOME, IDS, LAMP, VISE, arm
+from .tending import FEED, GRIPPER, HOME, LAMP, VISE, arm
 from .test_shared_devices import ended, state_of
 
 
@@ -44,10 +44,10 @@ def keep(cell: Kit):  # type: ignore[no-untyped-def]
 
 def plant(*recipes: Recipe) -> PlantModel:
     """`left` and `right`, each with a lamp of its own; both have the arm and its jaw."""
-    robot, jaw = arm("robot"), Device(name="jaw", mqtt="jaw", **IDS, timeout_s=5.0, kind=GRIPPER)
+    robot, jaw = arm("robot"), device_of(GRIPPER, "jaw")
     cells = []
     for name, sign in (("left", 1.0), ("right", -1.0)):
-        lamp = Device(name=f"{name}_lamp", mqtt=f"{name}_lamp", **IDS, timeout_s=5.0, kind=LAMP)
+        lamp = device_of(LAMP, f"{name}_lamp")
         home = Pose(name="home", q=HOME)
         feed = Pose(name="feed", q=(sign * FEED[0], FEED[1]), above=(sign * FEED[0], 0.0))
         vise = Pose(name="vise", q=(sign * VISE[0], -VISE[1]), zones=frozenset({"vise"}))

@@ -13,6 +13,7 @@ from arboleda.model.messages import TaskState, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.recipes import Kit, parallel, recipe, work
 
+from ...plants import made
 from .lab import Bench
 from .tending import plant as tending
 from .test_shared_devices import ended, holder, plant, state_of
@@ -51,11 +52,7 @@ ASKS_FIRST: dict[str, Build] = {
 
 def asking(build: Build, *, shared: bool = False) -> Bench:
     """The cell below carries out a recipe, and asks; ana may be shared, too."""
-
-    @recipe("asks")
-    def asks(cell: Kit):  # type: ignore[no-untyped-def]
-        return build(cell, cell.device("lift"), cell.device("ana"))
-
+    asks = made("asks", lambda cell: build(cell, cell.device("lift"), cell.device("ana")))
     model: PlantModel = plant()
     below, above = model.cells
     ana = ("ana", person("ana"))

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType
+from arboleda.kinds import motion, switch
 from arboleda.model.commands import StopMode
 from arboleda.model.facts import Value
 from arboleda.model.messages import MotionState
@@ -19,6 +19,7 @@ from arboleda.wire.payloads import Beat, OrderGoal, Payload, StopGoal, Telemetry
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Connection, Delivery
 
+from ...plants import kind_of
 from .station import plant
 
 BOARD, EPOCH = "st_1", 50
@@ -188,17 +189,14 @@ def test_a_switch_gives_way_to_the_next_one_of_its_fact() -> None:
 
 
 def test_a_switch_gives_way_to_a_motion_that_sets_its_fact() -> None:
-    raised = DeviceVerb(name="raise", effect=Effect.SWITCH, sets=(("up", True),), takes_s=2.0, at_most_s=5.0)
-    lowered = DeviceVerb(
-        name="lower", effect=Effect.MOTION, sets=(("up", False),), takes_s=0.1, at_most_s=5.0
-    )
-    facts = {"up": FactType(type=bool, first=True)}
-    body = MachineBody(DeviceKind(name="lift", facts=facts, verbs={"raise": raised, "lower": lowered}))
-    body.start(0, OrderGoal(verb="raise", values=(), seq=1, epoch=EPOCH))
+    pushed = switch(sets={"down": False}, takes_s=2.0, at_most_s=5.0)
+    lowered = motion(sets={"down": True}, takes_s=0.1, at_most_s=5.0)
+    body = MachineBody(kind_of("lift", {"down": bool}, push=pushed, lower=lowered))
+    body.start(0, OrderGoal(verb="push", values=(), seq=1, epoch=EPOCH))
     body.start(1, OrderGoal(verb="lower", values=(), seq=2, epoch=EPOCH))
     assert [end.failure for end in body.take_ends()] == ["relevado"]
     body.advance(5_000_000)
-    assert body.facts["up"] is False
+    assert body.facts["down"] is True
 
 
 def test_an_order_that_comes_twice_is_carried_out_once_whatever_came_between() -> None:

@@ -14,6 +14,7 @@ from arboleda.recipes import Kit, Number, recipe, work
 from arboleda.testing import Rig, shipped
 from arboleda.views import diagnostics, forms, geometry, twin_view, view
 
+from ...plants import made
 from ..kinds.lab import Bench, model
 
 
@@ -150,10 +151,7 @@ def test_a_number_has_its_limits_instead_of_choices() -> None:
 
 
 def test_a_step_around_another_is_not_the_step_that_runs() -> None:
-    @recipe("patient")
-    def patient(cell: Kit):  # type: ignore[no-untyped-def]
-        return cell.timeout(cell.device("oven").close(), seconds=9.0)
-
+    patient = made("patient", lambda cell: cell.timeout(cell.device("oven").close(), seconds=9.0))
     here = Bench(model(patient))
     here.submit("bench patient")
     assert here.wait(30.0, lambda: here.told[-1:] == ["oven close"])
