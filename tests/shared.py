@@ -301,6 +301,13 @@ def no_thread_left() -> Iterator[None]:
 
 
 @pytest.fixture
+def ctrl_c_raises() -> Iterator[None]:
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.fixture
 def free_port() -> int:
     return unused_port()
 

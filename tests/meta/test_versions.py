@@ -1,7 +1,8 @@
-"""One version, wherever it is written."""
+"""One version and one list of package data, wherever they are written."""
 
 from __future__ import annotations
 
+import ast
 import re
 from pathlib import Path
 
@@ -31,3 +32,11 @@ def test_every_package_names_the_version_of_pyproject() -> None:
     versions = {str(path.relative_to(ROOT)): version_in(path) for path in files}
     assert len(versions) >= 10
     assert set(versions.values()) == {version_in(ROOT / "pyproject.toml")}, versions
+
+
+def test_both_builds_of_the_core_take_the_same_files_along() -> None:
+    (listed,) = re.findall(r"^arboleda = (\[.*?^\])", (ROOT / "pyproject.toml").read_text(), re.M | re.S)
+    tree = ast.parse((ROOT / "src/arboleda/setup.py").read_text())
+    keywords = [node for node in ast.walk(tree) if isinstance(node, ast.keyword)]
+    (by_colcon,) = (ast.literal_eval(node.value) for node in keywords if node.arg == "package_data")
+    assert sorted(by_colcon["arboleda"]) == sorted(ast.literal_eval(listed))

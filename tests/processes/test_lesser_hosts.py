@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
+
+from arboleda.host import signals
 
 from ..lesser_host import NOWHERE
 from ..packages import PACKAGES
@@ -37,3 +40,12 @@ def test_every_module_is_imported_where_the_system_has_less() -> None:
     assert ran.returncode == 0, ran.stderr
     imported = dict(line.split() for line in ran.stdout.splitlines())
     assert imported.keys() == {"win32", "darwin"} and min(map(int, imported.values())) > 1000
+
+
+def test_a_process_ends_with_its_group() -> None:
+    with subprocess.Popen(
+        [sys.executable, "-c", "input()"], stdin=subprocess.PIPE, start_new_session=True
+    ) as run:
+        signals.kill_group(run.pid)
+        assert run.wait() == -signal.SIGKILL
+    signals.kill_group(run.pid)

@@ -99,3 +99,12 @@ def test_the_first_line_comes_before_what_is_slow_to_load() -> None:
     assert line == "Loading the plant"
     assert "arboleda.cli.up" in modules.split()
     assert SLOW.isdisjoint(modules.split())
+
+
+PAGE = "import sys, arboleda.dashboard.page; print(*sys.modules)"
+
+
+def test_a_page_loads_no_clients_of_its_toolkit() -> None:
+    loaded = subprocess.run([sys.executable, "-c", PAGE], capture_output=True, text=True, check=True).stdout
+    assert {"nicegui", "engineio"} <= set(loaded.split())
+    assert {"aiohttp", "requests", "tornado"}.isdisjoint(loaded.split())

@@ -1,4 +1,4 @@
-"""The advice leads out where a robot stands in a zone that another robot may cross on its way home."""
+"""What is advised where a zone is kept, and a mobile robot whose way comes by a target in one."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.model.messages import Verb
+from arboleda.core.plant import Plant
+from arboleda.model.messages import MotionState, OperatorRequest, Report, Verb
 from arboleda.testing import Rig
 
 from ..following import advised, follow, works
-from ..plants import read
+from ..plants import plant_text, read
 
 LEFT = "left: {kind: arm, model: scara, %s}"
 RIGHT = "right: {kind: arm, model: scara, base: {origin_m: [0.6, 0]}, %s}"
@@ -105,3 +106,24 @@ def test_a_robot_that_only_a_person_homes_is_taken_home_out_of_the_zone_first(tm
         rig.operate(verb, "aa")
         rig.wait(2.0)
     assert advised(rig, "aa")[:2] == ["home left --by-hand", "home right"]
+
+
+LONELY = plant_text(__file__, "zones_of_mobiles")
+THERE_AND_BACK = """
+from arboleda.recipes import recipe, work
+
+@recipe("go")
+def go(cell):
+    one = cell.device("one")
+    return work(one.go("far"), one.home())
+"""
+
+
+def test_a_person_who_puts_it_home_gives_back_its_zone_though_nobody_sees_it(tmp_path: Path) -> None:
+    plant = Plant(read(tmp_path, LONELY.replace("joints", "state"), THERE_AND_BACK), epoch=7, now=0.0)
+    assert plant.zones.request("one", frozenset({"gate"}))
+    plant.step(0.1, [Report(at=0.1, robot="one", state=MotionState.STOPPED, epoch=1, plant=7)])
+    assert plant.zones.holder("gate") == "one"
+    by_hand = OperatorRequest(at=0.2, verb=Verb.HOME, scope="one", by_hand=True)
+    plant.step(0.2, [by_hand])
+    assert plant.zones.holder("gate") is None

@@ -1,4 +1,4 @@
-"""After a failure an arm puts its part down where it took it, not from above."""
+"""Where an arm takes its part and where it brings it back after a failure."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ from pathlib import Path
 
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Switch
-from arboleda.testing import Rig
+from arboleda.model.messages import Verb
+from arboleda.model.plant_model import PlantModel
+from arboleda.testing import Rig, shipped
 
 from ..plants import plant_text, read
-from .restarts import ENDED
+from .restarts import ENDED, crash_without_trail
 
 PLANT = plant_text(__file__, "part_back")
 RECIPES = """
@@ -38,3 +40,23 @@ def _goals(rig: Rig) -> list[object]:
     """Where the arm is sent to in this step, and that it lets go."""
     sent = [each for each in rig.moment.sent if isinstance(each, MoveJoints | Switch)]
     return [each.q if isinstance(each, MoveJoints) else "grip" if each.grips else "let go" for each in sent]
+
+
+def held_with_a_part(model: PlantModel) -> Rig:
+    """sis_a is held while its arm carries a part from exit A to station 7."""
+    rig = Rig(model)
+    rig.wait(0.5)
+    rig.submit("sis_a 0A 7")
+    rig.wait_for("sis_a", "main/move to station 7")
+    rig.wait(0.3)
+    assert rig.operate(Verb.HOLD, "sis_a") is None
+    rig.wait(1.0)
+    return rig
+
+
+def test_a_plant_that_starts_anew_brings_a_part_to_where_the_mobile_stands() -> None:
+    rig = held_with_a_part(shipped("sis_a"))
+    crash_without_trail(rig)
+    rig.wait(3.0)
+    assert rig.operate(Verb.RETRY, "sis_a") is None
+    rig.wait_for("sis_a", "carry back/move to pick-up A")

@@ -6,25 +6,18 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from queue import SimpleQueue
 
 import pytest
 
 from arboleda.runtime import interrupts
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.usefixtures("ctrl_c_raises")]
 WAITS: dict[str, Callable[[], object]] = {
     "for an event": lambda: interrupts.until(threading.Event()),
     "for a queue": lambda: list(interrupts.taken_from(SimpleQueue())),
 }
-
-
-@pytest.fixture(autouse=True)
-def ctrl_c_raises() -> Iterator[None]:
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
 
 
 def test_a_signal_that_does_not_wake_the_main_thread_ends_its_wait() -> None:

@@ -1,4 +1,4 @@
-"""The language of the terminal: which one, and what is said in it."""
+"""The language of the terminal: which one, and what is said in it, by a plant over HTTP, too."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import typer.testing
 from arboleda.cli.language import VARIABLES, language, say_in
 from arboleda.cli.main import cli
 from arboleda.cli.screen import says
+from arboleda.cli.status import spoken
 from arboleda.model import text
 from arboleda.model.errors import TextError
 from arboleda.testing import shipped
@@ -60,3 +61,29 @@ def test_the_form_of_a_task_is_said_in_this_language() -> None:
         text.parse("", shipped())
     form = "<una celda> <un camino> <una estación>, p. ej. sis_a 0A 8, o <un brazo o una celda> palletizing"
     assert say_in("es", refused.value.sentence) == f"la tarea está vacía; escriba {form}"
+
+
+@pytest.mark.parametrize(
+    ("step", "said"),
+    [
+        ("drive path 2A", "recorrer el camino 2A"),
+        ("move to pick-up A", "ir a la recogida A"),
+        ("recovery: at start", "recuperación: en el inicio"),
+        ("cools the oven", "cools the oven"),  # of a recipe of somebody's own
+    ],
+)
+def test_the_step_of_a_cell_is_named(step: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ARBOLEDA_LANG", "es")
+    assert spoken({"cells": [{"name": step, "step": step}]}) == {"cells": [{"name": step, "step": said}]}
+
+
+@pytest.mark.parametrize(
+    ("language", "said"), [("es", "pump está sin conexión; reconectar pump"), ("en", None)]
+)
+def test_what_keeps_a_cell_is_said_and_names_stay(
+    language: str, said: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ARBOLEDA_LANG", language)
+    why = "pump is offline; bring pump back"
+    told = {"cells": [{"name": why, "not_ready": why, "held_by": None}]}
+    assert spoken(told) == {"cells": [{"name": why, "not_ready": said or why, "held_by": None}]}

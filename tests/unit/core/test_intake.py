@@ -1,4 +1,4 @@
-"""What is remembered of tasks: all that have not ended, and the last of those that have."""
+"""What is remembered of tasks, and which of them begin by no other version of the plant."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from typing import NoReturn
 import pytest
 
 from arboleda.core.intake import HISTORY, Intake
+from arboleda.core.plant import Plant
 from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import TaskState
+from arboleda.model.messages import KeptTask, Revision, RevisionName, TaskChanged, TaskRequest, TaskState
 from arboleda.model.task import Task
 from arboleda.testing import shipped
 
@@ -50,3 +51,51 @@ def test_a_task_is_forgotten_only_past_the_limit(intake: Intake) -> None:
     for number in range(HISTORY):
         remembered(intake, f"lot{number}", ended=True)
     assert "lot0" in intake.tasks
+
+
+TEXT = "sis_a 0B 7 #lot1"
+FIRST, SECOND = (RevisionName(digest=each, number=number) for number, each in enumerate(("one", "two"), 1))
+
+
+def revision(version: RevisionName) -> Revision:
+    return Revision(at=0.0, version=version)
+
+
+def request(version: str) -> TaskRequest:
+    return TaskRequest(at=0.0, text=TEXT, request="r", version=version)
+
+
+@pytest.fixture
+def plant() -> Plant:
+    model = shipped("sis_a")
+    return Plant(model, epoch=1, now=0.0, versions={"one": model, "two": model})
+
+
+def states(plant: Plant, *events: Revision | TaskRequest) -> list[TaskState]:
+    """The states that the task was told to have, in their order."""
+    told = [each for event in events for each in plant.step(0.0, [event])]
+    return [each.state for each in told if isinstance(each, TaskChanged)]
+
+
+def test_a_request_for_the_version_at_work_is_taken(plant: Plant) -> None:
+    assert states(plant, revision(FIRST), request("one")) == [TaskState.QUEUED]
+
+
+def test_a_request_that_comes_after_another_version_is_refused(plant: Plant) -> None:
+    assert states(plant, revision(FIRST), revision(SECOND), request("one")) == [TaskState.REFUSED]
+
+
+def test_one_that_waits_ends_with_its_version_and_one_for_any_waits_on(plant: Plant) -> None:
+    assert states(plant, request("one"), revision(FIRST)) == [TaskState.QUEUED]
+    assert states(plant, revision(SECOND)) == [TaskState.CANCELLED]
+    other = Plant(plant.model, epoch=1, now=0.0, versions=plant.versions)
+    assert states(other, request(""), revision(FIRST), revision(SECOND)) == [TaskState.QUEUED]
+
+
+@pytest.mark.parametrize(("is_bound", "state"), [(True, TaskState.CANCELLED), (False, TaskState.QUEUED)])
+def test_one_that_had_not_begun_ends_with_the_start_it_was_allowed_in(
+    is_bound: bool, state: TaskState
+) -> None:
+    kept = KeptTask(id="lot1", text=TEXT, cell="sis_a", state=TaskState.QUEUED, is_bound=is_bound)
+    plant = Plant(shipped("sis_a"), epoch=2, now=0.0, kept=[kept])
+    assert plant.intake.tasks["lot1"].state is state

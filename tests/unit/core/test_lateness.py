@@ -1,4 +1,4 @@
-"""Work that stopped short of its target says what was late: heartbeats, reports, or what was on its way."""
+"""Work that stopped short of its target says what was late; the next deadline of a plant is worked out."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import MotionState, Reason
 from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import OWN
+from arboleda.testing import shipped
+from arboleda_bench.obedient import Yard, command_in, is_over
+from arboleda_bench.step import begin_task, go_on
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
 ON_THE_WAY = (
@@ -76,3 +79,21 @@ def test_where_somebody_else_commanded_it_nothing_was_late(arm_moves: Any) -> No
     entry = arm_moves.plant.dispatcher.ledger.entries[move.id]
     arm_moves.tell("ra1", state=STILL, q=(0.3, 0.0, 0.0), accepted=move.id)
     assert str(entry.failure.sentence).endswith("pick-up; somebody else commanded ra1")
+
+
+def played(yard: Yard, *, asks: bool) -> tuple[list[Any], list[float]]:
+    """All that a plant sends for one task, and its deadlines where it is asked for them."""
+    out = begin_task(yard)
+    sent, deadlines = [*out], list[float]()
+    while not is_over(out):
+        out = go_on(yard, command_in(out))
+        sent += out
+        if asks:
+            deadlines.append(yard.plant.next_deadline)
+    return sent, [*deadlines, yard.plant.next_deadline]
+
+
+def test_a_plant_that_is_not_asked_for_its_deadline_does_the_same() -> None:
+    asked, unasked = (played(Yard(shipped("sis_a")), asks=asks) for asks in (True, False))
+    assert asked[0] == unasked[0] and len(asked[0]) > 10
+    assert asked[1][-1] == unasked[1][-1]

@@ -1,9 +1,14 @@
-"""Pages that no browser has opened yet."""
+"""Pages that no browser has opened yet, and the end of what sends frames."""
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 
+import pytest
+
+from arboleda.dashboard import frames
+from arboleda.dashboard.frames import ended
 from arboleda.dashboard.page_budget import PageBudget
 
 
@@ -55,3 +60,24 @@ def test_one_that_was_deleted_otherwise_counts_no_more() -> None:
     unopened.add(gone)  # type: ignore[arg-type]
     gone.delete()
     assert not any(page.deleted for page in pages(unopened, 3))
+
+
+def test_a_task_that_swallows_a_cancellation_ends_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(frames, "AGAIN_S", 0)
+
+    async def run() -> bool:
+        never, swallowed = asyncio.Event(), asyncio.Event()
+
+        async def stubborn() -> None:
+            try:
+                await never.wait()
+            except asyncio.CancelledError:
+                swallowed.set()
+            await never.wait()
+
+        task = asyncio.create_task(stubborn())
+        await asyncio.sleep(0)
+        await ended(task)
+        return swallowed.is_set() and task.cancelled()
+
+    assert asyncio.run(run())

@@ -1,11 +1,13 @@
-"""Which of what is kept has to be durable before a command leaves."""
+"""Which of what is kept has to be durable before a command leaves; the states of a task."""
 
 from __future__ import annotations
 
 import pytest
 
+from arboleda.model.errors import IllegalTransition
 from arboleda.model.messages import Fact, Journal, Remember, TaskChanged, TaskState, Verb, outlives_power
 from arboleda.model.sentence import OWN
+from arboleda.model.task import Order, Task
 
 
 @pytest.mark.parametrize(
@@ -39,3 +41,17 @@ def test_so_does_every_change_of_a_task(state: TaskState) -> None:
 
 def test_so_does_every_act_of_an_operator() -> None:
     assert outlives_power(Journal(verb=Verb.STOP, scope="", cell=None, sentence=OWN(text="stopped")))
+
+
+ENDS = (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED)
+
+
+@pytest.mark.parametrize("state", TaskState, ids=lambda state: state.value)
+@pytest.mark.parametrize("end", ENDS, ids=lambda end: end.value)
+def test_a_task_that_has_ended_stays_as_it_is(end: TaskState, state: TaskState) -> None:
+    task = Task("t-1", Order(text="sis_a 0B 7", cell="sis_a", recipe="storage"))
+    task.become(TaskState.RUNNING, 1.0)
+    task.become(end, 2.0)
+    with pytest.raises(IllegalTransition, match=f"task t-1 cannot go from {end.value} to {state.value}"):
+        task.become(state, 3.0)
+    assert (task.state, task.ended_at) == (end, 2.0)

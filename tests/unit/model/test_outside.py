@@ -1,4 +1,4 @@
-"""What is done to text from outside before anybody is shown it."""
+"""Text from outside before anybody is shown it, and what a person writes behind a verb."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from arboleda.model import outside
 from arboleda.model.outside import LINE, plain, quoted
+from arboleda.model.verbs import Arguments, Verb, as_text, from_text, lasting
 
 ANY = st.text(st.characters(exclude_categories=()), max_size=400)  # surrogates and controls, too
 EVIL = [
@@ -70,3 +71,34 @@ def test_a_hundred_thousand_letters_are_clipped() -> None:
 
 def test_the_examples_hold() -> None:
     assert doctest.testmod(outside).failed == 0
+
+
+TEXTS: list[tuple[Verb, str, str, Arguments]] = [
+    (Verb.UNLOAD, "sis_a 7", "sis_a", (("station", 7),)),
+    (Verb.UNLOAD, "sis_a", "sis_a", ()),
+    (Verb.UNLOAD, "", "", ()),
+    (Verb.UNLOAD, "sis_a 07", "sis_a", (("station", "07"),)),
+    (Verb.UNLOAD, "sis_a 7 8", "sis_a", (("station", "7 8"),)),
+    (Verb.ANSWER, "ana not yet", "ana", (("answer", "not yet"),)),
+    (Verb.ANSWER, "ana #7-1 yes", "ana", (("question", "7-1"), ("answer", "yes"))),
+    (Verb.ANSWER, "ana #7-1 #1-2 x", "ana", (("question", "7-1"), ("answer", "#1-2 x"))),
+    (Verb.ANSWER, "ana #7", "ana", (("answer", "#7"),)),
+    (Verb.ANSWER, "ana", "ana", ()),
+    (Verb.STOP, "sis_a 7", "sis_a 7", ()),
+]
+
+
+@pytest.mark.parametrize(("verb", "text", "scope", "arguments"), TEXTS)
+def test_words_are_a_scope_and_arguments_and_back(
+    verb: Verb, text: str, scope: str, arguments: Arguments
+) -> None:
+    assert from_text(verb, text) == (scope, arguments)
+    assert as_text(verb, scope, arguments) == text
+
+
+def test_blanks_between_words_do_not_count() -> None:
+    assert from_text(Verb.ANSWER, "  ana  #7-1   yes ") == from_text(Verb.ANSWER, "ana #7-1 yes")
+
+
+def test_what_only_one_start_of_the_plant_knows_does_not_last() -> None:
+    assert lasting(Verb.ANSWER, (("question", "7-1"), ("answer", "yes"))) == (("answer", "yes"),)

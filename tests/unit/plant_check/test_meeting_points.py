@@ -1,4 +1,4 @@
-"""`check` warns of two targets of one robot at one place, and of two arms that can meet without a zone."""
+"""`check` warns of two targets at one place, of arms that can meet without a zone, and of nodes in a zone."""
 
 from __future__ import annotations
 
@@ -118,3 +118,27 @@ def test_a_station_where_parts_are_picked_up_is_told_and_two_exits_may_be_met_at
     mend = "; move one of them, or delete it"
     alike = [f"{pickup} and station_0 of arm are one place" for pickup in ("pickup", "pickup_1")]
     assert told == [f"lab: {each}{mend}" for each in alike]
+
+
+CROSSING = plant_text(__file__, "grid_check")
+
+
+def test_the_node_is_told_with_what_keeps_the_other_off(tmp_path: Path) -> None:
+    (found,) = warned(tmp_path, CROSSING)
+    assert found == (
+        "left is at gate in crossing, and nothing keeps two off its node 1 there;"
+        " a target of two at it, in that zone, does"
+    )
+
+
+@pytest.mark.parametrize(
+    "plant",
+    [
+        CROSSING.replace("{left: {node: 5}}", "{left: {node: 5}, two: {node: 1}}"),
+        CROSSING.replace("[0.4, 0]", "[5, 0]"),
+        CROSSING.replace("zones:\n  crossing: {poses: [bay gate]}\n", ""),
+    ],
+    ids=["a target in the zone", "elsewhere", "no zone"],
+)
+def test_nothing_is_told_where_nobody_comes_by(tmp_path: Path, plant: str) -> None:
+    assert warned(tmp_path, plant) == []

@@ -1,4 +1,4 @@
-"""What is the same in several cells is told once, with their names."""
+"""What `check` tells once of several cells, and needs that no device can ever meet."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from arboleda.plant_check import checks
 from arboleda.plant_file import loader
 from arboleda.plant_file.problems import counted, told_once
 
-from ...plants import plant_text
+from ...plants import plant_text, read
 
 PLANT = """
 name: lights
@@ -90,3 +90,44 @@ def test_one_mistake_in_three_cells_whose_devices_have_other_names_is_one_line_w
 def test_devices_of_other_roles_are_no_one_mistake() -> None:
     roles = {"a": {"left": "one"}, "b": {"right": "other"}}
     assert counted(("a: left is wet", "b: right is wet"), roles) == ("a: left is wet", "b: right is wet")
+
+
+NEEDY = """
+name: lab
+uses: [turn.xml]
+kinds:
+  oven:
+    facts: {{door: [closed, open]}}
+    verbs:
+      open: {{effect: motion, sets: {{door: open}}}}
+      bake: {{effect: process, takes_s: 2{own}}}
+  mill:
+    facts: {{guard: [shut, up]}}
+    verbs:
+      turn: {{effect: process, takes_s: 2, sets: {{guard: shut}}}}
+cells:
+  lab:
+    devices:
+      oven: {{kind: oven, evidence: {evidence}}}
+      mill: {{kind: mill}}
+    needs: {{mill.turn: {{oven.door: open}}}}
+"""
+TREE = '<root BTCPP_format="4"><BehaviorTree ID="Turn"><mill_turn/></BehaviorTree></root>'
+OWN = ", needs: {door: open}"
+SILENT = "of oven, and oven reports no facts (evidence: state); it is always refused; write another evidence"
+
+
+@pytest.mark.parametrize(
+    ("own", "evidence", "said"),
+    [
+        ("", "ids", []),
+        (OWN, "facts", []),
+        ("", "state", [f"lab: mill turn needs door {SILENT}"]),
+        (OWN, "state", [f"lab: oven bake needs door {SILENT}", f"lab: mill turn needs door {SILENT}"]),
+    ],
+)
+def test_it_names_verbs_that_need_what_a_device_never_reports(
+    tmp_path: Path, own: str, evidence: str, said: list[str]
+) -> None:
+    plant = read(tmp_path, NEEDY.format(own=own, evidence=evidence), beside={"turn.xml": TREE})
+    assert list(checks.unmet_needs(plant)) == said

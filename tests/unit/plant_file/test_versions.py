@@ -1,4 +1,4 @@
-"""Versions of a plant: kept whole, found again, and brought back."""
+"""Versions of a plant, kept whole and brought back, and the source of its recipes as one hash."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from tests.cuts import each_cut
 
 from arboleda.model.errors import ConfigError, StartError
 from arboleda.model.plant_files import PlantFiles
+from arboleda.plant_file.source_text import source_of
 from arboleda.plant_file.versions import FACTS, FOLDER, Version, Versions, version_of, whole
 
 AT = "2026-11-25T20:00:00+00:00"
@@ -104,3 +105,45 @@ def test_a_version_that_is_forgotten_is_there_whole_or_not_at_all(tmp_path: Path
     first, second = kept.keep(version(files())), kept.keep(version(files(t_xml=b"<a/>")))
     for cut in each_cut(plant.parent, lambda: kept.forget(second)):
         assert kept.all() in ([first], [first, second]), cut
+
+
+RECIPE = b"def work(cell, count=3):\n    return cell.retry(cell.arm.pick('rack'), times=count)\n"
+PLACE = Path("/plant")
+
+
+def hash_of(content: bytes, name: str = "recipes.py", folder: Path = PLACE) -> str:
+    return source_of({folder / name: content}, folder)
+
+
+def test_layout_and_comments_do_not_count() -> None:
+    head = b"# what it does\ndef work(cell, count = 3):\n\n"
+    same = head + b'    return cell.retry(\n        cell.arm.pick("rack"), times=count)\n'
+    assert hash_of(same) == hash_of(RECIPE)
+
+
+def test_the_folder_of_the_plant_does_not_count() -> None:
+    assert hash_of(RECIPE, folder=Path("/elsewhere")) == hash_of(RECIPE)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        RECIPE.replace(b"3", b"4"),
+        RECIPE.replace(b"count)", b"-count)"),
+        RECIPE.replace(b"'rack'", b"b'rack'"),
+        RECIPE + b"# no Python any more\n(",
+    ],
+)
+def test_each_other_change_counts(other: bytes) -> None:
+    assert hash_of(other) != hash_of(RECIPE)
+
+
+def test_which_end_of_a_slice_is_left_out_counts() -> None:
+    assert hash_of(b"x[1:]") != hash_of(b"x[:1]")
+
+
+def test_the_name_of_a_file_counts_and_what_is_no_source_does_not() -> None:
+    assert hash_of(RECIPE, name="other.py") != hash_of(RECIPE)
+    files = {PLACE / "recipes.py": RECIPE}
+    assert source_of({**files, PLACE / "arm.urdf": b"<robot/>"}, PLACE) == source_of(files, PLACE)
+    assert source_of({**files, PLACE / "tree.xml": b"<root/>"}, PLACE) != source_of(files, PLACE)

@@ -1,12 +1,14 @@
-"""A call in a recipe that does not fit is told in words, with what the step takes."""
+"""A call in a recipe that does not fit, or that is misspelled, is told in words, with what the step takes."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from arboleda.model.errors import ConfigError
+from arboleda.recipes.errors import Offers, misspelled
 
 from ...plants import plant_text, read
 
@@ -65,3 +67,26 @@ def test_all_nodes_of_a_tree_that_no_device_makes_are_told_at_once_each_kind_onc
         "2:1: go: no device of a makes a node press_opne",
         "3:1: go: no device of a makes a node pres_open",
     ]
+
+
+class Loader(Offers):
+    def __str__(self) -> str:
+        return "loader"
+
+    def home(self) -> None: ...
+
+    def visit(self) -> None: ...
+
+
+def test_a_misspelled_step_is_told_with_the_steps_that_there_are() -> None:
+    loader: Any = Loader()
+    with pytest.raises(AttributeError) as error:
+        loader.hom()
+    assert misspelled(error.value) == "loader has no step 'hom'; there are home, visit; did you mean home?"
+
+
+def test_an_error_about_anything_else_keeps_its_own_words() -> None:
+    text: Any = ""
+    with pytest.raises(AttributeError) as error:
+        text.hom()
+    assert misspelled(error.value) is None

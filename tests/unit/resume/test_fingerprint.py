@@ -1,7 +1,8 @@
-"""What a task was made of: the same in every start, another one after any change that matters."""
+"""What a task was made of, and what is kept of it, as it is read again."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -12,11 +13,13 @@ import pytest
 from tests.cells import with_poses, with_robot
 
 from arboleda.engine import Plant
+from arboleda.model.messages import Fact
 from arboleda.model.plant_model import Cell
 from arboleda.model.task import Order
 from arboleda.plant_file.loader import load
 from arboleda.resume import fingerprint
-from arboleda.testing import shipped
+from arboleda.resume.trail import Trail
+from arboleda.testing import Rig, shipped
 from arboleda.trees import steps
 from arboleda.trees.leaves import Unless
 
@@ -132,3 +135,29 @@ def test_a_task_that_an_earlier_version_kept_is_found_alike(tmp_path: Path, reci
     of_cell = fingerprint.of_cell(context.cell, recipe, seen)
     tree = declared.build(Order(text=f"bench {recipe}", cell="bench", recipe=recipe), context)
     assert (of_cell, fingerprint.of_tree(tree, seen, source=declared.source)) == KEPT[recipe]
+
+
+@pytest.fixture
+def kept() -> str:
+    """What is kept of a task whose mobile robot is on its way."""
+    rig = Rig(shipped("sis_a"))
+    rig.wait(1.0)
+    task = rig.submit("sis_a 0B 7").task
+    rig.wait_for("sis_a", "drive path 0B")
+    return str(rig.disk.facts[Fact.STEP][task])
+
+
+def test_it_is_read_as_it_was_written(kept: str) -> None:
+    assert Trail.read(kept).text() == kept
+
+
+def test_what_another_version_kept_is_refused(kept: str) -> None:
+    (version, *made), now = json.loads(kept)
+    with pytest.raises(ValueError, match="another version"):
+        Trail.read(json.dumps([[version + 1, *made], now]))
+
+
+def test_what_is_damaged_is_refused(kept: str) -> None:
+    begun, now = json.loads(kept)
+    with pytest.raises(ValueError, match="damaged"):
+        Trail.read(json.dumps([begun[:-2], now]))

@@ -1,13 +1,15 @@
-"""What the last start of a plant was made of."""
+"""What the last start of a plant was made of, and the command line as a person types it again."""
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
+import pytest
 from tests.cuts import each_cut
 
 from arboleda.model.plant_files import PlantFiles
-from arboleda.runtime import at_work
+from arboleda.runtime import at_work, invocation
 
 AT = "2026-11-25T20:00:00+00:00"
 
@@ -49,3 +51,19 @@ def test_a_start_goes_on_after_a_power_cut(tmp_path: Path) -> None:
         at_work.keep(state, files(b"name: c"), AT)
         found = at_work.version(state)
         assert found is not None and found.files.contents["p.yaml"] == b"name: c", cut
+
+
+@pytest.mark.parametrize(
+    ("pip", "uv", "said"),
+    [
+        (object(), "/bin/uv", "python -m pip install"),
+        (None, "/bin/uv", f"uv pip install --python {sys.executable}"),
+        (None, None, "python -m pip install"),
+    ],
+)
+def test_what_installs_is_there(
+    pip: object, uv: str | None, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(invocation, "find_spec", lambda _name: pip)
+    monkeypatch.setattr(invocation.shutil, "which", lambda name: uv if name == "uv" else f"/bin/{name}")
+    assert invocation.pip_install() == said

@@ -1,19 +1,12 @@
 from __future__ import annotations
 
-import signal
-from collections.abc import Iterator
 from queue import SimpleQueue
 
 import pytest
 
 from arboleda.runtime import interrupts
 
-
-@pytest.fixture(autouse=True)
-def ctrl_c_raises() -> Iterator[None]:
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
+pytestmark = pytest.mark.usefixtures("ctrl_c_raises")
 
 
 def test_what_is_put_is_taken_in_order_up_to_none() -> None:

@@ -1,13 +1,19 @@
-"""Who leads a plant, as others say it, and whether the address leads there from here."""
+"""Who leads a plant, as others say it; who is to stand by is told which package that needs."""
 
 from __future__ import annotations
 
 import socket
+from pathlib import Path
 
 import pytest
+from tests.packages import leave_out
 
+from arboleda.model.errors import StartError
 from arboleda.runtime.leader import LeaderInfo, leader_row, of_standby
+from arboleda.runtime.options import Options
+from arboleda.runtime.standing_by import take_over
 from arboleda.runtime.web_options import WebOptions
+from arboleda.testing import shipped
 
 LED = LeaderInfo(plant="demo", host="host-a", process=7, url="http://10.0.0.5:8080", epoch=3)
 
@@ -64,3 +70,12 @@ def test_a_server_on_every_network_is_reached_at_the_address_of_its_host(
     options: dict[str, str], own: str, origin: str
 ) -> None:
     assert WebOptions(**options).origin(8090, lambda: own) == origin
+
+
+def test_standing_by_without_its_package_is_refused_with_the_line_that_installs_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    leave_out(monkeypatch, tmp_path, "arboleda_fleet")
+    model = shipped("sis_a")
+    with pytest.raises(StartError, match=r"needs the package fleet.*: type pip install 'arboleda\[fleet\]'"):
+        take_over(model, {"orchestrator"}, Options(), print, lambda: (model, None))

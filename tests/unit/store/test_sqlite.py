@@ -11,6 +11,7 @@ import sqlite3
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
+from operator import attrgetter
 from pathlib import Path
 
 import pytest
@@ -21,9 +22,8 @@ from tests.rights import modes_count
 
 from arboleda.core.choosing import LATER
 from arboleda.model.errors import ArboledaError, StartError
-from arboleda.model.messages import Check, Course, Fact, Remember, TaskState
+from arboleda.model.messages import Check, Course, Fact, Remember
 from arboleda.store import row_sums, sqlite
-from arboleda.store.memory_file import VERSION
 from arboleda.store.sqlite import Store
 from arboleda.store.task_rows import TaskHistory, TaskQuery, choice_of, course_of, unchecked_of
 
@@ -123,14 +123,6 @@ def test_open_and_close_may_be_called_twice(path):
     assert os.listdir(path.parent) == [path.name]
 
 
-def test_a_thousand_facts_are_all_there(path):
-    with Store(path) as store:
-        for n in range(1000):
-            store.keep(Remember(fact=Fact.QUARANTINE, name=f"zone{n % 400}", value=f"ra{n}"))
-    with Store(path) as store:
-        assert store.facts(Fact.QUARANTINE) == {f"zone{n % 400}": f"ra{n}" for n in range(600, 1000)}
-
-
 def test_a_log_that_breaks_off_costs_only_what_was_being_written(path, tmp_path):
     copy = tmp_path / "copy.sqlite"
     log = Path(f"{copy}-wal")
@@ -225,20 +217,23 @@ def test_a_sync_of_a_memory_that_is_not_in_its_place_is_refused(path):
 GRIP = Remember(fact=Fact.EFFECTOR, name="ra1", value="switching")
 
 
-def test_facts_that_were_noted_are_there_after_the_process_was_killed(path, tmp_path):
+def left_behind(path):
+    """A copy of the folder, as it is left where the process ends in this moment."""
+    return shutil.copytree(path.parent, path.parent / "left", ignore=shutil.ignore_patterns("left"))
+
+
+def test_facts_that_were_noted_are_there_after_the_process_was_killed(path):
     with Store(path) as store:
         store.note(GRIP)
-        killed = tmp_path / "killed"
-        shutil.copytree(path.parent, killed, ignore=shutil.ignore_patterns("killed"))
+        killed = left_behind(path)
     with Store(killed / path.name) as store:
         assert store.facts(Fact.EFFECTOR) == {"ra1": "switching"}
 
 
-def test_facts_that_were_noted_are_taken_in_once(path, tmp_path):
+def test_facts_that_were_noted_are_taken_in_once(path):
     with Store(path) as store:
         store.note(GRIP)
-        killed = tmp_path / "killed"
-        shutil.copytree(path.parent, killed, ignore=shutil.ignore_patterns("killed"))
+        killed = left_behind(path)
     with Store(killed / path.name) as store:
         store.keep(replace(GRIP, value="on"))
     with Store(killed / path.name) as store:
@@ -255,22 +250,20 @@ def test_who_ends_leaves_the_note_of_another_plant_in_the_same_place(path):
     assert note.read_bytes() == b"of another"
 
 
-def test_facts_that_were_noted_are_lost_with_the_power_of_the_host(path, tmp_path, monkeypatch):
+def test_facts_that_were_noted_are_lost_with_the_power_of_the_host(path, monkeypatch):
     with Store(path) as store:
         store.note(GRIP)
-        cut = tmp_path / "cut"
-        shutil.copytree(path.parent, cut, ignore=shutil.ignore_patterns("cut"))
+        cut = left_behind(path)
     monkeypatch.setattr(sqlite, "this_boot", lambda: "the next one")
     with Store(cut / path.name) as store:
         assert store.facts(Fact.EFFECTOR) == {}
 
 
 @pytest.mark.parametrize("length", [0, 7, 8, 9, 50])
-def test_a_note_that_was_not_written_to_its_end_is_none(path, tmp_path, length):
+def test_a_note_that_was_not_written_to_its_end_is_none(path, length):
     with Store(path) as store:
         store.note(GRIP)
-        killed = tmp_path / "killed"
-        shutil.copytree(path.parent, killed, ignore=shutil.ignore_patterns("killed"))
+        killed = left_behind(path)
     note = killed / f"{path.name}-ahead"
     assert len(note.read_bytes()) > length
     os.truncate(note, length)
@@ -346,22 +339,17 @@ def test_a_sync_that_fails_is_one_sentence(path, monkeypatch):
         store.sync()
 
 
-@pytest.mark.parametrize(("version", "later"), [(1, ("cell", "said")), (2, ("said",)), (3, ())])
-def test_a_file_of_an_older_format_is_brought_up_and_keeps_what_it_has(path, version, later):
+@pytest.mark.parametrize("version", [1, 2, 3])
+def test_a_file_of_an_older_format_is_brought_up_and_keeps_what_it_has(path, version):
     with Store(path) as store:
         store.keep(LATCH)
         store.acts.keep(ACT, 5.0)
-    db = of_before_times(path)
-    db.execute("DROP TABLE task")
-    for column in later:
-        db.execute(f"ALTER TABLE journal DROP COLUMN {column}")
-    db.execute(f"PRAGMA user_version = {version}")
-    db.close()
+    brought_back(path, version)
     with Store(path) as store:
         assert store.facts(Fact.LATCH) == {"ra1": "on"}
         (old,) = store.acts.last()
         assert (old.sentence, old.cell) == (str(ACT.sentence), None)
-        assert (old.said is None) is ("said" in later)
+        assert (old.said is None) is (version < 3)
         store.tasks.keep(queued("a"), "storage", 5.0)
         assert [row.id for row in store.tasks.select(TaskQuery())] == ["a"]
         store.acts.keep(replace(ACT, cell="sis_a"), 6.0)
@@ -369,63 +357,64 @@ def test_a_file_of_an_older_format_is_brought_up_and_keeps_what_it_has(path, ver
         assert newest.cell == "sis_a" and json.loads(newest.said) == ACT.sentence.data()
 
 
-def test_tasks_of_an_older_format_have_neither_who_asked_nor_attempts(path):
+OLDER = {  # the formats of before, each with what makes a file of the one after it one of it
+    12: ("DROP TABLE written",),
+    11: ("DROP INDEX task_ran", "ALTER TABLE task DROP COLUMN ran_s"),
+    10: ("ALTER TABLE task DROP COLUMN unchecked",),
+    9: [f"ALTER TABLE {table} DROP COLUMN crc" for table in row_sums.KEYS],
+    8: ("ALTER TABLE task DROP COLUMN course",),
+    7: ("ALTER TABLE task DROP COLUMN choice",),
+    6: ("DROP TABLE down", "DROP TABLE run"),
+    5: ("ALTER TABLE task DROP COLUMN answers",),
+    4: ("ALTER TABLE task DROP COLUMN asked_by", "ALTER TABLE task DROP COLUMN attempts"),
+    3: ("DROP TABLE task",),
+    2: ("ALTER TABLE journal DROP COLUMN said",),
+    1: ("ALTER TABLE journal DROP COLUMN cell",),
+}
+
+
+def brought_back(path, version):
+    """Make the file one of an older format."""
+    with closing(sqlite3.connect(path)) as db:
+        for format, statements in OLDER.items():
+            for statement in statements if format >= version else ():
+                db.execute(statement)
+        db.execute(f"PRAGMA user_version = {version}")
+
+
+@pytest.mark.parametrize(("version", "kept"), [(4, (None, 0, None)), (5, ("page", 0, None))])
+def test_tasks_of_an_older_format_have_neither_who_asked_nor_answers(path, version, kept):
     with Store(path) as store:
         store.tasks.keep(queued("a"), "storage", 5.0, "page")
-    db = of_before_times(path)
-    for column in ("asked_by", "attempts", "answers"):
-        db.execute(f"ALTER TABLE task DROP COLUMN {column}")
-    db.execute("PRAGMA user_version = 4")
-    db.close()
+    brought_back(path, version)
     with Store(path) as store:
         (old,) = store.tasks.select(TaskQuery())
-        assert (old.id, old.asked_by, old.attempts) == ("a", None, 0)
+        assert (old.id, old.asked_by, old.attempts, old.answers) == ("a", *kept)
 
 
-def test_tasks_of_an_older_format_have_no_answers(path):
-    with Store(path) as store:
-        store.tasks.keep(queued("a"), "storage", 5.0)
-    db = of_before_times(path)
-    db.execute("ALTER TABLE task DROP COLUMN answers")
-    db.execute("PRAGMA user_version = 5")
-    db.close()
-    with Store(path) as store:
-        (old,) = store.tasks.select(TaskQuery())
-        assert (old.id, old.answers) == ("a", None)
+WHY, COURSE = LATER(cell="sis_b", seconds=12.5), Course(seconds=31.5, begun={"0.0.1": 0.0, "0.1": 2.25})
+CHECKS = (Check.GRIP, Check.RELEASE)
 
 
-def test_tasks_of_an_older_format_have_no_choice_and_new_ones_have(path):
-    with Store(path) as store:
-        store.tasks.keep(queued("a"), "storage", 5.0)
-    of_before_choices(path).close()
-    why = LATER(cell="sis_b", seconds=12.5)
-    with Store(path) as store:
-        store.tasks.keep(replace(queued("b"), choice=why), "storage", 6.0)
-        assert [choice_of(row) for row in store.tasks.select(TaskQuery())] == [why, None]
-
-
-def test_tasks_of_an_older_format_have_no_course_and_new_ones_have(path):
+@pytest.mark.parametrize(
+    ("version", "new", "read", "found"),
+    [
+        (7, replace(queued("c"), choice=WHY), choice_of, (WHY, None)),
+        (8, ended("b", course=COURSE), course_of, (COURSE, None)),
+        (10, ended("b", unchecked=CHECKS), unchecked_of, (CHECKS, ())),
+        (10, ended("b", unchecked=CHECKS), attrgetter("unchecked"), ("grip release", None)),
+    ],
+    ids=["choice", "course", "checks", "checks as they are kept"],
+)
+def test_tasks_of_an_older_format_lack_what_new_ones_say(path, version, new, read, found):
     with Store(path) as store:
         for name in ("a", "b"):
             store.tasks.keep(queued(name), "storage", 5.0)
-    of_before_courses(path).close()
-    course = Course(seconds=31.5, begun={"0.0.1": 0.0, "0.1": 2.25})
+    brought_back(path, version)
     with Store(path) as store:
-        store.tasks.keep(replace(queued("b"), state=TaskState.DONE, course=course), "storage", 6.0)
-        assert [course_of(row) for row in store.tasks.select(TaskQuery())] == [course, None]
-
-
-def test_tasks_of_an_older_format_say_nothing_of_checks_and_new_ones_do(path):
-    with Store(path) as store:
-        for name in ("a", "b"):
-            store.tasks.keep(queued(name), "storage", 5.0)
-    of_before_checks(path).close()
-    checks = (Check.GRIP, Check.RELEASE)
-    with Store(path) as store:
-        store.tasks.keep(replace(queued("b"), state=TaskState.DONE, unchecked=checks), "storage", 6.0)
-        assert [unchecked_of(row) for row in store.tasks.select(TaskQuery())] == [checks, ()]
-    with Store(path) as store:
-        assert [row.unchecked for row in store.tasks.select(TaskQuery())] == ["grip release", None]
+        store.tasks.keep(new, "storage", 6.0)
+        rows = {row.id: read(row) for row in store.tasks.select(TaskQuery())}
+    assert (rows[new.task], rows["a"]) == found
 
 
 def test_tasks_of_an_older_format_are_as_old_as_the_count_of_their_age(path):
@@ -433,7 +422,7 @@ def test_tasks_of_an_older_format_are_as_old_as_the_count_of_their_age(path):
         for name in ("ended", "open"):
             store.tasks.keep(queued(name), "storage", 5.0)
         store.tasks.keep(ended("ended"), "storage", 6.0, ran_s=9_000.0)
-    of_before_checks(path).close()
+    brought_back(path, 10)
     with Store(path) as store:
         assert store.tasks.ran_s() == 0.0
         store.tasks.forget(0.5)
@@ -443,65 +432,12 @@ def test_tasks_of_an_older_format_are_as_old_as_the_count_of_their_age(path):
 def test_a_file_without_times_of_cells_gets_them(path):
     with Store(path) as store:
         store.tasks.keep(queued("a"), "storage", 5.0)
-    db = of_before_times(path)
-    db.execute("PRAGMA user_version = 6")
-    db.close()
+    brought_back(path, 6)
     with Store(path) as store:
         store.times.began(10.0)
         store.times.stands("sis_a", "held", 11.0)
         assert [row.id for row in store.tasks.select(TaskQuery())] == ["a"]
     assert times(path) == ([(10.0, 10.0, 0)], [("sis_a", "held", 11.0, None)])
-
-
-def of_before_choices(path):
-    """The file as a format had it in which no task said why it is done in its cell."""
-    return without_column(of_before_courses(path), "choice", 7)
-
-
-def of_before_courses(path):
-    """The file as a format had it in which no task said how it went."""
-    return without_column(of_before_sums(path), "course", 8)
-
-
-def of_before_checks(path):
-    """The file as a format had it in which no task said what of it nobody confirmed."""
-    db = of_before_counts(path)
-    if db.execute("SELECT 1 FROM sqlite_master WHERE name = 'task'").fetchone():
-        db.execute("DROP INDEX task_ran")
-    return without_column(without_column(db, "ran_s", 11), "unchecked", 10)
-
-
-def of_before_counts(path):
-    """The file as a format had it that did not count its changes."""
-    db = sqlite3.connect(path)
-    db.execute("DROP TABLE written")
-    db.execute("PRAGMA user_version = 12")
-    return db
-
-
-def without_column(db, column, version):
-    """The file in a format whose tasks had no such column."""
-    if db.execute("SELECT 1 FROM sqlite_master WHERE name = 'task'").fetchone():
-        db.execute(f"ALTER TABLE task DROP COLUMN {column}")
-    db.execute(f"PRAGMA user_version = {version}")
-    return db
-
-
-def of_before_sums(path):
-    """The file as a format had it in which no row had a checksum."""
-    db = of_before_checks(path)
-    for (table,) in db.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall():
-        db.execute(f"ALTER TABLE {table} DROP COLUMN crc")
-    db.execute("PRAGMA user_version = 9")
-    return db
-
-
-def of_before_times(path):
-    """The file as a format had it that knew no times of cells."""
-    db = of_before_choices(path)
-    for table in ("down", "run"):
-        db.execute(f"DROP TABLE {table}")
-    return db
 
 
 def times(path):
@@ -571,23 +507,6 @@ def test_a_history_that_cannot_be_read_is_one_sentence(path):
     path.write_bytes(b"no database at all" * 100)
     with pytest.raises(ArboledaError, match=r"cannot be read \(file is not a database\)"):
         TaskHistory(path).select(TaskQuery())
-
-
-def test_a_file_of_a_newer_arboleda_is_left_as_it_is(path):
-    db = sqlite3.connect(path)
-    db.execute(f"PRAGMA user_version = {VERSION + 1}")
-    db.close()
-    before = path.read_bytes()
-    assert f"is of a newer Arboleda (format {VERSION + 1}, known: {VERSION}): use that one" in refusal(path)
-    assert path.read_bytes() == before
-
-
-def test_another_kind_of_file_is_refused_with_what_its_loss_means(path):
-    path.write_text("Dear diary, " * 100)
-    sentence = refusal(path)
-    assert "(file is not a database): move it away" in sentence
-    assert "lost with it are stop latches, what the effectors hold, quarantined zones" in sentence
-    assert path.read_text().startswith("Dear diary")
 
 
 def test_a_damaged_file_is_found_at_the_start(path):
@@ -724,7 +643,7 @@ def test_a_schema_that_is_no_text_is_one_sentence(written, path, words):
 
 def test_rows_of_an_older_format_get_their_sums_and_keep_what_they_have(written, path):
     shutil.copy(written, path)
-    of_before_sums(path).close()
+    brought_back(path, 9)
     with Store(path) as store:
         store.tasks.keep(ended("t55"), "storage", 99.5)
     changes = rows_of(path)["task"]

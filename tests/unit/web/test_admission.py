@@ -1,9 +1,12 @@
-"""Who is cut where there are too many connections."""
+"""Who is cut where there are too many connections, and token buckets."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+import pytest
+
+from arboleda.web.limits import Buckets
 from arboleda.web.server import Admission
 
 
@@ -66,3 +69,56 @@ def test_known_ones_that_crowd_make_room_and_newcomers_do_not_push_each_other_ou
 def test_one_address_has_not_all_the_places() -> None:
     same = [Guest(number=number) for number in range(5)]
     assert cut([Guest(number=9, peer="192.0.2.2"), *same], Guest(number=10)) == 0
+
+
+class Clock:
+    now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
+def test_a_burst_then_a_rate(clock: Clock) -> None:
+    buckets = Buckets((2.0, 3), clock)
+    assert [buckets.take("a") for _ in range(4)] == [True, True, True, False]
+    clock.now = 0.4
+    assert not buckets.take("a")
+    clock.now = 0.5
+    assert buckets.take("a") and not buckets.take("a")
+
+
+def test_rest_saves_up_no_more_than_a_burst(clock: Clock) -> None:
+    buckets = Buckets((2.0, 3), clock)
+    buckets.take("a")
+    clock.now = 1e6
+    assert [buckets.take("a") for _ in range(4)] == [True, True, True, False]
+
+
+def test_each_client_has_its_own(clock: Clock) -> None:
+    buckets = Buckets((1.0, 1), clock)
+    assert buckets.take("a") and buckets.take("b") and not buckets.take("a")
+
+
+def test_looking_takes_nothing(clock: Clock) -> None:
+    buckets = Buckets((1.0, 1), clock)
+    assert not buckets.empty("a") and not buckets.empty("a")
+    assert buckets.take("a") and buckets.empty("a")
+
+
+def test_a_delay_keeps_to_the_rate(clock: Clock) -> None:
+    buckets = Buckets((2.0, 2), clock)
+    assert [buckets.delay_s("a") for _ in range(5)] == [0.0, 0.0, 0.5, 1.0, 1.5]
+    clock.now = 1.5
+    assert buckets.delay_s("a") == 0.5
+
+
+def test_no_number_of_clients_fills_the_memory(clock: Clock) -> None:
+    buckets = Buckets((1.0, 1), clock, most=2)
+    for name in "abc":
+        assert buckets.take(name)
+    assert buckets.take("a") and not buckets.take("c")

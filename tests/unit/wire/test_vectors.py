@@ -1,4 +1,4 @@
-"""The golden messages of wire_vectors/, which the firmware reads too."""
+"""The golden messages of wire_vectors/, which the firmware reads too, and `<board>/<channel>`, both ways."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from dataclasses import asdict
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from arboleda.model.errors import PayloadError
 from arboleda.wire.payloads import decode, encode
-from arboleda.wire.topics import Channel
+from arboleda.wire.topics import Channel, parse, topic
 
 VECTORS = Path(__file__).parents[3] / "wire_vectors"
 
@@ -45,3 +47,26 @@ def test_a_value_is_written_as_these_bytes(row: dict) -> None:
 def test_bytes_are_refused_by_name(row: dict) -> None:
     with pytest.raises(PayloadError, match=row["names"]):
         decode(Channel(row["channel"]), raw(row), axes=row["axes"])
+
+
+@pytest.mark.parametrize("channel", Channel)
+def test_a_topic_reads_back(channel: Channel) -> None:
+    assert parse(topic("ra_1", channel)) == ("ra_1", channel)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "ra_1", "/juntas", "ra_1/", "ra_1/otro", "ra_1/juntas/x", "a/ra_1/juntas", "+/juntas", "ra 1/paro"],
+)
+def test_any_other_topic_is_refused(text: str) -> None:
+    with pytest.raises(PayloadError):
+        parse(text)
+
+
+@given(st.text())
+def test_whatever_the_topic_the_answer_is_a_channel_or_a_payload_error(text: str) -> None:
+    try:
+        board, channel = parse(text)
+    except PayloadError:
+        return
+    assert topic(board, channel) == text

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from tests.scenario.test_pickups import held_with_a_part
+from tests.scenario.test_part_back import held_with_a_part
 
 from arboleda.model.messages import TaskState, Verb
 from arboleda.testing import Rig, shipped

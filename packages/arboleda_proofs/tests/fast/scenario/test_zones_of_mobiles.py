@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.scenario.test_zones_of_mobiles import LONELY, THERE_AND_BACK
+from tests.scenario.test_advice_for_zones import LONELY, THERE_AND_BACK
 
 from arboleda.plant_file.loader import load
 from arboleda_proofs.simulator.faults import Fault
