@@ -65,7 +65,9 @@ def test_a_latch_ends_work_and_refuses_more_until_it_is_cleared(plc: str) -> Non
 def test_it_stops_by_itself_when_the_heartbeat_ends(plc: str) -> None:
     line = Line(plc, "slow")
     line.tell("load")
-    assert line.after(2.5).state is MotionState.MOVING  # nobody beats yet
+    if plc == "opcua":
+        line.wire.beat(0)  # nobody yet
+    assert line.after(2.5).state is MotionState.MOVING
     line.wire.beat(1)
     assert line.after(1.9).state is MotionState.MOVING
     assert line.after(0.5).state is MotionState.STOPPED
@@ -160,6 +162,14 @@ def test_faults_of_opcua() -> None:
         line.after(0.1)
     line.switch("mute")
     with pytest.raises(LineBroken, match="does not answer"):
+        line.after(0.1)
+
+
+def test_faults_of_an_s7() -> None:
+    line = Line("s7", "refuses_writes")
+    assert line.tell("load") == "error_8404"
+    line.switch("refuses_reads")
+    with pytest.raises(LineBroken, match="nothing can be read"):
         line.after(0.1)
 
 

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import queue
 import threading
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from tests.patience import PATIENCE_S
-
-from arboleda.plant_file.loader import load
-from arboleda.runtime.build import App, Options, build
 from arboleda_drivers.gcode.virtual.faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
 from arboleda_drivers.gcode.virtual.grbl import BANNER, BEYOND, HARD_LIMIT, HOLD_BYTE, VirtualGrbl
 from arboleda_drivers.gcode.virtual.machine import Place, words_of
@@ -21,38 +16,16 @@ from arboleda_drivers.virtual.faults import Faults
 from arboleda_drivers.virtual.pty_line import PtyLine
 from arboleda_drivers.virtual.web_socket_line import WebSocketLine
 
-from ..contract.bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
+from ..contract.bench import Bench, Ref
+from ..contract.mover import WORDS, Opened, PlayedMover, app_of, plant
 
-Opened = tuple[App, Callable[[App], Device]]
-HOME = "home"
-POSES: dict[Place, str] = {(0.0, 0.0, 0.0): HOME, (30.0, 20.0, 5.0): WORK, (5.0, 0.0, 0.0): OTHER}
-PLANT = """
-name: shop
-uses: [recipes.py]
-cells:
-  shop:
-    devices:
-      gantry: {{kind: gantry, home_at_start: true, driver: {{gcode: {{{line}, {keys}}}}}}}
-    targets:
-      home: {{gantry: {{mm: [0, 0, 0]}}}}
-      a: {{gantry: {{mm: [30, 20, 5]}}}}
-      b: {{gantry: {{mm: [5, 0, 0]}}}}
-"""
-RECIPES = """
+PLACES: tuple[Place, ...] = ((0.0, 0.0, 0.0), (30.0, 20.0, 5.0), (5.0, 0.0, 0.0))
+KINDS = """
 from arboleda.kinds import Axes, Axis, moving_kind
-from arboleda.recipes import recipe
 
 @moving_kind("gantry")
 def gantry():
     return Axes(*(Axis(name, unit="mm", lower=-5, upper=300, speed={speed}, step=0.02) for name in "xyz"))
-
-@recipe("work")
-def work_(cell):
-    return cell.device("gantry").go("a")
-
-@recipe("other")
-def other(cell):
-    return cell.device("gantry").go("b")
 """
 
 
@@ -214,13 +187,12 @@ class PlayedMoonraker(VirtualMoonraker):
         return None
 
 
-class PlayedGantry:
+class PlayedGantry(PlayedMover):
     """It answers what it is asked; moves wait for the test, but those home, which it does at once."""
 
     def __init__(self) -> None:
-        self._orders: queue.Queue[tuple[str, Ref]] = queue.Queue()
+        super().__init__()
         self._goals: list[Place] = []
-        self._homes, self._stop_word = True, HALT  # one word of G-code is both
         self._controller: PlayedGrbl | PlayedMarlin | PlayedMoonraker
 
     def begin(self, line: Path) -> str:
@@ -230,20 +202,11 @@ class PlayedGantry:
         self._line.start()
         return f"serial: {line}"
 
-    def told(self) -> tuple[str, Ref]:
-        return self._orders.get(timeout=PATIENCE_S)
-
     def accepts(self, ref: Ref) -> None:
         assert not isinstance(self._controller, PlayedMoonraker)
         with self._controller.lock:
             self._controller.runs = True
             self._controller.says("ok")
-
-    def rests(self) -> None:
-        pass  # after a stop it stands
-
-    def answers(self, ref: Ref, word: str) -> None:
-        raise AssertionError("a gantry is asked nothing")
 
     def hush(self) -> None:
         self._controller.switched.switch("mute", on=True)
@@ -255,23 +218,16 @@ class PlayedGantry:
         self._homes = False  # whatever it is told to do from now on is an order
         self._controller.switched.switch("unplugged", on=False)
 
-    def latches(self) -> None:
-        pass
-
     def close(self) -> None:
         self._line.stop()
 
     def _hear(self, goal: Place | None) -> bool:
         """Note an order: a stop, or a move; True for a move that is made at once."""
         if goal is None:
-            self._orders.put((self._stop_word, None))
-            self._stop_word = HALT if self._homes else LATCH
+            self._order_stop()
             return False
-        if POSES[goal] == HOME and self._homes:
-            return True
         self._goals.append(goal)
-        self._orders.put((POSES[goal], len(self._goals)))
-        return False
+        return self._is_made(WORDS[PLACES.index(goal)], len(self._goals))
 
 
 class GrblGantry(PlayedGantry):
@@ -373,10 +329,9 @@ Gantry = type[GrblGantry | MarlinGantry | MoonrakerGantry]
 def _open(folder: Path, state: Path, *, gantry: Gantry, keys: str, speed: int = 60) -> Opened:
     folder.mkdir()
     played = gantry()
-    line = played.begin(folder / "line")
-    (folder / "plant.yaml").write_text(PLANT.format(line=line, keys=keys), "utf-8")
-    (folder / "recipes.py").write_text(RECIPES.format(speed=speed), "utf-8")
-    app = build(load(folder / "plant.yaml"), ("orchestrator",), Options(state_dir=state))
+    driver = f"{{gcode: {{{played.begin(folder / 'line')}, {keys}}}}}"
+    text = plant("gantry", f"kind: gantry, home_at_start: true, driver: {driver}", "mm", PLACES)
+    app = app_of(folder, state, text, "gantry", kinds=KINDS.format(speed=speed))
     return app, lambda app: played
 
 

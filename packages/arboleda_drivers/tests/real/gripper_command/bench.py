@@ -7,10 +7,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from arboleda.plant_file.loader import load
-from arboleda.runtime.build import App, Options, build
-
-from ..contract.bench import OTHER, WORK, Bench, Device
+from ..contract.bench import OTHER, WORK, Bench
+from ..contract.mover import Opened, app_of
 from ..ros_action.bench import PlayedServer
 
 OPENED = 0.08
@@ -33,17 +31,6 @@ cells:
       jaw:
         kind: fingers
         driver: {{gripper_command: {{type: {type}, open: 0.08, width_mm: 80}}}}
-"""
-RECIPES = """
-from arboleda.recipes import recipe
-
-@recipe("work")
-def work_(cell):
-    return cell.device("jaw").go(width_mm=30.0)
-
-@recipe("other")
-def other(cell):
-    return cell.device("jaw").go(width_mm=50.0)
 """
 
 
@@ -88,13 +75,8 @@ class ParallelFingers(Fingers):
         return float(goal.command.position[0])
 
 
-def _open(
-    type: str, body: Callable[[], Fingers], folder: Path, state: Path
-) -> tuple[App, Callable[[App], Device]]:
-    folder.mkdir()
-    (folder / "plant.yaml").write_text(PLANT.format(type=type), "utf-8")
-    (folder / "recipes.py").write_text(RECIPES, "utf-8")
-    app = build(load(folder / "plant.yaml"), ("orchestrator",), Options(state_dir=state))
+def _open(type: str, body: Callable[[], Fingers], folder: Path, state: Path) -> Opened:
+    app = app_of(folder, state, PLANT.format(type=type), "jaw", ("width_mm=30.0", "width_mm=50.0"))
     return app, lambda app: PlayedServer(body())
 
 

@@ -3,44 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from arboleda.plant_file.loader import load
-from arboleda.runtime.build import App, Options, build
 
-from ..contract.bench import OTHER, WORK, Bench, Device
-from ..ros_action.bench import HOME, PlayedServer
+from ..contract.bench import Bench
+from ..contract.mover import ARM_DEG, WORDS, Opened, app_of, arm
+from ..ros_action.bench import PlayedServer
 
 PATH_TOLERANCE = -4
-GOALS = {(0.0,) * 6: HOME, (10.0, 20.0, -30.0, 0.0, 5.0, 0.0): WORK, (5.0, 0.0, 0.0, 0.0, 0.0, 0.0): OTHER}
-PLANT = """
-name: ros2_control
-uses: [recipes.py]
-cells:
-  shop:
-    devices:
-      arm:
-        kind: arm
-        model: cr10a
-        driver: {follow_joint_trajectory: {speed_percent: 100}}
-    targets:
-      home: {arm: {deg: [0, 0, 0, 0, 0, 0]}}
-      a: {arm: {deg: [10, 20, -30, 0, 5, 0]}}
-      b: {arm: {deg: [5, 0, 0, 0, 0, 0]}}
-"""
-RECIPES = """
-from arboleda.recipes import recipe
-
-@recipe("work")
-def work_(cell):
-    return cell.device("arm").go("a")
-
-@recipe("other")
-def other(cell):
-    return cell.device("arm").go("b")
-"""
+GOALS = {tuple(map(float, deg)): word for deg, word in zip(ARM_DEG, WORDS, strict=True)}
 
 
 class Arm:
@@ -74,13 +47,9 @@ class Arm:
         self._states.publish(state)
 
 
-def _open(folder: Path, state: Path) -> tuple[App, Callable[[App], Device]]:
-    folder.mkdir()
-    (folder / "plant.yaml").write_text(PLANT, "utf-8")
-    (folder / "recipes.py").write_text(RECIPES, "utf-8")
-    model = load(folder / "plant.yaml")
-    joints = [joint.name for joint in model.robots["arm"].joints]
-    app = build(model, ("orchestrator",), Options(state_dir=state))
+def _open(folder: Path, state: Path) -> Opened:
+    app = app_of(folder, state, arm("{follow_joint_trajectory: {speed_percent: 100}}"), "arm")
+    joints = [joint.name for joint in load(folder / "plant.yaml").robots["arm"].joints]
     return app, lambda app: PlayedServer(Arm(joints))
 
 

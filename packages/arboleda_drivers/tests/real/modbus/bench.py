@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable
-
 from arboleda_drivers.modbus.server import ModbusServer
 
 from ..contract.bench import HALT, LATCH
 from ..contract.press import Order, Words
-from ..plc.bench import bench
+from ..plc.bench import VERBS, PlayedPlc, bench, numbers
 
 DRIVER = """
           modbus:
@@ -35,26 +32,18 @@ DRIVER = """
             halt: [{coil: 0, value: true}]
             latch: [{coil: 1, value: true}]
             clear: [{coil: 1, value: false}]"""
-VERBS = {1: "open", 2: "close", 3: "press", 4: "measure"}
-STATES = {"stopped": 0, "moving": 1, "latched": 2}
-ANSWERS = {"good": 1, "bad": 2}
+INPUTS = ("boot", "state", "accepted", "done", "rejected", "reason", "failed", "failure", "strokes", "seen")
 
 
-class ModbusWire:
-    """A PLC whose program is the test."""
+class PlayedModbus(PlayedPlc):
+    """Its registers."""
 
     def __init__(self) -> None:
-        self.told: Callable[[Order], None] = lambda order: None
-        self._changed = threading.Lock()
         self._holding = [0, 0, 0]
-        self.say(Words())  # a driver that reads zeros first finds a board that has booted then
-        self._silent = threading.Event()
-        self._server = ModbusServer(self, trace=self._pass)
-        self.port = self._server.start()
+        super().__init__()
 
-    def connect(self, told: Callable[[Order], None]) -> ModbusWire:
-        self.told = told
-        return self
+    def _serve(self, port: int) -> ModbusServer:
+        return ModbusServer(self, port=port, trace=self._pass)
 
     def read(self, table: str, address: int, count: int) -> list[int] | int:
         with self._changed:
@@ -72,30 +61,12 @@ class ModbusWire:
         return None
 
     def say(self, words: Words) -> None:
-        pairs = (words.rejected, words.failed, words.answered)
-        rejected, failed, answered = (pair or (0, "") for pair in pairs)
-        done = answered[0] if words.answered is not None else words.done or 0
-        said = [words.boot, STATES[words.state], words.accepted or 0, done, rejected[0], 1, failed[0], 1, 0]
+        shown = numbers(words)
         with self._changed:
-            self._inputs = [*said, ANSWERS.get(answered[1], 1)]
-            self._guard = int(words.guard == "closed")
-
-    def vanish(self) -> None:
-        self._server.stop()
-
-    def come_back(self) -> None:
-        self._server = ModbusServer(self, port=self.port, trace=self._pass)
-        self._server.start()
-
-    def hush(self) -> None:
-        """A PLC that is asked and does not answer."""
-        self._silent.set()
-
-    def close(self) -> None:
-        self._server.stop()
+            self._inputs, self._guard = [shown[name] for name in INPUTS], shown["guard"]
 
     def _pass(self, sent: bool, packet: bytes) -> bytes:
         return b"" if sent and self._silent.is_set() else packet
 
 
-BENCH = bench(ModbusWire, DRIVER)
+BENCH = bench(PlayedModbus, DRIVER)

@@ -8,9 +8,8 @@ import queue
 import subprocess
 import sys
 import threading
-import time
 import tty
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -18,22 +17,18 @@ from typing import Any
 
 import pytest
 from pymodbus.client import ModbusTcpClient
-from tests.packages import ROOT
 from tests.patience import PATIENCE_S
 
-from arboleda.drivers import MotionState, Report
+from arboleda.drivers import MotionState
 from arboleda.kinds.declared import Device
-from arboleda.plant_file.loader import load
 from arboleda_drivers.modbus.adapter import LINES, Modbus
 from arboleda_drivers.modbus.registers import Register
 from arboleda_drivers.modbus.server import ModbusServer
 from arboleda_drivers.modbus.settings import Settings
 
+from ..plc.driven import belt_of, driven, is_heard, is_lost, mapping, order
+
 pytestmark = [pytest.mark.system, pytest.mark.requires("pymodbus", "serial")]
-
-EXAMPLE = ROOT / "examples/plc_conveyor/plant.yaml"
-
-LONGEST_S = 5.0  # that a plant file may wait for an answer
 
 
 class Memory:
@@ -52,45 +47,9 @@ class Memory:
         return self.refuses
 
 
-class Heard:
-    """What a driver says."""
-
-    def __init__(self) -> None:
-        self._reports: queue.Queue[Report] = queue.Queue()
-
-    def __call__(self, report: Report) -> None:
-        self._reports.put(report)
-
-    def until(self, fits: Callable[[Report], bool]) -> Report:
-        """The first report from now on that fits."""
-        while not fits(report := self._reports.get(timeout=PATIENCE_S)):
-            pass
-        return report
-
-
 @pytest.fixture(scope="module")
 def belt() -> Device:
-    (robot,) = load(EXAMPLE).robots.values()
-    assert isinstance(robot, Device)
-    return robot
-
-
-def settings(belt: Device, **changes: Any) -> Settings:
-    """The mapping of the example, without what a test does not play, and patient."""
-    assert belt.driver is not None and isinstance(belt.driver.settings, Settings)
-    return replace(
-        belt.driver.settings, **{"alive": None, "heartbeat": None, "timeout_s": LONGEST_S} | changes
-    )
-
-
-@contextmanager
-def driven(belt: Device, at: Settings) -> Iterator[tuple[Modbus, Heard]]:
-    made, heard = Modbus(at), Heard()
-    made.start([belt], heard, time.monotonic)
-    try:
-        yield made, heard
-    finally:
-        made.stop()
+    return belt_of("plant.yaml")
 
 
 @contextmanager
@@ -102,24 +61,12 @@ def served(memory: Memory, **where: Any) -> Iterator[int]:
         server.stop()
 
 
-def load_command(belt: Device, id: str = "c1") -> Any:
-    return belt.kind.command(id=id, robot="belt", verb="load", values={})
-
-
-def is_heard(report: Report) -> bool:
-    return report.state is MotionState.STOPPED
-
-
-def is_lost(report: Report) -> bool:
-    return report.state is MotionState.NO_LINK
-
-
 def test_an_exception_code_rejects_the_command(belt: Device) -> None:
     memory = Memory()
-    with served(memory) as port, driven(belt, settings(belt, port=port)) as (driver, heard):
+    with served(memory) as port, driven(Modbus(mapping(belt, port=port)), belt) as (driver, heard):
         heard.until(is_heard)
         memory.refuses = 6
-        driver.send(load_command(belt))
+        driver.send(order(belt))
         report = heard.until(lambda report: report.rejected is not None)
         assert (report.rejected, report.refusal) == ("c1", "device_busy")
         heard.until(is_heard)  # the link stays
@@ -133,12 +80,12 @@ def test_a_command_whose_answer_does_not_come_loses_the_link_and_is_not_repeated
 
     with (
         served(memory, trace=trace) as port,
-        driven(belt, settings(belt, port=port, timeout_s=0.3)) as (driver, heard),
+        driven(Modbus(mapping(belt, port=port, timeout_s=0.3)), belt) as (driver, heard),
     ):
         heard.until(is_heard)
         silent.set()
         with pytest.raises(Exception, match=r"No response|not connected"):
-            driver.send(load_command(belt))
+            driver.send(order(belt))
         heard.until(is_lost)
         silent.clear()
         heard.until(is_heard)
@@ -148,8 +95,8 @@ def test_a_command_whose_answer_does_not_come_loses_the_link_and_is_not_repeated
 def test_two_devices_of_one_plc_share_a_connection(belt: Device) -> None:
     other = replace(belt, name="other")
     with served(Memory()) as port:
-        first, second = settings(belt, port=port), settings(belt, port=port, unit=2)
-        with driven(belt, first) as (_, heard), driven(other, second) as (_, more):
+        first, second = mapping(belt, port=port), mapping(belt, port=port, unit=2)
+        with driven(Modbus(first), belt) as (_, heard), driven(Modbus(second), other) as (_, more):
             heard.until(is_heard)
             more.until(is_heard)
             one, two = Modbus(first), Modbus(second)
@@ -162,7 +109,7 @@ def test_two_devices_of_one_plc_share_a_connection(belt: Device) -> None:
 def test_a_serial_line_speaks_rtu(belt: Device) -> None:
     memory = Memory()
     with pair() as (ours, theirs), served(memory, serial=theirs):
-        loads(belt, memory, settings(belt, host="", serial=ours, parity="none"))
+        loads(belt, memory, mapping(belt, host="", serial=ours, parity="none"))
 
 
 def test_a_gateway_speaks_rtu_over_tcp(belt: Device) -> None:
@@ -173,15 +120,15 @@ def test_a_gateway_speaks_rtu_over_tcp(belt: Device) -> None:
         return packet
 
     with served(memory, framing="rtu", trace=note) as port:
-        loads(belt, memory, settings(belt, port=port, unit=7, framing="rtu"))
+        loads(belt, memory, mapping(belt, port=port, unit=7, framing="rtu"))
     assert all(packet[0] == 7 for packet in sent), "the unit is the first byte of RTU"
 
 
 def loads(belt: Device, memory: Memory, at: Settings) -> None:
     """A load is written there, and what the PLC then shows makes it done."""
-    with driven(belt, at) as (driver, heard):
+    with driven(Modbus(at), belt) as (driver, heard):
         heard.until(is_heard)
-        driver.send(load_command(belt))
+        driver.send(order(belt))
         assert memory.written.get(timeout=PATIENCE_S) == ("holding", 0, [1])
         table, address, (number,) = memory.written.get(timeout=PATIENCE_S)
         memory.inputs[10] = 1
@@ -283,13 +230,11 @@ def moved(settings: Settings, by: int) -> Settings:
 
 def test_the_simulator_of_pymodbus_is_spoken_to(belt: Device, simulator: int) -> None:
     """A plain client of pymodbus is the program of the PLC: it sees the order, and sets what is shown."""
-    mapping = moved(settings(belt, port=simulator), by=20)
+    moved_on = moved(mapping(belt, port=simulator), by=20)
     program = ModbusTcpClient("127.0.0.1", port=simulator, timeout=PATIENCE_S)
-    with driven(belt, mapping) as (driver, heard), closing(program):
+    with driven(Modbus(moved_on), belt) as (driver, heard), closing(program):
         heard.until(is_heard)
-        driver.send(
-            belt.kind.command(id="c1", robot="belt", verb="advance", values={"to": "exit", "speed_mm_s": 200})
-        )
+        driver.send(order(belt, "advance", to="exit", speed_mm_s=200))
         assert program.read_holding_registers(0, count=4).registers == [2, 2, 200, 1]
         program.write_registers(22, [1, 1])
         assert heard.until(lambda report: report.accepted == "c1").state is MotionState.MOVING

@@ -2,44 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from arboleda.plant_file.loader import load
-from arboleda.runtime.build import App, Options, build
+from ..contract.bench import OTHER, WORK, Bench
+from ..contract.mover import HOME, Opened, app_of, plant
+from ..ros_action.bench import PlayedServer
 
-from ..contract.bench import OTHER, WORK, Bench, Device
-from ..ros_action.bench import HOME, PlayedServer
-
-WORDS = {(0.0, 0.0): HOME, (1.0, 0.0): WORK, (0.0, 1.0): OTHER}
-PLANT = """
-name: nav2
-uses: [recipes.py]
-cells:
-  shop:
-    devices:
-      cart:
-        kind: mobile
-        grid: {{pitch_mm: 1000}}
-        driver: {{{driver}: {{tolerance_m: 0.1}}}}
-    targets:
-      home: {{cart: {{node: 0}}}}
-      a: {{cart: {{node: 1}}}}
-      b: {{cart: {{node: 3}}}}
-"""
-RECIPES = """
-from arboleda.recipes import recipe
-
-@recipe("work")
-def work_(cell):
-    return cell.device("cart").go("a")
-
-@recipe("other")
-def other(cell):
-    return cell.device("cart").go("b")
-"""
+PLACES = {(0.0, 0.0): HOME, (1.0, 0.0): WORK, (0.0, 1.0): OTHER}
 
 
 class Base:
@@ -57,7 +28,7 @@ class Base:
 
     def word(self, goal: Any) -> str:
         x, y = self.place(goal)
-        return WORDS[(round(x, 3), round(y, 3))]
+        return PLACES[(round(x, 3), round(y, 3))]
 
     def go(self, goal: Any) -> None:
         self._x, self._y = self.place(goal)
@@ -96,11 +67,9 @@ class Follower(Base):
         return (at.x, at.y)
 
 
-def _open(driver: str, body: type[Base], folder: Path, state: Path) -> tuple[App, Callable[[App], Device]]:
-    folder.mkdir()
-    (folder / "plant.yaml").write_text(PLANT.format(driver=driver), "utf-8")
-    (folder / "recipes.py").write_text(RECIPES, "utf-8")
-    app = build(load(folder / "plant.yaml"), ("orchestrator",), Options(state_dir=state))
+def _open(driver: str, body: type[Base], folder: Path, state: Path) -> Opened:
+    keys = f"kind: mobile, grid: {{pitch_mm: 1000}}, driver: {{{driver}: {{tolerance_m: 0.1}}}}"
+    app = app_of(folder, state, plant("cart", keys, "node", (0, 1, 3)), "cart")
     return app, lambda app: PlayedServer(body())
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -12,7 +11,7 @@ from arboleda_drivers.opcua.server import OpcUaServer
 
 from ..contract.bench import HALT, LATCH
 from ..contract.press import Order, Words
-from ..plc.bench import bench
+from ..plc.bench import PlayedPlc, bench, numbers
 
 DRIVER = """
           opcua:
@@ -47,8 +46,8 @@ def _folder() -> TemporaryDirectory[str]:
     return TemporaryDirectory()
 
 
-class OpcUaWire:
-    """A PLC whose program is the test."""
+class PlayedOpcUa(PlayedPlc):
+    """Its variables and methods."""
 
     variables: Mapping[str, str] = TEXTS | dict.fromkeys(NUMBERS, "uint16")
     methods: Mapping[str, Sequence[str]] = {
@@ -57,17 +56,8 @@ class OpcUaWire:
         **dict.fromkeys(STOPS, ()),
     }
 
-    def __init__(self) -> None:
-        self.told: Callable[[Order], None] = lambda order: None
-        self._silent = threading.Event()
-        self._shown: dict[str, object] = {}
-        self.say(Words())
-        self.port = 0
-        self.come_back()
-
-    def connect(self, told: Callable[[Order], None]) -> OpcUaWire:
-        self.told = told
-        return self
+    def _serve(self, port: int) -> OpcUaServer:
+        return OpcUaServer(self, port=port, kept=Path(_folder().name) / "nodes")
 
     def show(self) -> Mapping[str, object]:
         return self._shown
@@ -83,37 +73,9 @@ class OpcUaWire:
         return self._silent.is_set()
 
     def say(self, words: Words) -> None:
-        rejected, failed, answered = (
-            pair or (0, "") for pair in (words.rejected, words.failed, words.answered)
-        )
-        done = answered[0] if words.answered is not None else words.done or 0
-        self._shown = {
-            "state": words.state,
-            "guard": words.guard,
-            "seen": answered[1] or "good",
-            "strokes": 0,
-            "boot": words.boot,
-            "reason": 1,
-            "failure": 1,
-            "accepted": words.accepted or 0,
-            "rejected": rejected[0],
-            "failed": failed[0],
-            "done": done,
-        }
-
-    def vanish(self) -> None:
-        self._server.stop()
-
-    def come_back(self) -> None:
-        self._server = OpcUaServer(self, port=self.port, kept=Path(_folder().name) / "nodes")
-        self.port = self._server.start()
-
-    def hush(self) -> None:
-        """A PLC that is asked and does not answer."""
-        self._silent.set()
-
-    def close(self) -> None:
-        self._server.stop()
+        seen = words.answered[1] if words.answered is not None else "good"
+        texts: dict[str, object] = {"state": words.state, "guard": words.guard, "seen": seen}
+        self._shown: Mapping[str, object] = {**numbers(words), **texts}
 
 
-BENCH = bench(OpcUaWire, DRIVER)
+BENCH = bench(PlayedOpcUa, DRIVER)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-import queue
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
 from typing import IO, Any, ClassVar
@@ -18,64 +17,32 @@ from typing import IO, Any, ClassVar
 import asyncua
 import pytest
 from asyncua import ua
-from tests.packages import ROOT
 from tests.patience import PATIENCE_S
 from tests.shared import need_tool
 
-from arboleda.drivers import MotionState, NotSent, Report, Stop, StopMode
+from arboleda.drivers import NotSent, Stop, StopMode
 from arboleda.kinds.declared import Device
-from arboleda.plant_file.loader import load
 from arboleda_drivers.opcua.adapter import OpcUa
 from arboleda_drivers.opcua.keys import Sequence, Verb
 from arboleda_drivers.opcua.nodes import Order, Write
 from arboleda_drivers.opcua.settings import Settings
 
+from ..plc.driven import Heard, belt_of, driven, is_heard, is_lost, mapping, order
+
 pytestmark = [pytest.mark.system, pytest.mark.requires("asyncua")]
 
-EXAMPLE = ROOT / "examples/plc_conveyor/opcua.yaml"
 PEER = Path(__file__).parent / "opcua_peer.py"
 SPOILT = ("null", "list", "bad", "uncertain")
 
 
-class Heard:
-    """What a driver says."""
-
-    def __init__(self) -> None:
-        self._reports: queue.Queue[Report] = queue.Queue()
-
-    def __call__(self, report: Report) -> None:
-        self._reports.put(report)
-
-    def until(self, fits: Callable[[Report], bool]) -> Report:
-        """The first report from now on that fits; queue.Empty where none comes."""
-        until = time.monotonic() + PATIENCE_S
-        while not fits(report := self._reports.get(timeout=max(0.0, until - time.monotonic()))):
-            pass
-        return report
-
-
 @pytest.fixture(scope="module")
 def belt() -> Device:
-    (robot,) = load(EXAMPLE).robots.values()
-    assert isinstance(robot, Device)
-    return robot
+    return belt_of("opcua.yaml")
 
 
 def settings(belt: Device, port: int, **changes: Any) -> Settings:
-    """The mapping of the example, without what the peer does not play."""
-    assert belt.driver is not None and isinstance(belt.driver.settings, Settings)
-    url = f"opc.tcp://127.0.0.1:{port}"
-    return replace(belt.driver.settings, **{"url": url, "alive": None, "heartbeat": None} | changes)
-
-
-@contextmanager
-def driven(belt: Device, at: Settings) -> Iterator[tuple[OpcUa, Heard]]:
-    made, heard = OpcUa(at), Heard()
-    try:
-        made.start([belt], heard, time.monotonic)
-        yield made, heard
-    finally:
-        made.stop()
+    """The mapping of the example at this port, as impatient as it is."""
+    return mapping(belt, url=f"opc.tcp://127.0.0.1:{port}", **{"timeout_s": 0.5} | changes)  # type: ignore[no-any-return]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,26 +83,14 @@ def plain(shelf: Path) -> Iterator[Peer]:
         yield server
 
 
-def told(belt: Device, verb: str, **values: Any) -> Any:
-    return belt.kind.command(id="c1", robot="belt", verb=verb, values=values)
-
-
-def is_heard(report: Report) -> bool:
-    return report.state is MotionState.STOPPED
-
-
-def is_lost(report: Report) -> bool:
-    return report.state is MotionState.NO_LINK
-
-
 def test_a_plain_server_is_called_and_believed(belt: Device, free_port: int, shelf: Path) -> None:
-    with driven(belt, settings(belt, free_port)) as (driver, heard):
+    with driven(OpcUa(settings(belt, free_port)), belt) as (driver, heard):
         assert f"127.0.0.1:{free_port} is not there" in str(heard.until(is_lost).lost)
         with pytest.raises(NotSent, match="is not connected"):
-            driver.send(told(belt, "load"))
+            driver.send(order(belt, "load"))
         with peer(shelf, free_port):
             heard.until(is_heard)
-            driver.send(told(belt, "load"))
+            driver.send(order(belt, "load"))
             report = heard.until(lambda report: report.done is not None)
             assert (report.done, report.fact("part_at")) == ("c1", "entry")
         heard.until(is_lost)  # it has gone with its sessions; another one is found again
@@ -144,16 +99,16 @@ def test_a_plain_server_is_called_and_believed(belt: Device, free_port: int, she
 
 
 def test_a_call_that_is_refused_is_rejected(belt: Device, plain: Peer) -> None:
-    with driven(belt, settings(belt, plain.port)) as (driver, heard):
+    with driven(OpcUa(settings(belt, plain.port)), belt) as (driver, heard):
         heard.until(is_heard)
-        driver.send(told(belt, "scan"))
+        driver.send(order(belt, "scan"))
         report = heard.until(lambda report: report.rejected is not None)
         assert (report.rejected, report.refusal) == ("c1", "BadInvalidState")
         assert heard.until(lambda report: is_heard(report) or is_lost(report)).lost is None
 
 
 def test_a_halt_that_is_refused_loses_the_link(belt: Device, plain: Peer) -> None:
-    with driven(belt, settings(belt, plain.port)) as (driver, heard):
+    with driven(OpcUa(settings(belt, plain.port)), belt) as (driver, heard):
         heard.until(is_heard)
         driver.send(Stop(id="s", robot="belt", mode=StopMode.HALT))
         assert str(heard.until(is_lost).lost) == "ns=2;s=Halt was refused: BadUserAccessDenied"
@@ -162,15 +117,15 @@ def test_a_halt_that_is_refused_loses_the_link(belt: Device, plain: Peer) -> Non
 
 def test_a_method_that_does_not_return_holds_up_no_sender(belt: Device, plain: Peer) -> None:
     """A halt leaves while the method runs; the link is then lost: who knows what became of the call?"""
-    with driven(belt, settings(belt, plain.port)) as (driver, heard):
+    with driven(OpcUa(settings(belt, plain.port)), belt) as (driver, heard):
         heard.until(is_heard)
-        driver.send(told(belt, "advance", to="exit", speed_mm_s=200))  # a method that takes an hour
+        driver.send(order(belt, "advance", to="exit", speed_mm_s=200))  # a method that takes an hour
         driver.send(Stop(id="s", robot="belt", mode=StopMode.CLEAR))
         heard.until(is_lost)
 
 
 def test_no_value_of_another_type_proves_anything(belt: Device, plain: Peer) -> None:
-    with driven(belt, settings(belt, plain.port)) as (_, heard):
+    with driven(OpcUa(settings(belt, plain.port)), belt) as (_, heard):
         plain.tell("none")
         for value in SPOILT:
             heard.until(lambda report: is_heard(report) and report.fact("part_at") == "none")
@@ -181,7 +136,7 @@ def test_no_value_of_another_type_proves_anything(belt: Device, plain: Peer) -> 
 
 
 def test_sessions_that_the_server_ends_are_made_anew(belt: Device, plain: Peer) -> None:
-    with driven(belt, settings(belt, plain.port)) as (_, heard):
+    with driven(OpcUa(settings(belt, plain.port)), belt) as (_, heard):
         heard.until(is_heard)
         plain.tell("sessions")
         assert "Session" in str(heard.until(is_lost).lost)
@@ -197,12 +152,12 @@ def test_a_server_with_a_login_is_used_while_its_certificate_is_believed(
         monkeypatch.setenv(f"PLC_{name}", str(value))
     with peer(shelf, 0, *server) as there:
         at = settings(belt, there.port, security="sign", secrets="PLC")
-        with driven(belt, at) as (driver, heard):
+        with driven(OpcUa(at), belt) as (driver, heard):
             heard.until(is_heard)
-            driver.send(told(belt, "load"))
+            driver.send(order(belt, "load"))
             assert heard.until(lambda report: report.done is not None).done == "c1"
         monkeypatch.setenv("PLC_SERVER_CERT", str(ours[0]))
-        with driven(belt, at) as (_, heard):
+        with driven(OpcUa(at), belt) as (_, heard):
             heard.until(is_lost)
 
 
@@ -262,9 +217,9 @@ def test_a_method_that_refuses_late_is_heard_as_of_then(
     """What is older than the last report is old news, and dropped."""
     monkeypatch.setattr(asyncua, "Client", Played)
     monkeypatch.setattr(Played, "refusals", [])
-    with driven(belt, settings(belt, 4840)) as (driver, heard):
+    with driven(OpcUa(settings(belt, 4840)), belt) as (driver, heard):
         heard.until(is_heard)
-        driver.send(told(belt, "load"))
+        driver.send(order(belt, "load"))
         report = heard.until(lambda report: report.rejected is not None)
         assert (report.rejected, report.refusal) == ("c1", "BadInvalidState")
         assert report.at >= Played.refusals[0]
@@ -298,14 +253,14 @@ def test_a_halt_between_values_and_number_keeps_the_number_from_being_written(
     halt = Order(write=(Write(node="ns=2;s=Halt", value=True, type="bool"),))
     sequence = Sequence(accepted="ns=2;s=accepted", done="ns=2;s=done", write="ns=2;s=Request")
     mapped = settings(belt, 4840, verbs={"load": verb}, halt=halt, sequence=sequence)
-    with driven(belt, mapped) as (driver, heard):
+    with driven(OpcUa(mapped), belt) as (driver, heard):
         heard.until(is_heard)
-        driver.send(told(belt, "load"))
+        driver.send(order(belt, "load"))
         driver.send(Stop(id="s", robot="belt", mode=StopMode.HALT))
         report = heard.until(lambda report: report.rejected is not None)
         assert (report.rejected, report.refusal) == ("c1", "stopped")
         assert Slow.written == ["ns=2;s=Halt", "ns=2;s=Verb"]
-        driver.send(told(belt, "load"))
+        driver.send(order(belt, "load"))
         heard.until(lambda report: "ns=2;s=Request" in Slow.written)
         assert Slow.written[2:] == ["ns=2;s=Verb", "ns=2;s=Request"]
 

@@ -17,12 +17,13 @@ from tests.shared import need_tool
 
 from arboleda.drivers import Stop, StopMode
 from arboleda.kinds.declared import Device
-from arboleda.plant_file.loader import load
+from arboleda_drivers.opcua.adapter import OpcUa
 from arboleda_drivers.opcua.keys import Sequence, Verb
 from arboleda_drivers.opcua.nodes import Order, Variable, Write
 from arboleda_drivers.opcua.settings import Settings
 
-from .test_opcua import EXAMPLE, certificate, driven, is_heard, is_lost, told
+from ..plc.driven import belt_of, driven, is_heard, is_lost, order
+from .test_opcua import certificate
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("node", "asyncua")]
 
@@ -121,9 +122,7 @@ def served(folder: Path, *, login: bool) -> Iterator[Peer]:
 
 @pytest.fixture(scope="module")
 def belt() -> Device:
-    (robot,) = load(EXAMPLE).robots.values()
-    assert isinstance(robot, Device)
-    return robot
+    return belt_of("opcua.yaml")
 
 
 @pytest.fixture(scope="module")
@@ -143,7 +142,7 @@ def guarded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Peer]:
 def test_verbs_are_written_and_known_as_done_where_one_request_may_have_few_values(
     belt: Device, peer: Peer
 ) -> None:
-    with driven(belt, peer.settings()) as (driver, heard):
+    with driven(OpcUa(peer.settings()), belt) as (driver, heard):
         heard.until(is_heard)
         for id, verb, values, fact in (
             ("c1", "load", {}, ("part_at", "entry")),
@@ -159,9 +158,9 @@ def test_verbs_are_written_and_known_as_done_where_one_request_may_have_few_valu
 def test_a_halt_is_written_while_an_order_is_at_work(belt: Device, peer: Peer) -> None:
     peer.input.write("hold\n")
     peer.input.flush()
-    with driven(belt, peer.settings()) as (driver, heard):
+    with driven(OpcUa(peer.settings()), belt) as (driver, heard):
         before = heard.until(is_heard).fact("part_at")
-        driver.send(told(belt, "load"))
+        driver.send(order(belt, "load"))
         heard.until(lambda report: report.accepted == "c1" and not is_heard(report))
         driver.send(Stop(id="s", robot="belt", mode=StopMode.HALT))
         peer.input.write("go on\n")
@@ -172,10 +171,10 @@ def test_a_halt_is_written_while_an_order_is_at_work(belt: Device, peer: Peer) -
 
 def test_what_does_not_fit_the_server_is_said_with_its_node(belt: Device, peer: Peer) -> None:
     wrong = Verb(write=(replace(VERB[1], type="int32"),))
-    with driven(belt, peer.settings(verbs=VERBS | {"load": wrong})) as (driver, heard):
+    with driven(OpcUa(peer.settings(verbs=VERBS | {"load": wrong})), belt) as (driver, heard):
         heard.until(is_heard)
         for _ in range(2):  # the link stays
-            driver.send(told(belt, "load"))
+            driver.send(order(belt, "load"))
             report = heard.until(lambda report: report.rejected is not None or is_lost(report))
             assert report.refusal == "nsu=urn:peer:belt;s=Verb: BadTypeMismatch"
     for changes, words in (
@@ -185,7 +184,7 @@ def test_what_does_not_fit_the_server_is_said_with_its_node(belt: Device, peer: 
             "the server has no namespace urn:nobody; there are http://opcfoundation.org/UA/",
         ),
     ):
-        with driven(belt, peer.settings(**changes)) as (_, heard):
+        with driven(OpcUa(peer.settings(**changes)), belt) as (_, heard):
             assert words in str(heard.until(is_lost).lost)
 
 
@@ -196,15 +195,15 @@ def test_a_user_is_known_by_each_policy(
     for name, value in {"USER": "cell", "PASSWORD": "secret", **guarded.files}.items():
         monkeypatch.setenv(f"PLC_{name}", str(value))
     at_peer = guarded.settings(security="sign_and_encrypt", policy=policy)
-    with driven(belt, at_peer) as (driver, heard):
+    with driven(OpcUa(at_peer), belt) as (driver, heard):
         heard.until(is_heard)
-        driver.send(told(belt, "load"))
+        driver.send(order(belt, "load"))
         assert heard.until(lambda report: report.done is not None).done == "c1"
 
 
 def test_a_wrong_password_is_refused(belt: Device, guarded: Peer, monkeypatch: pytest.MonkeyPatch) -> None:
     for name, value in {"USER": "cell", "PASSWORD": "wrong-word", **guarded.files}.items():
         monkeypatch.setenv(f"PLC_{name}", str(value))
-    with driven(belt, guarded.settings(security="sign_and_encrypt")) as (_, heard):
+    with driven(OpcUa(guarded.settings(security="sign_and_encrypt")), belt) as (_, heard):
         lost = str(heard.until(is_lost).lost)
         assert "Bad" in lost and "wrong-word" not in lost

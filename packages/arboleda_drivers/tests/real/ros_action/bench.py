@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import queue
 import threading
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, Protocol
 
-from tests.patience import PATIENCE_S
-
-from ..contract.bench import HALT, LATCH, Ref
+from ..contract.bench import LATCH, Ref
+from ..contract.mover import HOME, PlayedMover
 
 STATE_S = 0.02
-HOME = "home"
 UNKNOWN, SUCCEEDED, CANCELED, ABORTED = 0, 4, 5, 6
 
 
@@ -51,19 +48,16 @@ class Goal:
     failed: bool = False
 
 
-class PlayedServer:
+class PlayedServer(PlayedMover):
     """It answers a goal, and ends it, when the test says so; goals that lead home it reaches at once."""
 
     def __init__(self, body: Body) -> None:
         self._body = body
-        self._orders: queue.Queue[tuple[str, Ref]] = queue.Queue()
+        super().__init__()
         self._goals: dict[bytes, Goal] = {}
-        self._homes, self._stop_word, self._last = True, HALT, ""
+        self._last = ""
         self._quiet = threading.Event()
         self._enter()
-
-    def told(self) -> tuple[str, Ref]:
-        return self._orders.get(timeout=PATIENCE_S)
 
     def accepts(self, ref: Ref) -> None:
         self._answer(ref, accepted=True)
@@ -87,9 +81,6 @@ class PlayedServer:
         for goal in list(self._goals.values()):
             self._end(goal, CANCELED)
 
-    def answers(self, ref: Ref, word: str) -> None:
-        raise AssertionError("an action is asked nothing")
-
     def hush(self) -> None:
         self._quiet.set()
 
@@ -103,9 +94,6 @@ class PlayedServer:
     def come_back(self) -> None:
         self._homes, self._stop_word = False, LATCH
         self._enter()
-
-    def latches(self) -> None:
-        self.rests()
 
     def close(self) -> None:
         self._leave()

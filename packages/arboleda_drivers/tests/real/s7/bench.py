@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import struct
-import threading
-from collections.abc import Callable
 
 from arboleda_drivers.s7.server import S7Server
 
 from ..contract.bench import HALT, LATCH
 from ..contract.press import Order, Words
-from ..plc.bench import bench
+from ..plc.bench import VERBS, PlayedPlc, bench, numbers
 
 DRIVER = """
           s7:
@@ -36,29 +34,21 @@ DRIVER = """
             halt: [{at: DB2.DBX6.0, value: true}]
             latch: [{at: DB2.DBX7.0, value: true}]
             clear: [{at: DB2.DBX7.0, value: false}]"""
-VERBS = {1: "open", 2: "close", 3: "press", 4: "measure"}
-STATES = {"stopped": 0, "moving": 1, "latched": 2}
-ANSWERS = {"good": 1, "bad": 2}
 STOPS = {(6, 1): HALT, (7, 1): LATCH, (7, 0): "clear"}
 SHOWN = struct.Struct(">8H?Bh")
+PLACES = ("done", "rejected", "failed", "accepted", "reason", "failure", "boot", "state", "guard", "seen")
 NUMBER = 4
 
 
-class S7Wire:
-    """A PLC whose program is the test."""
+class PlayedS7(PlayedPlc):
+    """Its data blocks."""
 
     def __init__(self) -> None:
-        self.told: Callable[[Order], None] = lambda order: None
-        self._changed = threading.Lock()
         self._orders = bytearray(8)
-        self.say(Words())  # a driver that reads zeros first finds a board that has booted then
-        self._silent, self._closed = threading.Event(), threading.Event()
-        self._server = S7Server(self)
-        self.port = self._server.start()
+        super().__init__()
 
-    def connect(self, told: Callable[[Order], None]) -> S7Wire:
-        self.told = told
-        return self
+    def _serve(self, port: int) -> S7Server:
+        return S7Server(self, port=port)
 
     def read(self, db: int) -> bytes:
         self._hold()
@@ -75,32 +65,14 @@ class S7Wire:
             self.told(Order(ref=None, word=STOPS[byte, data[0]]))
 
     def say(self, words: Words) -> None:
-        pairs = (words.rejected, words.failed, words.answered)
-        rejected, failed, answered = (pair or (0, "") for pair in pairs)
-        done = answered[0] if words.answered is not None else words.done or 0
-        numbers = [done, rejected[0], failed[0], words.accepted or 0, 1, 1, words.boot, STATES[words.state]]
-        shown = SHOWN.pack(*numbers, words.guard == "closed", ANSWERS.get(answered[1], 1), 0)
+        numbered = numbers(words)
+        shown = SHOWN.pack(*(numbered[name] for name in PLACES), numbered["strokes"])
         with self._changed:
             self._shown = shown
-
-    def vanish(self) -> None:
-        self._server.stop()
-
-    def come_back(self) -> None:
-        self._server = S7Server(self, port=self.port)
-        self._server.start()
-
-    def hush(self) -> None:
-        """A PLC that is asked and does not answer."""
-        self._silent.set()
-
-    def close(self) -> None:
-        self._closed.set()
-        self._server.stop()
 
     def _hold(self) -> None:
         if self._silent.is_set():
             self._closed.wait()
 
 
-BENCH = bench(S7Wire, DRIVER)
+BENCH = bench(PlayedS7, DRIVER)

@@ -6,32 +6,26 @@ import os
 import queue
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 import pytest
-from tests.packages import ROOT
 
 from arboleda.drivers import Stop, StopMode
 from arboleda.kinds.declared import Device
-from arboleda.plant_file.loader import load
 from arboleda_drivers.s7.adapter import S7
 from arboleda_drivers.s7.keys import Verb, Write
 from arboleda_drivers.s7.server import S7Server
-from arboleda_drivers.s7.settings import Settings
 
-from ..modbus.test_modbus import Heard, is_heard, is_lost, load_command
+from ..plc.driven import LONGEST_S, belt_of, driven, is_heard, is_lost, mapping, order
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("snap7")]
 
-EXAMPLE = ROOT / "examples/plc_conveyor/s7.yaml"
 ORIGINAL = Path(sys.prefix, "snap7")
 PEER = Path(__file__).with_name("s7_snap7_peer.py")
-LONGEST_S = 5.0  # that a plant file may wait for an answer
 PART_AT = 18
 
 
@@ -57,26 +51,7 @@ class Memory:
 
 @pytest.fixture(scope="module")
 def belt() -> Device:
-    (robot,) = load(EXAMPLE).robots.values()
-    assert isinstance(robot, Device)
-    return robot
-
-
-def settings(belt: Device, **changes: Any) -> Settings:
-    """The mapping of the example, without what a test does not play, and patient."""
-    assert belt.driver is not None and isinstance(belt.driver.settings, Settings)
-    given = {"alive": None, "heartbeat": None, "timeout_s": LONGEST_S} | changes
-    return replace(belt.driver.settings, **given)
-
-
-@contextmanager
-def driven(belt: Device, at: Settings) -> Iterator[tuple[S7, Heard]]:
-    made, heard = S7(at), Heard()
-    made.start([belt], heard, time.monotonic)
-    try:
-        yield made, heard
-    finally:
-        made.stop()
+    return belt_of("s7.yaml")
 
 
 @contextmanager
@@ -90,10 +65,9 @@ def served(memory: Memory) -> Iterator[int]:
 
 def test_values_leave_before_their_number_and_a_bit_by_itself(belt: Device) -> None:
     memory = Memory()
-    with served(memory) as port, driven(belt, settings(belt, port=port)) as (driver, heard):
+    with served(memory) as port, driven(S7(mapping(belt, port=port)), belt) as (driver, heard):
         heard.until(is_heard)
-        values = {"to": "exit", "speed_mm_s": 400}
-        driver.send(belt.kind.command(id="c1", robot="belt", verb="advance", values=values))
+        driver.send(order(belt, "advance", to="exit", speed_mm_s=400))
         driver.send(Stop(id="c2", robot="belt", mode=StopMode.HALT))
         written = [memory.written.get(timeout=LONGEST_S) for _ in range(5)]
     assert written == [(0, b"\2"), (2, b"\0\2"), (4, b"\0\0\1\x90"), (8, b"\0\1"), (12, b"\1")]
@@ -101,10 +75,10 @@ def test_values_leave_before_their_number_and_a_bit_by_itself(belt: Device) -> N
 
 def test_a_refused_write_rejects_the_command(belt: Device) -> None:
     memory = Memory()
-    with served(memory) as port, driven(belt, settings(belt, port=port)) as (driver, heard):
+    with served(memory) as port, driven(S7(mapping(belt, port=port)), belt) as (driver, heard):
         heard.until(is_heard)
         memory.refuses = 0
-        driver.send(load_command(belt))
+        driver.send(order(belt))
         report = heard.until(lambda report: report.rejected is not None)
         assert (report.rejected, report.refusal) == ("c1", "error_8404")
         heard.until(is_heard)  # the link stays
@@ -113,7 +87,7 @@ def test_a_refused_write_rejects_the_command(belt: Device) -> None:
 
 def test_a_refused_stop_loses_the_link(belt: Device) -> None:
     memory = Memory()
-    with served(memory) as port, driven(belt, settings(belt, port=port)) as (driver, heard):
+    with served(memory) as port, driven(S7(mapping(belt, port=port)), belt) as (driver, heard):
         heard.until(is_heard)
         memory.refuses = 12
         with pytest.raises(ConnectionError, match=r"the PLC refuses to take DB2.DBX12.0.*; it was a stop"):
@@ -123,17 +97,17 @@ def test_a_refused_stop_loses_the_link(belt: Device) -> None:
 def test_a_refused_write_behind_one_that_was_taken_loses_the_link(belt: Device) -> None:
     memory = Memory()
     begins_twice = Verb(write=(Write(at="DB2.DBB0", value=1), Write(at="DB2.DBW2:INT", value=1)))
-    unnumbered = settings(belt, sequence=None, verbs={"load": begins_twice})
-    with served(memory) as port, driven(belt, replace(unnumbered, port=port)) as (driver, heard):
+    unnumbered = mapping(belt, sequence=None, verbs={"load": begins_twice})
+    with served(memory) as port, driven(S7(replace(unnumbered, port=port)), belt) as (driver, heard):
         heard.until(is_heard)
         memory.refuses = 2
         with pytest.raises(ConnectionError, match="what was written before may have begun"):
-            driver.send(load_command(belt))
+            driver.send(order(belt))
 
 
 def test_what_has_no_meaning_or_is_refused_loses_the_link_and_says_why(belt: Device) -> None:
     memory = Memory()
-    with served(memory) as port, driven(belt, settings(belt, port=port)) as (_, heard):
+    with served(memory) as port, driven(S7(mapping(belt, port=port)), belt) as (_, heard):
         heard.until(is_heard)
         memory.shown[PART_AT + 1] = 77
         assert "DB1.DBW18 is 77, for which there is no word" in str(heard.until(is_lost).lost)
@@ -168,12 +142,12 @@ def test_the_original_snap7_takes_orders_and_keeps_the_neighbours_of_a_bit(
     belt: Device, peer: tuple[int, IO[str], IO[str]]
 ) -> None:
     port, asks, says = peer
-    with driven(belt, settings(belt, port=port)) as (driver, heard):
+    with driven(S7(mapping(belt, port=port)), belt) as (driver, heard):
         heard.until(is_heard)
-        driver.send(load_command(belt))
+        driver.send(order(belt))
         done = heard.until(lambda report: report.done == "c1")
         assert dict(done.facts)["part_at"] == "entry"
-        driver.send(belt.kind.command(id="c2", robot="belt", verb="gate", values={"to": "open"}))
+        driver.send(order(belt, "gate", "c2", to="open"))
         rejected = heard.until(lambda report: report.rejected == "c2")
         assert rejected.refusal == "unknown"
         driver.send(Stop(id="c3", robot="belt", mode=StopMode.HALT))
@@ -188,5 +162,5 @@ def test_the_original_snap7_refuses_what_is_not_there(
     belt: Device, peer: tuple[int, IO[str], IO[str]]
 ) -> None:
     for place, word in (("DB1.DBW4000", "address_out_of_range"), ("DB7.DBW0", "no_such_block")):
-        with driven(belt, settings(belt, port=peer[0], boot=place)) as (_, heard):
+        with driven(S7(mapping(belt, port=peer[0], boot=place)), belt) as (_, heard):
             assert word in str(heard.until(is_lost).lost)

@@ -3,56 +3,24 @@
 from __future__ import annotations
 
 import math
-import queue
 import threading
 from collections.abc import Callable
 from pathlib import Path
 
 from tests.patience import PATIENCE_S
 
-from arboleda.plant_file.loader import load
-from arboleda.runtime.build import App, Options, build
 from arboleda_drivers.serial_arm.servos import TICKS
 from arboleda_drivers.serial_arm.virtual.faults import FAULTS
 from arboleda_drivers.serial_arm.virtual.machine import OVERLOAD, VirtualServos
 from arboleda_drivers.virtual.faults import Faults
 from arboleda_drivers.virtual.pty_line import PtyLine
 
-from ..contract.bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
+from ..contract.bench import Bench, Ref
+from ..contract.mover import ARM_DEG, WORDS, Opened, PlayedMover, app_of, arm
 
-HOME = "home"
-POSES = {HOME: (0, 0, 0, 0, 0, 0), WORK: (10, 20, -30, 0, 5, 0), OTHER: (5, 0, 0, 0, 0, 0)}
-PLANT = """
-name: servos
-uses: [recipes.py]
-cells:
-  shop:
-    devices:
-      arm:
-        kind: arm
-        model: cr10a
-        tolerance: {{deg: [0.3, 0.3, 0.3, 0.3, 0.3, 0.3]}}
-        driver:
-          serial_arm:
-            serial: {line}
-            reply_s: 0.2  # servos in a thread of a busy process are slow to answer
-            joints: [{{id: 1}}, {{id: 2}}, {{id: 3}}, {{id: 4}}, {{id: 5}}, {{id: 6}}]
-    targets:
-      home: {{arm: {{deg: [0, 0, 0, 0, 0, 0]}}}}
-      a: {{arm: {{deg: [10, 20, -30, 0, 5, 0]}}}}
-      b: {{arm: {{deg: [5, 0, 0, 0, 0, 0]}}}}
-"""
-RECIPES = """
-from arboleda.recipes import recipe
-
-@recipe("work")
-def work_(cell):
-    return cell.device("arm").go("a")
-
-@recipe("other")
-def other(cell):
-    return cell.device("arm").go("b")
-"""
+KEYS = """tolerance: {deg: [0.3, 0.3, 0.3, 0.3, 0.3, 0.3]}, """
+JOINTS = "[{id: 1}, {id: 2}, {id: 3}, {id: 4}, {id: 5}, {id: 6}]"
+REPLY_S = 0.2  # servos in a thread of a busy process are slow to answer
 ACCELERATION_AT, HOLD_UNITS = 3, 100  # of the first servo; a hold has more, a move less
 STRIDE, STRIDES = 5, 100  # ticks of a servo at work for each answer, and how many until it is where it was
 Goals = tuple[int, ...]
@@ -115,20 +83,16 @@ class PlayedServos(VirtualServos):
         self._told(goals, data)
 
 
-class PlayedArm:
+class PlayedArm(PlayedMover):
     """It answers what it is asked; moves wait for the test, but those home, which it does at once."""
 
     def __init__(self, line: Path) -> None:
-        self._orders: queue.Queue[tuple[str, Ref]] = queue.Queue()
+        super().__init__()
         self._given: list[tuple[Goals, bytes]] = []
-        self._homes, self._stop_word = True, HALT  # one packet is both
         self._servos = PlayedServos(self._hear)
         # By name: once it was pulled, its number may be that of another test's line.
         self.line = PtyLine(self._servos, link=str(line))
         self.line.start()
-
-    def told(self) -> tuple[str, Ref]:
-        return self._orders.get(timeout=PATIENCE_S)
 
     def accepts(self, ref: Ref) -> None:
         with self._servos.lock:
@@ -151,12 +115,6 @@ class PlayedArm:
             servo.put(servo.layout.status, OVERLOAD)
         return "gave up (overload of joint2"
 
-    def rests(self) -> None:
-        pass  # where it is told to hold it holds
-
-    def answers(self, ref: Ref, word: str) -> None:
-        raise AssertionError("an arm is asked nothing")
-
     def hush(self) -> None:
         self._servos.switched.switch("mute", on=True)
 
@@ -173,9 +131,6 @@ class PlayedArm:
         self._homes = False  # whatever it is told to do from now on is an order
         self._servos.switched.switch("unplugged", on=False)
 
-    def latches(self) -> None:
-        pass
-
     def close(self) -> None:
         self.line.stop()
 
@@ -188,29 +143,24 @@ class PlayedArm:
         if data[ACCELERATION_AT] > HOLD_UNITS:
             self._servos.restless = False
             self._servos.take(data)
-            self._orders.put((self._stop_word, None))
-            self._stop_word = HALT if self._homes else LATCH
+            self._order_stop()
             return
-        word = next(name for name, pose in POSES.items() if _ticks(pose) == goals)
+        word = next(name for name, pose in zip(WORDS, ARM_DEG, strict=True) if _ticks(pose) == goals)
         self._given.append((goals, data))
-        if word == HOME and self._homes:
+        if self._is_made(word, len(self._given)):
             self._servos.take(data)
             self._servos.put(goals)
-        else:
-            self._orders.put((word, len(self._given)))
 
 
 def _ticks(pose: tuple[int, ...]) -> Goals:
     return tuple(TICKS // 2 + round(math.radians(each) * TICKS / math.tau) for each in pose)
 
 
-def _open(folder: Path, state: Path) -> tuple[App, Callable[[App], Device]]:
+def _open(folder: Path, state: Path) -> Opened:
     folder.mkdir()
-    arm = PlayedArm(folder / "line")
-    (folder / "plant.yaml").write_text(PLANT.format(line=arm.line.path), "utf-8")
-    (folder / "recipes.py").write_text(RECIPES, "utf-8")
-    app = build(load(folder / "plant.yaml"), ("orchestrator",), Options(state_dir=state))
-    return app, lambda app: arm
+    played = PlayedArm(folder / "line")
+    driver = f"{{serial_arm: {{serial: {played.line.path}, reply_s: {REPLY_S}, joints: {JOINTS}}}}}"
+    return app_of(folder, state, arm(driver, KEYS), "arm"), lambda app: played
 
 
 BENCH = Bench(open=_open)

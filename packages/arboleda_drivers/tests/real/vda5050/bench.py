@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import queue
 import threading
-from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -14,53 +12,25 @@ from tests.patience import PATIENCE_S
 from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.adapters.broker_login import address
 from arboleda.adapters.mqtt import MqttClient, NotConnected
-from arboleda.plant_file.loader import load
-from arboleda.runtime.build import App, Options, build
 from arboleda.wire.transport import Connection, Delivery, Publication
 from arboleda_drivers.vda5050.messages import Headers, from_bytes, to_bytes
 
-from ..contract.bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
+from ..contract.bench import HALT, LATCH, Bench, Ref
+from ..contract.mover import WORDS, Opened, PlayedMover, app_of, plant
 
 BEAT_S = 0.1
 VERSION, TOPICS = "2.1", "uagv/v2/played/agv1"
-GOALS = {"7": WORK, "5": OTHER}
-HOME = "0"
+NODES = (0, 7, 5)
 STOPS = {"startPause": LATCH, "cancelOrder": HALT}
-PLANT = """
-name: vda5050
-uses: [recipes.py]
-cells:
-  shop:
-    devices:
-      cart:
-        kind: mobile
-        driver:
-          vda5050: {{broker: "{broker}", manufacturer: played, serial: agv1, base: 0, silent_after_s: 1.5}}
-    targets:
-      home: {{cart: {{node: 0}}}}
-      a:    {{cart: {{node: 7}}}}
-      b:    {{cart: {{node: 5}}}}
-"""
-RECIPES = """
-from arboleda.recipes import recipe
-
-@recipe("work")
-def work_(cell):
-    return cell.device("cart").go("a")
-
-@recipe("other")
-def other(cell):
-    return cell.device("cart").go("b")
-"""
 
 
-class PlayedVehicle:
+class PlayedVehicle(PlayedMover):
     """Orders wait for the test, but those home, which it does at once; instant actions are over at once."""
 
     def __init__(self) -> None:
         self._broker = EmbeddedBroker("127.0.0.1", 0)
         self.address = str(self._broker.start())
-        self._orders: queue.Queue[tuple[str, Ref]] = queue.Queue()
+        super().__init__()
         self._last: dict[str, dict[str, Any]] = {}  # the last node of each order, by its id
         self._lock = threading.RLock()
         self._headers = Headers(VERSION, "played", "agv1")
@@ -69,9 +39,6 @@ class PlayedVehicle:
         self._client = self._connected()
         self._thread = threading.Thread(target=self._speak, name="played vehicle", daemon=True)
         self._thread.start()
-
-    def told(self) -> tuple[str, Ref]:
-        return self._orders.get(timeout=PATIENCE_S)
 
     def accepts(self, ref: Ref) -> None:
         self._say(orderId=ref, nodeStates=[STEP], driving=True)
@@ -93,9 +60,6 @@ class PlayedVehicle:
 
     def rests(self) -> None:
         self._say(nodeStates=[], driving=False)
-
-    def answers(self, ref: Ref, word: str) -> None:
-        raise AssertionError("a cart is asked nothing")
 
     def hush(self) -> None:
         self._quiet.set()
@@ -149,10 +113,8 @@ class PlayedVehicle:
             return
         ref, goal = said["orderId"], said["nodes"][-1]
         self._last[ref] = goal
-        if goal["nodeId"] == HOME:
+        if self._is_made(WORDS[NODES.index(int(goal["nodeId"]))], ref):
             self.finishes(ref)
-        else:
-            self._orders.put((GOALS[goal["nodeId"]], ref))
 
     def _do(self, actions: list[dict[str, Any]]) -> None:
         over = [{"actionId": each["actionId"], "actionStatus": "FINISHED"} for each in actions]
@@ -183,7 +145,7 @@ STEP = {"nodeId": "x", "sequenceId": 2, "released": True}
 STANDING: dict[str, Any] = {
     "orderId": "",
     "orderUpdateId": 0,
-    "lastNodeId": HOME,
+    "lastNodeId": str(NODES[0]),
     "lastNodeSequenceId": 0,
     "nodeStates": [],
     "edgeStates": [],
@@ -197,13 +159,11 @@ STANDING: dict[str, Any] = {
 }
 
 
-def _open(folder: Path, state: Path) -> tuple[App, Callable[[App], Device]]:
+def _open(folder: Path, state: Path) -> Opened:
     vehicle = PlayedVehicle()
-    folder.mkdir()
-    (folder / "plant.yaml").write_text(PLANT.format(broker=vehicle.address), "utf-8")
-    (folder / "recipes.py").write_text(RECIPES, "utf-8")
-    app = build(load(folder / "plant.yaml"), ("orchestrator",), Options(state_dir=state))
-    return app, lambda app: vehicle
+    keys = f'broker: "{vehicle.address}", manufacturer: played, serial: agv1, base: 0, silent_after_s: 1.5'
+    text = plant("cart", f"kind: mobile, driver: {{vda5050: {{{keys}}}}}", "node", NODES)
+    return app_of(folder, state, text, "cart"), lambda app: vehicle
 
 
 BENCH = Bench(open=_open)
