@@ -12,8 +12,8 @@ import sys
 from collections.abc import Callable, Sequence
 
 from arboleda_drivers.dobot.frames import Mode
+from arboleda_drivers.dobot.virtual.command import Server
 from arboleda_drivers.dobot.virtual.machine import ClientText, Frame, Message, VirtualDobot
-from arboleda_drivers.dobot.virtual.sockets import Server
 
 from .floor_dobot import ANGLES_DEG
 from .processes import Process

@@ -14,8 +14,7 @@ from arboleda_drivers.modbus.settings import Settings
 from arboleda_drivers.modbus.virtual.memory import FAULTS, BeltMemory
 from arboleda_drivers.plc.polled import RequestRefused
 
-from .plc import NO_LINK, BeltRig
-from .plc_loopback import LineBroken
+from .plc import NO_LINK, BeltRig, LineBroken
 from .rig import Causes
 
 CAUSES: Causes = {

@@ -9,11 +9,10 @@ from arboleda.model.plant_model import PlantModel
 from arboleda_drivers.opcua.machine import Call, OpcUaDevice, Read
 from arboleda_drivers.opcua.server import Bad
 from arboleda_drivers.opcua.settings import Settings
-from arboleda_drivers.opcua.virtual.faults import FAULTS
+from arboleda_drivers.opcua.virtual.command import FAULTS
 from arboleda_drivers.opcua.virtual.program import BeltProgram
 
-from .plc import NO_LINK, BeltRig
-from .plc_loopback import LineBroken
+from .plc import NO_LINK, BeltRig, LineBroken
 from .rig import Causes
 
 CAUSES: Causes = {

@@ -16,8 +16,7 @@ from arboleda_drivers.s7.machine import LEAST_PDU, S7Device, WriteRequest
 from arboleda_drivers.s7.settings import Settings
 from arboleda_drivers.s7.virtual.memory import FAULTS, BeltMemory
 
-from .plc import NO_LINK, BeltRig
-from .plc_loopback import LineBroken
+from .plc import NO_LINK, BeltRig, LineBroken
 from .rig import Causes
 
 CAUSES: Causes = {

@@ -21,10 +21,10 @@ from arboleda_driver_faults.modbus import Registers
 from arboleda_driver_faults.nav2 import BASE_CAUSES
 from arboleda_driver_faults.rig import TASKS, Rig, run
 from arboleda_driver_faults.ros_action import CAUSES as ACTION_CAUSES
-from arboleda_drivers.connections.look import Look
+from arboleda_drivers.connections.receipts import Look
 from arboleda_drivers.dobot import frames
 from arboleda_drivers.dobot import work as dobot_work
-from arboleda_drivers.dobot.virtual.faults import FAULTS as DOBOT_FAULTS
+from arboleda_drivers.dobot.virtual.machine import FAULTS as DOBOT_FAULTS
 from arboleda_drivers.gcode import grbl_book, grbl_work, marlin, moonraker_work
 from arboleda_drivers.gcode.virtual.faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
 from arboleda_drivers.gripper_command.machine import GripperMover
@@ -32,7 +32,7 @@ from arboleda_drivers.gripper_command.virtual.machine import FAULTS as GRIPPER_F
 from arboleda_drivers.joint_trajectory.virtual.machine import FAULTS as ARM_FAULTS
 from arboleda_drivers.modbus.virtual.memory import FAULTS as MODBUS_FAULTS
 from arboleda_drivers.nav2.virtual.machine import FAULTS as BASE_FAULTS
-from arboleda_drivers.opcua.virtual.faults import FAULTS as OPCUA_FAULTS
+from arboleda_drivers.opcua.virtual.command import FAULTS as OPCUA_FAULTS
 from arboleda_drivers.plc.numbers import Numbers
 from arboleda_drivers.pylabrobot.adapter import Bench
 from arboleda_drivers.ros_action import machine as ros_machine

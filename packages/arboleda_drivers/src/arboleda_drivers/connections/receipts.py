@@ -1,12 +1,29 @@
-"""Ends of the commands to one device, as its reports tell them, and when a report is due."""
+"""Progress of a work as looks at its device show it, ends of commands as reports tell them, and when."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from arboleda.drivers import Report
 
-from .look import Look
+
+@dataclass(frozen=True, kw_only=True)
+class Look:
+    """Progress of a work: accepted, or over; `lines` are the next ones to its controller."""
+
+    accepted: bool = False
+    done: bool = False
+    refused: str = ""
+    failed: str = ""
+    lines: tuple[str, ...] = ()
+
+    @property
+    def is_end(self) -> bool:
+        return self.done or bool(self.refused or self.failed)
+
+
+NOTHING = Look()
 
 
 class Receipts:

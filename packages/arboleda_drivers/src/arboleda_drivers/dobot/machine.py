@@ -9,15 +9,13 @@ from dataclasses import dataclass
 from arboleda.drivers import HEALTH, WELL, Home, MotionState, MoveJoints, Report, Robot
 from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
-from arboleda_drivers.connections.look import Look
+from arboleda_drivers.connections.receipts import Look
 from arboleda_drivers.connections.tcp_arm import SILENT_S, ArmController
 
-from .alarms import named
-from .dashboard import Dashboard, SendLine
+from .dashboard import Dashboard, SendLine, ToolOutput
 from .frames import Feedback, FrameReader, Mode
-from .replies import NotAReply, Reply
+from .replies import NotAReply, Reply, named
 from .settings import Settings
-from .tool_output import ToolOutput
 from .work import ALARM, BROKEN, Move, Readying, Work
 
 REST_DEG = 0.01  # less than this is no motion

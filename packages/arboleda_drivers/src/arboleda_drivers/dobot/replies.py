@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from arboleda_drivers.connections.link import LinkBroken
@@ -36,6 +37,15 @@ OF_VALUES = {
     -60000: "option_out_of_range",
 }
 """The words for those whose last digits are the place of the value, from 1; it is 1 for any with a name."""
+MEANINGS = {  # of the alarms that an operator meets most; the maker lists some thousand
+    16: "near the singularity of the shoulder",
+    17: "no joints reach that pose",
+    18: "outside of the working space",
+    **{48 + joint: f"joint {joint + 1} too fast" for joint in range(6)},
+    116: "the stop button at the robot is pressed",
+    132: "a stop by software of the robot's own",
+    133: "a stop by a safety input",
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,3 +112,10 @@ def _reply(text: str) -> Reply:
     if found is None:
         raise NotAReply(f"{text[:60]!r} is no reply")
     return Reply(error=int(found[1]), values=found[2].strip(), command=found[3])
+
+
+def named(alarms: Sequence[int]) -> str:
+    """The alarms by number, with their meanings as far as known here."""
+    return ", ".join(
+        f"alarm {each}: {MEANINGS[each]}" if each in MEANINGS else f"alarm {each}" for each in alarms
+    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from arboleda_drivers.connections.look import NOTHING, Look
+from arboleda_drivers.connections.receipts import NOTHING, Look
 from arboleda_drivers.connections.tcp_arm import SETTLE_S
 
 from .frames import Feedback, Mode

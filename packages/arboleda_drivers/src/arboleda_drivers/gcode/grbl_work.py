@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from arboleda_drivers.connections.look import Look
+from arboleda_drivers.connections.receipts import Look
 
 from .grbl_lines import LOCKS, Alarm, Answer, State, Status
 from .grbl_stop import IDLE_ENOUGH, RESETTABLE, SETTLE_S

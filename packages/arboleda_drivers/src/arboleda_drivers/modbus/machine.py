@@ -23,8 +23,7 @@ from arboleda.drivers import (
     VerbCommand,
 )
 from arboleda_drivers.plc.numbers import Numbers
-from arboleda_drivers.plc.plc_snapshot import PlcSnapshot, Question, report
-from arboleda_drivers.plc.program_watch import ProgramWatch
+from arboleda_drivers.plc.plc_snapshot import PlcSnapshot, ProgramWatch, Question, report
 
 from .keys import ModbusKeys
 from .registers import Register, Write

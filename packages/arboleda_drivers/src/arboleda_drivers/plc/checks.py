@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from arboleda.drivers import Device, DeviceVerb, Effect, Evidence, FactType, among
+from arboleda.drivers import Device, DeviceVerb, Effect, Evidence, FactType, Robot, among
 
 from .plc_snapshot import STATES
 from .variables import FORMS, PlcArgument, PlcVariable
 
 Place = tuple[str | int, ...]
 Problem = tuple[Place, str]
+
+
+def undeclared(robot: Robot) -> Iterator[Problem]:
+    """The problem of a robot of no declared kind, for which nothing can be mapped."""
+    yield (), f"reaches devices of declared kinds; {robot.name} is of the kind {robot.kind_name}"
 
 
 def facts(mapped: Collection[str], device: Device, hint: str) -> Iterator[Problem]:

@@ -25,8 +25,7 @@ from arboleda.drivers import (
 
 from .checks import answers
 from .numbers import LAST, Numbers
-from .plc_snapshot import STATES, UNNAMED, PlcSnapshot, Question, UnreadableValue, report
-from .program_watch import ProgramWatch
+from .plc_snapshot import STATES, UNNAMED, PlcSnapshot, ProgramWatch, Question, UnreadableValue, report
 from .variables import PlcVariable, count, yes
 
 ECHOES = ("done", "rejected", "failed", "accepted")

@@ -149,7 +149,7 @@ class Settings(MachineMapping):
 def problems(settings: MachineMapping, device: Robot) -> Iterator[Problem]:
     """All problems of the mapping of this device."""
     if not isinstance(device, Device):
-        yield (), f"reaches devices of declared kinds; {device.name} is of the kind {device.kind_name}"
+        yield from checks.undeclared(device)
         return
     if device.evidence is not Evidence.IDS:
         yield (), f"{device.name} has evidence: {device.evidence.value}; this driver proves ids"

@@ -13,7 +13,7 @@ from arboleda.drivers import HEALTH, WELL, Facts, Home, Jointed, MotionState, Mo
 from arboleda_drivers.connections.controller import Controller
 from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.link import LinkBroken
-from arboleda_drivers.connections.look import Look
+from arboleda_drivers.connections.receipts import Look
 from arboleda_drivers.connections.stream import Received, Write
 
 from .bus import Bus

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from arboleda_drivers.connections.look import NOTHING, Look
+from arboleda_drivers.connections.receipts import NOTHING, Look
 
 from .servos import Reading
 

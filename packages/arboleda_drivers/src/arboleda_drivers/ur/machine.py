@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from arboleda.drivers import HEALTH, WELL, Home, MotionState, MoveJoints, Report, Robot
 from arboleda_drivers.connections.controller_machine import ControllerMachine
 from arboleda_drivers.connections.link import Close, CommandNotSent, Open
-from arboleda_drivers.connections.look import Look
+from arboleda_drivers.connections.receipts import Look
 from arboleda_drivers.connections.tcp_arm import SILENT_S, ArmController
 from arboleda_drivers.ur.port_data import DASHBOARD, RTDE, Received, Send
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from arboleda_drivers.connections.look import NOTHING, Look
+from arboleda_drivers.connections.receipts import NOTHING, Look
 from arboleda_drivers.connections.tcp_arm import SETTLE_S
 
 from .arm_state import PROTECTIVE_STOP, Mode, Runtime, hindrance, safety_word

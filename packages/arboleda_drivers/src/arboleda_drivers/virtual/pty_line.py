@@ -12,7 +12,10 @@ from typing import Protocol
 
 from arboleda.extension import StartError
 
-from .pseudo_terminal import pseudo_terminal
+try:
+    import tty
+except ImportError:  # Windows
+    tty = None  # type: ignore[assignment]
 
 AT_ONCE = 4096
 LONGEST_WAIT_S = 0.05
@@ -111,3 +114,16 @@ class PtyLine:
         os.close(self._slave)
         os.close(self._master)
         self._master = self._slave = -1
+
+
+def pseudo_terminal() -> tuple[int, int]:
+    """The two ends of a new pseudo terminal, raw: that of the device and that of its client.
+
+    StartError where the system has none.
+    """
+    if tty is None:
+        raise StartError("this system has no pseudo terminals for a serial line of a virtual device")
+    device, client = os.openpty()
+    os.set_blocking(device, False)
+    tty.setraw(client)
+    return device, client

@@ -35,6 +35,15 @@ class Controller(Protocol):
     def stop(self) -> None: ...
 
 
+def adding(name: str, text: str, run: Callable[..., None]) -> Callable[[typer.Typer], None]:
+    """The `add_to` of a module with this command, whose help is the text."""
+
+    def add_to(cli: typer.Typer) -> None:
+        cli.command(name, help=text)(run)
+
+    return add_to
+
+
 def with_faults(text: str, known: Mapping[str, str], title: str = "Faults") -> str:
     """The help of a command, with its faults listed."""
     rows = "\n".join(f"  {name}: {what}" for name, what in known.items())

@@ -16,7 +16,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 
 from .faults import Faults
-from .ports import listen
+from .tcp_server import listen
 
 ROOT = "/faults"
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Any, Protocol
 
-from .ports import listen
+from arboleda.extension import StartError
 
 AT_ONCE = 4096  # bytes
 LONGEST_WAIT_S = 0.1
@@ -119,3 +119,12 @@ class TcpServer(ABC):
     def _hang_up(self) -> None:
         for number in list(self._clients):
             self._drop(number)
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """Listen on a port; raises StartError, which names it, if that is impossible."""
+    try:
+        return socket.create_server((host, port))
+    except OSError as error:
+        why = f"{host}:{port} cannot be listened on: {error}"
+        raise StartError(f"{why}; name another port, or 0 for any that is free") from error

@@ -11,8 +11,8 @@ from arboleda.drivers import Home, MoveJoints, Report, SetEffector, Stop, StopMo
 from arboleda.model.plant_model import Evidence, Link
 from arboleda.testing.plants import shipped
 from arboleda.testing.storage_layout import StorageLayout
-from arboleda_driver_faults import dobot_loopback, ur_loopback
-from arboleda_drivers.dobot.virtual.faults import FAULTS as DOBOT_FAULTS
+from arboleda_driver_faults import dobot, ur
+from arboleda_drivers.dobot.virtual.machine import FAULTS as DOBOT_FAULTS
 from arboleda_drivers.dobot.virtual.machine import VirtualDobot
 from arboleda_drivers.ur.virtual.faults import FAULTS as UR_FAULTS
 from arboleda_drivers.ur.virtual.machine import VirtualUr
@@ -51,7 +51,7 @@ class _Heard:
                 return
 
 
-class Dobot(_Heard, dobot_loopback.Loopback):
+class Dobot(_Heard, dobot.Loopback):
     """Driver and virtual Dobot."""
 
     stop_line = "Stop()"
@@ -67,7 +67,7 @@ class Dobot(_Heard, dobot_loopback.Loopback):
         return [line for line in self.received if line.startswith(("MovJ", "Stop"))]
 
 
-class Ur(_Heard, ur_loopback.Loopback):
+class Ur(_Heard, ur.Loopback):
     """Driver and virtual arm of Universal Robots."""
 
     stop_line = "stopj"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from arboleda_drivers.dobot.frames import Feedback, FrameReader, Mode
-from arboleda_drivers.dobot.virtual.faults import FAULTS
 from arboleda_drivers.dobot.virtual.machine import (
+    FAULTS,
     Answer,
     ClientText,
     Disconnect,

@@ -7,7 +7,7 @@ import itertools
 import pytest
 
 from arboleda.drivers import MotionState, Report, Stop, StopMode
-from arboleda_driver_faults.plc_loopback import LineBroken
+from arboleda_driver_faults.plc import LineBroken
 from arboleda_drivers.modbus.virtual.memory import DEVICE_BUSY, FAULTS, ILLEGAL_ADDRESS, BeltMemory
 from arboleda_drivers.opcua.server import Bad
 from arboleda_drivers.opcua.virtual.program import BeltProgram

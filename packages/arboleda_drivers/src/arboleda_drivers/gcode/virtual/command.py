@@ -10,7 +10,7 @@ import typer
 from arboleda.extension import Phrase, say
 from arboleda_drivers.virtual.faults import Faults
 from arboleda_drivers.virtual.pty_line import PtyLine
-from arboleda_drivers.virtual.serving import Controller, FaultNames, FaultPort, serve, with_faults
+from arboleda_drivers.virtual.serving import Controller, FaultNames, FaultPort, adding, serve, with_faults
 
 from .faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
 from .grbl import VirtualGrbl
@@ -18,7 +18,6 @@ from .marlin import VirtualMarlin
 from .moonraker import VirtualMoonraker
 
 MOONRAKER = "a virtual machine with Klipper, behind Moonraker,"
-NAME = "gcode"
 NOT_TOLD = Phrase("cli.virtual.not_told", "a machine with Marlin does not tell whether it is homed")
 AT_A_PORT = Phrase("cli.virtual.at_a_port", "a machine with Moonraker begins not homed, at a port")
 OF_LINES = "--homed, --link"
@@ -46,11 +45,6 @@ class Dialect(str, Enum):
     GRBL = "grbl"
     MARLIN = "marlin"
     MOONRAKER = "moonraker"
-
-
-def add_to(cli: typer.Typer) -> None:
-    """Add the command."""
-    cli.command(NAME, help=HELP)(run)
 
 
 def run(
@@ -85,3 +79,6 @@ def run(
         )
 
     serve(line, FAULTS[dialect.value], fault, fault_port)
+
+
+add_to = adding("gcode", HELP, run)

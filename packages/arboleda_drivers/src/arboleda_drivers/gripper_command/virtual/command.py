@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated
 
 import typer
 
 from arboleda.extension import Phrase, say
 from arboleda_drivers.ros_action.virtual.options import JointStates, Lan, Rate
-from arboleda_drivers.virtual.serving import FaultNames, FaultPort, serve, with_faults
+from arboleda_drivers.virtual.serving import FaultNames, FaultPort, adding, serve, with_faults
 
 from .machine import FAULTS
 
-NAME = "gripper"
 SIZES = Phrase("cli.virtual.sizes", "the part is between 0 and --open, and the speed is more than 0")
 OF_SIZES = "--open, --part, --speed"
 HELP = with_faults(
@@ -21,11 +21,6 @@ HELP = with_faults(
     "stands in for ros2_control. Any client of that action can use it.",
     FAULTS,
 )
-
-
-def add_to(cli: typer.Typer) -> None:
-    """Add the command."""
-    cli.command(NAME, help=HELP)(run)
 
 
 def run(
@@ -47,20 +42,19 @@ def run(
         raise typer.BadParameter(say(SIZES()), param_hint=OF_SIZES)
     from .server import controller  # it loads rclpy
 
-    serve(
-        lambda faults: controller(
-            faults,
-            action=action,
-            parallel=parallel,
-            joint_states=joint_states,
-            joint=joint,
-            opened=opened,
-            part=part,
-            speed=speed,
-            rate=rate,
-            lan=lan,
-        ),
-        FAULTS,
-        fault,
-        fault_port,
+    make = partial(
+        controller,
+        action=action,
+        parallel=parallel,
+        joint_states=joint_states,
+        joint=joint,
+        opened=opened,
+        part=part,
+        speed=speed,
+        rate=rate,
+        lan=lan,
     )
+    serve(make, FAULTS, fault, fault_port)
+
+
+add_to = adding("gripper", HELP, run)

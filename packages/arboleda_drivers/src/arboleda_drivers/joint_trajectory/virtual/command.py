@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated
 
 import typer
 
 from arboleda.extension import Phrase, say
 from arboleda_drivers.ros_action.virtual.options import JointStates, Lan, Rate
-from arboleda_drivers.virtual.serving import FaultNames, FaultPort, serve, with_faults
+from arboleda_drivers.virtual.serving import FaultNames, FaultPort, adding, serve, with_faults
 
 from .machine import FAULTS
 
-NAME = "trajectory"
 NAMES = Phrase("cli.virtual.names", "it needs one or several names, each once")
 HELP = with_faults(
     "Play an arm behind a joint_trajectory_controller of ros2_control: the action FollowJointTrajectory and "
@@ -20,11 +20,6 @@ HELP = with_faults(
     "action can use it.",
     FAULTS,
 )
-
-
-def add_to(cli: typer.Typer) -> None:
-    """Add the command."""
-    cli.command(NAME, help=HELP)(run)
 
 
 def run(
@@ -45,11 +40,8 @@ def run(
         raise typer.BadParameter(say(NAMES()), param_hint="--joints")
     from .server import controller  # it loads rclpy
 
-    serve(
-        lambda faults: controller(
-            faults, action=action, joint_states=joint_states, joints=names, rate=rate, lan=lan
-        ),
-        FAULTS,
-        fault,
-        fault_port,
-    )
+    make = partial(controller, action=action, joint_states=joint_states, joints=names, rate=rate, lan=lan)
+    serve(make, FAULTS, fault, fault_port)
+
+
+add_to = adding("trajectory", HELP, run)

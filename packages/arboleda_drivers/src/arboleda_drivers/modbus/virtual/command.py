@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
+import time
+from functools import partial
 from typing import Annotated
 
 import typer
 
-from arboleda_drivers.virtual.serving import FaultNames, FaultPort, serve, with_faults
+from arboleda_drivers.plc.virtual.server import PlcServer
+from arboleda_drivers.virtual.faults import Faults
+from arboleda_drivers.virtual.serving import FaultNames, FaultPort, adding, serve, with_faults
 
-from .memory import FAULTS
+from .memory import FAULTS, BeltMemory
 
-NAME = "modbus"
 HELP = with_faults(
     "Play a PLC with a belt, a gate and an eye over Modbus TCP, or over RTU with --serial; "
     "examples/plc_conveyor speaks to it. Its registers are in docs/how-to/modbus.md.",
     FAULTS,
 )
-
-
-def add_to(cli: typer.Typer) -> None:
-    """Add the command."""
-    cli.command(NAME, help=HELP)(run)
 
 
 def run(
@@ -32,6 +30,16 @@ def run(
     fault: FaultNames = None,
     fault_port: FaultPort = 4714,
 ) -> None:
-    from .server import Server  # it loads asyncio, which no other command needs
+    # They load asyncio, which no other command needs.
+    from arboleda_drivers.modbus.adapter import need_library
+    from arboleda_drivers.modbus.server import ModbusServer
 
-    serve(lambda faults: Server(faults, host=host, port=port, serial=serial), FAULTS, fault, fault_port)
+    def plc(faults: Faults) -> PlcServer:
+        memory = BeltMemory(faults, time.monotonic, tcp=not serial)
+        make = partial(ModbusServer, memory, host=host, port=port, serial=serial, trace=memory.trace)
+        return PlcServer(f"Modbus on {serial or host}", need_library, make)
+
+    serve(plc, FAULTS, fault, fault_port)
+
+
+add_to = adding("modbus", HELP, run)

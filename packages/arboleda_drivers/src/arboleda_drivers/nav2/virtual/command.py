@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Annotated
 
 import typer
 
 from arboleda_drivers.nav2.pose import Pose
 from arboleda_drivers.ros_action.virtual.options import Lan, Rate
-from arboleda_drivers.virtual.serving import FaultNames, FaultPort, serve, with_faults
+from arboleda_drivers.virtual.serving import FaultNames, FaultPort, adding, serve, with_faults
 
 from .machine import FAULTS
 
-NAME = "nav2"
 HELP = with_faults(
     "Play a mobile base that Nav2 drives: the action NavigateToPose, or FollowWaypoints with --waypoints, "
     "odometry and the poses of amcl. It is a plain action server of rclpy, and stands in for Nav2: it drives "
     "straight, and knows no obstacles. Any client of that action can use it.",
     FAULTS,
 )
-
-
-def add_to(cli: typer.Typer) -> None:
-    """Add the command."""
-    cli.command(NAME, help=HELP)(run)
 
 
 def run(
@@ -46,20 +41,19 @@ def run(
 ) -> None:
     from .server import controller  # it loads rclpy
 
-    serve(
-        lambda faults: controller(
-            faults,
-            action=action or ("follow_waypoints" if waypoints else "navigate_to_pose"),
-            waypoints=waypoints,
-            odometry=odometry,
-            localisation=localisation,
-            frame=frame,
-            start=Pose(x, y, math.radians(yaw)),
-            speed=speed,
-            rate=rate,
-            lan=lan,
-        ),
-        FAULTS,
-        fault,
-        fault_port,
+    make = partial(
+        controller,
+        action=action or ("follow_waypoints" if waypoints else "navigate_to_pose"),
+        waypoints=waypoints,
+        odometry=odometry,
+        localisation=localisation,
+        frame=frame,
+        start=Pose(x, y, math.radians(yaw)),
+        speed=speed,
+        rate=rate,
+        lan=lan,
     )
+    serve(make, FAULTS, fault, fault_port)
+
+
+add_to = adding("nav2", HELP, run)

@@ -6,21 +6,15 @@ from typing import Annotated
 
 import typer
 
-from arboleda_drivers.virtual.serving import FaultNames, FaultPort, serve, with_faults
+from arboleda_drivers.virtual.serving import FaultNames, FaultPort, adding, serve, with_faults
 
 from .memory import FAULTS
 
-NAME = "s7"
 HELP = with_faults(
     "Play a Siemens S7 with a belt, a gate and an eye; examples/plc_conveyor/s7.yaml speaks to it. "
     "Its data blocks are in docs/how-to/s7.md.",
     FAULTS,
 )
-
-
-def add_to(cli: typer.Typer) -> None:
-    """Add the command."""
-    cli.command(NAME, help=HELP)(run)
 
 
 def run(
@@ -32,3 +26,6 @@ def run(
     from .server import Server  # it loads python-snap7, which no other command needs
 
     serve(lambda faults: Server(faults, host=host, port=port), FAULTS, fault, fault_port)
+
+
+add_to = adding("s7", HELP, run)

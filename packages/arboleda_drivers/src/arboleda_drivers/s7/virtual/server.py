@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import threading
 import time
+from functools import partial
 
-from arboleda.drivers import DriverError
-from arboleda.extension import StartError
+from arboleda_drivers.plc.virtual.server import PlcServer
 from arboleda_drivers.s7.adapter import need_library
 from arboleda_drivers.s7.server import Memory, S7Server
 from arboleda_drivers.virtual.faults import Faults
@@ -16,42 +16,28 @@ from .memory import BeltMemory
 TICK_S = 0.02
 
 
-class Server:
+class Server(PlcServer):
     """Server of the belt, which listens from `start` to `stop`."""
 
     def __init__(self, faults: Faults, *, host: str = "127.0.0.1", port: int = 0) -> None:
-        self._host, self._faults, self._port = host, faults, port
-        self._ending = threading.Event()
-        self._memory = BeltMemory(faults, time.monotonic)
-        self._server: S7Server | None = None
-        self.port = 0
-
-    @property
-    def says(self) -> str:
-        return f"the virtual PLC speaks S7 on {self._host}:{self.port}"
-
-    def start(self) -> None:
-        """Listen; raises StartError if python-snap7 is missing, or the port cannot be opened."""
-        try:
-            need_library()
-            self._server = S7Server(
-                Hushed(self._memory, self._faults, self._ending), host=self._host, port=self._port
-            )
-            self.port = self._server.start()
-        except (OSError, DriverError) as error:
-            raise StartError(str(error)) from error
+        self._memory = Hushed(BeltMemory(faults, time.monotonic), faults)
+        make = partial(S7Server, self._memory, host=host, port=port)
+        super().__init__(f"S7 on {host}", need_library, make)
 
     def stop(self) -> None:
-        self._ending.set()
-        if self._server is not None:
-            self._server.stop()
+        self._memory.end()
+        super().stop()
 
 
 class Hushed:
     """Memory that answers nobody while the fault `mute` is on, and then what came meanwhile."""
 
-    def __init__(self, memory: Memory, faults: Faults, ending: threading.Event) -> None:
-        self._memory, self._faults, self._ending = memory, faults, ending
+    def __init__(self, memory: Memory, faults: Faults) -> None:
+        self._memory, self._faults = memory, faults
+        self._ending = threading.Event()
+
+    def end(self) -> None:
+        self._ending.set()
 
     def read(self, db: int) -> bytes:
         self._wait()

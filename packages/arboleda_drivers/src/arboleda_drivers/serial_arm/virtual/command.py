@@ -7,12 +7,11 @@ from typing import Annotated, Literal
 import typer
 
 from arboleda_drivers.virtual.pty_line import PtyLine
-from arboleda_drivers.virtual.serving import FaultNames, FaultPort, serve, with_faults
+from arboleda_drivers.virtual.serving import FaultNames, FaultPort, adding, serve, with_faults
 
 from .faults import FAULTS
 from .machine import VirtualServos
 
-NAME = "serial_arm"
 HELP = with_faults(
     "Play an arm of six bus servos, the last of which is its gripper, on a pseudo terminal: the registers, "
     "packets and motion of Feetech's STS series or of Dynamixel's X series. It begins without torque, as a "
@@ -20,11 +19,6 @@ HELP = with_faults(
     FAULTS,
 )
 Link = Annotated[str, typer.Option(help="Name of the line: a link to its pseudo terminal.")]
-
-
-def add_to(cli: typer.Typer) -> None:
-    """Add the command."""
-    cli.command(NAME, help=HELP)(run)
 
 
 def run(
@@ -44,3 +38,6 @@ def run(
         fault,
         fault_port,
     )
+
+
+add_to = adding("serial_arm", HELP, run)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from arboleda_drivers.virtual.serving import FaultNames, FaultPort, serve, with_faults
+from arboleda_drivers.virtual.serving import FaultNames, FaultPort, adding, serve, with_faults
 
 from .faults import FAULTS
 
@@ -20,18 +20,12 @@ class Version(str, Enum):
     V3_0 = "3.0"
 
 
-NAME = "vda5050"
 HELP = with_faults(
     "Play a mobile robot that speaks VDA 5050 over MQTT: orders and their updates, actions pick, drop, "
     "startCharging, stopCharging, detectObject and any other at nodes and on edges, instant actions, a "
     "factsheet. It brings a broker unless --broker names one. Any master control can use it.",
     FAULTS,
 )
-
-
-def add_to(cli: typer.Typer) -> None:
-    """Add the command."""
-    cli.command(NAME, help=HELP)(run)
 
 
 def run(
@@ -68,3 +62,6 @@ def run(
         fault,
         fault_port,
     )
+
+
+add_to = adding("vda5050", HELP, run)
