@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 import pytest
 from tests.packages import ROOT
 
-from .dobot.test_virtual_dobot import COMMAND
+from .played import play, typed
 
 pytestmark = pytest.mark.system
 
@@ -49,18 +48,15 @@ def test_a_task_is_done_at_a_serial_line(
     task: str,
 ) -> None:
     line = tmp_path / "line"
-    played = ("virtual", device, ready, "--link", str(line), "--fault-port")
-    controller = start(sys.executable, "-c", COMMAND, *played, "0")
-    controller.wait_for("faults are switched on ")
-    taken = re.search(r"switched on http://127.0.0.1:(\d+)", controller.output)
-    assert taken
-    second = start(sys.executable, "-c", COMMAND, *played, taken[1])
+    words = (device, ready, "--link", str(line))
+    played = play(start, *words)
+    second = typed(start, *words, "--fault-port", played.faults.split(":")[2].split("/")[0])
     assert second.wait() != 0 and "name another port" in second.output
     run = arboleda(
         "up", "--once", task, "--plant", example(tmp_path, plant, line), "--boards", "drivers", "--no-ros"
     )
     assert run.wait() == 0, run.output
-    assert controller.interrupt() == 0 and "Traceback" not in run.output + controller.output
+    assert played.process.interrupt() == 0 and "Traceback" not in run.output + played.process.output
     assert not line.is_symlink()
 
 
@@ -68,16 +64,13 @@ def test_a_task_is_done_at_a_serial_line(
 def test_a_task_is_done_at_a_websocket(
     start: Callable[..., Any], arboleda: Callable[..., Any], tmp_path: Path
 ) -> None:
-    played = ("virtual", "gcode", "--dialect", "moonraker", "--port", "0", "--fault-port", "0")
-    controller = start(sys.executable, "-c", COMMAND, *played)
-    controller.wait_for("faults are switched on ")
-    taken = re.search(r"is at ws://127.0.0.1:(\d+)/websocket", controller.output)
-    assert taken
+    played = play(start, "gcode", "--dialect", "moonraker", "--port", "0")
+    (port,) = played.found(r"is at ws://127.0.0.1:(\d+)/websocket")
     plant = (EXAMPLES / "gantry/moonraker.yaml").read_text("utf-8")
     assert "port: 7125" in plant
-    (tmp_path / "plant.yaml").write_text(plant.replace("port: 7125", f"port: {taken[1]}"), "utf-8")
+    (tmp_path / "plant.yaml").write_text(plant.replace("port: 7125", f"port: {port}"), "utf-8")
     (tmp_path / "recipes.py").symlink_to(EXAMPLES / "gantry/recipes.py")
     where = ("--plant", str(tmp_path / "plant.yaml"), "--boards", "drivers", "--no-ros")
     run = arboleda("up", "--once", "bench visit rack drill", *where)
     assert run.wait() == 0, run.output
-    assert controller.interrupt() == 0 and "Traceback" not in run.output + controller.output
+    assert played.process.interrupt() == 0 and "Traceback" not in run.output + played.process.output

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.drivers import MotionState, Report, Stop, StopMode
+from arboleda.drivers import MotionState, Stop, StopMode
 from arboleda.kinds.declared import Device
 from arboleda.kinds.gripper import GripperSettings, gripper
 from arboleda.model.commands import Command
@@ -19,16 +19,14 @@ from arboleda_drivers.gripper_command.settings import Settings
 from arboleda_drivers.ros_action.events import (
     CancelAll,
     CancelAnswer,
-    CommandRequest,
-    Event,
     GoalAnswer,
     GoalResult,
-    Message,
     SendGoal,
-    ServersFound,
     Status,
 )
 from arboleda_drivers.ros_action.joints import JointStateEvent
+
+from ..ros_action.action_rig import ActionRig
 
 JAW = Device(
     name="jaw",
@@ -51,47 +49,26 @@ CLOSE, OPEN = told("9-1", "close", width_mm=10.0, force_n=30.0), told("9-2", "op
 STALLED = GoalResult(id=CLOSE.id, status=Status.ABORTED, stalled=True)
 
 
-class Rig:
-    """The machine under a clock that the test moves; the finger and the server are seen 20 times a second."""
+class Rig(ActionRig):
+    """A gripper, whose finger is measured."""
 
     def __init__(self, settings: Settings = SETTINGS) -> None:
-        self.machine, self.settings = machine([JAW], settings), settings
-        self.now, self.mm = 100.0, OPEN_MM
-        self.said: list[Message] = []
+        super().__init__(machine([JAW], settings))
+        self.settings, self.mm = settings, OPEN_MM
         self.wait(0.5)
 
-    def wait(self, s: float) -> None:
-        end = self.now + s
-        while self.now < end:
-            self.now += 0.05
-            stamp = (int(self.now * 1000), 0)
-            position = self.settings.position(self.mm)
-            self.tell(ServersFound(servers=(7,)))
-            self.tell(JointStateEvent(names=("finger_joint",), positions=(position,), stamp=stamp))
-
-    def tell(self, *events: Event) -> list[Message]:
-        news = self.machine.step(self.now, events)
-        self.said += news
-        return news
-
-    def ask(self, command: Command) -> list[Message]:
-        return self.tell(CommandRequest(command=command))
-
-    def under_way(self, command: Command) -> None:
-        self.ask(command)
-        self.tell(GoalAnswer(id=command.id, accepted=True))
+    def measure(self) -> None:
+        position = self.settings.position(self.mm)
+        stamp = (int(self.now * 1000), 0)
+        self.tell(JointStateEvent(names=("finger_joint",), positions=(position,), stamp=stamp))
 
     def grip(self, end: GoalResult = STALLED, at_mm: float = PART_MM) -> None:
         """It closes, comes to rest there, and the server says that end of it."""
-        self.under_way(CLOSE)
+        self.begin(CLOSE)
         self.mm = at_mm
         self.wait(0.2)
         self.tell(end)
         self.wait(0.5)
-
-    @property
-    def last(self) -> Report:
-        return [each for each in self.said if isinstance(each, Report)][-1]
 
     @property
     def gripped(self) -> object:
@@ -128,7 +105,7 @@ def test_a_server_that_lies_of_fingers_that_have_not_moved_is_not_believed(rig: 
 
 
 def test_fingers_that_move_on_after_the_result_have_nothing_yet(rig: Rig) -> None:
-    rig.under_way(CLOSE)
+    rig.begin(CLOSE)
     rig.tell(STALLED)
     for mm in range(80, 50, -1):
         rig.mm = mm
@@ -151,7 +128,7 @@ def test_a_part_that_slips_out_is_seen_by_its_fingers(rig: Rig) -> None:
 
 def test_whether_there_is_a_part_is_not_said_while_it_opens(rig: Rig) -> None:
     rig.grip()
-    rig.under_way(OPEN)
+    rig.begin(OPEN)
     rig.wait(0.5)
     assert rig.gripped is None
     rig.mm = OPEN_MM
@@ -166,7 +143,7 @@ def test_it_is_not_known_at_the_start(rig: Rig) -> None:
 
 def test_an_opening_that_ends_elsewhere_fails(rig: Rig) -> None:
     rig.grip()
-    rig.under_way(OPEN)
+    rig.begin(OPEN)
     rig.mm = 60
     rig.tell(GoalResult(id=OPEN.id, status=Status.SUCCEEDED))
     rig.wait(0.5)
@@ -174,13 +151,13 @@ def test_an_opening_that_ends_elsewhere_fails(rig: Rig) -> None:
 
 
 def test_an_opening_that_stalls_fails(rig: Rig) -> None:
-    rig.under_way(OPEN)
+    rig.begin(OPEN)
     rig.tell(replace(STALLED, id=OPEN.id))
     assert (rig.last.failed, rig.last.failure) == (OPEN.id, "stalled")
 
 
 def test_a_new_goal_takes_the_place_of_one_that_does_not_end(rig: Rig) -> None:
-    rig.under_way(CLOSE)
+    rig.begin(CLOSE)
     assert any(isinstance(each, SendGoal) and each.id == OPEN.id for each in rig.ask(OPEN))
     assert (rig.last.failed, rig.last.failure) == (CLOSE.id, "replaced_by_the_next")
     rig.tell(GoalAnswer(id=OPEN.id, accepted=True), GoalResult(id=CLOSE.id, status=Status.CANCELED))
@@ -188,7 +165,7 @@ def test_a_new_goal_takes_the_place_of_one_that_does_not_end(rig: Rig) -> None:
 
 
 def test_a_goal_that_does_not_end_in_its_time_is_given_up_and_cancelled(rig: Rig) -> None:
-    rig.under_way(OPEN)
+    rig.begin(OPEN)
     rig.mm = 60
     rig.wait(5.6)
     assert (rig.last.failed, rig.last.failure) == (OPEN.id, "not_ended")
@@ -199,7 +176,7 @@ def test_a_goal_that_does_not_end_in_its_time_is_given_up_and_cancelled(rig: Rig
 
 
 def test_after_a_stop_under_way_nobody_knows_whether_there_is_a_part(rig: Rig) -> None:
-    rig.under_way(CLOSE)
+    rig.begin(CLOSE)
     rig.mm = 60
     rig.wait(0.2)
     assert CancelAll() in rig.ask(HALT)

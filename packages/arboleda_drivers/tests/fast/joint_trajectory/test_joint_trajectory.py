@@ -17,19 +17,18 @@ from arboleda_drivers.ros_action.events import (
     CancelAll,
     CancelAnswer,
     CommandNotSent,
-    CommandRequest,
-    Event,
     GoalAnswer,
     GoalList,
     GoalResult,
     ListedGoal,
-    Message,
     SendGoal,
     ServersFound,
     Status,
     UnusableMessage,
 )
 from arboleda_drivers.ros_action.joints import JointStateEvent
+
+from ..ros_action.action_rig import SERVER, ActionRig
 
 ARM = replace(StorageLayout(shipped("sis_c").cells[0]).arm, link=Link.DRIVER, evidence=Evidence.IDS)
 NAMES = tuple(joint.name for joint in ARM.joints)
@@ -38,49 +37,25 @@ GOAL = ARM.motion.quantised(tuple(math.radians(each) for each in (10, 20, -30, 0
 GO = MoveJoints(id="9-1", robot=ARM.name, q=GOAL)
 AGAIN = MoveJoints(id="9-2", robot=ARM.name, q=ZERO)
 HALT = Stop(id="9-3", robot=ARM.name, mode=StopMode.HALT)
-SERVER = 7
 
 
-class Rig:
-    """The machine under a clock that the test moves; joints and servers are seen 20 times a second."""
+class Rig(ActionRig):
+    """An arm, whose joints are measured while they are known."""
 
     def __init__(self) -> None:
-        self.machine = machine([ARM], Settings())
-        self.now = 100.0
-        self.servers: tuple[int, ...] = (SERVER,)
+        super().__init__(machine([ARM], Settings()))
         self.q: tuple[float, ...] | None = ZERO
-        self.said: list[Message] = []
         self.wait(0.5)
 
-    def wait(self, s: float) -> None:
-        end = self.now + s
-        while self.now < end:
-            self.now += 0.05
-            self.tell(ServersFound(servers=self.servers))
-            if self.q is not None:
-                self.tell(self.joints(self.q))
+    def measure(self) -> None:
+        if self.q is not None:
+            self.tell(self.joints(self.q))
 
     def joints(self, q: tuple[float, ...]) -> JointStateEvent:
         return JointStateEvent(names=NAMES, positions=q, stamp=(int(self.now * 1000), 0))
 
-    def tell(self, *events: Event) -> list[Message]:
-        news = self.machine.step(self.now, events)
-        self.said += news
-        return news
-
-    def ask(self, command: MoveJoints | Stop | Home | SetEffector) -> list[Message]:
-        return self.tell(CommandRequest(command=command))
-
     def under_way(self) -> None:
-        self.ask(GO)
-        self.tell(GoalAnswer(id=GO.id, accepted=True))
-
-    @property
-    def last(self) -> Report:
-        return [each for each in self.said if isinstance(each, Report)][-1]
-
-    def count(self, kind: type) -> int:
-        return sum(isinstance(each, kind) for each in self.said)
+        self.begin(GO)
 
 
 @pytest.fixture

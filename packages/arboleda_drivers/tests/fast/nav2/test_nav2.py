@@ -10,7 +10,6 @@ import pytest
 from arboleda.drivers import FollowPath, Home, MotionState, MoveJoints, Report, Stop, StopMode
 from arboleda.kinds.floor import Placement
 from arboleda.kinds.mobile import Grid, Mobile
-from arboleda.model.commands import Command
 from arboleda.model.plant_model import Evidence, Link
 from arboleda_drivers.nav2.localisation import MapPose, OdometryPose
 from arboleda_drivers.nav2.machine import Route, to_pose, waypoints
@@ -20,16 +19,15 @@ from arboleda_drivers.ros_action.events import (
     CancelAll,
     CancelAnswer,
     CommandNotSent,
-    CommandRequest,
-    Event,
     GoalAnswer,
     GoalResult,
-    Message,
     SendGoal,
     ServersFound,
     Status,
 )
 from arboleda_drivers.ros_action.machine import Machine
+
+from ..ros_action.action_rig import ActionRig
 
 GRID = Grid(origin=Placement(x=2.0, y=1.0), pitch=1.0)
 CART = Mobile(
@@ -54,25 +52,20 @@ def on_map(node: float) -> Pose:
     return Pose(10.0 - (1.0 + row), 2.0 + column)
 
 
-class Rig:
-    """The machine under a clock that the test moves; odometry is seen 20 times a second."""
+class Rig(ActionRig):
+    """A base, whose odometry is seen while it counts."""
 
     def __init__(self, machine: Machine | None = None) -> None:
-        self.machine = machine or to_pose([CART], SETTINGS)
-        self.now, self.at, self.counts = 100.0, on_map(0), True
-        self.said: list[Message] = []
+        super().__init__(machine or to_pose([CART], SETTINGS))
+        self.at, self.counts = on_map(0), True
         self.odom_of_map = BEGAN @ on_map(0).inverse
         self.wait(0.2)
         self.localise()
         self.wait(0.5)
 
-    def wait(self, s: float) -> None:
-        end = self.now + s
-        while self.now < end:
-            self.now += 0.05
-            self.tell(ServersFound(servers=(7,)))
-            if self.counts:
-                self.tell(OdometryPose(stamp=self.stamp, pose=self.odom_of_map @ self.at))
+    def measure(self) -> None:
+        if self.counts:
+            self.tell(OdometryPose(stamp=self.stamp, pose=self.odom_of_map @ self.at))
 
     @property
     def stamp(self) -> tuple[int, int]:
@@ -80,14 +73,6 @@ class Rig:
 
     def localise(self) -> None:
         self.tell(MapPose(stamp=self.stamp, pose=self.at))
-
-    def tell(self, *events: Event) -> list[Message]:
-        news = self.machine.step(self.now, events)
-        self.said += news
-        return news
-
-    def ask(self, command: Command) -> list[Message]:
-        return self.tell(CommandRequest(command=command))
 
     def sent(self) -> list[SendGoal]:
         return [each for each in self.said if isinstance(each, SendGoal)]
@@ -101,10 +86,6 @@ class Rig:
         self.localise()
         self.tell(GoalResult(id=id, status=status))
         self.wait(0.1)
-
-    @property
-    def last(self) -> Report:
-        return [each for each in self.said if isinstance(each, Report)][-1]
 
 
 @pytest.fixture

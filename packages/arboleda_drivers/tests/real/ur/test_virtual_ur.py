@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,7 +9,7 @@ from typing import Any
 import pytest
 from tests.packages import ROOT
 
-from ..dobot.test_virtual_dobot import COMMAND, switch
+from ..played import play
 
 pytestmark = pytest.mark.system
 
@@ -33,22 +31,17 @@ def example(folder: Path, ports: str) -> str:
 def test_a_part_is_carried_and_home_leads_out_of_a_protective_stop(
     start: Callable[..., Any], arboleda: Callable[..., Any], tmp_path: Path
 ) -> None:
-    any_port = [
-        word for name in ("port", "rtde-port", "script-port", "fault-port") for word in (f"--{name}", "0")
-    ]
-    controller = start(sys.executable, "-c", COMMAND, "virtual", "ur", "--running", *any_port)
-    controller.wait_for("faults are switched on ")
-    ports = re.search(r"dashboard (\d+), RTDE (\d+), programs (\d+)", controller.output)
-    faults = re.search(r"switched on (\S+)", controller.output)
-    assert ports and faults
-    said = "port: {}, rtde_port: {}, script_port: {}".format(*ports.groups())
+    any_port = [word for name in ("port", "rtde-port", "script-port") for word in (f"--{name}", "0")]
+    played = play(start, "ur", "--running", *any_port)
+    ports = played.found(r"dashboard (\d+), RTDE (\d+), programs (\d+)")
+    said = "port: {}, rtde_port: {}, script_port: {}".format(*ports)
     plant = example(tmp_path, said)
     up = arboleda("up", "bench load", "--plant", plant, "--boards", "drivers", "--no-ros")
     up.wait_for("done      bench")
-    switch(faults[1], "protective_stop", "PUT")
+    played.switch("protective_stop", on=True)
     arboleda("submit", "bench load").wait()
     up.wait_for("arm: gave up (protective_stop) while")
-    switch(faults[1], "protective_stop", "DELETE")
+    played.switch("protective_stop", on=False)
     assert arboleda("home", "arm").wait() == 0
     assert up.interrupt() == 0, up.output
-    assert controller.interrupt() == 0 and "Traceback" not in up.output + controller.output
+    assert played.process.interrupt() == 0 and "Traceback" not in up.output + played.process.output
