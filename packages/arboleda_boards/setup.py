@@ -19,5 +19,6 @@ setup(
     entry_points={
         "arboleda.commands": ["boards = arboleda_boards.commands:COMMANDS"],
         "arboleda.languages": ["boards = arboleda_boards"],
+        "arboleda.parts": ["boards = arboleda_boards.linux_boards:FACTORIES"],
     },
 )

@@ -1,4 +1,4 @@
-"""The firmware's board as a program: in the plant in place of the virtual ones, and with what goes wrong."""
+"""The firmware's board as a program, with what goes wrong."""
 
 from __future__ import annotations
 
@@ -78,18 +78,6 @@ def desk(board: str, mosquitto: Callable[[int], Any], free_port: int) -> Iterato
     made = Desk(board, free_port)
     yield made
     made.close()
-
-
-def test_tasks_are_done_with_the_firmwares_boards_which_end_with_a_plant_that_is_killed(
-    arboleda: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int, board: str
-) -> None:
-    broker = mosquitto(free_port)
-    where = ("--no-ros", "--boards", "linux", "--broker", f"127.0.0.1:{free_port}")
-    plant = arboleda("up", "sis_a 0B 7", "sis_b 1C 3", *where)
-    plant.wait_for("done      sis_a 0B 7")
-    plant.wait_for("done      sis_b 1C 3")
-    plant.kill()
-    broker.wait_for("Received DISCONNECT from ra_1")
 
 
 def test_what_goes_wrong_at_its_console_shows_in_what_it_says(desk: Desk) -> None:

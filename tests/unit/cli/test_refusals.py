@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from tests.packages import PACKAGES, leave_out
 from tests.tls_lab import Lab
 
 from arboleda.cli.main import main
@@ -74,14 +75,12 @@ def test_options_of_tls_that_do_not_fit_are_refused(
     assert status in (1, 2) and sentence in said
 
 
-def test_the_firmwares_boards_are_refused_where_the_own_broker_speaks_tls(
-    typed: Typed, shown: tuple[str, ...], tmp_path: Path
+def test_without_their_package_the_firmwares_boards_are_refused_with_what_to_install(
+    typed: Typed, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    users = tmp_path / "users.txt"
-    users.write_text("ra_9:secret\n")
-    broker = ("--broker-host", "127.0.0.1", "--broker-users", str(users), "--broker-tls")
-    status, said = typed("up", "--once", "sis_a 0B 7", "--no-ros", "--boards", "linux", *broker, *shown)
-    assert status == 1 and "the firmware's boards speak no TLS" in said
+    leave_out(monkeypatch, tmp_path / "site", *PACKAGES)
+    status, said = typed("up", "--once", "sis_a 0B 7", "--no-ros", "--boards", "linux")
+    assert status == 1 and "--boards linux needs the package boards" in said
 
 
 def test_a_demonstration_beside_real_boards_is_refused(typed: Typed) -> None:

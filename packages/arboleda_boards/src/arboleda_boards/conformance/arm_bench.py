@@ -6,8 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from arboleda.drivers import Arm
-from arboleda.wire import strict
-from arboleda.wire.payloads import MAX_ANGLE_DEG, REFUSALS
+from arboleda.wire import payloads, strict
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery
 from arboleda.wire.units import to_wire
@@ -85,13 +84,13 @@ class ArmBench(Bench[ArmTelemetry]):
         return ArmTelemetry(
             at=delivery.at,
             state=fields.integer("estado", 4),
-            q=tuple(fields.number(key, MAX_ANGLE_DEG) for key in keys) if spoken else None,
+            q=tuple(fields.number(key, payloads.MAX_ANGLE_DEG) for key in keys) if spoken else None,
             number=fields.optional("seq"),
             epoch=fields.optional("epoca_ack"),
             least_epoch=fields.optional("epoca_min"),
             ack=fields.optional("ack"),
             done=fields.optional("hecho"),
-            refusal=fields.word("rechazo", REFUSALS) if "rechazo" in fields else None,
+            refusal=fields.word("rechazo", payloads.REFUSALS) if "rechazo" in fields else None,
             refused=fields.optional("rechazo_seq"),
             boot_id=fields.optional("arranque"),
             ack_token=fields.token("ficha_ack"),

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.wire.payloads import Beat, encode
-from arboleda.wire.strict import UINT32
+from arboleda.wire import payloads, strict
 from arboleda.wire.topics import Channel
 
 from .bench import Bench, Send, Steps, Wait
@@ -31,12 +30,12 @@ def beaten_off(bench: Bench[Any]) -> Steps:
 def far_future(bench: Bench[Any]) -> Steps:
     """A beat of an epoca that no plant can have is refused with formato, and fences nobody off."""
     yield from accepted(bench, stop(bench, 2))
-    yield _beat(UINT32)
+    yield _beat(strict.UINT32)
     yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "formato")
     report = bench.last
     yield from accepted(bench, stop(bench, 2))
-    demand(report.refusal == "formato", f"it does not refuse a beat of {UINT32} with formato")
+    demand(report.refusal == "formato", f"it does not refuse a beat of {strict.UINT32} with formato")
 
 
 def _beat(epoch: int) -> Send:
-    return Send(channel=Channel.BEAT, payload=encode(Beat(epoch=epoch)))
+    return Send(channel=Channel.BEAT, payload=payloads.encode(payloads.Beat(epoch=epoch)))

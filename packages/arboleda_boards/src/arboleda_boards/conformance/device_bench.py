@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import islice, product
 
 from arboleda.drivers import Device, DeviceKind, DeviceVerb, Effect, Facts, MotionState, Value, VerbCommand
-from arboleda.wire.payloads import DEVICE, Telemetry, decode
+from arboleda.wire import payloads
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery
 
@@ -91,8 +91,8 @@ class DeviceBench(Bench[DeviceTelemetry]):
         )
 
     def _read(self, delivery: Delivery) -> DeviceTelemetry:
-        telemetry = decode(Channel.TELEMETRY, delivery.payload, axes=DEVICE)
-        assert isinstance(telemetry, Telemetry)
+        telemetry = payloads.decode(Channel.TELEMETRY, delivery.payload, axes=payloads.DEVICE)
+        assert isinstance(telemetry, payloads.Telemetry)
         self.facts |= dict(telemetry.facts or ())
         return DeviceTelemetry(
             at=delivery.at,

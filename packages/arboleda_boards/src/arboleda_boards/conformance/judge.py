@@ -9,7 +9,7 @@ from typing import Any
 
 from arboleda.drivers import Arm, Device, Evidence, Robot
 from arboleda.model.by_class import nearest
-from arboleda.wire.payloads import Beat, encode
+from arboleda.wire import payloads
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery
 
@@ -193,7 +193,7 @@ class Judge:
         if not self.bench.beating or now < self._beat_at:
             return []
         self._beat_at = now + BEAT_S
-        return [Send(channel=Channel.BEAT, payload=encode(Beat(epoch=self.bench.epoch)))]
+        return [Send(channel=Channel.BEAT, payload=payloads.encode(payloads.Beat(epoch=self.bench.epoch)))]
 
     def _resume(self, now: float, met: bool) -> list[Send | Jostle]:
         """Run the check on to its next wait, and collect what it sends on the way."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from arboleda.drivers import Effect, FactType, OnStop, Value
-from arboleda.wire.strict import LARGEST, UINT32
+from arboleda.wire import strict
 
 from .shapes import AnalogShape, InputShape, OutputShape, ServoShape
 from .tables import Action, Fact, Reading, Row, Tables, TableValue, Verb
@@ -78,7 +78,7 @@ class Header:
         return f"{{{_text(fact.name)}, {self._value(fact.type)}, {source}, {first!r}}}"
 
     def _value(self, type: FactType) -> str:
-        limit = float(UINT32) if type.type is int else LARGEST
+        limit = float(strict.UINT32) if type.type is int else strict.LARGEST
         least, most = (float(type.lower), float(type.upper)) if type.is_limited else (-limit, limit)
         return f"{{ValueType::{TYPES[type.type]}, {self._choices(type.words)}, {least!r}, {most!r}}}"
 

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from arboleda.adapters.broker_login import MQTT_PORT, address
 from arboleda.model.errors import StartError
+from arboleda.model.packages import BOARDS, MISSING
 from arboleda.model.plant_model import MqttVersion, PlantModel
 
 from ..options import Options
 from ..parts.bridge import BridgePart
 from ..parts.broker import OtherBroker, OwnBroker
-from ..parts.devices import DeviceBench, DevicesPart
+from ..parts.broker_survey import BrokerSurvey
+from ..parts.devices import DeviceBench, DevicesPart, FirmwareBoards
 from ..parts.drivers import DriversPart
-from ..parts.linux_boards import LinuxBoards, on_linux
 from ..parts.part import Broker, Part
 from ..registry import Assembly
 
@@ -74,12 +75,17 @@ def boards(assembly: Assembly) -> Iterator[Part]:
     if "devices" not in assembly.parts:
         return
     broker, scout = assembly.need(Broker), "broker" not in assembly.parts
-    robots = on_linux(assembly.model) if assembly.options.firmware else ()
-    if robots and broker.secure:
-        raise StartError(
-            "the firmware's boards speak no TLS: leave out --boards linux, or mqtts:// and --broker-tls"
-        )
-    compiled = [LinuxBoards(assembly.model, robots, broker, assembly.crash, scout=scout)] if robots else []
+
+    def survey(boards: Sequence[str], clear: Callable[[], None]) -> Part:
+        return BrokerSurvey(broker, boards, clear, assembly.crash)
+
+    compiled, elsewhere = list[Part](), list[str]()
+    if assembly.options.firmware:
+        make = assembly.ask(FirmwareBoards)
+        if make is None:
+            raise StartError(MISSING(what="--boards linux", package=BOARDS))
+        robots, part = make(assembly.model, broker, assembly.crash, survey if scout else None)
+        compiled, elsewhere = [part], [*robots]
     waiting = assembly.ask(BridgePart) if scout else None
     virtual = DevicesPart(
         assembly.model,
@@ -88,7 +94,7 @@ def boards(assembly: Assembly) -> Iterator[Part]:
         assembly.crash,
         scout=scout,
         joined=_nothing if waiting is None else waiting.join,
-        elsewhere=[robot.name for robot in robots],
+        elsewhere=elsewhere,
         bench=assembly.ask(DeviceBench),
     )
     assembly.offer(DevicesPart, virtual)

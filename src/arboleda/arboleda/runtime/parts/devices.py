@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 from itertools import count
 from typing import Any, Protocol, TypeVar
@@ -18,7 +18,7 @@ from arboleda.wire.transport import Publication
 
 from ..loop import Loop, Machine
 from .broker_survey import BrokerSurvey
-from .part import BrokerAddress, Crash, not_sent
+from .part import Broker, BrokerAddress, Crash, Part, not_sent
 
 Seen = TypeVar("Seen")
 
@@ -27,6 +27,18 @@ class DeviceBench(Protocol):
     """Bench for virtual boards: makes of them a machine that does more to them than let time pass."""
 
     def __call__(self, model: PlantModel, devices: Devices, *, now: float) -> Machine[Any, Any]: ...
+
+
+Survey = Callable[[Sequence[str], Callable[[], None]], Part]
+"""Maker of a look at a broker for boards of these names, which calls the function where there are none."""
+
+
+class FirmwareBoards(Protocol):
+    """Maker of boards that are the firmware's, as programs: the robots whose they are, and their part."""
+
+    def __call__(
+        self, model: PlantModel, broker: Broker, crash: Crash, survey: Survey | None
+    ) -> tuple[Collection[str], Part]: ...
 
 
 class DevicesPart:

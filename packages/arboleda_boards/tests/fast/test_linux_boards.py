@@ -10,9 +10,9 @@ import pytest
 from arboleda.adapters.broker_login import Address, Credentials
 from arboleda.model.errors import StartError
 from arboleda.model.plant_model import Evidence, Link, PlantModel
-from arboleda.runtime.parts.linux_boards import LinuxBoards, on_linux
 from arboleda.testing import shipped
 from arboleda.testing.storage_layout import StorageLayout
+from arboleda_boards.linux_boards import LinuxBoards, on_linux
 
 
 class Broker:
@@ -49,7 +49,7 @@ def test_a_board_is_told_where_its_arm_stands_and_parts_lie(
     monkeypatch.setenv("ARBOLEDA_BOARD", str(program))
     plant = shipped("sis_a", evidence=Evidence.JOINTS)
     robot = replace(StorageLayout(plant.cell("sis_a")).arm, assume_homed=True)
-    boards = LinuxBoards(plant, [robot], Broker(), lambda *_: None, scout=False)
+    boards = LinuxBoards(plant, [robot], Broker(), lambda *_: None, None)
     assert list(boards._arguments(robot)) == [
         *("--robot", "ra_1", "--broker", "127.0.0.1:1884", "--until-eof", "--level", "joints"),
         "--at=0.0,0.0,0.0",
@@ -63,4 +63,4 @@ def test_a_program_that_is_not_there_names_the_command(
 ) -> None:
     monkeypatch.setenv("ARBOLEDA_BOARD", str(tmp_path / "board"))
     with pytest.raises(StartError, match="type: make firmware"):
-        LinuxBoards(shipped("sis_a"), [], Broker(), lambda *_: None, scout=False)
+        LinuxBoards(shipped("sis_a"), [], Broker(), lambda *_: None, None)

@@ -10,19 +10,19 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import cast
 
+from arboleda.drivers import Evidence, plain, quoted
+from arboleda.extension import StartError
 from arboleda.kinds.arm import Arm
-from arboleda.model.errors import StartError
-from arboleda.model.outside import plain, quoted
-from arboleda.model.plant_model import Evidence, Link, PlantModel
+from arboleda.model.plant_model import Link, PlantModel
+from arboleda.runtime.parts.devices import FirmwareBoards, Survey
+from arboleda.runtime.parts.part import Broker, Crash, Part
+from arboleda.runtime.registry import Assembly, Factory, Phase
 from arboleda.sim.starts import supplies_of
 from arboleda.wire.units import to_wire
 
-from .broker_survey import BrokerSurvey
-from .part import BrokerAddress, Crash
-
 LOG = logging.getLogger(__name__)
 PROGRAM = "ARBOLEDA_BOARD"  # names another program than the checkout's
-BUILT = Path(__file__).parents[5] / "firmware" / "build" / "board"
+BUILT = Path(__file__).parents[4] / "firmware" / "build" / "board"
 MODEL = "scara"  # what the firmware is built for
 END_S = 5.0
 
@@ -38,30 +38,55 @@ def on_linux(model: PlantModel) -> tuple[Arm, ...]:
     return fitting
 
 
+def firmware_boards(
+    model: PlantModel, broker: Broker, crash: Crash, survey: Survey | None
+) -> tuple[list[str], LinuxBoards]:
+    """The robots whose boards are the firmware's, and these boards."""
+    robots = on_linux(model)
+    if broker.secure:
+        raise StartError(
+            "the firmware's boards speak no TLS: leave out --boards linux, or mqtts:// and --broker-tls"
+        )
+    return [robot.name for robot in robots], LinuxBoards(model, robots, broker, crash, survey)
+
+
+def offer(assembly: Assembly) -> Iterator[LinuxBoards]:
+    """Offer the firmware's boards, which play the real ones where that is wanted."""
+    assembly.offer(FirmwareBoards, firmware_boards)
+    yield from ()
+
+
+FACTORIES = (Factory(phase=Phase.LINKS, make=offer),)
+
+
 class LinuxBoards:
     """Starts a board for each of the robots, and ends them; one that ends by itself is a crash."""
 
     def __init__(
-        self, model: PlantModel, robots: Sequence[Arm], broker: BrokerAddress, crash: Crash, *, scout: bool
+        self,
+        model: PlantModel,
+        robots: Sequence[Arm],
+        broker: Broker,
+        crash: Crash,
+        survey: Survey | None,
     ) -> None:
         self._model = model
         self._robots = tuple(robots)
         self._broker = broker
         self._crash = crash
-        self._scout = scout
+        self._survey = survey
         self._program = _program()
-        self._lookout: BrokerSurvey | None = None
+        self._lookout: Part | None = None
         self._lock = threading.Lock()
         self._stopping = False
         self._running: list[tuple[subprocess.Popen[str], threading.Thread]] = []
 
     def start(self) -> None:
-        """Join the broker; with `scout`, only after it was seen that no board has these names."""
-        if not self._scout:
+        """Join the broker; with a `survey`, only after it was seen that no board has these names."""
+        if self._survey is None:
             self._join()
             return
-        names = tuple(robot.mqtt for robot in self._robots)
-        self._lookout = BrokerSurvey(self._broker, names, self._join, self._crash)
+        self._lookout = self._survey([robot.mqtt for robot in self._robots], self._join)
         self._lookout.start()
 
     def stop(self) -> None:
