@@ -50,7 +50,7 @@ from arboleda.recipes import recipe, work
 def shine(cell):
     return work(cell.device("lamp").light(on=True))
 """
-Prove = Callable[..., int]
+Prove = Callable[..., str]
 
 
 @pytest.fixture
@@ -62,21 +62,27 @@ def plant(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def prove(plant: Path, monkeypatch: pytest.MonkeyPatch) -> Prove:
-    """Runs the command in this process; returns its exit status."""
+def prove(plant: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Prove:
+    """Runs the command in this process, and returns what it says; `ends`: its exit status.
 
-    def run(*words: str) -> int:
+    What it found is in `summary`, unless the words have `--json`.
+    """
+
+    def run(*words: object, ends: int = 0) -> str:
         state = ["--state", str(plant.parent / "state"), "--jobs", "1", "--budget", "all"]
-        monkeypatch.setattr("sys.argv", ["arboleda", "prove", str(plant), *state, *words])
+        state += [] if "--json" in words else ["--json", str(plant.parent / "out.json")]
+        monkeypatch.setattr("sys.argv", ["arboleda", "prove", str(plant), *state, *map(str, words)])
         with pytest.raises(SystemExit) as ended:
             main()
-        return int(ended.value.code or 0)
+        said = capsys.readouterr()
+        assert int(ended.value.code or 0) == ends, said
+        return said.out or said.err
 
     return run
 
 
 def summary(plant: Path) -> dict[str, Any]:
-    """What the command wrote with `--json`."""
+    """What the command found."""
     found: dict[str, Any] = json.loads((plant.parent / "out.json").read_text())
     return found
 

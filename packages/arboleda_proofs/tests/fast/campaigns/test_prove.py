@@ -98,12 +98,8 @@ def ends(model: PlantModel, calm: Calm, instant: Instant) -> dict[tuple[str, str
     return {(fault.kind, fault.word, fault.seconds): run.outcome.words for fault, run in rows}
 
 
-def test_what_holds_is_said_of_every_run(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
-) -> None:
-    out = str(plant.parent / "out.json")
-    assert prove("--fault", "refuses", "--fault", "lying_fact", "--all-instants", "--json", out) == 0
-    said = capsys.readouterr().out
+def test_what_holds_is_said_of_every_run(plant: Path, prove: Prove) -> None:
+    said = prove("--fault", "refuses", "--fault", "lying_fact", "--all-instants")
     assert "HELD: all 30 runs, every single fault of 2 kinds at every instant" in said
     assert "lamp: It tells a false value: lamp.lit is false, not true (its board had not said so)" in said
     assert "a question may: lamp.test()" in said
@@ -116,33 +112,26 @@ def test_what_holds_is_said_of_every_run(
 
 
 @pytest.mark.long
-def test_a_second_run_runs_again_only_recipes_that_changed(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_second_run_runs_again_only_recipes_that_changed(plant: Path, prove: Prove) -> None:
     recipes = plant.parent / "small.py"
     recipes.write_text(GOOD + GOOD.partition("work\n")[2].replace("shine", "glow"))
-    prove("--fault", "forgets")
-    assert "kept from before" not in capsys.readouterr().out
-    prove("--fault", "forgets")
-    assert "8 runs, 8 of them kept from before" in capsys.readouterr().out
+    assert "kept from before" not in prove("--fault", "forgets")
+    assert "8 runs, 8 of them kept from before" in prove("--fault", "forgets")
     recipes.write_text(recipes.read_text().replace('"glow", ends_with={"lamp.lit": True}', '"glow"'))
-    prove("--fault", "forgets", "--recipe", "shine")
-    assert "4 runs, 4 of them kept from before" in capsys.readouterr().out
-    prove("--fault", "forgets")
-    assert "8 runs, 4 of them kept from before" in capsys.readouterr().out
+    assert "4 runs, 4 of them kept from before" in prove("--fault", "forgets", "--recipe", "shine")
+    assert "8 runs, 4 of them kept from before" in prove("--fault", "forgets")
 
 
 @pytest.mark.long
 def test_a_recipe_that_gives_up_in_silence_is_found_and_its_test_fails_alike(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+    plant: Path, prove: Prove
 ) -> None:
     (plant.parent / "small.py").write_text(QUIET)
     tests = plant.parent / "test_found.py"
     page = plant.parent / "out.html"
-    assert prove("--fault", "refuses", "--tests", str(tests), "--html", str(page)) == 1
+    said = prove("--fault", "refuses", "--tests", tests, "--html", page, ends=1)
     assert "lamp: lit: false" in page.read_text()
     assert "shine" in page.read_text().partition("The tree when it broke")[2]
-    said = capsys.readouterr().out
     assert "lamp.lit is false, not true (the plant was told: a check would notice)" in said
     assert "bench breaks a rule" in said and "BROKEN: 1 breach" in said
     namespace: dict[str, Any] = {}
@@ -235,15 +224,10 @@ def test_a_task_that_ended_as_the_plant_died_counts_as_what_was_kept_of_it(plant
     assert max(run.seconds for run in runs) < 120.0
 
 
-def test_a_kind_of_fault_or_a_recipe_that_there_is_not_is_refused(
-    prove: Prove, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert prove("--fault", "rain") == 2
-    assert "'rain' is no kind of fault; there are reboot" in capsys.readouterr().err
-    assert prove("--recipe", "dance") == 2
-    assert "'dance' is no recipe of this plant; there are shine" in capsys.readouterr().err
-    assert prove("--budget", "soon") == 2
-    assert "'soon' is no time" in capsys.readouterr().err
+def test_a_kind_of_fault_or_a_recipe_that_there_is_not_is_refused(prove: Prove) -> None:
+    assert "'rain' is no kind of fault; there are reboot" in prove("--fault", "rain", ends=2)
+    assert "'dance' is no recipe of this plant; there are shine" in prove("--recipe", "dance", ends=2)
+    assert "'soon' is no time" in prove("--budget", "soon", ends=2)
 
 
 @pytest.mark.long
@@ -252,9 +236,7 @@ def test_the_page_and_the_junit_file_say_what_broke_and_what_nobody_notices(
 ) -> None:
     (plant.parent / "small.py").write_text(QUIET)
     html, junit = plant.parent / "out.html", plant.parent / "out.xml"
-    assert (
-        prove("--fault", "refuses", "--fault", "lying_fact", "--html", str(html), "--junit", str(junit)) == 1
-    )
+    prove("--fault", "refuses", "--fault", "lying_fact", "--html", html, "--junit", junit, ends=1)
     said = html.read_text()
     assert "<span lang=en>What nobody notices</span><span lang=es>Lo que nadie nota</span>" in said
     assert "recipes_end_as_they_say" in said and "sim.submit(" in said
@@ -281,9 +263,9 @@ def test_any_other_moment_ends_as_one_of_the_instants_beside_it(plant: Path) -> 
 
 
 def test_ctrl_c_says_what_was_done_and_the_next_run_goes_on_there(
-    plant: Path, prove: Prove, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    plant: Path, prove: Prove, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run, out = Proof.run, plant.parent / "out.json"
+    run = Proof.run
 
     def interrupted(proof: Proof, seed: int, **options: Any) -> Proved:
         if seed == 2:
@@ -291,13 +273,11 @@ def test_ctrl_c_says_what_was_done_and_the_next_run_goes_on_there(
         return run(proof, seed, **options)
 
     monkeypatch.setattr(Proof, "run", interrupted)
-    assert prove("--fault", "reboot", "--json", str(out)) == 130
-    said = capsys.readouterr().out
+    said = prove("--fault", "reboot", ends=130)
     assert "interrupted; so far:" in said and "HELD in 2 of 8 runs (25%): a sample" in said
     assert not summary(plant)["complete"]
     monkeypatch.setattr(Proof, "run", run)
-    assert prove("--fault", "reboot") == 0
-    assert "8 runs, 2 of them kept from before" in capsys.readouterr().out
+    assert "8 runs, 2 of them kept from before" in prove("--fault", "reboot")
 
 
 @pytest.mark.long
@@ -327,12 +307,8 @@ def test_a_cell_is_ready_only_once_its_boards_have_said_what_is_truly_so(plant: 
 
 
 @pytest.mark.long
-def test_the_acts_are_counted_that_get_a_cell_ready_again(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
-) -> None:
-    out = plant.parent / "out.json"
-    assert prove("--fault", "operator_stop", "--json", str(out)) == 0
-    assert "after all others with at most 3 acts of one" in capsys.readouterr().out
+def test_the_acts_are_counted_that_get_a_cell_ready_again(plant: Path, prove: Prove) -> None:
+    assert "after all others with at most 3 acts of one" in prove("--fault", "operator_stop")
     assert summary(plant)["unmended"] == []
 
 
@@ -355,12 +331,9 @@ def test_a_test_tells_what_breaks_a_recipe(plant: Path) -> None:
         sim.prove("shine", "rain")
 
 
-def test_a_program_reads_progress_then_the_answer_as_lines(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_program_reads_progress_then_the_answer_as_lines(plant: Path, prove: Prove) -> None:
     (plant.parent / "small.py").write_text(QUIET)
-    assert prove("--fault", "refuses", "--json", "-") == 1
-    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    rows = [json.loads(line) for line in prove("--fault", "refuses", "--json", "-", ends=1).splitlines()]
     sorts = [sort for row in rows for sort in row]
     assert sorts[-1] == "answer" and set(sorts) == {"progress", "broken", "answer"}
     last = [row["progress"] for row in rows if "progress" in row][-1]
@@ -398,34 +371,27 @@ def test_each_answer_of_a_person_is_a_scenario(plant: Path) -> None:
 ONCE = PLANT.replace("light: {effect: switch,", "light: {effect: switch, needs: {lit: false},")
 
 
-def test_a_task_that_is_not_done_a_second_time_is_named(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_task_that_is_not_done_a_second_time_is_named(plant: Path, prove: Prove) -> None:
     plant.write_text(ONCE)
-    assert prove("--fault", "forgets", "--json", str(plant.parent / "out.json")) == 0
-    assert "bench: once more, without any fault, it is not done: failed" in capsys.readouterr().out
+    assert "bench: once more, without any fault, it is not done: failed" in prove("--fault", "forgets")
     assert "lit" in summary(plant)["scenarios"][0]["once_more"]
 
 
-def test_a_command_that_is_refused_without_any_fault_is_a_finding(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_command_that_is_refused_without_any_fault_is_a_finding(plant: Path, prove: Prove) -> None:
     plant.write_text(PRESS.replace("lift: {effect: motion,", "lift: {effect: motion, needs: {ram: up},"))
     lenient = "cell.fallback(press.lift(), cell.wait(1))"
     (plant.parent / "small.py").write_text(STAMP.replace("press.lift()", lenient))
-    assert prove("--fault", "reboot", "--json", str(plant.parent / "out.json")) == 1
-    assert "done without any fault: press: doing lift" in capsys.readouterr().out
+    assert "done without any fault: press: doing lift" in prove("--fault", "reboot", ends=1)
     assert "lift" in summary(plant)["scenarios"][0]["finding"]
 
 
 @pytest.mark.long
-def test_the_step_is_named_that_would_notice_what_the_plant_had_been_told(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_step_is_named_that_would_notice_what_the_plant_had_been_told(plant: Path, prove: Prove) -> None:
     (plant.parent / "small.py").write_text(QUIET.replace(', ends_with={"lamp.lit": True}', ""))
     page = plant.parent / "out.html"
-    assert prove("--fault", "refuses", "--html", str(page)) == 0
-    assert "a step notices it: lamp.becomes(lit=True, at_most_s=2)" in capsys.readouterr().out
+    assert "a step notices it: lamp.becomes(lit=True, at_most_s=2)" in prove(
+        "--fault", "refuses", "--html", page
+    )
     assert "un paso lo nota: lamp.becomes(lit=True, at_most_s=2)" in page.read_text()
 
 
@@ -443,12 +409,12 @@ def test_a_step_notices_a_fault_where_the_task_with_it_is_done_without_the_fault
 
 @pytest.mark.long
 def test_a_check_between_two_steps_is_named_where_none_at_the_end_notices_the_fault(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+    plant: Path, prove: Prove
 ) -> None:
     (plant.parent / "small.py").write_text(BLINK)
     page = plant.parent / "out.html"
-    assert prove("--fault", "refuses", "--html", str(page)) == 0
-    said, check = capsys.readouterr().out, "lamp.becomes(lit=True, at_most_s=2)"
+    said = prove("--fault", "refuses", "--html", page)
+    check = "lamp.becomes(lit=True, at_most_s=2)"
     assert "lamp: doing light true has failed, and was not done later" in said
     assert f"a step behind step 1, fallback, notices it: {check}" in said
     assert f"un paso tras el paso 1, fallback, lo nota: {check}" in page.read_text()
@@ -476,25 +442,23 @@ def test_a_step_that_sees_nothing_of_a_fault_does_not_notice_it(plant: Path) -> 
 
 @pytest.mark.long
 def test_a_command_that_failed_and_is_passed_over_is_told_where_no_fact_shows_it(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+    plant: Path, prove: Prove
 ) -> None:
     plant.write_text(PLANT.replace("      test:", "      dust: {effect: process, takes_s: 1}\n      test:"))
     lenient = 'cell.fallback(cell.device("lamp").dust(), cell.wait(0.1)), cell.device("lamp").light'
     (plant.parent / "small.py").write_text(GOOD.replace('cell.device("lamp").light', lenient))
-    assert prove("--fault", "gives_up") == 0
-    assert "lamp: doing dust has failed, and was not done later" in capsys.readouterr().out
+    assert "lamp: doing dust has failed, and was not done later" in prove("--fault", "gives_up")
 
 
 @pytest.mark.long
 def test_one_of_two_equal_steps_that_failed_is_told_though_the_other_was_done(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
+    plant: Path, prove: Prove
 ) -> None:
     plant.write_text(PLANT.replace("      test:", "      dust: {effect: process, takes_s: 2}\n      test:"))
     lenient = 'cell.fallback(cell.device("lamp").dust(), cell.wait(0.1))'
     twice = f'{lenient}, {lenient}, cell.device("lamp").light'
     (plant.parent / "small.py").write_text(GOOD.replace('cell.device("lamp").light', twice))
-    assert prove("--fault", "gives_up") == 0
-    assert "lamp: doing dust has failed, and was not done later" in capsys.readouterr().out
+    assert "lamp: doing dust has failed, and was not done later" in prove("--fault", "gives_up")
 
 
 FORCED = """<root BTCPP_format="4"><BehaviorTree ID="main"><Sequence>
@@ -519,26 +483,23 @@ def test_work_that_failed_under_a_force_success_is_told_as_not_noticed(
     assert run.outcome.untrue == ("mop: doing dust has failed, and was not done later",)
 
 
-def test_where_nothing_was_run_it_is_not_said_that_it_held(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_where_nothing_was_run_it_is_not_said_that_it_held(plant: Path, prove: Prove) -> None:
     tests = plant.parent / "test_found.py"
-    assert prove("--fault", "refuses", "--budget", "0s", "--tests", str(tests)) == 2
-    assert "nothing was run: --budget was over before" in capsys.readouterr().out
+    assert "nothing was run: --budget was over before" in prove(
+        "--fault", "refuses", "--budget", "0s", "--tests", tests, ends=2
+    )
     assert not tests.exists()
 
 
 def test_running_without_faults_takes_at_most_half_of_the_budget_and_what_is_left_out_is_said(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    plant: Path, prove: Prove, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     recipes = plant.parent / "small.py"
     recipes.write_text(GOOD + GOOD.partition("work\n")[2].replace("shine", "glow"))
     seconds = chain([0.0, 1.0, 3.0], repeat(3.0))  # when it begins, and before the first two tasks
     clock = SimpleNamespace(monotonic=lambda: next(seconds), process_time=lambda: 0.0)
     monkeypatch.setattr(proof_campaign, "time", clock)
-    out = str(plant.parent / "out.json")
-    assert prove("--fault", "refuses", "--budget", "4s", "--json", out) == 0
-    said = capsys.readouterr().out
+    said = prove("--fault", "refuses", "--budget", "4s")
     assert (
         "half of --budget was over when 1 task had run without faults: nothing is known of the others" in said
     )
@@ -552,23 +513,21 @@ def test_the_check_that_notices_is_proposed_as_an_edit_with_which_it_is_noticed(
 ) -> None:
     recipes = plant.parent / "small.py"
     recipes.write_text(QUIET.replace(', ends_with={"lamp.lit": True}', ""))
-    out = str(plant.parent / "out.json")
-    prove("--fault", "refuses", "--json", out, "--mend")
+    prove("--fault", "refuses", "--mend")
     found = summary(plant)
     assert found["findings"] == [] and found["unnoticed"]
     (edit,) = found["mend"]["edits"]
     assert edit["new"] == ', cell.device("lamp").becomes(lit=True, at_most_s=2)'
     text = edited({"small.py": recipes.read_text()}, [Edit(**edit)])["small.py"]
     recipes.write_text(text)
-    prove("--fault", "refuses", "--json", out)
+    prove("--fault", "refuses")
     assert summary(plant)["unnoticed"] == []
 
 
 def test_what_fails_without_any_fault_is_a_finding_and_gets_its_mend(plant: Path, prove: Prove) -> None:
     plant.write_text(PLANT.replace("test: {effect: query,", "test: {effect: query, needs: {lit: true},"))
     (plant.parent / "small.py").write_text(GOOD.replace("light(on=True)", "test()"))
-    out = str(plant.parent / "out.json")
-    prove("--fault", "refuses", "--json", out, "--mend")
+    prove("--fault", "refuses", "--mend", ends=1)
     found = summary(plant)
     assert [each["source"] for each in found["findings"]] == ["run without faults"]
     assert found["mend"]["left"] == 0 and "light(on=True)" in found["mend"]["edits"][0]["new"]

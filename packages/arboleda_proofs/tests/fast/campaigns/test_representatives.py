@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter, defaultdict
 from collections.abc import Hashable, Iterator
 from pathlib import Path
@@ -129,26 +128,21 @@ def test_a_forecast_says_how_much_there_is_to_do_and_for_how_much_there_is_time(
 
 
 def test_what_is_known_is_said_where_runs_without_faults_take_long(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    plant: Path, prove: Prove, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     recipes = plant.parent / "small.py"
     recipes.write_text(GOOD + GOOD.partition("work\n")[2].replace("shine", "glow"))
     seconds = iter(range(0, 10**9, 5))
     clock = SimpleNamespace(monotonic=lambda: float(next(seconds)), process_time=lambda: 0.0)
     monkeypatch.setattr(proof_campaign, "time", clock)
-    assert prove("--fault", "forgets") == 0
-    first, second = capsys.readouterr().out.splitlines()[:2]
+    first, second = prove("--fault", "forgets").splitlines()[:2]
     assert first == "0 tasks without faults so far"
     assert second.startswith("2 recipes, classes of instants: about 8 runs, ")
 
 
-def test_the_answer_says_how_many_runs_stand_for_how_many(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
-) -> None:
-    out, drawn, page = (plant.parent / name for name in ("out.json", "out.svg", "out.html"))
-    words = ["--json", str(out), "--badge", str(drawn), "--html", str(page)]
-    assert prove("--fault", "forgets", *words) == 0
-    said = capsys.readouterr().out
+def test_the_answer_says_how_many_runs_stand_for_how_many(plant: Path, prove: Prove) -> None:
+    drawn, page = plant.parent / "out.svg", plant.parent / "out.html"
+    said = prove("--fault", "forgets", "--badge", drawn, "--html", page)
     assert (
         "HELD: all 4 runs, every single fault of 1 kind at one instant of each class; --all-instants tries 5"
         in said
@@ -158,13 +152,10 @@ def test_the_answer_says_how_many_runs_stand_for_how_many(
     assert "at one instant of each class, of 5 at all instants" in page.read_text()
 
 
-def test_what_was_run_of_classes_counts_where_every_instant_is_wanted(
-    plant: Path, prove: Prove, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert prove("--fault", "forgets") == 0
-    assert prove("--fault", "forgets", "--all-instants", "--json", str(plant.parent / "out.json")) == 0
-    assert "5 runs, 4 of them kept from before" in capsys.readouterr().out
-    assert json.loads((plant.parent / "out.json").read_text())["runs"]["of"] == 5
+def test_what_was_run_of_classes_counts_where_every_instant_is_wanted(plant: Path, prove: Prove) -> None:
+    prove("--fault", "forgets")
+    assert "5 runs, 4 of them kept from before" in prove("--fault", "forgets", "--all-instants")
+    assert summary(plant)["runs"]["of"] == 5
 
 
 @pytest.mark.long

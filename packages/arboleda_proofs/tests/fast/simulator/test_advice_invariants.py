@@ -2,56 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import pytest
 
 from arboleda.core import advisor
 from arboleda.core.operator import Operator
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import OperatorRequest, Verb
-from arboleda.rig.world import World
-from arboleda.testing import shipped
 from arboleda_proofs.simulator.invariants.advice import (
     ADVICE,
     ENOUGH,
     advice_leads_out,
     no_advice_where_all_is_well,
 )
-from arboleda_proofs.simulator.invariants.invariant import Judges, Look
 from arboleda_proofs.simulator.people import Attendant
-from arboleda_proofs.simulator.record import Record
 from arboleda_proofs.simulator.recorded.acts import Acts
-from arboleda_proofs.simulator.truth.truth import Truth
+
+from .watch import Watched
 
 TASK = "sis_a 0B 7"
 
 
-class Watch:
-    """A world, and what the invariants of advice find in it."""
+class Watch(Watched):
+    """Finds what the invariants of advice find."""
 
     def __init__(self) -> None:
-        self.world = World(shipped("sis_a"))
-        self.look = Look(world=self.world, truth=Truth(self.world), record=Record(self.world))
-        self.judges = Judges(ADVICE)
-        self.found: set[str] = set()
-        self.world.watchers.append(self._check)
-        self.world.advance(1.0)
+        super().__init__(ADVICE)
+        self.wait(0.5)
 
     def act(self, verb: Verb) -> None:
-        self.world.request_verb(verb, "sis_a")
-        self.world.advance(1.0)
-
-    def end(self) -> None:
-        self._note(self.judges.at_the_end(self.look))
-
-    def _check(self) -> None:
-        self.look.truth.look()
-        self.look.record.look()
-        self._note(self.judges.after_a_step(self.look))
-
-    def _note(self, breaches: Iterable[tuple[str, str]]) -> None:
-        self.found |= {name for name, _ in breaches}
+        self.verb(verb, "sis_a")
 
 
 def works(watch: Watch) -> bool:
@@ -78,7 +57,7 @@ def test_an_attendant_who_follows_the_advice_gets_a_cell_to_work(watch: Watch) -
     watch.world.advance(1.0)
     assert watch.world.advance(90.0, until=lambda: works(watch))
     watch.end()
-    assert watch.found == set()
+    assert watch.found == {}
 
 
 def test_an_attendant_does_not_bring_back_what_a_fault_has_taken(watch: Watch) -> None:
@@ -92,9 +71,9 @@ def test_advice_that_leads_nowhere_is_found(watch: Watch) -> None:
     watch.act(Verb.STOP)
     for _ in range(ENOUGH - 1):
         watch.act(Verb.STOP)
-    assert watch.found == set()
+    assert watch.found == {}
     watch.act(Verb.STOP)
-    assert watch.found == {"advice_leads_out"}
+    assert [*watch.found] == ["advice_leads_out"]
 
 
 def test_the_same_act_on_another_device_counts_once(watch: Watch) -> None:
@@ -109,7 +88,7 @@ def test_a_cell_that_works_in_between_begins_anew(watch: Watch) -> None:
     for _ in range(2):
         for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET, Verb.RESUME):
             watch.act(verb)
-    assert watch.found == set()
+    assert watch.found == {}
 
 
 def test_a_fault_in_between_begins_anew(watch: Watch) -> None:
@@ -117,23 +96,23 @@ def test_a_fault_in_between_begins_anew(watch: Watch) -> None:
         watch.act(Verb.STOP)
         if number == ENOUGH - 1:
             watch.world.crash("ra_1")
-    assert watch.found == set()
+    assert watch.found == {}
 
 
 def test_a_refusal_that_was_not_foretold_is_found(watch: Watch, monkeypatch: pytest.MonkeyPatch) -> None:
     watch.act(Verb.RESUME)
-    assert watch.found == set()
+    assert watch.found == {}
     monkeypatch.setattr(Operator, "refusal", lambda self, request: None)
     watch.act(Verb.RESUME)
-    assert watch.found == {"refusals_are_foretold"}
+    assert [*watch.found] == ["refusals_are_foretold"]
 
 
 def test_advice_where_all_is_well_is_found(watch: Watch, monkeypatch: pytest.MonkeyPatch) -> None:
     watch.end()
-    assert watch.found == set()
+    assert watch.found == {}
     monkeypatch.setattr(advisor, "LEADS", dict.fromkeys(advisor.LEADS, advisor.Advisor._stopped))
     watch.end()
-    assert watch.found == {"no_advice_where_all_is_well"}
+    assert [*watch.found] == ["no_advice_where_all_is_well"]
 
 
 def test_advice_is_said_as_people_write_it(watch: Watch) -> None:

@@ -18,7 +18,6 @@ from arboleda.kinds.arm import SetEffector
 from arboleda.model.commands import Home
 from arboleda.model.messages import Verb
 from arboleda.model.plant_model import Evidence, PlantModel
-from arboleda.rig.world import World
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
 from arboleda.testing.plants import shipped
@@ -26,7 +25,6 @@ from arboleda.wire.payloads import EffectorGoal, Goal, JointsGoal, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 from arboleda_proofs.simulator.invariants.grips import GRIPS
-from arboleda_proofs.simulator.invariants.invariant import Judges, Look
 from arboleda_proofs.simulator.invariants.motion import MOTION
 from arboleda_proofs.simulator.invariants.part_places import (
     done_tasks_leave_nothing_behind,
@@ -35,8 +33,8 @@ from arboleda_proofs.simulator.invariants.part_places import (
 )
 from arboleda_proofs.simulator.invariants.stop import STOP
 from arboleda_proofs.simulator.invariants.zones import ZONES
-from arboleda_proofs.simulator.record import Record
-from arboleda_proofs.simulator.truth.truth import Truth
+
+from .watch import Watched
 
 OF_PARTS = (
     parts_are_taken_and_put_where_they_can_be,
@@ -48,27 +46,18 @@ ARM, MOBILE = "ra_1", "rm_sis_a"
 Patch = pytest.MonkeyPatch
 
 
-class Watch:
-    """A world that has been on for half a second, and the sentences that each invariant has yielded since."""
+class Watch(Watched):
+    """Judges by these invariants; an arm of its world can be told things by a stranger."""
 
     def __init__(self, model: PlantModel | None = None, **world: Any) -> None:
-        self.world = World(model or shipped("sis_a"), **world)
-        self.truth = Truth(self.world)
-        self.found: dict[str, list[str]] = {}
-        self._look = Look(world=self.world, truth=self.truth, record=Record(self.world))
-        self.world.watchers.append(self._check)
-        self.wait(0.5)
+        super().__init__(INVARIANTS, model, **world)
 
     @property
     def body(self) -> Any:
         return self.world.boards[ARM].body
 
-    def wait(self, seconds: float, until: Callable[[], bool] = lambda: False) -> None:
-        self.world.advance(seconds, until)
-
     def task(self, text: str = "sis_a palletizing", wait_s: float = 20.0) -> None:
-        self.world.request_task(text)
-        self.wait(wait_s)
+        super().task(text, wait_s)
 
     def carry(self) -> None:
         """Be in the middle of the way from pick-up to place."""
@@ -76,20 +65,11 @@ class Watch:
         self.wait(60.0, until=lambda: self.body.holding and self.body.moving)
         self.wait(0.1)
 
-    def verb(self, verb: Verb, scope: str = "", wait_s: float = 1.0) -> None:
-        self.world.request_verb(verb, scope)
-        self.wait(wait_s)
-
     def say(self, channel: Channel, make: Callable[..., Goal], **fields: Any) -> None:
         """A stranger with better numbers than anybody's commands ra1."""
         goal = make(**fields, seq=1, epoch=9999)
         self.world.publish(Publication(topic=topic(ARM, channel), payload=encode(goal)))
         self.wait(0.01)
-
-    def _check(self) -> None:
-        self.truth.look()
-        for name, sentence in Judges(INVARIANTS).after_a_step(self._look):
-            self.found.setdefault(name, []).append(sentence)
 
 
 def zoned() -> PlantModel:

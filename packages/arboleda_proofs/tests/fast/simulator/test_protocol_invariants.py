@@ -4,7 +4,7 @@ more than their mutants in tools/tests/mutants.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -29,7 +29,7 @@ from arboleda.model.messages import Fact, Heartbeat, TaskState, Verb
 from arboleda.model.plant_model import Evidence, ForeignCommands, PlantModel
 from arboleda.plant_file.loader import load
 from arboleda.recipes import recipe, work
-from arboleda.rig.world import BRIDGE, PLANT, World
+from arboleda.rig.world import BRIDGE, PLANT
 from arboleda.sim.board import Board
 from arboleda.testing.plants import shipped, slowed
 from arboleda.trees import cell_commands, cell_zones, leaves
@@ -38,59 +38,28 @@ from arboleda.wire.bridge import PLANT_GONE_S
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
 from arboleda_proofs.simulator.invariants.commands import COMMANDS
-from arboleda_proofs.simulator.invariants.invariant import Judges, Look
 from arboleda_proofs.simulator.invariants.liveness import LIVENESS, ready
 from arboleda_proofs.simulator.invariants.memory_bounds import BOOKS
 from arboleda_proofs.simulator.invariants.tasks import TASKS
 from arboleda_proofs.simulator.invariants.wire import WIRE
-from arboleda_proofs.simulator.record import Record
-from arboleda_proofs.simulator.truth.truth import Truth
+
+from .watch import Watched
 
 INVARIANTS = (*COMMANDS, *TASKS, *WIRE, *LIVENESS, *BOOKS)
 TASK = "sis_a 0B 7"
 
 
-class Watch:
-    """A world that has been on for half a second, and the sentences that each invariant has yielded since."""
+class Watch(Watched):
+    """Judges by these invariants, and looks at once."""
 
     def __init__(self, model: PlantModel | None = None, **world: Any) -> None:
-        self.world = World(model or shipped("sis_a"), **world)
-        self.found: dict[str, list[str]] = {}
-        self._look = Look(world=self.world, truth=Truth(self.world), record=Record(self.world))
-        self._judges = Judges(INVARIANTS)
-        self.world.watchers.append(self._check)
-        self.world.advance(0.5)
-
-    @property
-    def look(self) -> Look:
-        return self._look
-
-    @property
-    def record(self) -> Record:
-        return self._look.record
-
-    def wait(self, seconds: float) -> None:
-        self.world.advance(seconds)
+        super().__init__(INVARIANTS, model, **world)
 
     def task(self, text: str = TASK, wait_s: float = 0.01) -> None:
-        self.world.request_task(text)
-        self.wait(wait_s)
+        super().task(text, wait_s)
 
     def verb(self, verb: Verb, scope: str = "", wait_s: float = 0.01) -> None:
-        self.world.request_verb(verb, scope)
-        self.wait(wait_s)
-
-    def end(self) -> None:
-        """Look at what must hold once everything is at rest."""
-        self._note(self._judges.at_the_end(self._look))
-
-    def _check(self) -> None:
-        self._look.record.look()
-        self._note(self._judges.after_a_step(self._look))
-
-    def _note(self, breaches: Iterable[tuple[str, str]]) -> None:
-        for name, sentence in breaches:
-            self.found.setdefault(name, []).append(sentence)
+        super().verb(verb, scope, wait_s)
 
 
 @pytest.fixture
