@@ -12,7 +12,6 @@ from py_trees.composites import Sequence
 
 from arboleda.core import reasons
 from arboleda.core.cell import CellRun
-from arboleda.core.cell_steps import advance
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
 from arboleda.dispatch import evidence
@@ -217,12 +216,12 @@ def test_a_cell_that_raises_on_its_own_is_held_and_the_others_advance(
 ) -> None:
     plant = hand(Evidence.IDS)
     plant.awake()
-    sound = advance
+    sound = CellRun.advance
 
-    def broken(run: CellRun, *, woken: bool) -> bool:
-        return broken_rule() or False if run.cell.name == "sis_a" else sound(run, woken=woken)
+    def broken(run: CellRun, leave: Any, *, woken: bool) -> bool:
+        return broken_rule() or False if run.cell.name == "sis_a" else sound(run, leave, woken=woken)
 
-    monkeypatch.setattr("arboleda.core.rounds.advance", broken)
+    monkeypatch.setattr(CellRun, "advance", broken)
     plant.submit("sis_a 1C 3")
     plant.submit("sis_b 1C 3")
     plant.wait(1.0)
@@ -236,13 +235,13 @@ def test_a_task_is_the_business_of_the_cell_that_takes_it(
 ) -> None:
     plant = hand(Evidence.IDS)
     plant.awake()
-    sound, advanced = advance, set()
+    sound, advanced = CellRun.advance, set()
 
-    def noted(run: CellRun, *, woken: bool) -> bool:
+    def noted(run: CellRun, leave: Any, *, woken: bool) -> bool:
         advanced.add(run.cell.name)
-        return sound(run, woken=woken)
+        return sound(run, leave, woken=woken)
 
-    monkeypatch.setattr("arboleda.core.rounds.advance", noted)
+    monkeypatch.setattr(CellRun, "advance", noted)
     before = dict(plant.plant.revisions)
     plant.submit("sis_b 1C 3")
     changed = {name for name, number in plant.plant.revisions.items() if number != before[name]}
@@ -251,12 +250,12 @@ def test_a_task_is_the_business_of_the_cell_that_takes_it(
 
 def test_cells_that_never_come_to_rest_are_held(hand: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     plant = hand(Evidence.IDS)
-    sound = advance
+    sound = CellRun.advance
 
-    def restless(run: CellRun, *, woken: bool) -> bool:
-        return sound(run, woken=woken) or (run.cell.name == "sis_a" and run.state is CellState.IDLE)
+    def restless(run: CellRun, leave: Any, *, woken: bool) -> bool:
+        return sound(run, leave, woken=woken) or (run.cell.name == "sis_a" and run.state is CellState.IDLE)
 
-    monkeypatch.setattr("arboleda.core.rounds.advance", restless)
+    monkeypatch.setattr(CellRun, "advance", restless)
     plant.awake()
     assert cell_of(plant, "sis_a").trouble.reason is Reason.INTERNAL
     assert cell_of(plant, "sis_b").state is CellState.IDLE

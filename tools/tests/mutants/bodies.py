@@ -212,7 +212,7 @@ PLANTED_PARTS = (
     mutant(
         "recipes_end_as_they_say",
         "A task that failed and was recovered counts as done.",
-        edit(CellRun._ended, "if failure is not None:", "if failure is not None and not recovered:"),
+        edit(CellRun.look, "if failure is not None:", "if failure is not None and not recovered:"),
     ),
     mutant(
         "done_tasks_bring_their_parts",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from arboleda.core.cell import CellRun
-from arboleda.core.cell_steps import _aborted, _halted, advance
+from arboleda.core.cell_steps import _aborted, _halted
 from arboleda.core.choosing import best
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
@@ -81,7 +81,7 @@ TASKS = (
     mutant(
         "first_come_first_served",
         "The task that came last is the next one.",
-        edit(advance, "run.queue.popleft()", "run.queue.pop()"),
+        edit(CellRun.advance, "self.queue.popleft()", "self.queue.pop()"),
         weather="none",
     ),
     mutant(
@@ -217,9 +217,9 @@ LIVENESS = (
         "no_starvation",
         "An idle cell looks into its queue only when something else changed.",
         edit(
-            advance,
-            "if run.queue and run.state is CellState.IDLE",
-            "if run.dirty and run.queue and run.state is CellState.IDLE",
+            CellRun.advance,
+            "if may_begin and self.state is CellState.IDLE",
+            "if self.dirty and may_begin and self.state is CellState.IDLE",
         ),
         weather="none",
     ),

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 
+from arboleda.dispatch.booking import was_broken_off
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.messages import Outcome, Verb
 from arboleda.model.sentence import BOTH, Phrase, Sentence
@@ -45,6 +46,17 @@ class OperatorAct:
         """Its end in words."""
         why = {} if self.why is None else {"why": self.why}
         return ENDED[self.outcome](did=self.sentence, **why)
+
+
+class FailedVerbs(set[tuple[Verb, str]]):
+    """Verbs and their scopes that have failed since the cell worked; these are advised last."""
+
+    def learn(self, verb: Verb, entry: Entry) -> None:
+        """Note whether a device could do what the verb told it."""
+        if entry.state is State.DONE:
+            self.discard((verb, entry.command.robot))
+        elif not was_broken_off(entry):
+            self.add((verb, entry.command.robot))
 
 
 class Acts:

@@ -366,7 +366,7 @@ def _running_again(run: CellRun) -> Iterator[Advice]:
 
 def _mending_books(run: CellRun) -> Iterator[Advice]:
     """Advice to say what is at places in question, then to mend the place for which the last task failed."""
-    name, places, trouble = run.cell.name, run.context.places, run.place_trouble
+    name, places, trouble = run.cell.name, run.context.places, run.context.places.asked.trouble
     for place in places.asked.targets:
         why = part_places.ASKED(place=place)
         yield Advice(do=Hand.TAKE_OUT, scope=f"{name} {place}", why=why)

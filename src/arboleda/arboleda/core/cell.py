@@ -11,7 +11,7 @@ from py_trees.common import Status
 from arboleda.dispatch.booking import BROKEN_OFF
 from arboleda.dispatch.stillness import ReportMoment
 from arboleda.model.advice import Advice
-from arboleda.model.cell_states import TABLE, Cause, CellState, after
+from arboleda.model.cell_states import Cause, CellState, after
 from arboleda.model.messages import Failure, Reason, RevisionName, TaskState, Verb
 from arboleda.model.plant_model import Cell, Timing
 from arboleda.model.recipe import Build
@@ -26,6 +26,7 @@ from arboleda.trees.part_places import trouble_in
 from arboleda.trees.tree_run import TreeRun, path_of
 
 from .absence import HoldAfterAbsence
+from .acts import FailedVerbs
 from .manual_mode import ManualMode
 from .readiness import Readiness
 from .task_queue import TaskQueue
@@ -59,7 +60,7 @@ class CellRun:
         self.cell = cell
         self.context = context
         self.state = stop or CellState.IDLE
-        self.queue = TaskQueue(cell)
+        self.queue = TaskQueue(cell, context.time, changed)
         self.queue.paused = stop is not None
         self.readiness = Readiness(cell, context)
         self.ways_out = ways_out
@@ -69,13 +70,11 @@ class CellRun:
         self.awaits: Sentence | None = None  # what a task of an earlier start waits for
         self.trouble: Failure | None = None  # why it is held
         self.stranded: Sentence | None = None  # why a held task can only be abandoned
-        self.place_trouble: Sentence | None = None  # the full or empty place for which the last task failed
-        self.in_vain: set[tuple[Verb, str]] = set()  # verbs and scopes that failed since it worked
+        self.in_vain = FailedVerbs()
         self.manual = ManualMode(context, self.queue)
         self.absence = HoldAfterAbsence(context, self.run)
-        self.dirty = False
+        self.dirty = False  # True where something happened to it since `advance`
         self.closed = False
-        self.awaits_restart = False  # no further task begins until then
         self.following: NextVersion | None = None  # put to work, and not taken yet
         self.version: RevisionName | None = None  # taken while the plant ran
         self.cancelling = False  # True while its task is to end as cancelled
@@ -144,24 +143,60 @@ class CellRun:
         if self.task is not None:
             self.trouble, self.stranded = failure or self.trouble, why
 
-    def outlast(self, failure: Failure) -> None:
-        """Hold a cell at work, because the plant was away. An idle cell goes on: nothing was interrupted.
+    def note(self, failure: Failure | None) -> None:
+        """Note why it is held, unless that is known: the first trouble is what people have to mend."""
+        self.trouble = self.trouble or failure
 
-        Where the plant file says so, the hold ends by itself once the devices prove what they did.
+    def judge(self) -> bool:
+        """Judge the steps at which an earlier start left its task, by its devices; True where that is news.
+
+        A reason that keeps the task from going on stays, whatever devices report later.
         """
-        if self.state is CellState.EXECUTE:
-            paused = self.queue.paused
-            self.halt(Cause.AWAY, failure)
-            if self.cell.goes_on_after_absence and self.task is not None:
-                self.absence.begin(failure, paused=paused)
-        self.context.commands.cancel_motions()
+        if self.run.tree is None:
+            return False
+        before, finding = (self.awaits, self.trouble, self.stranded), self.keeping.judge()
+        self.awaits = finding.waits
+        self.trouble = self.trouble or finding.failure
+        self.stranded = self.stranded or finding.stranded
+        return before != (self.awaits, self.trouble, self.stranded)
 
-    def drop(self, task: Task, failure: Failure) -> None:
-        """Take a task that waits out of the queue; it is cancelled."""
-        self.queue.remove(task)
-        task.fail(failure)
-        task.become(TaskState.CANCELLED, self.context.time.plant_now)
-        self._changed(task)
+    def advance(self, leave: Mapping[CellState, Callable[[CellRun], bool]], *, woken: bool) -> bool:
+        """Leave a state that waits, tick the tree, start the next task; True where anything was done.
+
+        `leave` has a function for each state that waits. A cell takes another version before its next task,
+        so no task begins by one version and ends by another.
+        """
+        self.dirty = self.context.time.woken() or woken or self.dirty
+        if self.state is CellState.EXECUTE and not self.dirty:
+            return False
+        did = self.manual.teaching is not None and self.manual.go_on()
+        waits = leave.get(self.state)
+        did |= waits is not None and waits(self)
+        if self.dirty and self.run.tree is not None and self.state is CellState.EXECUTE:
+            self.look(self.run.tick())
+            did = True
+        if self.following is not None and self.is_between_tasks:
+            self._revise(self.following)
+            did = True
+        may_begin = self.queue and not (self.closed or self.queue.awaits_restart)
+        if may_begin and self.state is CellState.IDLE and self.not_ready is None:
+            self.start(self.queue.popleft())
+            did = True
+        self.dirty = False
+        return did
+
+    def follow(self, version: NextVersion) -> None:
+        """Take another version once it is between two tasks."""
+        self.following = version
+
+    def _revise(self, following: NextVersion) -> None:
+        self.following, self.version = None, following.version
+        self.cell = following.cell
+        self.context.revise(following.cell, following.timing)
+        self.queue.revise(following.cell)
+        self.readiness.revise(following.cell)
+        self.keeping.revise()
+        following.taken(following)
 
     def close(self, *, drops_waiting: bool) -> None:
         """The plant ends: a running task is halted and kept for the next start, and no other task starts.
@@ -176,7 +211,7 @@ class CellRun:
         elif self.state is CellState.EXECUTE:
             self.halt(Cause.HOLD)
         for task in [each for each in self.queue if drops_waiting and not each.is_kept]:
-            self.drop(task, failure)
+            self.queue.drop(task, failure)
         self.context.commands.cancel_all()
 
     def interrupt(self, failure: Failure) -> None:
@@ -186,17 +221,6 @@ class CellRun:
         if task is not None:
             task.fail(failure)
             self._finish(task, TaskState.CANCELLED if cancelled else TaskState.FAILED)
-
-    def break_down(self, failure: Failure) -> None:
-        """Something of the cell raised: its task has failed, and the cell is held unless it is stopped.
-
-        It does not recover, since a recovery is made of the same leaves and rules as what raised.
-        """
-        self.context.time.go_on()
-        self.manual.end(failure.sentence)
-        self.interrupt(failure)
-        if (self.state, Cause.STUCK) in TABLE:
-            self.stuck(failure)
 
     def become(self, cause: Cause) -> None:
         """Change the state by its table; IllegalTransition where it has no row."""
@@ -226,7 +250,6 @@ class CellRun:
         """Begin a task."""
         self.task, self.cancelling, self._recovers_anew = task, False, False
         self.in_vain.clear()
-        self.place_trouble = None
         self.context.answers, self.context.commands.task = task.answers, hash_of(task.id)
         self.become(Cause.TASK)
         task.become(TaskState.RUNNING, self.context.time.plant_now)
@@ -268,19 +291,11 @@ class CellRun:
         self.context.parts.recover()
         self.look(self.run.begin(lambda: steps.recovery(self.context)))
 
-    def set_parts(self, parts: Mapping[str, int]) -> None:
-        """Take a person's word on how many parts are at places, and that these are no trouble any more."""
-        self.context.places.set(parts)
-        if self.place_trouble is not None and self.place_trouble.values["place"] in parts:
-            self.place_trouble = None
-
     def look(self, status: Status) -> None:
-        """Take the status that a tick of the tree has returned."""
-        if status is not Status.RUNNING:
-            self._ended(recovered=status is Status.SUCCESS)
-
-    def _ended(self, *, recovered: bool) -> None:
-        """The tree has ended: the task is over, and the cell idle or held."""
+        """Take the status that a tick of the tree has returned: at its end the cell is idle, or held."""
+        if status is Status.RUNNING:
+            return
+        recovered = status is Status.SUCCESS
         task, failure, leaf = self.task, self.context.failures.first, self.context.failures.leaf
         course = self.run.course
         self.run.drop()
@@ -297,7 +312,7 @@ class CellRun:
             self.become(Cause.ENDED)
         if task is None:
             return
-        self.place_trouble = None if failure is None else trouble_in(failure.sentence)
+        self.context.places.asked.note(None if failure is None else trouble_in(failure.sentence))
         if failure is not None:
             task.fail(failure, path_of(leaf) if leaf else None, title_of(leaf) if leaf else None)
         if self.cancelling:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from arboleda.model.cell_states import TABLE, Cause
 from arboleda.model.messages import Failure, InternalError, Reason
 from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase, Sentence
 
+from .cell import CellRun
 from .plant_state import PlantState
 
 BROKE_IN_STEP = Phrase("cell.broke_in_step", "{cell}: {kind} in a step: {error}")
@@ -38,4 +40,16 @@ class CellGuard:
             self.told[cell] = sentence
             self._state.dispatcher.outbox.append(InternalError(cell=cell, error=error))
         self._state.dispatcher.booking.give_up(cell, failure, self._state.clock.now)
-        self._state.cells[cell].break_down(failure)
+        _break_down(self._state.cells[cell], failure)
+
+
+def _break_down(run: CellRun, failure: Failure) -> None:
+    """End the task as failed, and hold the cell unless it is stopped.
+
+    It does not recover, since a recovery is made of the same leaves and rules as what raised.
+    """
+    run.context.time.go_on()
+    run.manual.end(failure.sentence)
+    run.interrupt(failure)
+    if (run.state, Cause.STUCK) in TABLE:
+        run.stuck(failure)

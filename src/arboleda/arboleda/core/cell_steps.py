@@ -1,4 +1,4 @@
-"""Steps that a cell does by itself, each time that something happened to it."""
+"""What a cell waits for in a state that it leaves by itself, and how it leaves it."""
 
 from __future__ import annotations
 
@@ -10,48 +10,9 @@ from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase
 from arboleda.resume.walk_back import NO_PART
 
-from .cell import CellRun, NextVersion
-from .earlier_start import judged
+from .cell import CellRun
 
 STOP_UNCONFIRMED = Phrase("cell.stop_unconfirmed", "{robots} did not confirm the stop")
-
-
-def advance(run: CellRun, *, woken: bool) -> bool:
-    """Leave a state that waits, tick the tree, start the next task; True where anything was done.
-
-    A cell takes another version before its next task, so no task begins by one version and ends by another.
-    """
-    run.dirty = run.context.time.woken() or woken or run.dirty
-    if run.state is CellState.EXECUTE and not run.dirty:
-        return False
-    did = run.manual.teaching is not None and run.manual.go_on()
-    leave = WAITS.get(run.state)
-    did |= leave is not None and leave(run)
-    if run.dirty and run.run.tree is not None and run.state is CellState.EXECUTE:
-        run.look(run.run.tick())
-        did = True
-    if run.following is not None and run.is_between_tasks:
-        _revise(run, run.following)
-        did = True
-    if run.queue and run.state is CellState.IDLE and _may_begin(run):
-        run.start(run.queue.popleft())
-        did = True
-    run.dirty = False
-    return did
-
-
-def _may_begin(run: CellRun) -> bool:
-    return not run.closed and not run.awaits_restart and run.not_ready is None
-
-
-def _revise(run: CellRun, following: NextVersion) -> None:
-    run.following, run.version = None, following.version
-    run.cell = following.cell
-    run.context.revise(following.cell, following.timing)
-    run.queue.revise(following.cell)
-    run.readiness.revise(following.cell)
-    run.keeping.revise()
-    following.taken(following)
 
 
 def _halted(run: CellRun) -> bool:
@@ -59,7 +20,7 @@ def _halted(run: CellRun) -> bool:
     if any(entry.halts for entry in run.context.commands.open()):
         return False
     run.become(Cause.HALTED)
-    run.trouble = run.trouble or _fault(run)
+    run.note(_fault(run))
     _miss_part(run)
     return True
 
@@ -89,9 +50,9 @@ def _settled(run: CellRun) -> bool:
         run.leave_as_it_is()
         return True
     if run.keeping.walk is not None:
-        return judged(run)
+        return run.judge()
     if run.task is not None and run.trouble is None:
-        run.trouble = _fault(run)
+        run.note(_fault(run))
     _miss_part(run)
     return run.absence.hold is not None and _absence_is_over(run)
 
@@ -121,6 +82,19 @@ def _absence_is_over(run: CellRun) -> bool:
     return True
 
 
+def outlast(run: CellRun, failure: Failure) -> None:
+    """Hold a cell at work, because the plant was away. An idle cell goes on: nothing was interrupted.
+
+    Where the plant file says so, the hold ends by itself once the devices prove what they did.
+    """
+    if run.state is CellState.EXECUTE:
+        paused = run.queue.paused
+        run.halt(Cause.AWAY, failure)
+        if run.cell.goes_on_after_absence and run.task is not None:
+            run.absence.begin(failure, paused=paused)
+    run.context.commands.cancel_motions()
+
+
 def _aborted(run: CellRun) -> bool:
     """Leave `aborting` once every online robot is seen still, or the time for it is over."""
     moving = run.context.robots.moving_since(run.stopped_after)
@@ -128,7 +102,7 @@ def _aborted(run: CellRun) -> bool:
         return False
     if moving:
         sentence = STOP_UNCONFIRMED(robots=tuple(moving))
-        run.trouble = Failure(reason=Reason.STOP_UNCONFIRMED, sentence=sentence)
+        run.note(Failure(reason=Reason.STOP_UNCONFIRMED, sentence=sentence))
     run.become(Cause.HALTED)
     return True
 

@@ -14,21 +14,7 @@ from .cell import CellRun
 def look_back(run: CellRun) -> None:
     """Judge a task of an earlier start by the reports of its devices until now."""
     if run.keeping.walk is not None and run.state is CellState.HELD:
-        judged(run)
-
-
-def judged(run: CellRun) -> bool:
-    """Judge the steps at which an earlier start left a task by its devices' reports; True where that is news.
-
-    A reason that keeps the task from going on stays, whatever devices report later.
-    """
-    if run.run.tree is None:
-        return False
-    before, finding = (run.awaits, run.trouble, run.stranded), run.keeping.judge()
-    run.awaits = finding.waits
-    run.trouble = run.trouble or finding.failure
-    run.stranded = run.stranded or finding.stranded
-    return before != (run.awaits, run.trouble, run.stranded)
+        run.judge()
 
 
 def trail_of(run: CellRun) -> str | None:

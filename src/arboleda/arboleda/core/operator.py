@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
-from arboleda.dispatch.booking import was_broken_off
-from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.advice import DO
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Journal, OperatorRequest, Outcome, Verb
@@ -147,7 +145,8 @@ class Operator:
         news = False
         for act, entries in self.acts.ended(self._state.clock.now):
             self._journal(act, act.ended, act.outcome)
-            self._learn(act.verb, entries)
+            for entry in entries:
+                self._state.cells[entry.cell].in_vain.learn(act.verb, entry)
             news = True
         return news
 
@@ -174,15 +173,6 @@ class Operator:
         if self._doing.defects:
             return Outcome.FAILED, self._doing.defects[0]
         return (Outcome.SENT, None) if verb.row.stops else outcome_of(self._doing.sent)
-
-    def _learn(self, verb: Verb, entries: Sequence[Entry]) -> None:
-        """Note acts that devices could not do: these are advised last, until they succeed."""
-        for entry in entries:
-            tried = (verb, entry.command.robot)
-            if entry.state is State.DONE:
-                self._state.cells[entry.cell].in_vain.discard(tried)
-            elif not was_broken_off(entry):
-                self._state.cells[entry.cell].in_vain.add(tried)
 
     def _journal(self, act: OperatorAct, sentence: Sentence, outcome: Outcome | None = None) -> None:
         entry = Journal(

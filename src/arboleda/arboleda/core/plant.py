@@ -95,6 +95,7 @@ from .acts import OperatorAct, ProvokedFaults
 from .advisor import Advisor
 from .cell import CellRun
 from .cell_guard import CellGuard
+from .cell_steps import outlast
 from .choosing import Prospect
 from .earlier_start import end_teaching, look_back, stop_of
 from .intake import Intake
@@ -364,7 +365,7 @@ class Plant:
         for name, cell in self.cells.items():
             if cell.state is CellState.EXECUTE:
                 cell.context.time.pause(at=silent_since)
-            self._guard.run(name, partial(cell.outlast, failure))
+            self._guard.run(name, partial(outlast, cell, failure))
 
     def _on_report(self, report: Report) -> None:
         runs = self._runs.get(report.robot)
@@ -411,7 +412,7 @@ class Plant:
         self.restart_by = by if event.wanted else ""
         self._news.changes += 1
         for cell in self.cells.values():
-            cell.awaits_restart, cell.dirty = event.wanted, True
+            cell.queue.awaits_restart = event.wanted
         did = RESTART_WANTED if event.wanted else RESTART_UNWANTED
         self.dispatcher.outbox.append(Journal(verb=None, scope="", cell=None, sentence=did(by=by)))
 

@@ -48,7 +48,7 @@ def of_waiting(run: CellRun) -> Sentence | None:
     if run.state is CellState.EXECUTE:
         return (BUSY_PAUSED if run.queue.paused else BUSY)(cell=name)
     if run.state is CellState.IDLE:
-        return RESTARTS() if run.awaits_restart else run.not_ready
+        return RESTARTS() if run.queue.awaits_restart else run.not_ready
     if run.trouble is None or run.state is CellState.HELD:
         return of_hold(run) or STANDS(cell=name, state=run.state.sentence, next=_next(run))
     why = run.trouble.sentence
@@ -59,7 +59,7 @@ def of_hindrance(run: CellRun) -> Sentence | None:
     """The reason why a new task would not start by itself after the tasks before it; None where it would."""
     if run.state is not CellState.EXECUTE:
         return of_waiting(run)
-    if run.awaits_restart:
+    if run.queue.awaits_restart:
         return RESTARTS()
     if (obstacle := run.readiness.obstacle_at_work()) is not None:
         return obstacle

@@ -51,7 +51,7 @@ class Revisions:
             id for run in self._state.cells.values() for id in self._without_unfit(run, version.digest)
         ]
         for run, cell in zip(self._state.cells.values(), cells, strict=True):
-            run.following = NextVersion(version=version, cell=cell, timing=model.timing, taken=self._taken)
+            run.follow(NextVersion(version=version, cell=cell, timing=model.timing, taken=self._taken))
         self._use(replace(self._state.intake.model, cells=present.cells))
         busy = [(name, run) for name, run in self._state.cells.items() if not run.is_between_tasks]
         waits = tuple((name, run.task.id if run.task else "") for name, run in busy)
@@ -72,7 +72,7 @@ class Revisions:
                 task.order = self._state.intake.still_allowed(task, version)
             except TextError as error:
                 unfit.append(task.id)
-                run.drop(task, gone(error.sentence))
+                run.queue.drop(task, gone(error.sentence))
         return unfit
 
     def _taken(self, taken: NextVersion) -> None:

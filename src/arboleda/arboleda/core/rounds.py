@@ -11,7 +11,7 @@ from arboleda.model.task import Task
 
 from .cell import CellRun
 from .cell_guard import CellGuard
-from .cell_steps import advance
+from .cell_steps import WAITS
 from .earlier_start import trail_of
 from .plant_state import PlantState
 from .zone_watch import ZoneWatch
@@ -100,7 +100,7 @@ class Rounds:
         """Let a cell do what it can; True where it did anything."""
         before = len(self._state.dispatcher.outbox)
         try:
-            did = advance(self._state.cells[name], woken=woken)
+            did = self._state.cells[name].advance(WAITS, woken=woken)
             if did or woken:
                 self.keep_trail(self._state.cells[name], before)
         except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from arboleda.model.errors import QueueFull
+from arboleda.model.messages import Failure, TaskState
 from arboleda.model.plant_model import Cell
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.task import Task
+from arboleda.trees.cell_time import CellTime
 
 FULL = Phrase("cell.full", "{cell} has {number:,} tasks waiting, its limit; send it again later")
 FULL_OF_ONE = Phrase("cell.full_of_one", "{cell} has {number} task waiting, its limit; send it again later")
@@ -25,13 +27,17 @@ class TaskQueue(deque[Task]):
     """Tasks in the order of acceptance. None starts while the queue is `paused`.
 
     `left_over`: it is paused since tasks of an earlier start wait, and nobody said `resume` yet.
+    `awaits_restart`: none starts before the plant starts anew. `changed(task)` hears of dropped tasks.
     """
 
-    def __init__(self, cell: Cell) -> None:
+    def __init__(self, cell: Cell, time: CellTime, changed: Callable[[Task], None]) -> None:
         super().__init__()
         self.paused = False
         self.left_over = False
+        self.awaits_restart = False
         self._cell = cell
+        self._time = time
+        self._changed = changed
 
     def revise(self, cell: Cell) -> None:
         """Go by another version of the cell from now on; tasks that wait stay, also above its limit."""
@@ -63,6 +69,13 @@ class TaskQueue(deque[Task]):
             full = FULL_OF_ONE if len(self) == 1 else FULL
             raise QueueFull(full(cell=self._cell.name, number=len(self)))
         self.append(task)
+
+    def drop(self, task: Task, failure: Failure) -> None:
+        """Take a task out; it is cancelled."""
+        self.remove(task)
+        task.fail(failure)
+        task.become(TaskState.CANCELLED, self._time.plant_now)
+        self._changed(task)
 
     def take_back(self, waiting: Sequence[Task], *, cut_off: bool) -> None:
         """Take the tasks that waited here when an earlier start ended, also above the limit.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 
 from arboleda.model.plant_model import Place
+from arboleda.model.sentence import Sentence
 
 
 class AskedPlaces:
@@ -13,7 +14,8 @@ class AskedPlaces:
     A task that fails may leave a place full that the next task fills. People may have taken that part out
     without a word, or a hand may have found none there, so whether it is still there is a question, which
     keeps the next task from beginning.
-    `parts` are the books, which go on changing; `changed` has them kept.
+    `parts` are the books, which go on changing; `changed` has them kept. `trouble` names the full or empty
+    place for which the last task failed.
     """
 
     def __init__(
@@ -24,6 +26,7 @@ class AskedPlaces:
         self._changed = changed
         self._known: dict[str, int] = {}  # as the last task began, or as a person has said since
         self._failed = False  # the last task
+        self.trouble: Sentence | None = None
 
     @property
     def targets(self) -> tuple[str, ...]:
@@ -44,7 +47,7 @@ class AskedPlaces:
 
     def begin(self) -> None:
         """Begin a task: the books are as people have left the places."""
-        self._known, self._failed = dict(self._parts), False
+        self._known, self._failed, self.trouble = dict(self._parts), False, None
 
     def fail(self) -> None:
         """End a task that is not done: nobody knows whether people take out what it has left."""
@@ -52,9 +55,15 @@ class AskedPlaces:
         if self.targets:
             self._changed()
 
+    def note(self, trouble: Sentence | None) -> None:
+        """Note the place for which a task has failed; None where it ended otherwise."""
+        self.trouble = trouble
+
     def answer(self, parts: Mapping[str, int]) -> None:
         """Take a person's word on how many parts are at places; an output in question has to be emptied."""
         self._known |= {target: n for target, n in parts.items() if not self.is_output(target)}
+        if self.trouble is not None and self.trouble.values["place"] in parts:
+            self.trouble = None
 
     def doubt(self, target: str) -> None:
         """Take in that a hand that was to take a part from a place has none: there may be none either."""

@@ -48,7 +48,7 @@ class Cancelling:
         task = self._state.intake.tasks[id]
         cell = self._scopes.cells[task.order.cell]
         if task.state is TaskState.QUEUED:
-            return partial(cell.drop, task, failure)
+            return partial(cell.queue.drop, task, failure)
         if task is not cell.task:
             raise VerbRefusal(TASK_ENDED(task=id, state=TASK_STATES[task.state]()))
         if why := _not_cancellable(cell, frozenset()):

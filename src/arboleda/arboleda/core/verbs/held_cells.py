@@ -37,7 +37,6 @@ def resume(cell: CellRun, robots: frozenset[str]) -> None:
     if cell.state is CellState.HELD:
         cell.go_on(Cause.RESUME)
     cell.queue.resume()
-    cell.dirty = True
 
 
 def retry(cell: CellRun, robots: frozenset[str]) -> None:

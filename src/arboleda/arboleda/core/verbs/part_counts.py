@@ -79,7 +79,7 @@ class PartCounts:
         numbers_by_cell = {cell.cell.name: numbers for cell, numbers in parts}
         everywhere = with_common_places(numbers_by_cell, [cell.cell for cell in cells.values()])
         for name, numbers in everywhere.items():
-            cells[name].set_parts(numbers)
+            cells[name].context.places.set(numbers)
         self._state.dispatcher.wake([*everywhere])
 
 

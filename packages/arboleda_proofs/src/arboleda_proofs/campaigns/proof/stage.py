@@ -9,7 +9,7 @@ from dataclasses import replace
 from hashlib import blake2b
 
 from arboleda.engine import CellRun, Entry, Plant
-from arboleda.engine.inspection import EMPTY, ledger_of, tasks_of
+from arboleda.engine.inspection import EMPTY, ledger_of, places_of, tasks_of
 from arboleda.model.advice import Hand
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import TaskChanged, TaskState
@@ -320,7 +320,7 @@ class Stage:
         self.last_change = change
         task = tasks_of(self.world.plant).get(change.task)
         self._order = self._order or (task.order if task is not None else None)
-        trouble = self.run.place_trouble
+        trouble = places_of(self.run).asked.trouble
         if change.state is TaskState.FAILED and trouble is not None and trouble.key == EMPTY.key:
             self.lacks = str(trouble.values["place"])
         if change.state is TaskState.DONE and (order := self._order) is not None:
