@@ -9,7 +9,8 @@ import logging
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from contextvars import ContextVar
+from dataclasses import dataclass, replace
 from functools import partial
 from importlib.metadata import EntryPoint
 
@@ -55,6 +56,29 @@ def piece_of(point: EntryPoint, what: str) -> Piece:
     of = getattr(point, "dist", None)
     named = package_of(point) if of is None else f"{of.name} {of.version}"
     return Piece(what=what, of=named, package=package_of(point))
+
+
+_CALLED = ContextVar[Piece | None]("called", default=None)
+
+
+@contextmanager
+def naming(piece: Piece | None) -> Iterator[None]:
+    """Time in which what this thread calls is of a piece, so that what it registers is known to be of it.
+
+    None stands for the runner itself.
+    """
+    before = _CALLED.get()
+    _CALLED.set(piece)
+    try:
+        yield
+    finally:
+        _CALLED.set(before)
+
+
+def registrant(what: str) -> Piece | None:
+    """What a package registers just now, as a piece of it; None where the runner itself does."""
+    called = _CALLED.get()
+    return None if called is None else replace(called, what=what)
 
 
 def short(error: BaseException) -> str:
@@ -121,7 +145,8 @@ class Pieces:
         A StartError is raised: the plant must not start.
         """
         try:
-            yield
+            with naming(piece):
+                yield
         except StartError:
             raise
         except (Exception, SystemExit, Hangs) as error:  # noqa: BLE001 - whatever a package does, the rest goes on

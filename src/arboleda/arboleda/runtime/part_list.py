@@ -8,7 +8,7 @@ from importlib.metadata import EntryPoint
 from typing import NamedTuple
 
 from arboleda.host.packages import left_out
-from arboleda.host.pieces import Piece, Pieces, piece_of
+from arboleda.host.pieces import Piece, Pieces, naming, piece_of
 from arboleda.model.errors import StartError
 from arboleda.model.sentence import Phrase
 from arboleda.plant_file.python_uses import error_text
@@ -53,7 +53,8 @@ class PartList:
         factories = [*((None, each) for each in own), *packaged(self.pieces)]
         for point, factory in sorted(factories, key=lambda each: each[1].phase):
             spared = None if factory.is_needed else point
-            with self._calling(_piece(spared, "the factory", factory.make, factory.what)):
+            piece = _piece(point, "the factory", factory.make, factory.what)
+            with self._calling(None if spared is None else piece), naming(piece):
                 parts = [*factory.make(assembly)]
                 self._made += [_Made(part, _piece(spared, "the part", type(part))) for part in parts]
 

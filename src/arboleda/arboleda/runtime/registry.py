@@ -11,7 +11,7 @@ from traceback import walk_tb
 from typing import Any
 
 from arboleda.host.packages import registered
-from arboleda.host.pieces import Piece, Pieces, piece_of
+from arboleda.host.pieces import Piece, Pieces, piece_of, registrant
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda.web.offers import Offers
@@ -22,7 +22,6 @@ from .parts.part import Crash, Part
 from .parts.plant_log import log_defect
 
 GROUP = "arboleda.parts"
-RUNNER = __name__.partition(".")[0]
 OF_RUNNER = frozenset({"broker", "memory", "refused", "ros"})  # in `Links`: what no package tells
 
 
@@ -72,38 +71,38 @@ class Links:
     A source that raises is left out, and so is one that tells what another one tells.
     """
 
-    def __init__(self) -> None:
-        self._sources: list[Source] = []
-        self.lost: Callable[[Source, Exception], None] = lambda _, error: log_defect(
-            "a source of links", error
-        )
+    def __init__(self, pieces: Pieces) -> None:
+        self._pieces = pieces
+        self._sources: list[tuple[Source, Piece | None]] = []
 
     def add(self, source: Source) -> None:
         """Add what a part reports, which is asked for each time; from any thread."""
-        self._sources.append(source)
+        self._sources.append((source, registrant("a source of links")))
 
     def __call__(self) -> dict[str, Any]:
         """Broker, ROS 2, refused messages, standbys, the memory's pace, and the like."""
         state: dict[str, Any] = {"broker": None, "ros": None, "refused": {}, "standbys": []}
         state |= {"demo": False, "memory": None, "faults": []}
         told: set[str] = set()
-        for each in [*self._sources]:
-            news = self._told(each, told)
+        for source, piece in [*self._sources]:
+            news = self._told(source, piece, told)
             told |= news.keys()
             state |= news
         return state
 
-    def _told(self, source: Source, taken: set[str]) -> Mapping[str, Any]:
+    def _told(self, source: Source, piece: Piece | None, taken: set[str]) -> Mapping[str, Any]:
         """The news of a source; none where it is left out."""
         try:
             news = {**source()}
-            is_ours = _top(_module_of(source)) == RUNNER
-            if doubled := news.keys() & (taken if is_ours else taken | OF_RUNNER):
+            if doubled := news.keys() & (taken if piece is None else taken | OF_RUNNER):
                 raise NameTaken(f"another source tells {', '.join(sorted(doubled))}")
         except Exception as error:  # noqa: BLE001 - record and page go on, whatever a source does
             with suppress(ValueError):  # another thread was first
-                self._sources.remove(source)
-                self.lost(source, error)
+                self._sources.remove((source, piece))
+                if piece is None:
+                    log_defect("a source of links", error)
+                else:
+                    self._pieces.leave_out(piece, error)
             return {}
         return news
 
@@ -127,26 +126,18 @@ class Assembly(Offers):
     crash: Crash
     end: Callable[[], None]
     pieces: Pieces
-    links: Links = field(default_factory=Links)
+    links: Links = field(init=False)
     notes: list[Callable[[], Iterable[str]]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         super().__init__()
-        self.links.lost = self._lose_source
-
-    def leave_out_raiser(self, error: Exception) -> bool:
-        """Leave out the listener that raised this; False where it is of no package."""
-        called = error.__traceback__ and error.__traceback__.tb_next  # the first is who called the listener
-        if called is None:
-            return False
-        module, name = called.tb_frame.f_globals.get("__name__", ""), called.tb_frame.f_code.co_name
-        piece = _piece_in(module, f"the listener {name}")
-        if piece is not None:
-            self.pieces.leave_out(piece, error)
-        return piece is not None
+        self.links = Links(self.pieces)
 
     def leave_out_thread(self, error: BaseException) -> bool:
-        """Leave out the thread that calls this, and ends with this error; False where it is of no package."""
+        """Leave out the thread that calls this, and ends with this error; False where it is of no package.
+
+        A package begins its threads by itself, so only their code says whose they are.
+        """
         what = f"the thread {threading.current_thread().name}"
         modules = (frame.f_globals.get("__name__", "") for frame, _ in walk_tb(error.__traceback__))
         pieces = (_piece_in(each, what) for each in modules if not isinstance(error, SystemExit))
@@ -155,24 +146,11 @@ class Assembly(Offers):
             self.pieces.leave_out(piece, error)
         return piece is not None
 
-    def _lose_source(self, source: Source, error: Exception) -> None:
-        """Leave out a source of `links`."""
-        piece = _piece_in(_module_of(source), "a source of links")
-        if piece is None:
-            log_defect("a source of links", error)
-        else:
-            self.pieces.leave_out(piece, error)
-
 
 def _piece_in(module: str, what: str) -> Piece | None:
     """A piece whose code is in this module; None where no package with parts has it."""
     points = (each for each in registered(GROUP) if _top(each.module) == _top(module))
     return next((piece_of(each, what) for each in points), None)
-
-
-def _module_of(source: Source) -> str:
-    """The module of a source; a `functools.partial` has none of its own."""
-    return str(getattr(getattr(source, "func", source), "__module__", ""))
 
 
 def _top(module: str) -> str:

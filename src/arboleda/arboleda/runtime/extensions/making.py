@@ -8,7 +8,7 @@ from importlib.metadata import EntryPoint
 from pathlib import Path
 
 from arboleda.host.packages import package_of
-from arboleda.host.pieces import piece_of
+from arboleda.host.pieces import naming, piece_of
 from arboleda.plant_file.extensions import settings_of
 from arboleda.store.package_table import PackageTable
 from arboleda.web.part_routes import PartRoute, PartRoutes
@@ -84,7 +84,8 @@ def _writes(assembly: Assembly, running: Orchestrator) -> Writes:
     writes = assembly.ask(Writes)
     if writes is None:
         writes = Writes(running.loop.wake, lambda: running.loop.running)
-        running.observers.append(writes.flush)
+        with naming(None):  # it is of all packages, and the factory of one is at work
+            running.observers.append(writes.flush)
         assembly.offer(Writes, writes)
     return writes
 

@@ -10,6 +10,8 @@ from typing import Any, NamedTuple, TypeVar
 
 from arboleda.host.pieces import Piece, Pieces
 
+from ..parts.listeners import named
+
 Given = TypeVar("Given")
 ENDS_S = 2.0  # what is left is told within that at the end
 
@@ -114,8 +116,3 @@ class Telling:
         with self._changed:
             self._changed.wait_for(lambda: self._news or self._latest or self._ends)
             return bool(self._news or self._latest)
-
-
-def named(listener: object) -> str:
-    """The name of a listener, for people, as `Orders.follow`."""
-    return str(getattr(listener, "__qualname__", type(listener).__name__)).rpartition("<locals>.")[2]

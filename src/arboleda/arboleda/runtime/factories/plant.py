@@ -46,7 +46,7 @@ def plant(assembly: Assembly) -> Iterable[Part]:
             held.memory,
             history=held.recalled,
             drops_waiting=not assembly.options.keeps_waiting,
-            leave_out_raiser=assembly.leave_out_raiser,
+            leave_out=assembly.pieces.leave_out,
         )
         made.screens.diagnoses.append(held.pace.diagnosis)
         _people(assembly, made)

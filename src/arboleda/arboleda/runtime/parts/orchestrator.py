@@ -7,7 +7,6 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
-from functools import partial
 from typing import Any, NamedTuple
 
 from arboleda.adapters import clock
@@ -24,6 +23,7 @@ from arboleda.departures.leaving import (
     stop_left,
 )
 from arboleda.engine import Plant, why_interrupted
+from arboleda.host.pieces import Pieces
 from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import (
@@ -63,9 +63,9 @@ from ..loop import Loop
 from ..memory import begun, kept_task, kept_tasks, remembered
 from .askers import Askers
 from .keeping import Keeping
-from .listeners import Listeners
+from .listeners import LeaveOut, Listeners
 from .part import Crash
-from .plant_log import OPERATORS, TASKS, Durable, listener_gives_up, log_act, log_answer, log_defect
+from .plant_log import OPERATORS, TASKS, Durable, log_act, log_answer, log_defect
 from .router import PlantPort
 from .screens import RosPort, Screens
 from .stops import ActsDone, CommandOvertaken, Stops, StopsAway
@@ -128,8 +128,7 @@ class Orchestrator:
     `drops_waiting`. If its thread is busy when somebody asks for a stop, the stop leaves beside it, by
     `stops`.
 
-    `leave_out_raiser` gets what a listener raises, and leaves out the package of that; False where it is of
-    none.
+    `leave_out` leaves out the listener of a package that raised.
     """
 
     def __init__(
@@ -141,7 +140,7 @@ class Orchestrator:
         *,
         history: History | None = None,
         drops_waiting: bool = False,
-        leave_out_raiser: Callable[[Exception], bool] = lambda _: False,
+        leave_out: LeaveOut | None = None,
         calendar: clock.Calendar | None = None,
     ) -> None:
         self.calendar = calendar or clock.Calendar()
@@ -163,10 +162,10 @@ class Orchestrator:
         self.stops = Stops(model, epoch, self._send_beside)
         self.keeping = Keeping(self.plant, store, self._tell, crash, self.calendar)
         self.askers = Askers()
-        gives_up = partial(listener_gives_up, leave_out_raiser)
-        self.listeners: Listeners[TaskChanged] = Listeners(gives_up)
-        self.observers: Listeners[Plant] = Listeners(gives_up)  # told after each step; they must not wait
-        self.screens = Screens(self.plant, self.loop, self.keeping, gives_up)
+        leave_out = leave_out or Pieces().leave_out
+        self.listeners: Listeners[TaskChanged] = Listeners(leave_out)
+        self.observers: Listeners[Plant] = Listeners(leave_out)  # told after each step; they must not wait
+        self.screens = Screens(self.plant, self.loop, self.keeping, leave_out)
         self.reacted: Callable[[float], None] = lambda _seconds: None
         self._history = history
         self._drops_waiting = drops_waiting

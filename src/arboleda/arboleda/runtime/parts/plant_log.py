@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
 
 from arboleda.model.messages import (
     Journal,
@@ -25,14 +24,6 @@ VERB_REFUSED = Phrase("act.verb_refused", "{verb} {scope} was refused: {why}")
 
 Durable = TaskChanged | OperatorAnswer | RevisionAnswer
 """What is told once all that led to it is durable."""
-
-
-def listener_gives_up(leave_out_raiser: Callable[[Exception], bool], error: Exception) -> bool:
-    """True where a listener raised this because its package breaks; a defect of the runner is logged."""
-    if leave_out_raiser(error):
-        return True
-    log_defect("what is told of the plant", error)
-    return False
 
 
 def log_defect(where: str, error: Exception) -> None:

@@ -17,7 +17,7 @@ from arboleda.views.resting_cells import RestingCells
 
 from ..loop import Loop, StepInFlight
 from .keeping import Keeping
-from .listeners import Listeners
+from .listeners import LeaveOut, Listeners
 from .plant_log import log_defect
 from .router import PlantPort
 from .slices import PAUSE_S, Slices
@@ -80,9 +80,9 @@ class Screens:
         plant: Plant,
         loop: Loop[Any, Any],
         keeping: Keeping,
-        gives_up: Callable[[Exception], bool],
+        leave_out: LeaveOut,
     ) -> None:
-        self.watchers: Listeners[dict[str, Any]] = Listeners(gives_up)
+        self.watchers: Listeners[dict[str, Any]] = Listeners(leave_out)
         self.recorder: FlightRecorder | None = None
         self.ros: RosPort | None = None
         self.diagnoses: list[
