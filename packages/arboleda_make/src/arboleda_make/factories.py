@@ -27,7 +27,7 @@ def desks(assembly: Assembly) -> Iterator[Part]:
     from .teaching.desk import TeachDesk
 
     made = [] if recording is None else _of_files(assembly, local, recording)
-    teach = TeachDesk(lambda: local.model, local, assembly.ask(DraftApi))
+    teach = TeachDesk(local, assembly.ask(DraftApi))
     assembly.offer(TeachApi, teach)
     yield from made if "web" in assembly.parts else ()
 
@@ -40,13 +40,12 @@ def _of_files(assembly: Assembly, local: LocalPlant, recording: Recording) -> li
     from .drafts.plant_folder import PlantFolder
     from .page.tried import TriedPlants
     from .proposals.desk import ProposalDesk
-    from .proposals.tasks import AssistantTasks
     from .trying.bench import MakeBench
     from .versions.desk import VersionDesk
 
     options, held = assembly.options, assembly.holdings
-    plant, state = assembly.need(Orchestrator), held.state.path
-    folder, process = PlantFolder(options.plant_file, state), CheckProcess()
+    state, process = held.state.path, CheckProcess()
+    folder = PlantFolder(options.plant_file, state)
 
     def as_it_runs(model: PlantModel) -> PlantModel:
         return at_rate(model.on_boards(Link.DRIVER) if recording.virtual else model, options.rate)
@@ -54,21 +53,14 @@ def _of_files(assembly: Assembly, local: LocalPlant, recording: Recording) -> li
     versions = VersionDesk(
         folder,
         state,
-        lambda: plant,
+        assembly.need(Orchestrator),
         as_it_runs=as_it_runs,
         check=process.check,
         restarts=options.restarts and held.memory.lead.renew_s is None,
     )
     draft = DraftDesk(folder, state, process, work_by=versions.work_by, writing=versions.writing)
     make = MakeBench(folder, state, draft, assembly.model.driven)
-    proposals = ProposalDesk(
-        folder,
-        state,
-        versions,
-        CheckProcess(),
-        lambda: local.model,
-        lambda shelf: AssistantTasks(shelf, lambda: local, lambda: versions.at_work().digest),
-    )
+    proposals = ProposalDesk(folder, state, versions, CheckProcess(), local)
     assembly.offer(VersionDesk, versions)
     assembly.offer(VersionsApi, versions)
     assembly.offer(DraftApi, draft)

@@ -13,7 +13,6 @@ from typing import Any
 
 from arboleda.drivers import among, plain, quoted
 from arboleda.model.assistants import Assistants
-from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.versions import Version, version_of
 from arboleda.plant_file.yaml_edit import EditRefused
@@ -27,7 +26,7 @@ from ..drafts.plant_folder import PlantFolder
 from ..versions.desk import OUTDATED, VersionDesk
 from .pictures import picture_of
 from .shelf import Decision, Shelf, Stage
-from .tasks import AssistantTasks
+from .tasks import AssistantTasks, Giving
 from .tries import PROVING, SIMULATING, Tries
 
 LOG = logging.getLogger("arboleda.operators")
@@ -53,18 +52,18 @@ class ProposalDesk(ProposalsApi):
         state: Path,
         versions: VersionDesk,
         process: CheckProcess,
-        model: Callable[[], PlantModel],
-        tasks: Callable[[Shelf], AssistantTasks],
+        plant: Giving,
+        clock: Callable[[], datetime] = datetime.now,
     ) -> None:
         self._folder = folder
         self._versions = versions
         self._process = process
-        self._model = model
+        self._plant = plant
         self._shelf = Shelf(state)
         self._proofs = Tries(PROVING, state)
         self._simulations = Tries(SIMULATING, state)
         self._kept = state / KEPT
-        self._tasks = tasks(self._shelf)
+        self._tasks = AssistantTasks(self._shelf, plant, versions, clock)
         self._deciding = threading.Lock()
 
     def start(self) -> None:
@@ -209,7 +208,7 @@ class ProposalDesk(ProposalsApi):
         )
 
     def _must_be_recipes(self, names: Sequence[str], files: Sequence[str]) -> None:
-        known = sorted({*(each.name for each in self._model().recipes), *files[1:]})
+        known = sorted({*(each.name for each in self._plant.model.recipes), *files[1:]})
         for name in names:
             if name not in known:
                 raise DraftRefused(NOT_A_RECIPE.format(name=quoted(name), among=among(name, known)))
@@ -242,7 +241,7 @@ class ProposalDesk(ProposalsApi):
         return self._row(proposal, done)
 
     def _must_be_let(self) -> None:
-        level: Assistants = self._model().assistants
+        level: Assistants = self._plant.model.assistants
         if not level.may_propose:
             raise DraftRefused(LEVEL.format(level=level.value))
 

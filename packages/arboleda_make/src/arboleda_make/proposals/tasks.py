@@ -20,6 +20,7 @@ from arboleda.store.task_rows import ASSISTANT, TaskQuery, TaskRow
 from arboleda.web.plant_api import Found
 from arboleda_make.drafts.api import DraftRefused, State
 
+from ..versions.desk import VersionDesk
 from .shelf import Decision, Shelf, Stage
 
 ANSWER_S = 5.0
@@ -45,19 +46,19 @@ class Giving(Protocol):
 class AssistantTasks:
     """AssistantTasks: judges and gives one task at a time, for threads of a server.
 
-    `at_work()` is the digest of the version at work, `clock()` the time of the plant's host.
+    `clock()` is the time of the plant's host.
     """
 
     def __init__(
         self,
         shelf: Shelf,
-        plant: Callable[[], Giving],
-        at_work: Callable[[], str],
+        plant: Giving,
+        versions: VersionDesk,
         clock: Callable[[], datetime] = datetime.now,
     ) -> None:
         self._shelf = shelf
         self._plant = plant
-        self._at_work = at_work
+        self._versions = versions
         self._clock = clock
         self._turns = threading.Lock()
 
@@ -68,22 +69,22 @@ class AssistantTasks:
         """
         with self._turns:
             self._must_be_let()
-            version = self._at_work()
-            orders, is_known = self._plant().read(lambda plant: _orders(plant, text))
+            version = self._versions.at_work().digest
+            orders, is_known = self._plant.read(lambda plant: _orders(plant, text))
             approvals = [self._approval(each, version) for each in orders]
             if not is_known:  # whose answer was lost may ask again
                 self._must_be_few()
             hash, decision = approvals[0]
             why = WHY.format(by=quoted(by), person=plain(decision.by), hash=hash[:12])
             try:
-                return self._plant().submit(text, ASSISTANT, why, version).result(ANSWER_S)
+                return self._plant.submit(text, ASSISTANT, why, version).result(ANSWER_S)
             except NoAnswerYet as error:
                 raise ArboledaError(NO_ANSWER) from error
 
     def _must_be_let(self) -> None:
         level, limits, now = (
-            self._plant().model.assistants,
-            self._plant().model.assistant_limits,
+            self._plant.model.assistants,
+            self._plant.model.assistant_limits,
             self._clock(),
         )
         if level is not Assistants.SUBMIT:
@@ -93,7 +94,7 @@ class AssistantTasks:
 
     def _approval(self, order: Order, version: str) -> tuple[str, Decision]:
         """Hash and decision of the proposal by which a recipe is approved as it is at work."""
-        cells = self._plant().model.assistant_limits.cells
+        cells = self._plant.model.assistant_limits.cells
         if order.cell not in cells:
             raise DraftRefused(NO_CELL.format(cell=plain(order.cell), cells=", ".join(cells)))
         for proposal, decision in self._shelf.all():
@@ -103,10 +104,10 @@ class AssistantTasks:
         raise DraftRefused(NOT_APPROVED.format(recipe=plain(order.recipe)))
 
     def _must_be_few(self) -> None:
-        rows = self._plant().history(TaskQuery(is_open=True, limit=None))
+        rows = self._plant.history(TaskQuery(is_open=True, limit=None))
         count, most = (
             sum(each.asked_by == ASSISTANT for each in rows),
-            self._plant().model.assistant_limits.at_once,
+            self._plant.model.assistant_limits.at_once,
         )
         if count >= most:
             raise DraftRefused(TOO_MANY.format(count=count, most=most))

@@ -35,6 +35,9 @@ Found = TypeVar("Found")
 class PlantLine(Protocol):
     """The plant that runs: it is read between two steps, and given events."""
 
+    @property
+    def model(self) -> PlantModel: ...
+
     def read(self, look: Callable[[Plant], Found]) -> Found: ...
 
     def post(self, event: Jog) -> None: ...
@@ -52,8 +55,7 @@ class Way:
 class TeachDesk(TeachApi):
     """TeachDesk: buttons and targets of one plant, for threads of a server."""
 
-    def __init__(self, model: Callable[[], PlantModel], line: PlantLine, draft: DraftApi | None) -> None:
-        self._model = model
+    def __init__(self, line: PlantLine, draft: DraftApi | None) -> None:
         self._line = line
         self._draft = draft
         self._turns = threading.Lock()
@@ -63,7 +65,7 @@ class TeachDesk(TeachApi):
     def state(self, cell: str) -> State:
         found = self._line.read(lambda plant: taught_devices.state(plant, cell))
         values = None if self._draft is None else self._draft.state()["values"]
-        targets = taught_targets.targets(self._model().cell(cell), values)
+        targets = taught_targets.targets(self._line.model.cell(cell), values)
         axes = {each["name"]: self._draws(each["name"]) for each in found["devices"]}
         devices = [{**each, "axes": axes[each["name"]]} for each in found["devices"]]
         zones = [str(each) for each in (values or {}).get("zones") or {}]
@@ -86,7 +88,7 @@ class TeachDesk(TeachApi):
         if at is None:
             raise TeachRefused(NOWHERE.format(robot=robot.name))
         spot, values = taught_devices.spot(robot, at), self._draft.state()["values"]
-        edits = taught_targets.edits(self._model().cell(cell), values, robot, target, spot)
+        edits = taught_targets.edits(self._line.model.cell(cell), values, robot, target, spot)
         with self._turns:
             if self._draft.state()["editor"] is None:
                 self._draft.take(target.editor, target.name)
@@ -137,7 +139,7 @@ class TeachDesk(TeachApi):
 
     def _draws(self, robot: str) -> bool:
         """True where ways along axes are possible: the robot has joints and a drawing."""
-        if not self._model().robots[robot].joints:
+        if not self._line.model.robots[robot].joints:
             return False
         try:
             return bool(self._body(robot))
@@ -149,7 +151,7 @@ class TeachDesk(TeachApi):
         with self._turns:
             if robot not in self._bodies:
                 try:
-                    self._bodies[robot] = bodies.read(robot_urdf(self._model(), robot))
+                    self._bodies[robot] = bodies.read(robot_urdf(self._line.model, robot))
                 except (ArboledaError, ValueError) as error:
                     raise TeachRefused(NO_DRAWING.format(robot=robot, why=error)) from error
             return self._bodies[robot]

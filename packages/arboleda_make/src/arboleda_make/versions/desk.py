@@ -60,7 +60,7 @@ class VersionDesk(VersionsApi):
         self,
         folder: PlantFolder,
         state: Path,
-        plant: Callable[[], Orchestrator],
+        plant: Orchestrator,
         *,
         as_it_runs: Callable[[PlantModel], PlantModel],
         check: Check,
@@ -81,7 +81,7 @@ class VersionDesk(VersionsApi):
         known = [] if kept is None else kept.all()
         number = next((each.number for each in reversed(known) if each.digest == started.digest), None)
         rows = [_row(each, is_at_work=each.number == number) for each in known]
-        cells, by = self._plant().loop.read(lambda plant: (_cells(plant), plant.restart_by))
+        cells, by = self._plant.loop.read(lambda plant: (_cells(plant), plant.restart_by))
         restart = {"by": by, "can": self._restarts}
         now = {"number": number, "at": started.at}
         return {"at_work": now, "versions": rows, "cells": cells, "restart": restart}
@@ -90,7 +90,7 @@ class VersionDesk(VersionsApi):
         if not self._restarts:
             raise DraftRefused(NO_RESTART)
         found = self.listed()  # a plant at rest restarts as soon as it hears of it
-        self._plant().restart_at_rest(by, wanted=wanted)
+        self._plant.restart_at_rest(by, wanted=wanted)
         return found | {"restart": {"by": by if wanted else "", "can": True}}
 
     def at_work(self) -> Version:
@@ -215,7 +215,7 @@ class VersionDesk(VersionsApi):
         if not restart:
             outcome = self._answer(version, by)
             restart = () if outcome.refusal is None else (str(outcome.refusal),)
-            answer |= {"cells": _when(self._plant(), outcome), "cancelled": outcome.cancelled}
+            answer |= {"cells": _when(self._plant, outcome), "cancelled": outcome.cancelled}
         if restart:
             LOG.warning("version %d is kept; the next start of the plant has it", version.number)
             return answer | {"restart": restart, "cells": {}, "cancelled": ()}
@@ -231,7 +231,7 @@ class VersionDesk(VersionsApi):
             raise DraftRefused(MEANWHILE)
         name = RevisionName(digest=version.digest, number=version.number)
         put = PutToWork(name, self._as_it_runs(model), files, by, version.changes)
-        answer = self._plant().revise(put).result(PATIENCE_S)
+        answer = self._plant.revise(put).result(PATIENCE_S)
         if answer.refusal is None:
             at_work.keep(self._state, files, _now())
         return answer

@@ -22,7 +22,6 @@ from arboleda.store.task_rows import ASSISTANT
 from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.drafts.plant_folder import PlantFolder
 from arboleda_make.proposals.desk import MOST_OPEN, ProposalDesk
-from arboleda_make.proposals.tasks import AssistantTasks
 from arboleda_make.versions.desk import VersionDesk
 
 AT = "2026-11-25T20:00:00+00:00"
@@ -99,7 +98,7 @@ class Bench:
         self.versions = VersionDesk(
             PlantFolder(folder / "plant.yaml", self.state),
             self.state,
-            lambda: self.plant,  # type: ignore[arg-type, return-value]
+            self.plant,  # type: ignore[arg-type]
             as_it_runs=lambda model: model,
             check=self.check,
         )
@@ -112,13 +111,8 @@ class Bench:
             self.state,
             self.versions,
             SimpleNamespace(check=self.check, stop=lambda: None),  # type: ignore[arg-type]
-            lambda: self.plant.model,  # type: ignore[arg-type, return-value]
-            lambda shelf: AssistantTasks(
-                shelf,
-                lambda: self.plant,  # type: ignore[arg-type, return-value]
-                lambda: self.versions.at_work().digest,
-                lambda: self.now,
-            ),
+            self.plant,  # type: ignore[arg-type]
+            lambda: self.now,
         )
 
     def on_disk(self) -> PlantFiles:

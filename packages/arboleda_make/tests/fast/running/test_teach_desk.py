@@ -73,6 +73,7 @@ class Line:
 
     def __init__(self, rig: Rig) -> None:
         self._rig = rig
+        self.model = rig.plant.model
 
     def read(self, look: Callable[[Plant], Any]) -> Any:
         return look(self._rig.plant)
@@ -95,7 +96,7 @@ class Lab:
         self.rig = Rig(self.model)
         self.rig.wait(2.0)
         self.draft = DraftDesk(PlantFolder(path, folder / "state"), folder / "state", Unchecked())
-        self.desk = TeachDesk(lambda: self.model, Line(self.rig), self.draft)
+        self.desk = TeachDesk(Line(self.rig), self.draft)
         self.cell, self.number = cell, 0
         assert self.rig.operate(Verb.TEACH, cell, teacher="ana") is None
         self.session = self.rig.answers[-1].act or 0

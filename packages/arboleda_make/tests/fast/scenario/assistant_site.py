@@ -47,7 +47,6 @@ from arboleda.web.plant_api import PlantApi, Snapshot
 from arboleda_make.drafts.plant_folder import PlantFolder
 from arboleda_make.proposals.api import ProposalsApi
 from arboleda_make.proposals.desk import ProposalDesk
-from arboleda_make.proposals.tasks import AssistantTasks
 from arboleda_make.versions.desk import VersionDesk
 
 AT = "2026-11-26T08:00:00+00:00"
@@ -98,7 +97,7 @@ class Site(PlantApi):
         self.versions_desk = VersionDesk(
             home,
             state,
-            lambda: port,  # type: ignore[arg-type, return-value]
+            port,  # type: ignore[arg-type]
             as_it_runs=lambda each: each,
             check=draft_check.check,
         )
@@ -107,10 +106,8 @@ class Site(PlantApi):
             state,
             self.versions_desk,
             SimpleNamespace(check=draft_check.check, stop=lambda: None),  # type: ignore[arg-type]
-            lambda: self.model,
-            lambda shelf: AssistantTasks(
-                shelf, lambda: self, lambda: self.versions_desk.at_work().digest, lambda: datetime(2026, 1, 1)
-            ),
+            self,
+            lambda: datetime(2026, 1, 1),
         )
         self.home()
 
