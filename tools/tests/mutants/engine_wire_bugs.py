@@ -10,7 +10,7 @@ WIRE_BUGS = (
     bug(
         BRIDGE,
         "A command of an earlier plant is obeyed.",
-        'return None if int(match[1]) == self._plant_epoch else "old_epoch"',
+        "return None if int(match[1]) == self._plant_epoch else refusals.OLD_EPOCH",
         "return None",
     ),
     bug(
@@ -22,8 +22,8 @@ WIRE_BUGS = (
     bug(
         BRIDGE,
         "A stop that waited too long is refused.",
-        'return "no_link" if late and not isinstance(command, Stop) else None',
-        'return "no_link" if late else None',
+        "return refusals.NO_LINK if late and not isinstance(command, Stop) else None",
+        "return refusals.NO_LINK if late else None",
     ),
     bug(
         BRIDGE,

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
+from arboleda.model import refusals
 from arboleda.model.commands import Command, Home, Motion, Position, Process, Query, Switch
 from arboleda.model.facts import Facts, Value, shown
 from arboleda.model.messages import Failure, MotionState, Reason, Report
@@ -22,11 +23,11 @@ from .belief import Belief
 from .ledger import Entry, Feed, State
 
 REFUSALS: dict[str, Reason] = {
-    "no_link": Reason.LINK_LOST,
-    "tarde": Reason.LINK_LOST,
-    "paro": Reason.STOPPED,
-    "sin_ref": Reason.NOT_HOMED,
-    "condicion": Reason.PRECONDITION,
+    refusals.NO_LINK: Reason.LINK_LOST,
+    refusals.LATE: Reason.LINK_LOST,
+    refusals.STOPPED: Reason.STOPPED,
+    refusals.NOT_HOMED: Reason.NOT_HOMED,
+    refusals.CONDITION: Reason.PRECONDITION,
 }
 OBJECTIONS = frozenset({MotionState.FAULT, MotionState.NOT_HOMED, MotionState.STOP_LATCHED})
 JITTER_S = APART_S  # two positions may arrive closer together by this than they were made
@@ -196,7 +197,7 @@ def _refused(entry: Entry, report: Report) -> CommandVerdict | None:
     if report.rejected != entry.command.id:
         return None
     word = report.refusal or "no reason given"
-    what, reason = TOO_LATE if word == "tarde" else REFUSED, REFUSALS.get(word, Reason.REJECTED)
+    what, reason = TOO_LATE if word == refusals.LATE else REFUSED, REFUSALS.get(word, Reason.REJECTED)
     return CommandVerdict(feed=Feed.REJECTED, failure=_failure(entry, reason, what, word=word))
 
 

@@ -6,6 +6,7 @@ import math
 from collections import OrderedDict
 from dataclasses import replace
 
+from arboleda.model import refusals
 from arboleda.model.commands import Command, OnStop, Stop, StopMode, Work, needs_clear
 from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import Evidence, Robot
@@ -51,10 +52,10 @@ class DrivenDevice:
             if command.mode is not StopMode.HALT:
                 self._latched = command.mode is StopMode.LATCH
             if not self.robot.has_stop:
-                return "no_stop"
+                return refusals.NO_STOP
         if not self.up:
-            return "no_link"
-        return "paro" if self._latched and needs_clear(command) else None
+            return refusals.NO_LINK
+        return refusals.STOPPED if self._latched and needs_clear(command) else None
 
     def leaves(self, command: Command) -> None:
         """Note that a command is handed to the driver."""

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from arboleda.model import refusals
 from arboleda.model.commands import StopMode
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import MotionState
@@ -161,10 +162,10 @@ class Board:
         try:
             message = decode(channel, delivery.payload, axes=self.body.axes)
         except PayloadError:
-            self._refuse("formato", *_numbers_in(delivery.payload))
+            self._refuse(refusals.FORMAT, *_numbers_in(delivery.payload))
             return
         if delivery.retain:
-            self._refuse("retenido", *_numbers_in(delivery.payload))
+            self._refuse(refusals.RETAINED, *_numbers_in(delivery.payload))
         elif isinstance(message, Beat):
             self._hear(message)
         elif not isinstance(message, (Telemetry, Presence)):
@@ -174,7 +175,7 @@ class Board:
         """Take a heartbeat; one of the newest epoch keeps alive the work begun under that epoch."""
         receipts = self._receipts
         if self._numbered and not receipts.hear(beat.epoch):
-            self._refuse("formato", None, beat.epoch)
+            self._refuse(refusals.FORMAT, None, beat.epoch)
         elif not self._numbered or beat.epoch == receipts.least:
             self._beaten = True
             self._alive_us = self._now_us if receipts.epoch in (None, beat.epoch) else self._alive_us
@@ -205,7 +206,7 @@ class Board:
         if isinstance(goal, StopGoal):
             return None
         in_time = goal.heard is None or self._freshness.covers(self._now_us, goal.heard)
-        return self._objection(goal) or (None if in_time else "tarde")
+        return self._objection(goal) or (None if in_time else refusals.LATE)
 
     def _objection(self, goal: Goal) -> str | None:
         """The word with which the board's state refuses a command; None if it can be carried out."""
@@ -214,16 +215,16 @@ class Board:
         if isinstance(goal, OrderGoal):
             return self.body.objection(goal, latched=self.latched, faulted=self.faulted)
         if self.latched:
-            return "paro"
+            return refusals.STOPPED
         if isinstance(goal, EffectorGoal):
             return None
         if self.faulted or isinstance(self._job, HomeGoal):
-            return "ocupado"
+            return refusals.BUSY
         if isinstance(goal, HomeGoal):
             return None
         if not self.homed:
-            return "sin_ref"
-        return None if self.body.admits(goal) else "limite"
+            return refusals.NOT_HOMED
+        return None if self.body.admits(goal) else refusals.LIMIT
 
     def _act(self, goal: Goal) -> None:
         if isinstance(goal, (JointsGoal, PathGoal)):

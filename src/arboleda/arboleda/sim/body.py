@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
+from arboleda.model import refusals
 from arboleda.model.commands import Command, Position
 from arboleda.model.facts import Facts, Value
 from arboleda.wire.payloads import Goal, OrderGoal
@@ -43,7 +44,7 @@ class Robotic:
     finishes = False
 
     def objection(self, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
-        return "formato"
+        return refusals.FORMAT
 
     def command(self, goal: OrderGoal) -> Command | None:
         return None

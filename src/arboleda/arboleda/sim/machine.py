@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, UseError, VerbCall
+from arboleda.model import refusals
 from arboleda.model.commands import OnStop
 from arboleda.model.facts import Facts, Value
 from arboleda.wire.payloads import DEVICE, OrderGoal
@@ -122,16 +123,16 @@ class MachineBody:
         """The word that refuses an order now; None if it can be carried out."""
         command = self.command(goal)
         if command is None:
-            return "formato"
+            return refusals.FORMAT
         if (word := self.refuses(goal)) is not None:
             return word
         works = command.definition.effect in WORK
         if latched and not _goes_on_while_stopped(command):
-            return "paro"
+            return refusals.STOPPED
         if works and (self.moving or faulted):
-            return "ocupado"
+            return refusals.BUSY
         met = all(self.facts[name] == value for name, value in command.needs)
-        return None if met and not self._breaks_its_work(command) else "condicion"
+        return None if met and not self._breaks_its_work(command) else refusals.CONDITION
 
     def _breaks_its_work(self, command: VerbCall) -> bool:
         """True if a command would change a fact that the present work needs."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
+from arboleda.model import refusals
 from arboleda.model.facts import Value
 from arboleda.wire import epochs
 from arboleda.wire.payloads import MOST_FAILURES, Goal, StopGoal
@@ -73,14 +74,14 @@ class Receipts:
     def objection(self, goal: Goal) -> str | None:
         """The refusal of a command by its numbers, None for none; a newer epoch becomes the current one."""
         if goal.seq is None or goal.epoch is None:
-            return "formato"
+            return refusals.FORMAT
         if self.least is not None and goal.epoch < self.least:
-            return "viejo"
+            return refusals.OLD
         if self.epoch is None or goal.epoch > self.epoch:
             self._enter(goal.epoch)
             return None
         last = -1 if self.accepted is None else self.accepted
-        return "viejo" if (goal.epoch, goal.seq) <= (self.epoch, last) else None
+        return refusals.OLD if (goal.epoch, goal.seq) <= (self.epoch, last) else None
 
     def accept(self, goal: Goal) -> None:
         self.accepted = goal.seq
@@ -110,7 +111,7 @@ class Receipts:
     def refuse(self, word: str, seq: int | None, epoch: int | None) -> None:
         """Note a refusal; a number under a foreign epoch could be taken for one of the current sender."""
         # `viejo` is for the sender of the older epoch, which recognises its number
-        ours = word == "viejo" or self.epoch in (None, epoch)
+        ours = word == refusals.OLD or self.epoch in (None, epoch)
         self.refusal = word
         self.refused = seq if ours and seq is not None else UNKNOWN_SEQ
         self._note()

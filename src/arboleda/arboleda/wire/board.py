@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from arboleda.model import refusals
 from arboleda.model.commands import Command, Stop, StopMode, Work, needs_clear
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import MotionState, Report
@@ -19,7 +20,7 @@ from .labels import Labels
 from .link import BoardLink, LinkUpdate
 from .motion import OpenMotion
 from .payloads import Beat, Payload, Presence, Telemetry, decode, encode, read_angles
-from .rejections import OTHER_BRIDGE, ForeignCommand, Rejection
+from .rejections import ForeignCommand, Rejection
 from .repeats import SplitTelemetry
 from .rivals import News, Rivals
 from .topics import Channel, topic
@@ -107,7 +108,9 @@ class Board:
         self.reports.count(sentence)
         name, topic = self.robot.name, shown(command)
         return [
-            Rejection(at=at, robot=name, command=topic, id=command.id, reason="limite", sentence=sentence)
+            Rejection(
+                at=at, robot=name, command=topic, id=command.id, reason=refusals.LIMIT, sentence=sentence
+            )
         ]
 
     def refuse(self, at: float, command: Command, word: str, sender: str = "") -> list[Message]:
@@ -251,11 +254,11 @@ class Board:
 
     def _refusal(self, command: Command) -> str | None:
         if not self.link.up:
-            return "no_link"
+            return refusals.NO_LINK
         if self.rivals.yielded and not is_stop(command):
-            return OTHER_BRIDGE
+            return refusals.OTHER_BRIDGE
         return self._form.refusal(self.robot, command) or (
-            "paro" if self._latched and needs_clear(command) else None
+            refusals.STOPPED if self._latched and needs_clear(command) else None
         )
 
     def _send(self, at: float, command: Command, sender: str = "") -> list[Message]:
@@ -265,7 +268,7 @@ class Board:
         try:
             publication = self._publication(channel, goal)
         except PayloadError:
-            return self.refuse(at, command, "formato", sender)
+            return self.refuse(at, command, refusals.FORMAT, sender)
         if isinstance(command, Work):
             self._motion = OpenMotion(robot=self.robot, command=command, seq=seq)
             return [self.beat(), publication]

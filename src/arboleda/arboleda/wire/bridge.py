@@ -11,6 +11,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from arboleda.model import refusals
 from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Heartbeat, Report
@@ -23,7 +24,7 @@ from .board import Board, Message
 from .board_reports import Counters
 from .copies import COPY_S
 from .hop import FromPlant, is_stop, loses_its_id, without_id
-from .rejections import FOREIGN, Rejection
+from .rejections import Rejection
 from .topics import Channel
 from .transport import Connection, Delivery
 
@@ -228,7 +229,7 @@ class Bridge:
         board, event = unsure.board, unsure.event
         assert not isinstance(event.message, Heartbeat)
         if unsure.refused:
-            out = board.refuse(event.at, event.message, FOREIGN, event.sender)
+            out = board.refuse(event.at, event.message, refusals.FOREIGN, event.sender)
             return [*out, *board.report_foreign(event.at, board.reports.counters.last, refused=True)]
         sentence = rejections.obeyed(board.robot, event.message, event.sender)
         return board.report_foreign(event.at, sentence, refused=False)
@@ -241,7 +242,7 @@ class Bridge:
                 robot=command.robot,
                 epoch=self._epoch,
                 rejected=command.id or None,
-                refusal="no_link" if command.id else None,
+                refusal=refusals.NO_LINK if command.id else None,
             )
         ]
 
@@ -249,15 +250,15 @@ class Bridge:
         """The word that refuses a command of another plant than the one that is heard; None for a stop."""
         match = _ID.fullmatch(command.id)
         if match is None:
-            return "formato"
+            return refusals.FORMAT
         if is_stop(command):
             return None
-        return None if int(match[1]) == self._plant_epoch else "old_epoch"
+        return None if int(match[1]) == self._plant_epoch else refusals.OLD_EPOCH
 
     def _late(self, at: float, command: Command) -> str | None:
         """The word that refuses a command that waited while this process was stopped; None for a stop."""
         late = self.now - at > self._stale_after_s
-        return "no_link" if late and not isinstance(command, Stop) else None
+        return refusals.NO_LINK if late and not isinstance(command, Stop) else None
 
     def _relay(self, event: FromPlant, heartbeat: Heartbeat) -> list[Message]:
         at, heard = event.at, self._plant_epoch

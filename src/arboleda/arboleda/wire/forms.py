@@ -12,6 +12,7 @@ from arboleda.kinds.arm import Arm, SetEffector
 from arboleda.kinds.declared import Device, FactType, UseError, VerbCall
 from arboleda.kinds.joints import Joint, Jointed, MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.model import refusals
 from arboleda.model.by_class import nearest
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.errors import PayloadError
@@ -78,7 +79,7 @@ class MessageForm:
         kind = type(command)
         command_form = self.form_of_command(kind)
         return (
-            self.missing.get(kind, "formato")
+            self.missing.get(kind, refusals.FORMAT)
             if command_form is None
             else command_form.refusal(robot, command)
         )
@@ -117,15 +118,15 @@ def form_of(robot: Robot) -> MessageForm:
 
 def _check_joints(robot: Jointed, command: MoveJoints) -> str | None:
     if len(command.q) != len(robot.joints) or not all(math.isfinite(value) for value in command.q):
-        return "formato"
-    return "limite" if _beyond(robot, command) else None
+        return refusals.FORMAT
+    return refusals.LIMIT if _beyond(robot, command) else None
 
 
 def _check_path(mobile: Mobile, command: FollowPath) -> str | None:
     if not command.nodes:
-        return "formato"
+        return refusals.FORMAT
     inside = all(0 <= node < mobile.grid.size for node in command.nodes)
-    return None if inside else "limite"
+    return None if inside else refusals.LIMIT
 
 
 def _begins_elsewhere(mobile: Mobile, command: FollowPath, report: Report) -> Sentence | None:
@@ -141,12 +142,12 @@ def _check_order(device: Device, command: VerbCall) -> str | None:
     try:
         device.kind.command(id="", robot=device.name, verb=command.verb, values=dict(command.values))
     except UseError:
-        return "formato"
+        return refusals.FORMAT
     return None
 
 
 def _check_stop(robot: Robot, command: Stop) -> str | None:
-    return None if robot.has_stop else "no_stop"
+    return None if robot.has_stop else refusals.NO_STOP
 
 
 def _wire_joints(robot: Jointed, command: MoveJoints) -> dict[str, object]:
@@ -171,17 +172,17 @@ def _out_of_limits(joint: Joint, number: int, value: float) -> Sentence:
 
 
 def _why_of_joints(robot: Jointed, command: Command, word: str, by_board: bool) -> Sentence | None:
-    return _beyond(robot, command) if word == "limite" and isinstance(command, MoveJoints) else None
+    return _beyond(robot, command) if word == refusals.LIMIT and isinstance(command, MoveJoints) else None
 
 
 def _why_of_mobiles(mobile: Mobile, command: Command, word: str, by_board: bool) -> Sentence | None:
-    if word != "limite" or not isinstance(command, FollowPath):
+    if word != refusals.LIMIT or not isinstance(command, FollowPath):
         return None
     return ON_THE_GRID() if by_board else NODES(last=mobile.grid.size - 1)
 
 
 def _why_of_devices(device: Device, command: Command, word: str, by_board: bool) -> Sentence | None:
-    return UNDONE() if word == "ocupado" else None
+    return UNDONE() if word == refusals.BUSY else None
 
 
 STOP = CommandForm(
@@ -245,7 +246,7 @@ def _of_device(device: Device) -> MessageForm:
         command_forms=OF_DEVICES,
         axes=DEVICE,
         facts=device.kind.facts,
-        missing={Home: "no_home"},
+        missing={Home: refusals.NO_HOME},
         why=_why_of_devices,
     )
 

@@ -6,6 +6,7 @@ from collections import OrderedDict
 from dataclasses import dataclass
 from typing import TypeVar
 
+from arboleda.model import refusals
 from arboleda.model.commands import Command
 from arboleda.model.facts import Value
 
@@ -177,7 +178,7 @@ class Labels:
         issued = self._issued.get(refused_seq)
         if issued is None:
             return False
-        if message.refusal != "viejo":
+        if message.refusal != refusals.OLD:
             return message.ack_epoch == issued.epoch
         if self._least > issued.epoch:
             return True

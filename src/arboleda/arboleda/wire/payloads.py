@@ -12,6 +12,7 @@ from arboleda.model.errors import PayloadError
 from arboleda.model.facts import Facts
 from arboleda.model.messages import MotionState
 from arboleda.model.outside import quoted
+from arboleda.model.refusals import BUSY, CONDITION, FORMAT, LATE, LIMIT, NOT_HOMED, OLD, RETAINED, STOPPED
 
 from . import strict
 from .topics import Channel
@@ -51,9 +52,10 @@ __all__ = [
     "read_angles",
 ]
 
-REFUSALS = frozenset({"viejo", "retenido", "tarde", "formato", "limite", "sin_ref", "paro", "ocupado"})
+_OF_ALL = {OLD, RETAINED, LATE, FORMAT, STOPPED, BUSY}
+REFUSALS = frozenset({*_OF_ALL, LIMIT, NOT_HOMED})
 """The words a board may give as `rechazo`."""
-DEVICE_REFUSALS = frozenset({"viejo", "retenido", "tarde", "formato", "paro", "ocupado", "condicion"})
+DEVICE_REFUSALS = frozenset({*_OF_ALL, CONDITION})
 """The words that a device of a declared kind may give as `rechazo`."""
 DEVICE = 0  # `axes` of a device of a declared kind: it has facts instead
 MOST_FAILURES = 3  # in one message; so many commands may fail before telemetry arrives again

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from arboleda.model import refusals
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import OWN, Phrase, Sentence
@@ -11,8 +12,6 @@ from arboleda.model.sentence import OWN, Phrase, Sentence
 from .forms import BEYOND, DEGREES, ELSEWHERE, NODES, ON_THE_GRID, OTHER_UNIT, UNDONE, form_of
 from .hop import shown
 
-FOREIGN = "foreign"  # the word that refuses a command of another node
-OTHER_BRIDGE = "other_bridge"  # the word that refuses a command to a board of another bridge
 SOMEBODY = Phrase("foreign.somebody", "another node")
 REJECTED = Phrase("rejection", "{robot}: {command} was refused ({word}): {why}")
 REJECTED_OF = Phrase("rejection_of", "{robot}: {command} of {sender} was refused ({word}): {why}")
@@ -34,24 +33,26 @@ YIELDED = Phrase(
     "more. End the other one and start this one again, or give this plant a broker of its own",
 )
 WHY = {
-    "no_link": Phrase("why.no_link", "its board is not heard"),
-    "no_stop": Phrase("why.no_stop", "the plant file says that it has no stop"),
-    "no_home": Phrase("why.no_home", "it has no homing routine"),
-    "old_epoch": Phrase("why.old_epoch", "it is of another start of the plant than the one that is heard"),
-    OTHER_BRIDGE: Phrase(
+    refusals.NO_LINK: Phrase("why.no_link", "its board is not heard"),
+    refusals.NO_STOP: Phrase("why.no_stop", "the plant file says that it has no stop"),
+    refusals.NO_HOME: Phrase("why.no_home", "it has no homing routine"),
+    refusals.OLD_EPOCH: Phrase(
+        "why.old_epoch", "it is of another start of the plant than the one that is heard"
+    ),
+    refusals.OTHER_BRIDGE: Phrase(
         "why.other_bridge",
         "another bridge was at its board before this one; end it, then start this one again",
     ),
-    FOREIGN: Phrase("why.foreign", "a plant commands this robot (foreign_commands: refuse)"),
-    "formato": Phrase("why.formato", "it makes no sense for this robot"),
-    "limite": Phrase("why.limite", "it is beyond a limit of the robot"),
-    "paro": Phrase("why.paro", "its stop is latched"),
-    "sin_ref": Phrase("why.sin_ref", "it is not homed"),
-    "ocupado": Phrase("why.ocupado", "it is homing"),
-    "condicion": Phrase("why.condicion", "what this needs to be so is not so"),
-    "viejo": Phrase("why.viejo", "its board has taken a later command"),
-    "retenido": Phrase("why.retenido", "the broker kept it"),
-    "tarde": Phrase(
+    refusals.FOREIGN: Phrase("why.foreign", "a plant commands this robot (foreign_commands: refuse)"),
+    refusals.FORMAT: Phrase("why.formato", "it makes no sense for this robot"),
+    refusals.LIMIT: Phrase("why.limite", "it is beyond a limit of the robot"),
+    refusals.STOPPED: Phrase("why.paro", "its stop is latched"),
+    refusals.NOT_HOMED: Phrase("why.sin_ref", "it is not homed"),
+    refusals.BUSY: Phrase("why.ocupado", "it is homing"),
+    refusals.CONDITION: Phrase("why.condicion", "what this needs to be so is not so"),
+    refusals.OLD: Phrase("why.viejo", "its board has taken a later command"),
+    refusals.RETAINED: Phrase("why.retenido", "the broker kept it"),
+    refusals.LATE: Phrase(
         "why.tarde", "it came too late: who gave it had not heard the board for 2 s by the time it arrived"
     ),
 }
@@ -97,7 +98,7 @@ def passed_over(robot: Robot, command: Command, why: Sentence) -> Sentence:
 
 def unreadable(robot: Robot, topic: str, why: Sentence) -> Sentence:
     """The sentence for a message on a robot's topic that is no command."""
-    return REJECTED(robot=robot.name, command=topic, word="formato", why=why)
+    return REJECTED(robot=robot.name, command=topic, word=refusals.FORMAT, why=why)
 
 
 def obeyed(robot: Robot, command: Command, sender: str) -> Sentence:

@@ -6,7 +6,7 @@ from collections import defaultdict
 
 from arboleda.drivers import Command, Evidence, Report, Robot
 from arboleda.engine import Belief
-from arboleda.wire.rejections import FOREIGN, Rejection
+from arboleda.wire.rejections import Rejection
 from arboleda.wire.transport import Delivery, Publication
 
 from .board_link import KnownLink
@@ -51,7 +51,7 @@ class BridgedBoard:
         """Expect that people are told of a refused command."""
         self.touched = True
         self._commands.rejections.append(rejection)
-        if rejection.reason == FOREIGN:
+        if rejection.reason == "foreign":
             self._count_foreign(refused=1)
 
     def obey_foreign(self, *, taken: bool) -> None:
