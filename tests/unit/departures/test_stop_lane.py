@@ -46,7 +46,7 @@ def latched_by_the_plant(scope: str) -> list[str]:
 
 @pytest.mark.parametrize("scope", ["", "plant", "sis_b", "ra1", "rm_sis_c", " SIS_A ", "sis_z"])
 def test_it_stops_those_robots_that_the_plant_will_stop(lane: StopLane, scope: str) -> None:
-    stops = lane.step(10.0, [opened(scope), Blocked(token="a")])
+    stops = lane.step(10.0, [opened(scope), Blocked(request_id="a")])
     assert {stop.robot for stop in stops} == set(latched_by_the_plant(scope))
     assert len(stops) == len({stop.robot for stop in stops})
     assert all(stop.mode is StopMode.LATCH for stop in stops)
@@ -57,8 +57,8 @@ def test_a_plant_that_is_free_sends_its_stops_itself(lane: StopLane) -> None:
 
 
 def test_no_board_takes_one_stop_for_a_repetition_of_another_or_of_a_step(lane: StopLane) -> None:
-    stops = [*lane.step(10.0, [opened("ra1"), Blocked(token="a")])]
-    stops += lane.step(11.0, [opened("ra1", "b"), Blocked(token="b"), Overrun(robot="ra1")])
+    stops = [*lane.step(10.0, [opened("ra1"), Blocked(request_id="a")])]
+    stops += lane.step(11.0, [opened("ra1", "b"), Blocked(request_id="b"), Overrun(robot="ra1")])
     plant = Plant(MODEL, epoch=EPOCH, now=0.0)
     plant.step(0.0, [])
     ids = [each.id for each in stops if isinstance(each, Stop)]
@@ -73,7 +73,7 @@ def test_the_plant_takes_no_number_of_the_lane_for_that_of_a_stranger(lane: Stop
     plant.step(0.0, [])
     for number in range(3):
         at, token = 1.0 + number / 10, str(number)
-        (stop,) = lane.step(at, [opened("ra1", token, at), Blocked(token=token)])
+        (stop,) = lane.step(at, [opened("ra1", token, at), Blocked(request_id=token)])
         said = plant.step(
             at,
             [
@@ -86,7 +86,7 @@ def test_the_plant_takes_no_number_of_the_lane_for_that_of_a_stranger(lane: Stop
 
 
 def test_who_asked_hears_in_time_that_a_stop_has_left_and_is_not_kept(lane: StopLane) -> None:
-    lane.step(10.0, [opened("sis_a"), Blocked(token="a")])
+    lane.step(10.0, [opened("sis_a"), Blocked(request_id="a")])
     due = lane.next_deadline
     assert due == 10.0 + ANSWERED_WITHIN_S
     (answer,) = lane.step(due, [])
@@ -105,7 +105,7 @@ def test_who_asked_hears_in_time_that_an_act_has_happened_and_is_not_kept(lane: 
     (said,) = lane.step(10.0 + ANSWERED_WITHIN_S, [])
     assert isinstance(said, Unkept) and (said.request, said.act, said.outcome) == ("a", 3, Outcome.DONE)
     assert str(said.why).startswith("hold sis_a is done, and the plant has not kept it (its disk")
-    lane.step(20.0, [Happened(at=20.0, answer=HOLD), Closed(token="a")])
+    lane.step(20.0, [Happened(at=20.0, answer=HOLD), Closed(request_id="a")])
     assert lane.next_deadline is None
 
 
@@ -141,13 +141,14 @@ def test_an_act_with_commands_of_its_own_has_not_happened_before_these_leave() -
 
 def test_a_stop_that_the_plant_has_sent_itself_is_told_to_have_left(lane: StopLane) -> None:
     lane.step(10.0, [opened("")])
-    lane.step(10.1, [Departed(token="a")])
+    lane.step(10.1, [Departed(request_id="a")])
     (answer,) = lane.step(10.0 + ANSWERED_WITHIN_S, [])
     assert "left for the whole plant" in str(answer.why)
 
 
 @pytest.mark.parametrize(
-    ("scope", "events"), [("", []), ("sis_z", [Blocked(token="a")]), ("sis_z", [Departed(token="a")])]
+    ("scope", "events"),
+    [("", []), ("sis_z", [Blocked(request_id="a")]), ("sis_z", [Departed(request_id="a")])],
 )
 def test_nobody_hears_that_a_stop_has_left_which_may_not_have(
     lane: StopLane, scope: str, events: list[Event]
@@ -157,8 +158,8 @@ def test_nobody_hears_that_a_stop_has_left_which_may_not_have(
 
 
 def test_who_was_answered_hears_nothing_more(lane: StopLane) -> None:
-    lane.step(10.0, [opened(""), Departed(token="a")])
-    lane.step(10.1, [Closed(token="a"), Blocked(token="a"), Closed(token="of nobody")])
+    lane.step(10.0, [opened(""), Departed(request_id="a")])
+    lane.step(10.1, [Closed(request_id="a"), Blocked(request_id="a"), Closed(request_id="of nobody")])
     assert lane.step(20.0, []) == []
 
 

@@ -32,16 +32,16 @@ class Opened:
 
 @dataclass(frozen=True, kw_only=True)
 class Blocked:
-    """The plant's thread is busy with something older than the request of this token."""
+    """The plant's thread is busy with something older than the request of this id."""
 
-    token: str
+    request_id: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class Departed:
-    """The plant itself has sent the stops of the request of this token."""
+    """The plant itself has sent the stops of the request of this id."""
 
-    token: str
+    request_id: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,9 +54,9 @@ class Happened:
 
 @dataclass(frozen=True, kw_only=True)
 class Closed:
-    """The request of this token is answered."""
+    """The request of this id is answered."""
 
-    token: str
+    request_id: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,21 +108,21 @@ class StopLane:
     def step(self, now: float, events: Sequence[Event]) -> list[Stop | Unkept]:
         """Stops that must leave, then answers that are due."""
         out = [message for event in events for message in self._take(event)]
-        due = [token for token, each in self._open.items() if each.has_left and each.due <= now]
-        return [*out, *(self._open.pop(token).unkept for token in due)]
+        due = [id for id, each in self._open.items() if each.has_left and each.due <= now]
+        return [*out, *(self._open.pop(id).unkept for id in due)]
 
     def _take(self, event: Event) -> list[Stop | Unkept]:
         if isinstance(event, Opened):
             self._open_act(event.request)
         elif isinstance(event, Happened):
-            token, due = event.answer.request or "", event.at + ANSWERED_WITHIN_S
+            request_id, due = event.answer.request or "", event.at + ANSWERED_WITHIN_S
             unkept = done_unkept(event.answer, STILL_WAITS())
-            self._open[token] = OpenAct(request=event.answer, unkept=unkept, due=due, has_left=True)
+            self._open[request_id] = OpenAct(request=event.answer, unkept=unkept, due=due, has_left=True)
         elif isinstance(event, Overrun):
             return self._stops(frozenset([event.robot]))
         elif isinstance(event, Closed):
-            self._open.pop(event.token, None)
-        elif (act := self._open.get(event.token)) is not None:
+            self._open.pop(event.request_id, None)
+        elif (act := self._open.get(event.request_id)) is not None:
             reached = self.reached(act.request)
             act.has_left = bool(reached)
             return self._stops(reached) if isinstance(event, Blocked) else []

@@ -153,7 +153,7 @@ class SystemStart:
 
 @dataclass(frozen=True, kw_only=True)
 class TaskChanged:
-    """Change of a task; `request` is the token of the request that caused it, if any.
+    """Change of a task; `request` is the id of the request that caused it, if any.
 
     `for_now`: the text of this refused task may be taken later. `choice` says why the task is done in this
     cell, where several were allowed. A task that is done has a `course`, and the checks that nobody

@@ -35,7 +35,7 @@ class Run:
 
     def __init__(self, model: PlantModel, layout: Row, climate: Climate, *, began_unix_s: float) -> None:
         self.tick = 0
-        self.answers: dict[str, Answer] = {}  # by the token of the request
+        self.answers: dict[str, Answer] = {}  # by the id of the request
         self.state = PageState(layout, [])
         self.snapshot: Row = {}  # the last snapshot that the screen's memory took in
         self.provoked: list[Provoked] = []

@@ -127,8 +127,8 @@ class Questions:
         The future says what came of it, once it is kept; then the package has its answer.
         """
         given = dict(arguments)
-        answer, token = self._running.askers.expect()
-        reply = OperatorAnswer(verb=Verb.ANSWER, scope=scope, request=token, arguments=arguments)
+        answer, request_id = self._running.askers.expect()
+        reply = OperatorAnswer(verb=Verb.ANSWER, scope=scope, request=request_id, arguments=arguments)
         with self._changing:
             asked = self._named(scope, given.get("question"))
             word = None if asked is None else matching(str(given.get("answer", "")), asked.answers)

@@ -10,26 +10,26 @@ from arboleda.store.task_rows import ROS
 
 
 class Askers:
-    """Whoever waits for an answer, by the token of his request."""
+    """Whoever waits for an answer, by the id of the request."""
 
     def __init__(self) -> None:
         self._waiting: dict[str, Future[Any]] = {}
         self._ways: dict[str, str] = {}
 
     def expect(self, way: str = ROS) -> tuple[Future[Any], str]:
-        """A future, and the token of the request whose answer it will hold; the request comes by `way`."""
-        answer, token = Future[Any](), uuid4().hex
-        self._waiting[token], self._ways[token] = answer, way
-        return answer, token
+        """A future, and the id of the request whose answer it will hold; the request comes by `way`."""
+        answer, request_id = Future[Any](), uuid4().hex
+        self._waiting[request_id], self._ways[request_id] = answer, way
+        return answer, request_id
 
-    def way_of(self, token: str | None) -> str:
+    def way_of(self, request_id: str | None) -> str:
         """The way by which a request came; that of ROS 2 if nobody here waits for its answer."""
-        return self._ways.get(token or "", ROS)
+        return self._ways.get(request_id or "", ROS)
 
-    def answer(self, token: str | None, reply: Any) -> None:
+    def answer(self, request_id: str | None, reply: Any) -> None:
         """Give whoever waits his answer, or the error for which there is none."""
-        self._ways.pop(token or "", None)
-        waiting = self._waiting.pop(token or "", None)
+        self._ways.pop(request_id or "", None)
+        waiting = self._waiting.pop(request_id or "", None)
         if waiting is None:
             return
         if isinstance(reply, Exception):

@@ -235,15 +235,17 @@ class Orchestrator:
         `choice` is the reason for which it goes to its cell, if somebody chose between plants; `version` the
         digest of the only version of the plant for which it is allowed, if it is not for any.
         """
-        answer, token = self.askers.expect(asked_by)
-        self.hear(TaskRequest(at=clock.seconds(), text=text, request=token, choice=choice, version=version))
+        answer, request_id = self.askers.expect(asked_by)
+        self.hear(
+            TaskRequest(at=clock.seconds(), text=text, request=request_id, choice=choice, version=version)
+        )
         return answer
 
     def operate(
         self, verb: Verb, scope: str = "", *, by_hand: bool = False, arguments: Arguments = ()
     ) -> Future[OperatorAnswer]:
         """Ask for an operator's act; the future holds the answer, with a refusal where nothing was done."""
-        answer, token = self.askers.expect()
+        answer, request_id = self.askers.expect()
         self._take(
             OperatorRequest(
                 at=clock.seconds(),
@@ -251,7 +253,7 @@ class Orchestrator:
                 scope=scope,
                 by_hand=by_hand,
                 arguments=arguments,
-                request=token,
+                request=request_id,
             )
         )
         return answer
@@ -261,9 +263,11 @@ class Orchestrator:
         self.plant.versions[put.version.digest] = put.model
         if self.screens.recorder is not None:  # before the first step that is told of it
             self.screens.recorder.knows(put.version.digest, put.files)
-        answer, token = self.askers.expect()
+        answer, request_id = self.askers.expect()
         self.hear(
-            Revision(at=clock.seconds(), version=put.version, by=put.by, changes=put.changes, request=token)
+            Revision(
+                at=clock.seconds(), version=put.version, by=put.by, changes=put.changes, request=request_id
+            )
         )
         return answer
 

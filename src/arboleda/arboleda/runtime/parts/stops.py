@@ -29,7 +29,7 @@ class CommandOvertaken(ArboledaError):
 class StopsAway(NamedTuple):
     """Mark among the messages of a step: the stops that these requests asked for have left."""
 
-    tokens: Sequence[str]
+    request_ids: Sequence[str]
 
 
 class ActsDone(NamedTuple):
@@ -47,16 +47,16 @@ class Stops:
     def __init__(self, model: PlantModel, epoch: int, send: Callable[[Stop | Unkept], None]) -> None:
         self._lane = StopLane(model, epoch=epoch)
         self.loop: Loop[Any, Any] = Loop("stops", self._lane, send, on_send_error=_leave_it_to_the_plant)
-        self.ahead: dict[str, frozenset[str]] = {}  # by token, their robots; never changed, only replaced
+        self.ahead: dict[str, frozenset[str]] = {}  # by id, their robots; never changed, only replaced
         self._replacing = threading.Lock()
 
     def open(self, request: OperatorRequest) -> OperatorRequest:
         """Take a request before the plant does; the plant gets the returned one. From any thread."""
-        token = request.request or uuid4().hex
-        request = replace(request, request=token)
+        request_id = request.request or uuid4().hex
+        request = replace(request, request=request_id)
         self.loop.post(Opened(request=request))
         with self._replacing:
-            self.ahead = {**self.ahead, token: self._lane.reached(request)}
+            self.ahead = {**self.ahead, request_id: self._lane.reached(request)}
         return request
 
     def expect(self, request: OperatorRequest) -> None:
@@ -66,20 +66,20 @@ class Stops:
     def leave_beside(self, request: OperatorRequest) -> None:
         """Have stops leave at once for a request that the plant has, unless a step has taken it already."""
         if request.request in self.ahead:
-            self.loop.post(Blocked(token=request.request))
+            self.loop.post(Blocked(request_id=request.request))
 
     def stepped(self, messages: Sequence[Any]) -> StopsAway | None:
         """Take in the messages of a step: what it has made after a stop is not overtaken by it."""
-        tokens = [each.request for each in messages if isinstance(each, OperatorAnswer)]
-        mine = [token for token in tokens if token in self.ahead]
+        ids = [each.request for each in messages if isinstance(each, OperatorAnswer)]
+        mine = [id for id in ids if id in self.ahead]
         with self._replacing:
-            self.ahead = {token: robots for token, robots in self.ahead.items() if token not in mine}
+            self.ahead = {id: robots for id, robots in self.ahead.items() if id not in mine}
         return StopsAway(mine) if mine else None
 
     def departed(self, stops: StopsAway) -> None:
         """Note that the plant itself has sent these stops."""
-        for token in stops.tokens:
-            self.loop.post(Departed(token=token))
+        for request_id in stops.request_ids:
+            self.loop.post(Departed(request_id=request_id))
 
     def happened(self, acts: ActsDone) -> None:
         """Have who asked for these acts answered in time, even if they cannot be kept."""
@@ -88,7 +88,7 @@ class Stops:
 
     def closed(self, answer: OperatorAnswer) -> None:
         """Note that a request has its answer."""
-        self.loop.post(Closed(token=answer.request or ""))
+        self.loop.post(Closed(request_id=answer.request or ""))
 
     def refuse_overtaken(self, message: Command | Notice) -> None:
         """Raise CommandOvertaken for a command that must not leave any more."""
