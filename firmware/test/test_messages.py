@@ -59,7 +59,7 @@ def theirs(channel: str, raw: bytes, axes: int) -> Reading | None:
         return None
     body: Body = None
     if isinstance(message, JointsGoal):
-        body = tuple(value if abs(value) >= LEAST else 0.0 for value in message.q)
+        body = tuple(value if abs(value) >= LEAST else 0.0 for value in message.q_deg)
     elif isinstance(message, EffectorGoal):
         body = message.on
     elif isinstance(message, StopGoal):

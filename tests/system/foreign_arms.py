@@ -143,7 +143,7 @@ def play_mqtt(arms: list[Glued], port: int) -> None:
         said = decode(channel, message.payload, axes=len(each.arm.joints))
         with lock:
             if isinstance(said, JointsGoal):
-                rows = zip(each.arm.joints, said.q, strict=True)
+                rows = zip(each.arm.joints, said.q_deg, strict=True)
                 each.goal(tuple(from_wire(joint, value) for joint, value in rows))
             elif isinstance(said, StopGoal) and said.mode:
                 each.stop()
@@ -165,7 +165,7 @@ def play_mqtt(arms: list[Glued], port: int) -> None:
                 each.changed = False
                 rows = zip(each.arm.joints, each.place, strict=True)
                 place = tuple(to_wire(joint, value) for joint, value in rows)
-                said = Telemetry(state=each.state, q=place, node=None)
+                said = Telemetry(state=each.state, q_deg=place, node=None)
                 client.publish(topic(each.arm.mqtt, Channel.TELEMETRY), encode(said))
 
 

@@ -80,8 +80,8 @@ def pose_of(robot: Robot, said: Telemetry) -> Pose:
     if isinstance(robot, Mobile):
         assert said.node is not None
         return robot.grid.position(said.node)
-    assert isinstance(robot, Arm) and said.q is not None
-    return tuple(units.from_wire(joint, value) for joint, value in zip(robot.joints, said.q, strict=True))
+    assert isinstance(robot, Arm) and said.q_deg is not None
+    return tuple(units.from_wire(joint, value) for joint, value in zip(robot.joints, said.q_deg, strict=True))
 
 
 class Place:

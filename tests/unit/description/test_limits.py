@@ -49,7 +49,7 @@ def goal(arm: Arm, index: int, value: float, beyond_deg: float = 0.0) -> JointsG
     """All joints at 0 but one, as it is asked for on the wire."""
     q = [0.0] * len(arm.joints)
     q[index] = units.to_wire(arm.joints[index], value) + beyond_deg
-    return JointsGoal(q=tuple(q), seq=1, epoch=1)
+    return JointsGoal(q_deg=tuple(q), seq=1, epoch=1)
 
 
 @pytest.mark.parametrize("model", ["scara", "cr10a"])

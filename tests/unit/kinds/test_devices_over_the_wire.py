@@ -194,7 +194,7 @@ class Alone:
 
     def board(self, state: MotionState = MotionState.STOPPED, **said: Any) -> list[Message]:
         self.number += 1
-        telemetry = Telemetry(state=state, q=None, node=None, boot_id=7, seq=self.number, **said)
+        telemetry = Telemetry(state=state, q_deg=None, node=None, boot_id=7, seq=self.number, **said)
         payload = encode(telemetry)
         return self.bridge.step(0.0, [Delivery(at=0.0, topic="st_1/sensores", payload=payload)])
 

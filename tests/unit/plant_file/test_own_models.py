@@ -316,7 +316,7 @@ def test_twelve_joints_at_their_ends_fit_one_message(tmp_path: Path) -> None:
     axes = arm(loader.load(written(tmp_path, "long.urdf", poses))).joints
     most = 2**32 - 1
     said = Telemetry(
-        q=tuple(units.to_wire(each, each.lower) for each in axes),
+        q_deg=tuple(units.to_wire(each, each.lower) for each in axes),
         node=None,
         state=MotionState.STOP_LATCHED,
         seq=most,

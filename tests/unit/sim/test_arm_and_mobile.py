@@ -29,7 +29,7 @@ class Sender:
         self.bench.send(self.board, channel, goal(**fields, seq=self.seq, epoch=EPOCH))
 
     def move(self, *q):
-        self(Channel.JOINTS, JointsGoal, q=q)
+        self(Channel.JOINTS, JointsGoal, q_deg=q)
 
     def go(self, *q):
         """Move there and arrive."""
@@ -69,7 +69,7 @@ def nodes_seen(bench):
 
 def test_targets_are_rounded_to_the_nearest_motor_step(arm, bench):
     arm.go(45.0, 10.0, 50.0)
-    assert bench.last(ARM).q == (round(2333 * 0.01929, 4), 9.9, 50.4)
+    assert bench.last(ARM).q_deg == (round(2333 * 0.01929, 4), 9.9, 50.4)
     assert bench.devices.boards[ARM].body.motors.position == (2333, 11, 56)
 
 
@@ -91,7 +91,7 @@ def test_a_move_takes_the_time_of_its_ramp(arm, bench):
 def test_six_axes_move_together_and_end_with_the_slowest(bench):
     arm = Sender(bench, SIX_AXES)
     arm.go(35.0, 10.0, -5.0, 1.0, 2.0, -3.0)
-    assert bench.last(SIX_AXES).q == (35.0, 10.0, -5.0, 1.0, 2.0, -3.0)
+    assert bench.last(SIX_AXES).q_deg == (35.0, 10.0, -5.0, 1.0, 2.0, -3.0)
     assert bench.last(SIX_AXES).done == 1
 
 
@@ -103,7 +103,7 @@ def test_axes_faster_than_the_board_can_step_still_arrive(rate):
         for joint in six_axes.joints
     )
     body = ArmBody(replace(six_axes, joints=tuple(fast)), start=(0.0,) * 6, pickups=())
-    body.start(10_000_000, JointsGoal(q=(350.0, 10.0, -5.0, 0.01, 0.0, 0.0), seq=1, epoch=1))
+    body.start(10_000_000, JointsGoal(q_deg=(350.0, 10.0, -5.0, 0.01, 0.0, 0.0), seq=1, epoch=1))
     body.advance(body.next_change_us)
     assert body.motors.position == (35000, 1000, -500, 1, 0, 0)
 
@@ -119,7 +119,7 @@ def test_a_new_goal_replaces_the_one_under_way(arm, bench):
     arm.move(90.0, 0.0, 0.0)
     bench.run(0.5)
     arm.go(-9.0, 0.0, 0.0)
-    assert bench.last(ARM).q[0] == pytest.approx(-9, abs=0.01)
+    assert bench.last(ARM).q_deg[0] == pytest.approx(-9, abs=0.01)
     assert {said.done for said in bench.heard(ARM)} == {None, 2}
 
 
@@ -226,4 +226,4 @@ def test_homing_drives_a_mobile_back_to_its_start(cart, bench):
 
 def test_a_mobile_says_nothing_of_effector_and_piece(bench):
     said = bench.last(CART)
-    assert (said.effector, said.piece, said.q, said.node) == (None, None, None, 0)
+    assert (said.effector, said.piece, said.q_deg, said.node) == (None, None, None, 0)

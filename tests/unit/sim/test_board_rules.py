@@ -15,7 +15,7 @@ EPOCH = 50
 
 
 def move(bench, seq, q=(45.0, 9.0, 0.0), epoch=EPOCH, **how):
-    bench.send(BOARD, Channel.JOINTS, JointsGoal(q=q, seq=seq, epoch=epoch), **how)
+    bench.send(BOARD, Channel.JOINTS, JointsGoal(q_deg=q, seq=seq, epoch=epoch), **how)
 
 
 def stop(bench, seq, mode=StopMode.HALT, epoch=EPOCH):
@@ -43,7 +43,7 @@ def test_power_up_is_homed_still_and_without_numbers(bench):
     said = bench.last(BOARD)
     assert (said.state, said.homed, said.effector, said.piece) == (MotionState.STOPPED, True, False, False)
     assert (said.ack_epoch, said.ack, said.done, said.refusal) == (None, None, None, None)
-    assert (said.seq, said.boot_id, said.q) == (1, 100, (0.0, 0.0, 0.0))
+    assert (said.seq, said.boot_id, said.q_deg) == (1, 100, (0.0, 0.0, 0.0))
 
 
 def test_an_accepted_move_is_acknowledged_moving_and_done_at_its_end(bench):
@@ -64,7 +64,7 @@ def test_a_number_not_greater_than_the_last_is_old(bench, epoch, seq):
     assert refusal(bench) == ("viejo", seq)
     assert (bench.last(BOARD).ack_epoch, bench.last(BOARD).ack) == (EPOCH, 7)
     bench.run(5)
-    assert bench.last(BOARD).q[0] == pytest.approx(45, abs=0.01)
+    assert bench.last(BOARD).q_deg[0] == pytest.approx(45, abs=0.01)
 
 
 def test_a_second_delivery_of_the_accepted_command_is_no_refusal(bench):
@@ -124,7 +124,7 @@ def test_a_malformed_message_is_refused_whole_and_counted(bench, raw, seq):
     bench.send(BOARD, Channel.JOINTS, raw)
     assert refusal(bench) == ("formato", seq)
     said = bench.last(BOARD)
-    assert (said.state, said.ack, said.q) == (MotionState.STOPPED, None, (0.0, 0.0, 0.0))
+    assert (said.state, said.ack, said.q_deg) == (MotionState.STOPPED, None, (0.0, 0.0, 0.0))
     assert bench.devices.boards[BOARD].refusals == 1
 
 
@@ -150,7 +150,7 @@ def test_halt_ends_a_move_without_done_and_keeps_no_latch(bench):
     bench.run(3)
     said = bench.last(BOARD)
     assert (said.state, said.done) == (MotionState.STOPPED, None)
-    assert 0 < said.q[0] < 45
+    assert 0 < said.q_deg[0] < 45
     move(bench, 3)
     bench.run(3)
     assert bench.last(BOARD).done == 3
@@ -190,7 +190,7 @@ def test_a_stop_is_obeyed_whatever_its_number(bench, epoch, seq, mode):
     assert refusal(bench) == ("viejo", seq)
     bench.run(3)
     said = bench.last(BOARD)
-    assert said.q[0] < 45
+    assert said.q_deg[0] < 45
     assert said.done is None
     assert said.state is (MotionState.STOP_LATCHED if mode is StopMode.LATCH else MotionState.STOPPED)
 
@@ -200,7 +200,7 @@ def test_a_stop_without_numbers_is_obeyed(bench):
     bench.run(0.4)
     stop(bench, None, epoch=None)
     bench.run(3)
-    assert bench.last(BOARD).q[0] < 45
+    assert bench.last(BOARD).q_deg[0] < 45
 
 
 def test_an_old_clear_does_not_clear(bench):
@@ -221,7 +221,7 @@ def test_homing_loses_the_reference_first_and_refuses_motion(bench):
     assert refusal(bench) == ("ocupado", 4)
     bench.run(3)
     said = bench.last(BOARD)
-    assert (said.homed, said.state, said.done, said.q) == (True, MotionState.STOPPED, 2, (0.0, 0.0, 0.0))
+    assert (said.homed, said.state, said.done, said.q_deg) == (True, MotionState.STOPPED, 2, (0.0, 0.0, 0.0))
 
 
 def test_a_homing_that_is_halted_leaves_no_reference(bench):
@@ -243,7 +243,7 @@ def test_a_reboot_forgets_position_reference_numbers_latch_and_grip(bench):
     bench.run(0.4)
     bench.reboot(BOARD)
     said = bench.last(BOARD)
-    assert (said.state, said.homed, said.q) == (MotionState.NOT_HOMED, False, (0.0, 0.0, 0.0))
+    assert (said.state, said.homed, said.q_deg) == (MotionState.NOT_HOMED, False, (0.0, 0.0, 0.0))
     assert (said.ack_epoch, said.ack, said.effector, said.piece) == (None, None, False, False)
     assert (said.seq, said.boot_id) == (1, 104)
     move(bench, 1)
@@ -267,7 +267,7 @@ def test_one_second_without_a_beat_while_moving_ramps_to_a_stop(bench):
     bench.run(3)
     said = bench.last(BOARD)
     assert (said.state, said.done) == (MotionState.STOPPED, None)
-    assert 60 < said.q[0] < 100
+    assert 60 < said.q_deg[0] < 100
 
 
 def test_beats_keep_a_move_going(bench):
@@ -364,7 +364,7 @@ def test_an_older_board_obeys_without_numbers_and_tells_only_joints_and_state(ma
         b"q3_mov",
         b"estado",
     }
-    assert bench.last(BOARD).q[0] == pytest.approx(45, abs=0.01)
+    assert bench.last(BOARD).q_deg[0] == pytest.approx(45, abs=0.01)
     stop(bench, None, StopMode.LATCH, epoch=None)
     assert bench.last(BOARD).state is MotionState.STOP_LATCHED
 
@@ -387,14 +387,16 @@ def told(bench) -> int:
 
 def test_a_command_is_taken_whose_giver_heard_the_board_a_moment_ago(bench):
     bench.run(5)
-    bench.send(BOARD, Channel.JOINTS, JointsGoal(q=(45.0, 9.0, 0.0), seq=1, epoch=EPOCH, heard=told(bench)))
+    bench.send(
+        BOARD, Channel.JOINTS, JointsGoal(q_deg=(45.0, 9.0, 0.0), seq=1, epoch=EPOCH, heard=told(bench))
+    )
     assert (refusal(bench), bench.last(BOARD).ack) == ((None, None), 1)
 
 
 @pytest.mark.parametrize(
     ("channel", "goal"),
     [
-        (Channel.JOINTS, JointsGoal(q=(45.0, 9.0, 0.0), seq=1, epoch=EPOCH, heard=FIRST)),
+        (Channel.JOINTS, JointsGoal(q_deg=(45.0, 9.0, 0.0), seq=1, epoch=EPOCH, heard=FIRST)),
         (Channel.EFFECTOR, EffectorGoal(on=False, seq=1, epoch=EPOCH, heard=FIRST)),
         (Channel.HOME, HomeGoal(seq=1, epoch=EPOCH, heard=FIRST)),
     ],
@@ -429,7 +431,7 @@ def test_a_stop_is_never_too_late(bench):
 
 
 def test_the_tokens_of_the_last_accepted_and_the_last_done_command_are_echoed(bench):
-    goal = JointsGoal(q=(45.0, 9.0, 0.0), seq=1, epoch=EPOCH, token="0a3f9x001a01")
+    goal = JointsGoal(q_deg=(45.0, 9.0, 0.0), seq=1, epoch=EPOCH, token="0a3f9x001a01")
     bench.send(BOARD, Channel.JOINTS, goal)
     assert (bench.last(BOARD).ack_token, bench.last(BOARD).done_token) == ("0a3f9x001a01", None)
     bench.run(5)
@@ -444,9 +446,9 @@ def test_a_command_without_a_token_takes_the_place_of_the_one_before(bench):
 
 
 def test_a_refused_command_and_another_epoch_leave_no_token_of_theirs(bench):
-    far = JointsGoal(q=(999.0, 9.0, 0.0), seq=2, epoch=EPOCH, token="far")
+    far = JointsGoal(q_deg=(999.0, 9.0, 0.0), seq=2, epoch=EPOCH, token="far")
     bench.send(BOARD, Channel.EFFECTOR, EffectorGoal(on=True, seq=1, epoch=EPOCH, token="b"))
     bench.send(BOARD, Channel.JOINTS, far)
     assert bench.last(BOARD).ack_token == "b"
-    bench.send(BOARD, Channel.JOINTS, JointsGoal(q=far.q, seq=1, epoch=EPOCH + 1, token="far"))
+    bench.send(BOARD, Channel.JOINTS, JointsGoal(q_deg=far.q_deg, seq=1, epoch=EPOCH + 1, token="far"))
     assert (bench.last(BOARD).ack, bench.last(BOARD).ack_token) == (None, None)

@@ -26,7 +26,7 @@ def offline(make_bench):
 
 
 def move(bench, seq=1, board="ra_1"):
-    bench.send(board, Channel.JOINTS, JointsGoal(q=(45.0, 9.0, 0.0), seq=seq, epoch=5))
+    bench.send(board, Channel.JOINTS, JointsGoal(q_deg=(45.0, 9.0, 0.0), seq=seq, epoch=5))
 
 
 def test_every_mqtt_robot_has_a_board_and_no_other(make_bench):
@@ -108,7 +108,7 @@ def test_what_a_board_says_again_has_the_next_number_and_nothing_else_new(bench)
 
 
 def test_a_message_on_a_foreign_topic_is_ignored(bench):
-    bench.send("rm_sis_a", Channel.JOINTS, JointsGoal(q=(1.0, 1.0, 0.0), seq=1, epoch=5))
+    bench.send("rm_sis_a", Channel.JOINTS, JointsGoal(q_deg=(1.0, 1.0, 0.0), seq=1, epoch=5))
     assert bench.devices.boards["rm_sis_a"].refusals == 0
     assert len(bench.heard("rm_sis_a")) == 1
 
@@ -140,7 +140,7 @@ def test_late_steps_change_what_is_said_but_not_what_is_done(make_bench, naps):
     sleepy.run(5)
     punctual.run(5)
     here, there = sleepy.last("ra_1"), punctual.last("ra_1")
-    assert (here.q, here.state, here.ack, here.done) == (there.q, there.state, there.ack, there.done)
+    assert (here.q_deg, here.state, here.ack, here.done) == (there.q_deg, there.state, there.ack, there.done)
 
 
 def test_the_same_inputs_give_the_same_outputs(make_bench):

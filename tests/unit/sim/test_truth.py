@@ -23,7 +23,7 @@ def cart(bench):
 
 
 def go(bench, seq=1, q1=18.0):
-    bench.send(ARM, Channel.JOINTS, JointsGoal(q=(q1, 0.0, 0.0), seq=seq, epoch=50))
+    bench.send(ARM, Channel.JOINTS, JointsGoal(q_deg=(q1, 0.0, 0.0), seq=seq, epoch=50))
     bench.run(5)
 
 
@@ -70,7 +70,7 @@ def test_a_stuck_effector_does_not_follow(bench, arm):
 
 
 def test_a_fault_ends_the_move_and_refuses_the_next_until_it_is_repaired(bench, arm):
-    bench.send(ARM, Channel.JOINTS, JointsGoal(q=(90.0, 0.0, 0.0), seq=1, epoch=50))
+    bench.send(ARM, Channel.JOINTS, JointsGoal(q_deg=(90.0, 0.0, 0.0), seq=1, epoch=50))
     bench.run(0.5)
     arm.fail(round(bench.now * 1e6))
     bench.run(2)
@@ -103,7 +103,7 @@ def test_a_stop_that_is_told_again_does_not_drive_the_arm_further(bench, arm):
         bench.reboot(ARM)
         bench.send(ARM, Channel.HOME, HomeGoal(seq=1, epoch=50))
         bench.run(5)
-        bench.send(ARM, Channel.JOINTS, JointsGoal(q=(90.0, 0.0, 0.0), seq=2, epoch=50))
+        bench.send(ARM, Channel.JOINTS, JointsGoal(q_deg=(90.0, 0.0, 0.0), seq=2, epoch=50))
         bench.run(0.05)
         for number in range(stops):
             bench.send(ARM, Channel.STOP, StopGoal(mode=StopMode.HALT, seq=3 + number, epoch=50))

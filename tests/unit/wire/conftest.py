@@ -72,7 +72,7 @@ class Bench:
         ids = self.model.robots["ra1"].evidence is Evidence.IDS
         return Telemetry(
             state=MotionState.STOPPED,
-            q=(0.0, 0.0, 0.0) if arm else None,
+            q_deg=(0.0, 0.0, 0.0) if arm else None,
             node=None if arm else 0,
             seq=0 if ids else None,
             boot_id=1 if ids else None,

@@ -28,7 +28,7 @@ def test_a_move_leaves_quantised_to_motor_steps_after_one_beat(linked, sent) -> 
     q = (math.radians(45), math.radians(10), 0.05)
     assert sent(linked.order(move(1, q))) == [
         ("ra_1/latido", Beat(epoch=EPOCH)),
-        ("ra_1/juntas", JointsGoal(q=(45.0036, 9.9, 126.9), seq=1, epoch=EPOCH, heard=1)),
+        ("ra_1/juntas", JointsGoal(q_deg=(45.0036, 9.9, 126.9), seq=1, epoch=EPOCH, heard=1)),
     ]
 
 
@@ -50,7 +50,7 @@ def test_what_lay_here_while_the_process_was_stopped_is_refused_but_a_stop_is_no
 def test_quantising_rounds_and_never_truncates(linked, sent) -> None:
     almost_two_steps = (math.radians(0.01929 * 1.9), math.radians(-0.9 * 1.9), 0.0)
     (_, (_, goal)) = sent(linked.order(move(1, almost_two_steps)))
-    assert goal.q == (0.0386, -1.8, 0.0)
+    assert goal.q_deg == (0.0386, -1.8, 0.0)
 
 
 def test_commands_are_qos_1_beats_qos_0_and_nothing_is_retained(linked) -> None:

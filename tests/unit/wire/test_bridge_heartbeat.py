@@ -168,7 +168,7 @@ def test_without_ids_the_late_end_of_an_earlier_move_ends_no_beats(make_linked, 
 def test_at_joints_a_robot_already_at_its_goal_needs_no_beats(make_linked, sent) -> None:
     bench = make_linked(evidence=Evidence.JOINTS)
     bench.order(MOVE)
-    stays(bench, state=STOPPED, q=TARGET_DEG)
+    stays(bench, state=STOPPED, q_deg=TARGET_DEG)
     assert sent(bench.heartbeat()) == []
 
 

@@ -36,7 +36,7 @@ def test_it_listens_to_what_boards_say(bench) -> None:
 
 def test_telemetry_becomes_a_report_in_si_units(bench, reports) -> None:
     bench.connect()
-    (report,) = reports(bench.tell(q=(45.0036, 9.9, 127.8), effector=True, piece=False, boot_id=3))
+    (report,) = reports(bench.tell(q_deg=(45.0036, 9.9, 127.8), effector=True, piece=False, boot_id=3))
     assert report.q == pytest.approx((0.78546, 0.17279, 0.05019), abs=1e-5)
     assert (report.at, report.robot, report.epoch, report.boot_id) == (bench.now, "ra1", 1_000, 3)
     assert (report.state, report.homed, report.effector, report.piece) == (STOPPED, True, True, False)
@@ -234,7 +234,7 @@ def test_a_bad_message_is_counted_by_robot_and_changes_nothing(
 def test_a_board_without_ids_reports_what_it_has(make_linked, reports) -> None:
     bench = make_linked(evidence=Evidence.JOINTS)
     bench.order(move(1))
-    (report,) = reports(bench.tell(state=MOVING, q=(9.0, 0.0, 0.0)))
+    (report,) = reports(bench.tell(state=MOVING, q_deg=(9.0, 0.0, 0.0)))
     assert report.state is MOVING
     assert report.q == pytest.approx((0.15708, 0.0, 0.0), abs=1e-5)
     assert (report.accepted, report.done, report.rejected) == (None,) * 3

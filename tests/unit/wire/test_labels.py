@@ -12,7 +12,7 @@ from arboleda.wire.values import Telemetry
 
 
 def accepted(epoch: int, seq: int) -> Telemetry:
-    return Telemetry(state=MotionState.STOPPED, q=None, node=0, ack_epoch=epoch, ack=seq)
+    return Telemetry(state=MotionState.STOPPED, q_deg=None, node=0, ack_epoch=epoch, ack=seq)
 
 
 @pytest.mark.parametrize("epoch", [999, 1000, 1001, UINT32])
@@ -32,7 +32,7 @@ def test_a_number_above_ours_is_somebody_elses_and_told_once() -> None:
 
 
 def led(least_epoch: int) -> Telemetry:
-    return Telemetry(state=MotionState.STOPPED, q=None, node=0, least_epoch=least_epoch)
+    return Telemetry(state=MotionState.STOPPED, q_deg=None, node=0, least_epoch=least_epoch)
 
 
 def test_a_number_of_our_epoch_before_our_first_command_is_somebody_elses() -> None:
@@ -58,7 +58,7 @@ def test_a_refusal_is_new_once_and_again_after_a_reboot() -> None:
     labels = Labels(1000)
     labels.issue(Home(id="1-1", robot="ra1"))
     refusal = {"ack_epoch": 1000, "refused_seq": 1, "refusal": "paro"}
-    said = Telemetry(state=MotionState.STOPPED, q=None, node=0, **refusal)
+    said = Telemetry(state=MotionState.STOPPED, q_deg=None, node=0, **refusal)
     heard = []
     for _ in range(2):
         labels.hear(said)

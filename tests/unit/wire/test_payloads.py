@@ -51,7 +51,7 @@ def telemetry(q: st.SearchStrategy, node: st.SearchStrategy, *flags: str) -> st.
     body = st.fixed_dictionaries(
         {
             "state": st.sampled_from([state for state in MotionState if state is not MotionState.NO_LINK]),
-            "q": q,
+            "q_deg": q,
             "node": node,
             **{name: maybe(UINT) for name in ("seq", "ack_epoch", "least_epoch", "ack", "done", "boot_id")},
             **{name: maybe(st.booleans()) for name in ("homed", *flags)},
@@ -62,7 +62,7 @@ def telemetry(q: st.SearchStrategy, node: st.SearchStrategy, *flags: str) -> st.
 
 ANGLES = st.tuples(ANGLE, ANGLE, ANGLE)
 ARM = {
-    Channel.JOINTS: goals(JointsGoal, q=ANGLES),
+    Channel.JOINTS: goals(JointsGoal, q_deg=ANGLES),
     Channel.EFFECTOR: goals(EffectorGoal, on=st.booleans()),
     Channel.STOP: goals(StopGoal, mode=st.sampled_from(StopMode)),
     Channel.HOME: goals(HomeGoal),
@@ -175,20 +175,20 @@ def test_a_path_is_a_list_of_nodes(nodes: str) -> None:
 
 def test_a_newer_board_may_say_more() -> None:
     said = decode(Channel.TELEMETRY, ARM_SAYS.encode() + b',"temperatura":[40.5]}', axes=3)
-    assert said == Telemetry(state=MotionState.STOPPED, q=(1.0, 2.0, 3.0), node=None)
+    assert said == Telemetry(state=MotionState.STOPPED, q_deg=(1.0, 2.0, 3.0), node=None)
 
 
 def test_angles_are_told_with_four_decimals_and_no_empty_sign() -> None:
-    goal = JointsGoal(q=(44.99999, -0.00001, 12.345678), seq=None, epoch=None)
+    goal = JointsGoal(q_deg=(44.99999, -0.00001, 12.345678), seq=None, epoch=None)
     assert encode(goal) == b'{"q1":45.0,"q2":0.0,"q3":12.3457}'
 
 
 CANNOT_BE_SAID = {
-    "not a number": JointsGoal(q=(float("nan"), 0.0, 0.0), seq=1, epoch=1),
+    "not a number": JointsGoal(q_deg=(float("nan"), 0.0, 0.0), seq=1, epoch=1),
     "seq without epoca": StopGoal(mode=StopMode.HALT, seq=1, epoch=None),
     "a path longer than a message": PathGoal(nodes=tuple(range(300)), seq=1, epoch=1),
-    "no link": Telemetry(state=MotionState.NO_LINK, q=None, node=0),
-    "a refusal without its seq": Telemetry(state=MotionState.STOPPED, q=None, node=0, refusal="paro"),
+    "no link": Telemetry(state=MotionState.NO_LINK, q_deg=None, node=0),
+    "a refusal without its seq": Telemetry(state=MotionState.STOPPED, q_deg=None, node=0, refusal="paro"),
 }
 
 

@@ -123,7 +123,7 @@ def test_what_is_known_but_for_its_joints_reads_the_same_but_for_them(angles: tu
     words = SplitTelemetry.of(TURNING, said)
     seq = words.turned(second, begin[1]).number(second) if words and begin else None
     if begin and seq is not None:
-        assert read_arm(second) == replace(said, seq=seq, q=begin[0])
+        assert read_arm(second) == replace(said, seq=seq, q_deg=begin[0])
 
 
 @pytest.mark.parametrize("odd", ODD)
@@ -164,7 +164,7 @@ def test_joints_are_looked_at_alone_only_while_an_arm_moves(state: MotionState) 
 AGAIN = st.tuples(st.just("tell"), BOARDS)
 DEGREES = st.floats(-2e6, 2e6).map(lambda degrees: max(-1e6, min(degrees, 1e6)))
 TURNED = st.fixed_dictionaries(
-    {"q": st.tuples(DEGREES, DEGREES, DEGREES)},
+    {"q_deg": st.tuples(DEGREES, DEGREES, DEGREES)},
     optional={"state": st.sampled_from([MotionState.MOVING, MotionState.STOPPED])},
 )
 MOVES = st.tuples(st.just("tell"), st.just("ra_1"), TURNED)

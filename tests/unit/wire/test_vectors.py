@@ -28,7 +28,8 @@ def raw(row: dict) -> bytes:
 
 def value(payload: object) -> dict:
     """The fields that were said, as JSON knows them."""
-    said = {key: field for key, field in asdict(payload).items() if field is not None}  # type: ignore[call-overload]
+    fields = asdict(payload).items()  # type: ignore[call-overload]
+    said = {key.removesuffix("_deg"): field for key, field in fields if field is not None}
     return json.loads(json.dumps(said))
 
 

@@ -141,7 +141,7 @@ class Board:
             return
         self._moving, self._done = None, goal.seq
         if isinstance(goal, JointsGoal):
-            self._q = goal.q
+            self._q = goal.q_deg
         else:
             self._node = goal.nodes[-1]
         command, telemetry = self._command(goal), self._telemetry()
@@ -154,7 +154,7 @@ class Board:
     def _telemetry(self) -> Publication:
         said = Telemetry(
             state=MotionState.MOVING if self._moving else MotionState.STOPPED,
-            q=self._q,
+            q_deg=self._q,
             node=self._node,
             seq=next(self._number),
             ack_epoch=self._epoch,
@@ -174,5 +174,5 @@ class Board:
         if isinstance(goal, PathGoal):
             return FollowPath(id=id, robot=robot.name, nodes=goal.nodes)
         assert isinstance(robot, Arm)
-        rows = zip(robot.joints, goal.q, strict=True)
+        rows = zip(robot.joints, goal.q_deg, strict=True)
         return MoveJoints(id=id, robot=robot.name, q=tuple(from_wire(joint, value) for joint, value in rows))

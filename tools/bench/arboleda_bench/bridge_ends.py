@@ -74,7 +74,7 @@ class Ends:
         first = number % NUMBERS * DEG
         said = Telemetry(
             state=MotionState.MOVING,
-            q=(first, -first / 2, first / 4),
+            q_deg=(first, -first / 2, first / 4),
             node=None,
             seq=self._word,
             boot_id=1,

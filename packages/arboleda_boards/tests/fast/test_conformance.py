@@ -151,7 +151,7 @@ class Believing(Board):
 
     def receive(self, now_us: int, delivery: Delivery) -> None:
         if delivery.payload == b'{"q1":9}':
-            self.body.start(now_us, JointsGoal(q=(9.0, 0.0, 0.0), seq=None, epoch=None))
+            self.body.start(now_us, JointsGoal(q_deg=(9.0, 0.0, 0.0), seq=None, epoch=None))
         super().receive(now_us, delivery)
 
 

@@ -10,7 +10,7 @@ from arboleda.wire import units
 from arboleda.wire.payloads import JointsGoal
 from arboleda.wire.topics import Channel
 
-from .body import BodyReport, Robotic
+from .body import BodyReport, Robotic, SeenState
 from .motors import Motors
 
 WIRE_ROUNDING_DEG = 1e-4
@@ -62,10 +62,12 @@ class ArmBody(Robotic):
         return {"effector": self.effector}
 
     def admits(self, goal: JointsGoal) -> bool:
-        return all(_within(joint, angle) for joint, angle in zip(self._joints, goal.q, strict=True))
+        return all(_within(joint, angle) for joint, angle in zip(self._joints, goal.q_deg, strict=True))
 
     def start(self, now_us: int, goal: JointsGoal) -> None:
-        values = (units.from_wire(joint, angle) for joint, angle in zip(self._joints, goal.q, strict=True))
+        values = (
+            units.from_wire(joint, angle) for joint, angle in zip(self._joints, goal.q_deg, strict=True)
+        )
         self.next_change_us = self.motors.move_to(now_us, self.motors.steps(tuple(values)))
 
     def home(self, now_us: int) -> None:
@@ -101,10 +103,10 @@ class ArmBody(Robotic):
         """Drop the piece; the effector does not notice."""
         self.holding = False
 
-    def place(self, report: BodyReport, *, holds: bool) -> None:
-        if report.q is not None:
-            self.motors.put_at(self.motors.steps(report.q))
-        self.effector = self.effector if report.effector is None else report.effector
+    def place(self, seen: SeenState, *, holds: bool) -> None:
+        if seen.q is not None:
+            self.motors.put_at(self.motors.steps(seen.q))
+        self.effector = self.effector if seen.effector is None else seen.effector
         self.holding = holds
 
     def put_at_reference(self) -> None:
@@ -115,8 +117,10 @@ class ArmBody(Robotic):
         state = (position, drift, self.next_change_us, self.effector, self.holding, self.supplied)
         if state != self._last_state:
             self._last_state = state
-            q = tuple([steps * step for steps, step in zip(position, self._step_deg, strict=True)])
-            self._last_report = BodyReport(q, None, self.effector, self.holding or self._piece_lies_here())
+            q_deg = tuple([steps * step for steps, step in zip(position, self._step_deg, strict=True)])
+            self._last_report = BodyReport(
+                q_deg, None, self.effector, self.holding or self._piece_lies_here()
+            )
         return self._last_report
 
     def _piece_lies_here(self) -> bool:

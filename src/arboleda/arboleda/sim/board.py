@@ -28,7 +28,7 @@ from arboleda.wire.payloads import (
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Delivery, Publication
 
-from .body import Body, BodyReport
+from .body import Body, BodyReport, SeenState
 from .freshness import Freshness
 from .receipts import Receipts
 from .uplink import Uplink
@@ -123,9 +123,9 @@ class Board:
         self.body.put_at_reference()
         self.homed = self.homed or not self._numbered
 
-    def place(self, report: BodyReport, *, holds: bool, homed: bool | None, latched: bool) -> None:
-        """Put the resting robot into the state that another one reported, `report` in SI units."""
-        self.body.place(report, holds=holds)
+    def place(self, seen: SeenState, *, holds: bool, homed: bool | None, latched: bool) -> None:
+        """Put the resting robot into the state in which another one was seen."""
+        self.body.place(seen, holds=holds)
         self.homed = self.homed if homed is None else homed
         self.latched = latched
 
@@ -314,8 +314,8 @@ class Board:
             self._last_state = None
         elif state == last:
             self._uplink.tell_again()
-        elif last is not None and report.q is not None and _joints_apart(state) == _joints_apart(last):
-            self._uplink.tell_angles(report.q)
+        elif last is not None and report.q_deg is not None and _joints_apart(state) == _joints_apart(last):
+            self._uplink.tell_angles(report.q_deg)
         else:
             self._uplink.tell(self._telemetry(report))
         if self._uplink.connected:
@@ -325,10 +325,10 @@ class Board:
         receipts = self._receipts
         if not self._numbered:
             facts = report.facts if self._tells_facts else None
-            return Telemetry(state=self.state, q=report.q, node=report.node, facts=facts)
+            return Telemetry(state=self.state, q_deg=report.q_deg, node=report.node, facts=facts)
         return Telemetry(
             state=self.state,
-            q=report.q,
+            q_deg=report.q_deg,
             node=report.node,
             effector=report.effector,
             piece=report.piece,

@@ -13,12 +13,21 @@ from arboleda.wire.topics import Channel
 
 
 class BodyReport(NamedTuple):
-    """State that a body reports: angles of an arm, node of a mobile or facts of a machine, and its load."""
+    """State that a body reports: degrees of an arm, node of a mobile or facts of a machine, and its load."""
+
+    q_deg: tuple[float, ...] | None = None
+    node: int | None = None
+    effector: bool | None = None
+    piece: bool | None = None
+    facts: Facts | None = None
+
+
+class SeenState(NamedTuple):
+    """State in which a robot was seen last: `q` of an arm in rad and m."""
 
     q: tuple[float, ...] | None = None
     node: int | None = None
     effector: bool | None = None
-    piece: bool | None = None
     facts: Facts | None = None
 
 
@@ -115,8 +124,8 @@ class Body(Protocol):
 
     def switch_effector(self, on: bool) -> None: ...
 
-    def place(self, report: BodyReport, *, holds: bool) -> None:
-        """Take, at rest, the state that another body reported; unreported parts stay as they are."""
+    def place(self, seen: SeenState, *, holds: bool) -> None:
+        """Take, at rest, the state in which another body was seen; unseen parts stay as they are."""
 
     def set_by_hand(self, facts: Facts) -> None:
         """Set facts by hand at the idle machine."""

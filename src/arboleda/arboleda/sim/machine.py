@@ -94,8 +94,8 @@ class MachineBody:
         if self.kind.held_fact is not None:
             self.set_by_hand(((self.kind.held_fact, False),))
 
-    def place(self, report: body.BodyReport, *, holds: bool) -> None:
-        self.facts.update(report.facts or ())
+    def place(self, seen: body.SeenState, *, holds: bool) -> None:
+        self.facts.update(seen.facts or ())
 
     @property
     def true_place(self) -> None:

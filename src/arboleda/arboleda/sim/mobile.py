@@ -9,7 +9,7 @@ from arboleda.model.facts import Value
 from arboleda.wire.payloads import PathGoal
 from arboleda.wire.topics import Channel
 
-from .body import BodyReport, Robotic
+from .body import BodyReport, Robotic, SeenState
 
 
 class MobileBody(Robotic):
@@ -62,9 +62,9 @@ class MobileBody(Robotic):
             self.node = self.true_node
         self._drive(now_us, self._grid.route(self._next_node, self._start_node)[1:])
 
-    def place(self, report: BodyReport, *, holds: bool) -> None:
-        if report.node is not None:
-            self.node = self.true_node = report.node
+    def place(self, seen: SeenState, *, holds: bool) -> None:
+        if seen.node is not None:
+            self.node = self.true_node = seen.node
 
     def put_at_reference(self) -> None:
         self.node = self.true_node = self._start_node

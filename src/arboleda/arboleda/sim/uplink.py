@@ -44,11 +44,11 @@ class Uplink:
             self._frame = (raw, b"", b"") if telemetry.seq is None else raw.partition(UNNUMBERED)
             self.tell_again()
 
-    def tell_angles(self, q: tuple[float, ...]) -> None:
+    def tell_angles(self, q_deg: tuple[float, ...]) -> None:
         """Send the last telemetry with new joints, under the next number."""
         before, number, after = self._frame
         _, estado, rest = before.partition(STATE)
-        self._frame = (angles(q) + estado + rest, number, after)
+        self._frame = (angles(q_deg) + estado + rest, number, after)
         self.tell_again()
 
     def tell_again(self) -> None:

@@ -228,7 +228,7 @@ class Board:
         if update is LinkUpdate.REBOOT:
             self.labels.reboot()
             self._motion = None
-        q = None if message.q is None else self._in_si(message.q)
+        q = None if message.q_deg is None else self._in_si(message.q_deg)
         facts, ended = self._form.facts_in(message.facts), self.labels.hear(message)
         if self._motion and self._motion.ended(at, message, q, ended, facts):
             self._motion = None

@@ -152,7 +152,7 @@ def _check_stop(robot: Robot, command: Stop) -> str | None:
 
 def _wire_joints(robot: Jointed, command: MoveJoints) -> dict[str, object]:
     rows = zip(robot.joints, robot.motion.quantised(command.q), strict=True)
-    return {"q": tuple(to_wire(joint, value) for joint, value in rows)}
+    return {"q_deg": tuple(to_wire(joint, value) for joint, value in rows)}
 
 
 def _beyond(robot: Jointed, command: MoveJoints) -> Sentence | None:

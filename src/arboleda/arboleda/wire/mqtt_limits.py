@@ -82,7 +82,7 @@ def _telemetry(kind: DeviceKind) -> Telemetry:
     """The longest telemetry that a device of this kind can send."""
     answers = [answer for verb in kind.verbs.values() for answer in _answers(verb)]
     return Telemetry(
-        q=None,
+        q_deg=None,
         node=None,
         state=MotionState.STOP_LATCHED,
         seq=UINT32,

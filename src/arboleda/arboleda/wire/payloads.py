@@ -148,7 +148,7 @@ def _angles_pattern(axes: int) -> re.Pattern[bytes]:
 
 def _joints(fields: strict.Fields, axes: int | None) -> JointsGoal:
     q = tuple(fields.number(key, MAX_ANGLE_DEG) for key in _joint_keys(axes))
-    return JointsGoal(q=q, **_stamp_in_time(fields))
+    return JointsGoal(q_deg=q, **_stamp_in_time(fields))
 
 
 def _path(fields: strict.Fields, axes: int | None) -> PathGoal:
@@ -190,7 +190,7 @@ def _telemetry(fields: strict.Fields, axes: int | None) -> Telemetry:
     fields.refuse(*FOREIGN_TO_ARMS if axes is not None else FOREIGN_TO_MOBILES)
     keys = () if axes is None else _joint_keys(axes, "_mov")
     return Telemetry(
-        q=tuple([fields.number(key, MAX_ANGLE_DEG) for key in keys]) if keys else None,
+        q_deg=tuple([fields.number(key, MAX_ANGLE_DEG) for key in keys]) if keys else None,
         node=fields.integer("nodo") if axes is None else None,
         state=MotionState(fields.integer("estado", _LAST_STATE)),
         seq=fields.optional("seq"),
@@ -216,7 +216,7 @@ def _telemetry_of_device(fields: strict.Fields) -> Telemetry:
     if state is MotionState.NOT_HOMED:
         raise PayloadError(f"estado is {state.value}; a device has no homing")
     return Telemetry(
-        q=None,
+        q_deg=None,
         node=None,
         state=state,
         seq=fields.optional("seq"),
@@ -269,7 +269,7 @@ def _telemetry_body(telemetry: Telemetry) -> dict[str, object]:
     if (telemetry.answer is None) != (telemetry.answered_seq is None):
         raise PayloadError("respuesta and respuesta_seq go together")
     return {
-        **_angles(telemetry.q or (), "_mov"),
+        **_angles(telemetry.q_deg or (), "_mov"),
         "nodo": telemetry.node,
         "estado": strict.integer("estado", telemetry.state.value, _LAST_STATE),
         "seq": telemetry.seq,
@@ -309,7 +309,7 @@ def _bit(value: bool | None) -> int | None:
 
 
 _WRITERS: dict[type, Callable[..., dict[str, object]]] = {
-    JointsGoal: lambda goal: _stamped(_angles(goal.q), goal),
+    JointsGoal: lambda goal: _stamped(_angles(goal.q_deg), goal),
     PathGoal: lambda goal: _stamped({"nodos": list(goal.nodes)}, goal),
     EffectorGoal: lambda goal: _stamped({"efector": int(goal.on)}, goal),
     StopGoal: lambda goal: _stamped({"paro": goal.mode.value}, goal),

@@ -61,7 +61,7 @@ class SplitTelemetry:
 
 def _joints(raw: bytes, message: Telemetry) -> int:
     """The number of bytes that hold joints; 0 unless the arm moves, as joints at rest may end a motion."""
-    if message.q is None or message.state is not MotionState.MOVING:
+    if message.q_deg is None or message.state is not MotionState.MOVING:
         return 0
-    read = read_angles(raw, len(message.q))
+    read = read_angles(raw, len(message.q_deg))
     return 0 if read is None else read[1]

@@ -16,9 +16,9 @@ from arboleda.model.messages import MotionState
 
 @dataclass(frozen=True, kw_only=True)
 class JointsGoal:
-    """Command `juntas`: absolute joint targets."""
+    """Command `juntas`: absolute joint targets, in degrees of the joints or of the pinions of racks."""
 
-    q: tuple[float, ...]
+    q_deg: tuple[float, ...]
     seq: int | None
     epoch: int | None
     heard: int | None = None
@@ -87,7 +87,7 @@ class Beat:
 
 @dataclass(frozen=True, kw_only=True)
 class Telemetry:
-    """Message `sensores`: `q` of an arm, `node` of a mobile robot or `facts` of a device.
+    """Message `sensores`: `q_deg` of an arm, `node` of a mobile robot or `facts` of a device.
 
     Every field that was not reported is None. `seq` counts telemetry since boot. `least_epoch`, which is sent
     if it is above `ack_epoch`, is the oldest epoch whose commands count. Seqs of commands are of `ack_epoch`:
@@ -97,7 +97,7 @@ class Telemetry:
     """
 
     state: MotionState
-    q: tuple[float, ...] | None
+    q_deg: tuple[float, ...] | None
     node: int | None
     seq: int | None = None
     ack_epoch: int | None = None

@@ -20,6 +20,7 @@ from arboleda.plant_file.draft import DraftCheck
 from arboleda.plant_file.loader import load
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.runtime import at_work
+from arboleda.sim.body import SeenState
 from arboleda.testing import Rig
 from arboleda_make.drafts.api import DraftRefused
 from arboleda_make.drafts.desk import DraftDesk
@@ -219,8 +220,7 @@ def test_what_cannot_be_a_target_is_refused_and_changes_nothing(lab: Lab) -> Non
 
 def test_a_robot_that_was_moved_by_hand_is_read_as_well(lab: Lab) -> None:
     board = lab.rig.boards["loader"]
-    told = board.body.tell()
-    board.body.place(told._replace(q=(0.2, 0.4, 0.0)), holds=False)
+    board.body.place(SeenState(q=(0.2, 0.4, 0.0)), holds=False)
     lab.rig.wait(1.0)
     lab.here("loader", "spare")
     written = lab.written["cells"]["lab"]["targets"]["spare"]["loader"]

@@ -11,7 +11,7 @@ from arboleda.engine.inspection import HEARTBEAT_S, beliefs_of, grips_of, latche
 from arboleda.model.messages import Heartbeat
 from arboleda.model.plant_model import PlantModel
 from arboleda.rig.world import BRIDGE, World
-from arboleda.sim.body import BodyReport
+from arboleda.sim.body import SeenState
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
 
@@ -61,10 +61,10 @@ def _place(world: World, plant: Plant, robot: Robot, began: Position | None) -> 
     belief, board = beliefs_of(plant)[robot.name], world.boards[robot.mqtt]
     q = began if isinstance(began, tuple) else belief.q
     node = began if isinstance(began, int) else belief.node
-    report = BodyReport(q, node, belief.effector, belief.piece, tuple(belief.facts.items()) or None)
+    seen = SeenState(q, node, belief.effector, tuple(belief.facts.items()) or None)
     holds = robot.held_fact is not None and grips_of(plant).holding(robot.name) and belief.piece is not False
     latched = belief.state is MotionState.STOP_LATCHED
-    board.place(report, holds=holds, homed=not belief.says_unhomed, latched=latched)
+    board.place(seen, holds=holds, homed=not belief.says_unhomed, latched=latched)
     world.wake(robot.mqtt)
 
 

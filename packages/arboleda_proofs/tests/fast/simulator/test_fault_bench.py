@@ -66,7 +66,7 @@ class Start:
         self.step(ToBoard(board=board, event=delivery))
 
     def move(self, q: float = 45.0) -> None:
-        self.send(Channel.JOINTS, JointsGoal(q=(q, 9.0, 0.0), seq=next(self.seq), epoch=5))
+        self.send(Channel.JOINTS, JointsGoal(q_deg=(q, 9.0, 0.0), seq=next(self.seq), epoch=5))
 
     def switch(self, *, on: bool) -> None:
         self.send(Channel.EFFECTOR, EffectorGoal(on=on, seq=next(self.seq), epoch=5))
@@ -96,7 +96,7 @@ def test_without_a_mishap_the_boards_do_what_they_do_alone(start: Start) -> None
     model, ids = shipped("sis_a", "sis_c"), itertools.count(100)
     alone, heard = Devices(model, now=1000.0, boot_ids=lambda: next(ids)), []
     heard += alone.step(1000.0, [ToBoard(board=each, event=start.link(each)) for each in alone.boards])
-    raw = encode(JointsGoal(q=(45.0, 9.0, 0.0), seq=1, epoch=5))
+    raw = encode(JointsGoal(q_deg=(45.0, 9.0, 0.0), seq=1, epoch=5))
     sent = Delivery(at=1000.0, topic=topic("ra_1", Channel.JOINTS), payload=raw)
     heard += alone.step(1000.0, [ToBoard(board="ra_1", event=sent)])
     start.move()

@@ -153,7 +153,7 @@ def switched_by_itself(patch: Patch) -> Watch:
 
 def obeyed_a_stranger(patch: Patch) -> Watch:
     watch = Watch()
-    watch.say(Channel.JOINTS, JointsGoal, q=(9.0, 9.0, 0.0))
+    watch.say(Channel.JOINTS, JointsGoal, q_deg=(9.0, 9.0, 0.0))
     return watch
 
 

@@ -127,7 +127,7 @@ def drive_beside(stage: Stage, steps: int) -> None:
     joints, (first, *others) = stage.arm.arm.joints, stage.arm.cell.taker.targets["pickup"].q
     goal = (first + steps * joints[0].step, *others)
     degrees = tuple(to_wire(joint, value) for joint, value in zip(joints, goal, strict=True))
-    stage.body.start(round(stage.world.now * 1e6), JointsGoal(q=degrees, seq=None, epoch=None))
+    stage.body.start(round(stage.world.now * 1e6), JointsGoal(q_deg=degrees, seq=None, epoch=None))
     stage.world.wake(ARM)
     stage.world.advance(5.0)
     assert not stage.arm.moving
@@ -162,7 +162,7 @@ def test_a_part_is_gripped_where_the_axes_truly_are(stage):
 def test_a_part_is_gripped_where_an_arm_stood_that_has_moved_on_in_the_same_step(stage):
     drive_beside(stage, 0)
     stage.body.switch_effector(True)
-    stage.body.start(round(stage.world.now * 1e6), JointsGoal(q=(0.0, 0.0, 0.0), seq=None, epoch=None))
+    stage.body.start(round(stage.world.now * 1e6), JointsGoal(q_deg=(0.0, 0.0, 0.0), seq=None, epoch=None))
     stage.body.advance(round(stage.world.now * 1e6) + 100_000)
     stage.truth.look()
     assert stage.arm.holding and not stage.arm.reaches

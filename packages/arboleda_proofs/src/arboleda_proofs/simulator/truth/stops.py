@@ -100,5 +100,5 @@ def is_order_of(goal: Goal, robot: Robot, command: Command) -> bool:
         stamp |= {"heard": goal.heard, "token": goal.token}
     _, expected = form_of(robot).goal(robot, command, **stamp)
     if isinstance(goal, JointsGoal) and isinstance(expected, JointsGoal):
-        return all(abs(a - b) < ROUNDING_DEG for a, b in zip(goal.q, expected.q, strict=True))
+        return all(abs(a - b) < ROUNDING_DEG for a, b in zip(goal.q_deg, expected.q_deg, strict=True))
     return goal == expected
