@@ -1,4 +1,9 @@
-"""Advisor: the acts that lead a cell out of its present state, by the cell, its robots and the zones."""
+"""Advisor: the acts that lead a cell out of its present state, by the cell, its robots and the zones.
+
+It keeps nothing: advice is worked out anew from what the plant believes, so it is never of an earlier state.
+Advice may be refused as yet, where an act before it in the list makes it possible. A cell may have to wait
+for another one that waits for it: `visited` ends that circle.
+"""
 
 from __future__ import annotations
 
@@ -52,7 +57,7 @@ class Advisor:
         lead = LEADS.get(run.state)
         if lead is None or run.closed or run.manual.teaching is not None:
             return ()
-        return tuple(dict.fromkeys(lead(self, run, visited | {cell})))  # each once
+        return tuple(dict.fromkeys(lead(self, run, visited | {cell})))
 
     def _refused(self, advice: Advice) -> Sentence | None:
         if isinstance(advice.do, Hand):

@@ -1,4 +1,10 @@
-"""One cell at work: its queue, its current task, and the tree that carries the task out."""
+"""One cell at work: its queue, its current task, and the tree that carries the task out.
+
+State, task and tree are three things. A held cell keeps its task and its tree as they are, and its time
+stands, so that no wait of the tree runs out. A recovery is a tree of its own, and may run without a task.
+`advance` is what a cell does by itself, in the rounds of a step. All other acts are asked for by verbs and
+events, and do not ask whether they are allowed: a verb asks before, and the table of states refuses the rest.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""What a cell waits for in a state that it leaves by itself, and how it leaves it."""
+"""What a cell waits for in a state that it leaves by itself, and how it leaves it.
+
+These functions are asked again and again, whenever something may have happened to the cell. So they note
+what they find only once, and their answer is whether they did anything: a cell that always says so would
+never come to rest (`Rounds.go`).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Cells as an earlier start left them: stopped, taught, or with a task that is held at its step."""
+"""Cells as an earlier start left them: stopped, taught, or with a task that is held at its step.
+
+A latch is kept by robot, and not by cell. So the cells that were stopped are worked out: a shared robot may
+be latched because of another cell.
+"""
 
 from __future__ import annotations
 

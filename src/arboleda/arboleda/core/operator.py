@@ -202,7 +202,6 @@ def arguments_of(request: OperatorRequest) -> Arguments:
 
 
 def _require_its_own(request: OperatorRequest) -> None:
-    """VerbRefusal for an argument that the verb does not take."""
     takes = [each.name for each in request.verb.arguments]
     for name, _ in request.arguments:
         if name not in takes:
@@ -210,7 +209,6 @@ def _require_its_own(request: OperatorRequest) -> None:
 
 
 def _did(request: OperatorRequest, scope: str) -> Sentence:
-    """The sentence about the act of an operator, or of a task's own client."""
     scope = as_text(request.verb, scope, lasting(request.verb, arguments_of(request)))
     if request.by_hand and request.verb in BY_HAND:
         return BY_HAND[request.verb](scope=whole(scope))

@@ -442,7 +442,6 @@ def _requests_last(events: Sequence[Event], now: float) -> list[Event]:
 def _note_clock(
     news: News, provoked: ProvokedFaults, outbox: list[Command | Notice], event: ClockSet
 ) -> None:
-    """Have the journal and the time line say that the wall clock was set."""
     news.changes += 1
     sentence = (CLOCK_AHEAD if event.seconds > 0 else CLOCK_BACK)(seconds=abs(event.seconds))
     provoked.note(event.at, "", sentence)

@@ -68,7 +68,6 @@ class Readiness:
         return None
 
     def _may_hold(self, robot: str) -> Sentence:
-        """The sentence that a robot may hold a part, and by what evidence."""
         device = next(each for each in self._cell.robots if each.name == robot)
         grip, fact = self._context.parts.grip(robot), device.held_fact
         if device.has_effector or fact is None:

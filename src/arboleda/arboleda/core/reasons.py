@@ -106,7 +106,6 @@ def _at_work(run: CellRun) -> Sentence | None:
 
 
 def _next(run: CellRun) -> Sentence:
-    """The way out of the present state."""
     if run.state in NEXT:
         return NEXT[run.state]()
     return advice.sentence(run.ways_out(run.cell.name)) or run.readiness.busy() or WAIT()

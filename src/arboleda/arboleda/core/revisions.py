@@ -76,7 +76,6 @@ class Revisions:
         return unfit
 
     def _taken(self, taken: NextVersion) -> None:
-        """Go by the version that a cell has just taken."""
         name, present = taken.cell.name, self._state.dispatcher.model
         cells = tuple(taken.cell if cell.name == name else cell for cell in present.cells)
         self._use(replace(present, cells=cells))
@@ -86,7 +85,6 @@ class Revisions:
 
 
 def _put_to_work(event: Revision) -> Journal:
-    """The journal's entry about a version that is put to work."""
     lines = tuple(map(plain, event.changes[:CHANGES_TOLD]))
     untold = len(event.changes) - len(lines)
     changes = (*lines, *((f"... ({untold})",) if untold else ())) or ("-",)

@@ -1,4 +1,9 @@
-"""Rounds over the cells in a step: each cell does what it can, until no cell has given another more to do."""
+"""Rounds over the cells in a step: each cell does what it can, until no cell has given another more to do.
+
+Cells take their turns in the order of the plant file, never in that of a set: the same events have to give
+the same in each run. What wakes a cell is collected before a round, so a cell that another one wakes has its
+turn in the next round.
+"""
 
 from __future__ import annotations
 
@@ -97,7 +102,6 @@ class Rounds:
         outbox += others
 
     def _advanced(self, name: str, *, woken: bool) -> bool:
-        """Let a cell do what it can; True where it did anything."""
         before = len(self._state.dispatcher.outbox)
         try:
             did = self._state.cells[name].advance(WAITS, woken=woken)

@@ -178,7 +178,6 @@ class Teaching:
         return next((ZONE_OF_OTHER(robot=robot, zone=zone, holder=holder) for zone, holder in taken), None)
 
     def _make(self, robot: Robot, jog: Jog) -> Callable[..., Command]:
-        """Maker of the next command of a press."""
         if jog.word == HOME:
             return partial(Home, robot=robot.name)
         if jog.word in (GRIP, LET_GO):

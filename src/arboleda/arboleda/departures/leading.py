@@ -1,6 +1,9 @@
 """Leadership of a plant that several hosts reach: rules for a process, by its clock and by the common store.
 
-Adapters, the runtime and the simulator decide by these rules alone.
+Adapters, the runtime and the simulator decide by these rules alone. No rule compares the clocks of two
+machines: a leader counts from when it asked for its lease, a waiting process from when it saw the leader's
+row change last. A leader that cannot reach the store does not know whether another process leads. It lets
+stops out until it ends, since nobody else may be there to stop the robots.
 """
 
 from __future__ import annotations

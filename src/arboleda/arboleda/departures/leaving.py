@@ -1,4 +1,9 @@
-"""Departure of a plant's messages: first, late, or from a plant that can keep nothing more."""
+"""Departure of a plant's messages: first, late, or from a plant that can keep nothing more.
+
+Messages do not leave in the order in which they arose: stops overtake. A command that a stop of its robot has
+overtaken must never leave, as it would move what was stopped. `Stop` with CLEAR ends no motion, so it waits
+as other commands do: `ends_motion` is the question, not the class.
+"""
 
 from __future__ import annotations
 

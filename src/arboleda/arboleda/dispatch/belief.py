@@ -124,7 +124,7 @@ class Belief:
         self.is_hearsay = False
         self.own_word: MotionState | None = None
         self.facts_no = 0  # the number of the last report that changed a fact
-        self._last: Report | None = None  # the last report
+        self._last: Report | None = None
 
     @property
     def numbers_commands(self) -> bool:

@@ -187,5 +187,4 @@ class Effectors:
 
 
 def _grips(command: Command) -> bool:
-    """True for a command to grip or to let go."""
     return isinstance(command, Switch) and command.grips is not None

@@ -107,7 +107,6 @@ def judge(entry: Entry, before: Before | None, belief: Belief, report: Report) -
 
 
 def _look(entry: Entry, belief: Belief, report: Report) -> None:
-    """Note what a report shows of a command."""
     observed = entry.observations
     _look_at_goal(entry, belief, report)
     observed.moving = observed.moving or report.state is MotionState.MOVING

@@ -164,7 +164,6 @@ def _of_fields(names: tuple[str, ...], value: Any) -> list[Any]:
 
 
 def _fields(kind: type) -> tuple[str, ...]:
-    """The names of the fields of a dataclass that count."""
     passed_over = NO_MATTER if issubclass(kind, Cell) else frozenset[str]()
     counted = (each for each in fields(kind) if not each.metadata.get(FOR_PEOPLE))
     return tuple(each.name for each in counted if each.name not in passed_over)

@@ -1,4 +1,9 @@
-"""Keeper of a cell's running task: writes its trail, and puts that of an earlier start into a tree."""
+"""Keeper of a cell's running task: writes its trail, and puts that of an earlier start into a tree.
+
+A trail names steps by their numbers, so it fits only a tree that is made of the same: fingerprints say that.
+A tree is made at the start, and goes on only once a person says so. Until then devices are heard, so what
+became of its steps is judged anew whenever they report, and once more as it goes on.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Succession of steps in a tree: where the success of one step can only lead to another."""
+"""Succession of steps in a tree: where the success of one step can only lead to another.
+
+A composite that forgets its place, or a selector with another way, makes that uncertain: then it is None,
+and a person judges. Subclasses count as uncertain, since they may go on otherwise.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,8 @@
 """Trail of a running task, kept for the next start: the state of its tree and the last reports of devices.
 
-The next start puts it back into a tree that it makes anew, of the same recipe and plant file.
+The next start puts it back into a tree that it makes anew, of the same recipe and plant file. A trail is kept
+before the commands of its step leave, but for stops. So it may name a command that never left, and a command
+that it does not name has left only where a power cut took the last writes.
 """
 
 from __future__ import annotations

@@ -1,4 +1,12 @@
-"""State machine of one board: commands to the board, its telemetry, its stop latch."""
+"""State machine of one board: commands to the board, its telemetry, its stop latch.
+
+- Nothing is sent again after a lost link, as it may be wrong by then. Only a latched stop is: a board that
+  comes back may have forgotten it.
+- Most telemetry repeats the last, and is known by its bytes without being read (`_again`). `_words` is None
+  once the same bytes would mean something else, as after a command or a refusal: then the next message is
+  read whole.
+- A heartbeat precedes each motion, since a board that hears none stops by itself.
+"""
 
 from __future__ import annotations
 
@@ -301,7 +309,6 @@ class Board:
 
 
 def _check(message: Payload, delivery: Delivery, form: MessageForm) -> None:
-    """Raise PayloadError for a message that breaks the contract."""
     if not isinstance(message, (Presence, Telemetry)):
         raise PayloadError("a command is not for the bridge")
     if delivery.retain and isinstance(message, Telemetry):
@@ -313,7 +320,6 @@ def _check(message: Payload, delivery: Delivery, form: MessageForm) -> None:
 
 
 def _of_rivals(news: News | None, robot: Robot, labels: Labels) -> Sentence | None:
-    """The sentence on news of rivals at a robot; None where there is none."""
     if news is News.TAKEN and labels.foreign is not None:
         return rejections.taken(robot, *labels.foreign)
     if news is None or labels.beaten_by is None:

@@ -2,6 +2,10 @@
 
 One `Board` per robot does the work. This file routes messages, and has what all boards share: the plant's
 epoch and the heartbeat.
+
+A command without an id is a copy, or is of somebody else. Which of both shows only later, by whether its
+original comes. So it is carried out or refused at once, and reported as foreign once that is certain. A stop
+is never refused as foreign, late, or of another start.
 """
 
 from __future__ import annotations
@@ -103,7 +107,7 @@ class Bridge:
         self._unsure: list[UnconfirmedCopy] = []
         self._beat_at = math.inf
         self._strays = Counters()
-        self.connected = False  # to the broker
+        self.connected = False
 
     @property
     def counters(self) -> dict[str, Counters]:
@@ -292,7 +296,6 @@ class Bridge:
 
 
 def _strange(topic: str) -> str:
-    """The reason why a topic is not one of a board of this plant."""
     try:
         name, _ = topics.parse(topic)
     except PayloadError as error:

@@ -1,4 +1,8 @@
-"""Copies, without an id, of commands that the plant has sent with an id."""
+"""Copies, without an id, of commands that the plant has sent with an id.
+
+A plant over ROS 2 publishes each command twice, the second time for nodes that know no ids. The bridge must
+carry it out once. A copy is known by its values and its time alone, and may overtake its original.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Valid numbers of a plant's start: the Unix time of the start, or one above the last number."""
+"""Valid numbers of a plant's start: the Unix time of the start, or one above the last number.
+
+Boards and bridges obey the highest number that they have heard, and no lower one after it. So one number far
+in the future, by a wrong clock or a forged beat, would lock all later starts out. Hence these limits.
+"""
 
 from __future__ import annotations
 

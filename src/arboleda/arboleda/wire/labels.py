@@ -1,4 +1,9 @@
-"""Numbers of one board: command id <-> (epoca, seq), and commands accepted, done and rejected."""
+"""Numbers of one board: command id <-> (epoca, seq), and commands accepted, done and rejected.
+
+A seq means nothing without its epoch: each bridge counts from 1, and so does each start of this one. The
+epoch may rise while commands are open, so each command remembers its own. A board repeats its last refusal
+and its last failures in every message: they are news only once.
+"""
 
 from __future__ import annotations
 

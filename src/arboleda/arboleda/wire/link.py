@@ -1,4 +1,9 @@
-"""Link to a board: broker, presence, fresh telemetry, and detection of reboots."""
+"""Link to a board: broker, presence, fresh telemetry, and detection of reboots.
+
+Presence and telemetry may contradict each other, as they come by different ways. Telemetry soon after an
+absence was on its way before it; a board that goes on talking has not told its presence. A lower number is of
+an overtaken message, unless lower numbers go on rising: then the counter has begun anew.
+"""
 
 from __future__ import annotations
 

@@ -110,7 +110,6 @@ def _sentence(key: str, text: str) -> str:
 
 
 def _written(key: str, sentence: Sentence) -> dict[str, str]:
-    """The values for a sentence: its text for people, and its parts."""
     return {key: str(sentence), f"{key}{PARTS}": json.dumps(sentence.data())}
 
 

@@ -111,7 +111,6 @@ def _not_yet(cell: CellRun) -> Sentence | None:
 
 
 def _release_first(holding: list[str]) -> Sentence:
-    """The sentence that each device that may hold a part is to be released first."""
     if len(holding) == 1:
         return RELEASE_FIRST(arm=holding[0])
     releases = [ADVISE[Verb.RELEASE](scope=robot) for robot in holding]
