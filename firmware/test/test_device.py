@@ -11,7 +11,7 @@ import pytest
 from arboleda.model.errors import PayloadError
 from arboleda.sim.machine import MachineBody
 from arboleda.wire import payloads
-from arboleda.wire.payloads import DEVICE, OrderGoal
+from arboleda.wire.payloads import DEVICE, VerbGoal
 from arboleda.wire.topics import Channel
 
 from . import device_core
@@ -73,13 +73,13 @@ def test_boards_of_a_device_say_the_same_under_random_scripts(group: int) -> Non
     assert late > SCRIPTS / GROUPS / 10  # else the scripts are too short to say
 
 
-def theirs(raw: bytes) -> OrderGoal | None:
+def theirs(raw: bytes) -> VerbGoal | None:
     """What the plant's own reader makes of an order."""
     try:
         said = payloads.decode(Channel.ORDER, raw, axes=DEVICE)
     except PayloadError:
         return None
-    assert isinstance(said, OrderGoal)
+    assert isinstance(said, VerbGoal)
     return said
 
 

@@ -121,7 +121,7 @@ def go(cell):
 
 def test_a_person_who_puts_it_home_gives_back_its_zone_though_nobody_sees_it(tmp_path: Path) -> None:
     plant = Plant(read(tmp_path, LONELY.replace("joints", "state"), THERE_AND_BACK), epoch=7, now=0.0)
-    assert plant.zones.request("one", frozenset({"gate"}))
+    assert plant.zones.acquire("one", frozenset({"gate"}))
     plant.step(0.1, [Report(at=0.1, robot="one", state=MotionState.STOPPED, epoch=1, plant=7)])
     assert plant.zones.holder("gate") == "one"
     by_hand = OperatorRequest(at=0.2, verb=Verb.HOME, scope="one", by_hand=True)

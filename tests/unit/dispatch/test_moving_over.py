@@ -33,11 +33,11 @@ def explored() -> dict[Key, bytes]:
     while frontier:
         frozen = found[frontier.pop()]
         acts = [
-            *(lambda zones, a=arm, w=wish: zones.request(a, w) for arm, wish in product(ARMS, WISHES)),
+            *(lambda zones, a=arm, w=wish: zones.acquire(a, w) for arm, wish in product(ARMS, WISHES)),
             *(lambda zones, a=arm: zones.release(a) for arm in ARMS),
             *(lambda zones, r=robot: zones.withdraw(r) for robot in (*ARMS, LIFT)),
             *(
-                lambda zones, at=at: zones.request(LIFT, frozenset({at}), moves_over=True)
+                lambda zones, at=at: zones.acquire(LIFT, frozenset({at}), moves_over=True)
                 for at in sorted(LANDINGS)
             ),
             *(lambda zones, at=at: arrive(zones, at) for at in sorted(LANDINGS)),
@@ -82,7 +82,7 @@ def test_whoever_waits_is_served_once_the_others_leave_and_it_moves(states: dict
                 zones.release(arm)
             zones.withdraw(LIFT)
             goal = min(LANDINGS - zones.held_by(LIFT) or LANDINGS)
-            zones.request(LIFT, frozenset({goal}), moves_over=True)
+            zones.acquire(LIFT, frozenset({goal}), moves_over=True)
             arrive(zones, goal)
         wishes = [wish for robot, wish in zones.queue.waiting if robot != LIFT]
         assert not wishes or wishes[0] >= LANDINGS  # both at once nobody gets while it is in one

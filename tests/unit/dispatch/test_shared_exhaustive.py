@@ -59,7 +59,7 @@ class Floor:
             self.zones.release(robot)
         else:
             user = cell if act == "take devices" else robot
-            on = names <= self.zones.held_by(user) or self.zones.request(user, names)
+            on = names <= self.zones.held_by(user) or self.zones.acquire(user, names)
         self.at[cell] += on
         return on
 
@@ -114,6 +114,6 @@ def test_from_every_state_all_come_to_their_end(histories: list[tuple[str, ...]]
 
 def test_a_cell_that_holds_one_device_cannot_ask_for_more() -> None:
     zones = Zones(DEVICES)
-    assert zones.request("a", frozenset({"lift"}))
+    assert zones.acquire("a", frozenset({"lift"}))
     with pytest.raises(IllegalTransition, match="nobody standing in a zone waits for another"):
-        zones.request("a", frozenset({"lift", "belt"}))
+        zones.acquire("a", frozenset({"lift", "belt"}))

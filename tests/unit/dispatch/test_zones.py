@@ -22,7 +22,7 @@ def zones(*requests: tuple[str, str]) -> Zones:
     """The zones x, y and z after these requests of (robot, zones)."""
     made = Zones("xyz")
     for robot, names in requests:
-        made.request(robot, wanted(names))
+        made.acquire(robot, wanted(names))
     return made
 
 
@@ -41,27 +41,27 @@ def test_all_zones_are_taken_at_once() -> None:
 
 def test_or_none_of_them() -> None:
     plant = zones((A, "x"))
-    assert plant.request(B, wanted("x y")) is False
+    assert plant.acquire(B, wanted("x y")) is False
     assert (plant.held_by(B), plant.queue.waiting) == (frozenset(), ((B, wanted("x y")),))
 
 
 def test_asking_again_changes_nothing() -> None:
     plant = zones((A, "x y"), (B, "x"), (C, "x"))
     before = zone_rows(plant), plant.queue.waiting
-    assert [plant.request(A, wanted(names)) for names in ("x y", "y", "")] == [True, True, True]
-    assert [plant.request(B, wanted("x")), plant.request(C, wanted("x"))] == [False, False]
+    assert [plant.acquire(A, wanted(names)) for names in ("x y", "y", "")] == [True, True, True]
+    assert [plant.acquire(B, wanted("x")), plant.acquire(C, wanted("x"))] == [False, False]
     assert (zone_rows(plant), plant.queue.waiting) == before
 
 
 def test_nobody_gets_past_an_earlier_one_who_wants_the_same_zone() -> None:
     plant = zones((A, "x"), (B, "x y"))
-    assert plant.request(C, wanted("y")) is False
+    assert plant.acquire(C, wanted("y")) is False
     assert plant.release(A) == (B,)
     assert plant.release(B) == (C,)
 
 
 def test_a_free_zone_that_nobody_earlier_wants_is_not_kept_back() -> None:
-    assert zones((A, "x"), (B, "x y")).request(C, wanted("z")) is True
+    assert zones((A, "x"), (B, "x y")).acquire(C, wanted("z")) is True
 
 
 def test_one_release_may_serve_several_in_their_order() -> None:
@@ -96,7 +96,7 @@ def test_an_impossible_request_is_refused_and_changes_nothing(
     plant = make()
     before = zone_rows(plant), plant.queue.waiting
     with pytest.raises(IllegalTransition, match=sentence):
-        plant.request(robot, wanted(names))
+        plant.acquire(robot, wanted(names))
     assert (zone_rows(plant), plant.queue.waiting) == before
 
 
@@ -110,7 +110,7 @@ def test_quarantine_outlives_a_release() -> None:
 def test_a_restored_robot_frees_all_its_zones() -> None:
     plant = quarantined()
     assert plant.restore(A) == (B, C)
-    assert plant.request(A, wanted("z")) is True
+    assert plant.acquire(A, wanted("z")) is True
 
 
 def test_what_is_held_but_not_quarantined_is_not_freed_by_restore() -> None:
@@ -147,7 +147,7 @@ def test_a_robot_from_which_all_was_taken_asks_as_one_that_comes_from_outside() 
     plant = zones((A, "x"))
     plant.quarantine(A)
     plant.override("x")
-    assert plant.request(A, wanted("x y")) and plant.regain(A, wanted("x y z"))
+    assert plant.acquire(A, wanted("x y")) and plant.regain(A, wanted("x y z"))
     assert plant.held_by(A) == {"x", "y"}
 
 
@@ -169,7 +169,7 @@ def test_only_a_quarantined_zone_can_be_overridden(zone: str, sentence: str) -> 
 
 def test_a_quarantine_survives_a_restart_of_the_plant() -> None:
     plant = Zones("xy", {"x": A, "gone": B})
-    assert plant.request(B, wanted("x y")) is False
+    assert plant.acquire(B, wanted("x y")) is False
     assert (plant.is_quarantined("x"), plant.held_by(B)) == (True, frozenset())
     assert plant.restore(A) == (B,)
 

@@ -28,7 +28,7 @@ from arboleda.plant_file import loader
 from arboleda.plant_file.urdf import robot_urdf
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.machine import MachineBody
-from arboleda.wire.payloads import OrderGoal
+from arboleda.wire.payloads import VerbGoal
 
 from .lab import Bench
 
@@ -140,7 +140,7 @@ class Shop(Bench):
         name = next((pose.name for pose in poses if pose.q == goal), None)
         return name and f"{robot} to {name}"
 
-    def _answer(self, name: str, goal: OrderGoal) -> Value:
+    def _answer(self, name: str, goal: VerbGoal) -> Value:
         return self.case.answers[name]
 
     def _ended(self) -> bool:
@@ -183,7 +183,7 @@ def works_again_after_a_device_gave_up(case: Case, cases: Sequence[Case]) -> Non
     for name, verb in sample(sorted(deeds - case.tries_again - case.is_so), every=2):
         here, given_up = Shop(case, cases), []
 
-        def fails(goal: OrderGoal, verb: str = verb, given_up: list[OrderGoal] = given_up) -> str | None:
+        def fails(goal: VerbGoal, verb: str = verb, given_up: list[VerbGoal] = given_up) -> str | None:
             """Gives up that verb the first time that it is told."""
             if goal.verb != verb or given_up:
                 return None

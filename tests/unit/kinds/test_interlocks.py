@@ -289,7 +289,7 @@ def test_a_machine_that_is_heard_again_keeps_its_zone_without_quarantine() -> No
     here = Bench(with_gate())
     here.wait(1.0)
     context = here.plant.cells["tending"].context
-    assert here.plant.zones.request("somebody", frozenset({"feed"}))
+    assert here.plant.zones.acquire("somebody", frozenset({"feed"}))
     here.power_off("gate")
     here.wait(3.0)
     assert here.plant.zones.is_quarantined("vise")

@@ -15,7 +15,7 @@ from arboleda.kinds.shipped import SHIPPED
 from arboleda.model.facts import Value
 from arboleda.sim.machine import MachineBody
 from arboleda.wire import mqtt_limits
-from arboleda.wire.payloads import OrderGoal
+from arboleda.wire.payloads import VerbGoal
 
 from ...plants import device_of, kind_of
 
@@ -63,7 +63,7 @@ def told(made: DeviceKind, verb: str, **values: Value) -> VerbCall:
 
 def done(body: MachineBody, verb: str, **values: Value) -> float:
     """Has a body do something; after how many s it ends."""
-    goal = OrderGoal(verb=verb, values=tuple(values.items()), seq=1, epoch=1)
+    goal = VerbGoal(verb=verb, values=tuple(values.items()), seq=1, epoch=1)
     assert body.objection(goal, latched=False, faulted=False) is None
     body.start(0, goal)
     assert body.next_change_us is not None

@@ -15,7 +15,7 @@ from arboleda.model.messages import MotionState
 from arboleda.model.plant_model import Evidence
 from arboleda.sim.devices import Devices, Reboot, ToBoard
 from arboleda.sim.machine import MachineBody
-from arboleda.wire.payloads import Beat, OrderGoal, Payload, StopGoal, Telemetry, decode, encode
+from arboleda.wire.payloads import Beat, Payload, StopGoal, Telemetry, VerbGoal, decode, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Connection, Delivery
 
@@ -40,7 +40,7 @@ class Bench:
 
     def order(self, verb: str, **values: Value) -> int:
         seq = next(self.seqs)
-        self.say(Channel.ORDER, OrderGoal(verb=verb, values=tuple(values.items()), seq=seq, epoch=EPOCH))
+        self.say(Channel.ORDER, VerbGoal(verb=verb, values=tuple(values.items()), seq=seq, epoch=EPOCH))
         return seq
 
     def stop(self, mode: StopMode) -> None:
@@ -192,8 +192,8 @@ def test_a_switch_gives_way_to_a_motion_that_sets_its_fact() -> None:
     pushed = switch(sets={"down": False}, takes_s=2.0, at_most_s=5.0)
     lowered = motion(sets={"down": True}, takes_s=0.1, at_most_s=5.0)
     body = MachineBody(kind_of("lift", {"down": bool}, push=pushed, lower=lowered))
-    body.start(0, OrderGoal(verb="push", values=(), seq=1, epoch=EPOCH))
-    body.start(1, OrderGoal(verb="lower", values=(), seq=2, epoch=EPOCH))
+    body.start(0, VerbGoal(verb="push", values=(), seq=1, epoch=EPOCH))
+    body.start(1, VerbGoal(verb="lower", values=(), seq=2, epoch=EPOCH))
     assert [end.failure for end in body.take_ends()] == ["relevado"]
     body.advance(5_000_000)
     assert body.facts["down"] is True
@@ -203,7 +203,7 @@ def test_an_order_that_comes_twice_is_carried_out_once_whatever_came_between() -
     bench = Bench()
     first = bench.order("go")
     bench.order("weigh")
-    bench.say(Channel.ORDER, OrderGoal(verb="go", values=(), seq=first, epoch=EPOCH))
+    bench.say(Channel.ORDER, VerbGoal(verb="go", values=(), seq=first, epoch=EPOCH))
     assert bench.last.refusal is None
     bench.wait(2.0)
     assert bench.last.done == first

@@ -35,7 +35,7 @@ def test_one_device_is_in_two_cells_in_roles_of_their_own(tmp_path: Path) -> Non
 
 def test_screens_show_it_once_and_who_has_it(tmp_path: Path) -> None:
     plant = Plant(load(tmp_path), epoch=1, now=0.0)
-    plant.zones.request("above", frozenset({"lift"}))
+    plant.zones.acquire("above", frozenset({"lift"}))
     snapshot = view.snapshot(plant)
     rows = {row["name"]: row["holder"] for row in snapshot["robots"]}
     assert len(snapshot["robots"]) == len(rows)

@@ -85,7 +85,7 @@ def test_what_it_sends_counts_from_the_step_that_it_came_of(monkeypatch: pytest.
     part.join()
     part.send(Stop(id="7-1", robot="ra1", mode=StopMode.LATCH))
     part.loop.post(Connection(at=now, client="", up=True))
-    still = Telemetry(state=MotionState.STOPPED, q=(0.0,) * 3, node=None)
+    still = Telemetry(state=MotionState.STOPPED, q_deg=(0.0,) * 3, node=None)
     for channel, said in ((Channel.PRESENCE, Presence(online=True)), (Channel.TELEMETRY, still)):
         where = topic(model.robots["ra1"].mqtt, channel)
         part.loop.post(Delivery(at=now, topic=where, payload=encode(said), retain=False))

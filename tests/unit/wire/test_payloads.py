@@ -18,11 +18,11 @@ from arboleda.wire.payloads import (
     EffectorGoal,
     HomeGoal,
     JointsGoal,
-    OrderGoal,
     PathGoal,
     Presence,
     StopGoal,
     Telemetry,
+    VerbGoal,
     decode,
     encode,
 )
@@ -201,7 +201,7 @@ def test_what_no_receiver_would_take_is_not_sent(payload: object) -> None:
 def test_a_token_for_which_there_is_no_room_is_left_out() -> None:
     name = "x" * 32
     values = tuple((f"{number}{name}"[:32], name) for number in range(6))
-    goal = OrderGoal(verb="run", values=values, seq=1, epoch=1, token="0a3f9x001a01")
+    goal = VerbGoal(verb="run", values=values, seq=1, epoch=1, token="0a3f9x001a01")
     long = replace(goal, values=(*values, ("last", "x" * 17)))
     assert decode(Channel.ORDER, encode(goal), axes=0) == goal
     assert decode(Channel.ORDER, encode(long), axes=0) == replace(long, token=None)

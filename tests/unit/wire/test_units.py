@@ -57,7 +57,7 @@ ELSEWHERE, GOAL = (0.5, 0.5, 0.5), (0.1, 0.2, 0.05)
 
 
 def said(state: MotionState) -> Telemetry:
-    return Telemetry(state=state, q=ELSEWHERE, node=None)
+    return Telemetry(state=state, q_deg=ELSEWHERE, node=None)
 
 
 def test_a_board_that_names_no_command_has_stood_still_for_as_long_as_it_drives_on() -> None:

@@ -37,7 +37,7 @@ RESTARTS = (
     mutant(
         "no_step_is_done_twice",
         "A task that was at work begins from its first step.",
-        edit(Intake.take_back, "Task.of(record, text.parse(", "Task(record.id, text.parse("),
+        edit(Intake.take_back, "Task.of(record, task_text.parse(", "Task(record.id, task_text.parse("),
         weather=DIES,
     ),
     mutant(
@@ -69,7 +69,7 @@ PLANTED_RESTARTS = (
     mutant(
         "parts_are_taken_and_put_where_they_can_be",
         "A task that was at work waits again.",
-        edit(Intake.take_back, "Task.of(record, text.parse(", "Task(record.id, text.parse("),
+        edit(Intake.take_back, "Task.of(record, task_text.parse(", "Task(record.id, task_text.parse("),
         weather=DIES,
     ),
 )

@@ -15,7 +15,7 @@ from arboleda.model.plant_model import Evidence
 from arboleda.plant_file.loader import load
 from arboleda.sim.board import Board
 from arboleda.sim.machine import MachineBody
-from arboleda.wire.payloads import Goal, OrderGoal, StopGoal
+from arboleda.wire.payloads import Goal, StopGoal, VerbGoal
 from arboleda.wire.transport import Delivery
 from arboleda_boards.conformance.judge import DEVICE_CHECKS, Judge
 
@@ -71,7 +71,7 @@ class Forgetful(Board):
 
     def _obey(self, goal: Goal) -> None:
         last = (self._receipts.epoch or 0, self._receipts.accepted or 0)
-        old = isinstance(goal, OrderGoal) and goal.seq is not None and (goal.epoch, goal.seq) < last
+        old = isinstance(goal, VerbGoal) and goal.seq is not None and (goal.epoch, goal.seq) < last
         if old and not self._receipts.repeats(goal) and self._refusal(goal) is None:
             self._accept(goal)
         else:
@@ -131,13 +131,13 @@ class Patient(Board):
     """Does not mind how long an order waited on its way."""
 
     def _refusal(self, goal: Goal) -> str | None:
-        return super()._refusal(replace(goal, heard=None) if isinstance(goal, OrderGoal) else goal)
+        return super()._refusal(replace(goal, heard=None) if isinstance(goal, VerbGoal) else goal)
 
 
 class Obliging(MachineBody):
     """Does what it is told, whatever has to be so before."""
 
-    def objection(self, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
+    def objection(self, goal: VerbGoal, *, latched: bool, faulted: bool) -> str | None:
         word = super().objection(goal, latched=latched, faulted=faulted)
         return None if word == "condicion" else word
 
@@ -145,7 +145,7 @@ class Obliging(MachineBody):
 class Lenient(MachineBody):
     """Overlooks values that its verb does not have."""
 
-    def command(self, goal: OrderGoal) -> Any:
+    def command(self, goal: VerbGoal) -> Any:
         verb = self.kind.verbs.get(goal.verb)
         known = dict(verb.parameters) if verb else {}
         values = tuple((name, value) for name, value in goal.values if name in known)

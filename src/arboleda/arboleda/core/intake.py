@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from arboleda.model import text
+from arboleda.model import text as task_text
 from arboleda.model.errors import QueueFull, TextError
 from arboleda.model.messages import Failure, KeptTask, Reason, TaskState
 from arboleda.model.plant_model import PlantModel
@@ -43,12 +43,12 @@ class Intake:
         self.tasks: dict[str, Task] = {}
         self._count = 0
 
-    def task(self, words: str, choose: Choose) -> Task:
+    def task(self, text: str, choose: Choose) -> Task:
         """The task of a text: a new one, or that with its id; TextError or QueueFull says why there is none.
 
         `choose` is called where the text of a new task names several cells.
         """
-        orders = self.orders(words)
+        orders = self.orders(text)
         id = orders[0].id
         earlier = self.tasks.get(id) if id else None
         if earlier is None:
@@ -59,18 +59,18 @@ class Intake:
             raise TextError(ID_TAKEN(id=earlier.id, text=earlier.order.text))
         return earlier
 
-    def orders(self, words: str) -> Sequence[Order]:
+    def orders(self, text: str) -> Sequence[Order]:
         """The orders that a text allows; TextError or QueueFull says why there is none."""
         if self.closed:
             raise QueueFull(ENDING())
-        return text.alternatives(words, self.model)
+        return task_text.alternatives(text, self.model)
 
     def take_back(self, record: KeptTask, now: float) -> Task:
         """The task of an earlier start, under its id; cancelled if it waits and this plant cannot do it."""
         task = Task.of(record)
         if record.ended_at is None:
             try:
-                task = Task.of(record, text.parse(record.text, self.model))
+                task = Task.of(record, task_text.parse(record.text, self.model))
                 if record.is_bound and record.state is TaskState.QUEUED:
                     raise TextError(OTHER_START())
             except TextError as error:
@@ -82,7 +82,7 @@ class Intake:
 
     def read_again(self, order: Order) -> Order:
         """The order in the plant of now; TextError where its text means nothing there, or other work."""
-        read = text.parse(order.text, self.model)
+        read = task_text.parse(order.text, self.model)
         if read.recipe != order.recipe or [*read.values] != [*order.values]:
             raise TextError(OTHER_WORK(text=order.text, recipe=read.recipe))
         return read

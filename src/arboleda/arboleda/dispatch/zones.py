@@ -85,8 +85,8 @@ class Zones:
     def is_quarantined(self, zone: str) -> bool:
         return zone in self._quarantined
 
-    def request(self, robot: str, zones: frozenset[str], *, moves_over: bool = False) -> bool:
-        """Ask for all of `zones`: True where the robot holds them now, else it waits; it may ask again.
+    def acquire(self, robot: str, zones: frozenset[str], *, moves_over: bool = False) -> bool:
+        """Acquire all of `zones`: True where the robot holds them now, else it waits; it may ask again.
 
         IllegalTransition for an unknown zone, for more than the robot holds, for other zones than it waits
         for, and while one of its zones is quarantined. `moves_over`: a machine in the way of one zone may ask

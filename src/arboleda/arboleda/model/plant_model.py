@@ -673,7 +673,7 @@ class PlantModel:
 
     @cached_property
     def recipes(self) -> tuple[Recipe, ...]:
-        """Every recipe that a cell of it offers, the default ones first."""
+        """Every recipe that a cell of it has, the default ones first."""
         recipes = dict.fromkeys(each for cell in self.cells for each in cell.recipes)
         return tuple(sorted(recipes, key=lambda each: not each.is_default))
 

@@ -107,7 +107,7 @@ class Parameter:
 
 @dataclass(frozen=True, kw_only=True)
 class Recipe:
-    """Work that cells offer; a task has a word for each parameter, in their order.
+    """Work that cells can do; a task has a word for each parameter, in their order.
 
     `about`: what it does, in a line. `is_default`: a task that names no recipe means this one. `alone`: the
     role of the one robot that works in it, whose name may stand for that of the cell; None where the whole

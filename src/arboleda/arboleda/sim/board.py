@@ -18,11 +18,11 @@ from arboleda.wire.payloads import (
     Goal,
     HomeGoal,
     JointsGoal,
-    OrderGoal,
     PathGoal,
     Presence,
     StopGoal,
     Telemetry,
+    VerbGoal,
     decode,
 )
 from arboleda.wire.topics import Channel, topic
@@ -212,7 +212,7 @@ class Board:
         """The word with which the board's state refuses a command; None if it can be carried out."""
         if isinstance(goal, EffectorGoal) and not goal.on:
             return None
-        if isinstance(goal, OrderGoal):
+        if isinstance(goal, VerbGoal):
             return self.body.objection(goal, latched=self.latched, faulted=self.faulted)
         if self.latched:
             return refusals.STOPPED
@@ -230,7 +230,7 @@ class Board:
         if isinstance(goal, (JointsGoal, PathGoal)):
             self.body.start(self._now_us, goal)
             self._job = goal
-        elif isinstance(goal, OrderGoal):
+        elif isinstance(goal, VerbGoal):
             self.body.start(self._now_us, goal)
             self._job = goal if self.body.is_work(goal) else self._job
             self._book_ends()
@@ -253,7 +253,7 @@ class Board:
         job, self._job = self._job, None
         if self.body.moving and job is not None:  # a second stop would begin the ramp down anew
             self.body.stop(self._now_us)
-        if word is not None and isinstance(job, OrderGoal):
+        if word is not None and isinstance(job, VerbGoal):
             self._receipts.fail(job, word)
 
     def _next_motion_us(self) -> int:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Protocol
 from arboleda.model import refusals
 from arboleda.model.commands import Command, Position
 from arboleda.model.facts import Facts, Value
-from arboleda.wire.payloads import Goal, OrderGoal
+from arboleda.wire.payloads import Goal, VerbGoal
 from arboleda.wire.topics import Channel
 
 
@@ -52,13 +52,13 @@ class Robotic:
     ends: Sequence[End] = ()
     finishes = False
 
-    def objection(self, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
+    def objection(self, goal: VerbGoal, *, latched: bool, faulted: bool) -> str | None:
         return refusals.FORMAT
 
-    def command(self, goal: OrderGoal) -> Command | None:
+    def command(self, goal: VerbGoal) -> Command | None:
         return None
 
-    def is_work(self, goal: OrderGoal) -> bool:
+    def is_work(self, goal: VerbGoal) -> bool:
         return False
 
     def take_ends(self) -> list[End]:
@@ -95,13 +95,13 @@ class Body(Protocol):
     def finishes(self) -> bool:
         """True if the present work goes on through a stop and through a silence of the plant."""
 
-    def objection(self, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
+    def objection(self, goal: VerbGoal, *, latched: bool, faulted: bool) -> str | None:
         """The word that refuses an order now; None if it can be carried out."""
 
-    def command(self, goal: OrderGoal) -> Command | None:
+    def command(self, goal: VerbGoal) -> Command | None:
         """The command that an order means; None if the body knows no such verb or value."""
 
-    def is_work(self, goal: OrderGoal) -> bool:
+    def is_work(self, goal: VerbGoal) -> bool:
         """True if an order that can be carried out keeps the machine busy."""
 
     def take_ends(self) -> list[End]:

@@ -9,7 +9,7 @@ from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, UseError, Ve
 from arboleda.model import refusals
 from arboleda.model.commands import OnStop
 from arboleda.model.facts import Facts, Value
-from arboleda.wire.payloads import DEVICE, OrderGoal
+from arboleda.wire.payloads import DEVICE, VerbGoal
 from arboleda.wire.topics import Channel
 
 from . import body
@@ -24,7 +24,7 @@ UNSHOWN = "virtual"  # the word for what ends in an error of the function that i
 class RunningOrder:
     """Order that is carried out until `ends_us`."""
 
-    goal: OrderGoal
+    goal: VerbGoal
     command: VerbCall
     ends_us: int
     is_late: bool = False  # it takes longer than it should
@@ -60,12 +60,12 @@ class MachineBody:
     def __init__(self, kind: DeviceKind) -> None:
         self.kind = kind
         self.facts: dict[str, Value] = {name: type.first for name, type in kind.facts.items()}
-        self.answer: Callable[[OrderGoal], Value] = self.first_answer
-        self.repeats: Callable[[OrderGoal], float | None] = _never
-        self.refuses: Callable[[OrderGoal], str | None] = _never
-        self.fails: Callable[[OrderGoal], str | None] = _never
-        self.does: Callable[[OrderGoal], bool] = _always
-        self.lasts: Callable[[OrderGoal], float] = _as_long_as_it_should
+        self.answer: Callable[[VerbGoal], Value] = self.first_answer
+        self.repeats: Callable[[VerbGoal], float | None] = _never
+        self.refuses: Callable[[VerbGoal], str | None] = _never
+        self.fails: Callable[[VerbGoal], str | None] = _never
+        self.does: Callable[[VerbGoal], bool] = _always
+        self.lasts: Callable[[VerbGoal], float] = _as_long_as_it_should
         self.ends: list[End] = []
         self._deeds: list[RunningOrder] = []
         self.next_change_us: int | None = None
@@ -113,13 +113,13 @@ class MachineBody:
     def finishes(self) -> bool:
         return any(deed.is_work and deed.verb.on_stop is OnStop.FINISH for deed in self._deeds)
 
-    def first_answer(self, goal: OrderGoal) -> Value:
+    def first_answer(self, goal: VerbGoal) -> Value:
         """The answer to a query that the kind gives for a virtual device."""
         command = self.command(goal)
         assert command is not None
         return self.kind.answer_of(command, tuple(self.facts.items()))
 
-    def objection(self, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
+    def objection(self, goal: VerbGoal, *, latched: bool, faulted: bool) -> str | None:
         """The word that refuses an order now; None if it can be carried out."""
         command = self.command(goal)
         if command is None:
@@ -140,7 +140,7 @@ class MachineBody:
         sets = dict(command.sets)
         return any(sets.get(name, value) != value for name, value in needs)
 
-    def command(self, goal: OrderGoal) -> VerbCall | None:
+    def command(self, goal: VerbGoal) -> VerbCall | None:
         verb = self.kind.verbs.get(goal.verb)
         types = dict(verb.parameters) if verb else {}
         read = {name: types[name].read(value) if name in types else None for name, value in goal.values}
@@ -154,10 +154,10 @@ class MachineBody:
         assert isinstance(command, VerbCall)
         return command
 
-    def is_work(self, goal: OrderGoal) -> bool:
+    def is_work(self, goal: VerbGoal) -> bool:
         return self.kind.verbs[goal.verb].effect in WORK
 
-    def start(self, now_us: int, goal: OrderGoal) -> None:
+    def start(self, now_us: int, goal: VerbGoal) -> None:
         """Begin an order that has no objection; one that takes no time takes a moment, too."""
         command = self.command(goal)
         assert command is not None
@@ -244,13 +244,13 @@ def _goes_on_while_stopped(command: VerbCall) -> bool:
     return command.definition.effect is Effect.QUERY or getattr(command, "grips", None) is False
 
 
-def _never(goal: OrderGoal) -> None:
+def _never(goal: VerbGoal) -> None:
     """The default for refusals and the like: None for every order."""
 
 
-def _always(goal: OrderGoal) -> bool:
+def _always(goal: VerbGoal) -> bool:
     return True
 
 
-def _as_long_as_it_should(goal: OrderGoal) -> float:
+def _as_long_as_it_should(goal: VerbGoal) -> float:
     return 0.0

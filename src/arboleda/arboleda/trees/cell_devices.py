@@ -80,7 +80,7 @@ class CellDevices:
             return False
         if not all(self._zones.holder(device) or self.hand_over.is_as_left(device) for device in devices):
             return False
-        if not self._zones.request(name, devices):
+        if not self._zones.acquire(name, devices):
             return False
         self._note_taken(devices)
         return True

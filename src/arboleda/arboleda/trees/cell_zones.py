@@ -79,14 +79,14 @@ class CellZones:
         """
         held = self._zones.held_by(robot)
         if not held:
-            taken = self._zones.request(robot, zones)
+            taken = self._zones.acquire(robot, zones)
         elif robot not in self._cell.workspaces and not zones <= held:
             trusted = not any(map(self._zones.is_quarantined, held))
-            taken = trusted and self._zones.request(robot, zones, moves_over=True)
+            taken = trusted and self._zones.acquire(robot, zones, moves_over=True)
         else:
             taken = self._zones.regain(robot, zones) if inside else zones <= held
             if not (taken or inside) and robot in self._zones.robbed and self.leave(robot):
-                taken = self._zones.request(robot, zones)
+                taken = self._zones.acquire(robot, zones)
         if taken:
             self._remember(robot)
         return taken

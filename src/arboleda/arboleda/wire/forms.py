@@ -22,7 +22,7 @@ from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import Phrase, Sentence
 
-from .payloads import DEVICE, EffectorGoal, Goal, HomeGoal, JointsGoal, OrderGoal, PathGoal, StopGoal
+from .payloads import DEVICE, EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal, VerbGoal
 from .topics import Channel
 from .units import to_wire
 
@@ -219,7 +219,7 @@ OF_MOBILES: dict[type[Command], CommandForm] = {
 OF_DEVICES: dict[type[Command], CommandForm] = {
     VerbCall: CommandForm(
         channel=Channel.ORDER,
-        goal=OrderGoal,
+        goal=VerbGoal,
         body=lambda robot, command: {"verb": command.verb, "values": command.values},
         refusal=_check_order,
     ),

@@ -11,7 +11,7 @@ from arboleda.model.facts import Value
 from arboleda.model.messages import MotionState
 
 from . import strict
-from .payloads import DEVICE_REFUSALS, MOST_FAILURES, OrderGoal, Telemetry, encode
+from .payloads import DEVICE_REFUSALS, MOST_FAILURES, Telemetry, VerbGoal, encode
 from .strict import LONGEST, LONGEST_WORD, UINT32
 
 SMALLEST = -2.2250738585072014e-300  # no number takes more characters
@@ -66,7 +66,7 @@ def _silent(kind: DeviceKind) -> Iterator[Objection]:
 
 def _lengths(kind: DeviceKind) -> Iterator[Objection]:
     for verb in kind.verbs.values():
-        goal = OrderGoal(
+        goal = VerbGoal(
             verb=verb.name,
             values=tuple((name, longest(type)) for name, type in verb.parameters),
             seq=UINT32,

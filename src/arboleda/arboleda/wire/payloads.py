@@ -22,12 +22,12 @@ from .values import (
     Goal,
     HomeGoal,
     JointsGoal,
-    OrderGoal,
     PathGoal,
     Payload,
     Presence,
     StopGoal,
     Telemetry,
+    VerbGoal,
 )
 
 __all__ = [
@@ -40,12 +40,12 @@ __all__ = [
     "Goal",
     "HomeGoal",
     "JointsGoal",
-    "OrderGoal",
     "PathGoal",
     "Payload",
     "Presence",
     "StopGoal",
     "Telemetry",
+    "VerbGoal",
     "angles",
     "decode",
     "encode",
@@ -170,11 +170,11 @@ def _home(fields: strict.Fields, axes: int | None) -> HomeGoal:
     return HomeGoal(**_stamp_in_time(fields))
 
 
-def _order(fields: strict.Fields, axes: int | None) -> OrderGoal:
+def _order(fields: strict.Fields, axes: int | None) -> VerbGoal:
     if axes != DEVICE:
         raise PayloadError("only a device of a declared kind takes orders")
     values = fields.facts("valores") if "valores" in fields else ()
-    return OrderGoal(verb=fields.name("verbo"), values=values or (), **_stamp_in_time(fields))
+    return VerbGoal(verb=fields.name("verbo"), values=values or (), **_stamp_in_time(fields))
 
 
 @lru_cache(maxsize=64)
@@ -296,7 +296,7 @@ def _word(word: str) -> str:
     return strict.name("fallos", word, strict.LONGEST_WORD)
 
 
-def _order_body(goal: OrderGoal) -> dict[str, object]:
+def _order_body(goal: VerbGoal) -> dict[str, object]:
     return {"verbo": strict.name("verbo", goal.verb), "valores": _named("valores", goal.values) or None}
 
 
@@ -314,7 +314,7 @@ _WRITERS: dict[type, Callable[..., dict[str, object]]] = {
     EffectorGoal: lambda goal: _stamped({"efector": int(goal.on)}, goal),
     StopGoal: lambda goal: _stamped({"paro": goal.mode.value}, goal),
     HomeGoal: lambda goal: _stamped({"ref": 1}, goal),
-    OrderGoal: lambda goal: _stamped(_order_body(goal), goal),
+    VerbGoal: lambda goal: _stamped(_order_body(goal), goal),
     Beat: lambda beat: {"epoca": beat.epoch},
     Telemetry: _telemetry_body,
 }

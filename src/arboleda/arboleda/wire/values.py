@@ -67,7 +67,7 @@ class HomeGoal:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OrderGoal:
+class VerbGoal:
     """Command `orden`: a verb of a declared kind of device, with its values."""
 
     verb: str
@@ -125,5 +125,5 @@ class Presence:
     online: bool
 
 
-Goal = JointsGoal | PathGoal | EffectorGoal | StopGoal | HomeGoal | OrderGoal
+Goal = JointsGoal | PathGoal | EffectorGoal | StopGoal | HomeGoal | VerbGoal
 Payload = Goal | Beat | Telemetry | Presence

@@ -21,7 +21,7 @@ from arboleda.recipes.place_questions import GETS_PART, GETS_ROOM
 from arboleda.rig.hands import HANDS, do
 from arboleda.rig.world import World
 from arboleda.sim.machine import MachineBody
-from arboleda.wire.payloads import OrderGoal
+from arboleda.wire.payloads import VerbGoal
 
 from .chance import Dice
 from .cycles import has_told
@@ -218,7 +218,7 @@ def answer_anything(world: World, seed: int) -> None:
 
 
 def _any_answer(
-    body: MachineBody, numbers: Mapping[str, Sequence[Value]], dice: Dice, goal: OrderGoal
+    body: MachineBody, numbers: Mapping[str, Sequence[Value]], dice: Dice, goal: VerbGoal
 ) -> Value:
     verb = body.kind.verbs[goal.verb]
     return dice.pick(verb.answers or numbers.get(goal.verb) or verb.answer_type.samples)
@@ -260,13 +260,11 @@ def answer_in_turn(body: MachineBody, verb: str, answers: Iterable[Value]) -> No
     body.answer = partial(_next, deque(answers), verb, body.answer)
 
 
-def _next(
-    prepared: deque[Value], verb: str, otherwise: Callable[[OrderGoal], Value], goal: OrderGoal
-) -> Value:
+def _next(prepared: deque[Value], verb: str, otherwise: Callable[[VerbGoal], Value], goal: VerbGoal) -> Value:
     return prepared.popleft() if prepared and goal.verb == verb else otherwise(goal)
 
 
-def _word_or_first(body: MachineBody, word: Value, goal: OrderGoal) -> Value:
+def _word_or_first(body: MachineBody, word: Value, goal: VerbGoal) -> Value:
     answer = body.kind.verbs[goal.verb].answer_type.read(word)
     return body.first_answer(goal) if answer is None else answer
 

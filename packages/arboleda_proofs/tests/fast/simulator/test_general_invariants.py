@@ -40,7 +40,7 @@ from arboleda.trees.interlocks import Interlocks
 from arboleda.trees.needs import CellNeeds
 from arboleda.trees.part_places import Places
 from arboleda.wire.bridge import Bridge
-from arboleda.wire.payloads import OrderGoal, encode
+from arboleda.wire.payloads import VerbGoal, encode
 from arboleda.wire.transport import Publication
 from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.faults import OF_DEVICES as FAULTS_OF_DEVICES
@@ -269,7 +269,7 @@ def test_a_device_gives_up_until_all_such_faults_have_ended() -> None:
     watched = JudgedWorld(shop(load))
     for seconds in (5.0, 10.0):
         watched.begin(Fault(kind="gives_up", at=0.0, target="mill", word="atasco", seconds=seconds))
-    order = OrderGoal(verb="open", values=(), seq=1, epoch=1)
+    order = VerbGoal(verb="open", values=(), seq=1, epoch=1)
     told = []
     for _ in range(3):
         told.append(machine_of(watched).fails(order))
@@ -281,7 +281,7 @@ def test_what_never_ends_ends_when_that_is_over() -> None:
     watched = JudgedWorld(shop(load), invariants=())  # nobody has asked for what it does
     watched.begin(Fault(kind="never_ends", at=0.0, target="mill", seconds=30.0))
     mill = machine_of(watched)
-    mill.start(round(watched.world.now * 1e6), OrderGoal(verb="close", values=(), seq=1, epoch=1))
+    mill.start(round(watched.world.now * 1e6), VerbGoal(verb="close", values=(), seq=1, epoch=1))
     watched.world.advance(29.0)
     assert mill.moving and mill.facts["door"] == "open"
     watched.world.advance(2.0)
@@ -295,7 +295,7 @@ def test_no_day_passes_at_once_while_a_switch_is_late() -> None:
         Fault(kind="plant_freeze", at=0.0, target="plant", word="plant", seconds=2.0, amount=80_000.0)
     )
     jaw = machine_of(watched, "jaw")
-    jaw.start(round(watched.world.now * 1e6), OrderGoal(verb="close", values=(), seq=1, epoch=1))
+    jaw.start(round(watched.world.now * 1e6), VerbGoal(verb="close", values=(), seq=1, epoch=1))
     assert not jaw.moving
     watched.world.advance(3.0)
     assert watched.world.skipped_s == 0
@@ -360,7 +360,7 @@ def ignores_needs_everywhere(patch: Patch) -> None:
     ignores_needs(patch)
     objection = MachineBody.objection
 
-    def lax(self: MachineBody, goal: OrderGoal, **state: bool) -> str | None:
+    def lax(self: MachineBody, goal: VerbGoal, **state: bool) -> str | None:
         word = objection(self, goal, **state)
         return None if word == "condicion" else word
 
@@ -451,7 +451,7 @@ def forgets_its_latch(patch: Patch) -> None:
     """A stopped device takes orders."""
     objection = MachineBody.objection
 
-    def lax(self: MachineBody, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
+    def lax(self: MachineBody, goal: VerbGoal, *, latched: bool, faulted: bool) -> str | None:
         return objection(self, goal, latched=False, faulted=faulted)
 
     patch.setattr(MachineBody, "objection", lax)
@@ -565,7 +565,7 @@ def ordered_while_stopped(watched: JudgedWorld) -> None:
     """Somebody tells a stopped mill to shut its door, under a number that counts."""
     watched.world.request_verb(Verb.STOP)
     watched.world.advance(1.0)
-    goal = OrderGoal(verb="close", values=(), seq=1, epoch=4_000_000_000)
+    goal = VerbGoal(verb="close", values=(), seq=1, epoch=4_000_000_000)
     watched.world.publish(Publication(topic="mill/orden", payload=encode(goal)))
     watched.world.advance(1.0)
 

@@ -12,7 +12,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_check import advance_check
 from arboleda.plant_file import loader
 from arboleda.sim.machine import MachineBody
-from arboleda.wire.payloads import OrderGoal
+from arboleda.wire.payloads import VerbGoal
 from arboleda_proofs.campaigns.proof.calm import calm_runs
 from arboleda_proofs.campaigns.proof.scenario import scenarios
 from arboleda_proofs.simulator.people import answer_anything
@@ -79,7 +79,7 @@ def test_a_simulated_scale_gives_all_of_them(sorter: PlantModel) -> None:
     answer_anything(sim.world, 1)
     body = sim.world.boards["scale"].body
     assert isinstance(body, MachineBody)
-    goal = OrderGoal(verb="weigh", values=(), seq=1, epoch=1, heard=0)
+    goal = VerbGoal(verb="weigh", values=(), seq=1, epoch=1, heard=0)
     assert {body.answer(goal) for _ in range(100)} == {0.0, 99.0, 100.0, 110.0, 120.0, 121.0}
 
 

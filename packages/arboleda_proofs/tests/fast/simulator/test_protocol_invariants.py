@@ -572,7 +572,7 @@ zones:
 
 def test_zone_requests_end(monkeypatch, bites):
     watch = Watch(zoned())
-    assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
+    assert watch.world.plant.zones.acquire("ra2", frozenset({"table"}))
     monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     monkeypatch.setattr(leaves.TakeZones, "update", lambda self: self.arrived() or leaves.Status.RUNNING)
     watch.task("sis_a palletizing", wait_s=2.9)
@@ -583,7 +583,7 @@ def test_zone_requests_end(monkeypatch, bites):
 
 def test_zone_requests_end__of_a_recovery_where_who_has_the_zone_does_not_work(monkeypatch, bites):
     watch = Watch(zoned())
-    assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
+    assert watch.world.plant.zones.acquire("ra2", frozenset({"table"}))
     monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     monkeypatch.setattr(cell_zones.CellZones, "will_come_free", lambda self, robot: True)
     watch.task("sis_a palletizing", wait_s=6.1)
@@ -640,7 +640,7 @@ def test_zone_requests_end__where_the_plant_takes_a_held_cell_for_one_at_work(tm
 
 def test_zone_requests_end__in_the_cells_own_time(monkeypatch):
     watch = Watch(zoned())
-    assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
+    assert watch.world.plant.zones.acquire("ra2", frozenset({"table"}))
     monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     watch.task("sis_a palletizing", wait_s=1)
     watch.verb(Verb.HOLD, "sis_a", wait_s=10)
@@ -657,7 +657,7 @@ def test_zone_requests_end__anew_after_the_pause_of_a_retry(monkeypatch):
     model = zoned()
     cells = tuple(replace(each, recipes=(*each.recipes, look)) for each in model.cells)
     watch = Watch(replace(model, cells=cells))
-    assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
+    assert watch.world.plant.zones.acquire("ra2", frozenset({"table"}))
     monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     watch.task("sis_a look", wait_s=7.0)
     assert [user.cell for user in watch.record.waiting.users] == ["sis_a"]
@@ -679,7 +679,7 @@ PAUSE = '<Inverter><Sleep msec="500"/></Inverter>'
 @pytest.mark.parametrize("node", [VISIT, f"<Fallback>{VISIT}{PAUSE}</Fallback>"])
 def test_zone_requests_end__anew_at_each_try_of_a_tree(monkeypatch, node):
     watch = Watch(in_a_tree(zoned(), f'<RetryUntilSuccessful num_attempts="4">{node}</RetryUntilSuccessful>'))
-    assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
+    assert watch.world.plant.zones.acquire("ra2", frozenset({"table"}))
     monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     watch.task("sis_a look", wait_s=5.0)
     assert [user.cell for user in watch.record.waiting.users] == ["sis_a"]
@@ -691,7 +691,7 @@ def test_zone_requests_end__at_a_later_try_of_a_tree(monkeypatch, bites):
     watch = Watch(
         in_a_tree(zoned(), f'<RetryUntilSuccessful num_attempts="4">{VISIT}</RetryUntilSuccessful>')
     )
-    assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
+    assert watch.world.plant.zones.acquire("ra2", frozenset({"table"}))
     monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     watch.task("sis_a look", wait_s=4)
     assert watch.found == {}
@@ -702,7 +702,7 @@ def test_zone_requests_end__at_a_later_try_of_a_tree(monkeypatch, bites):
 
 def test_zone_requests_end__once_a_cell_that_was_held_at_that_moment_goes_on(monkeypatch):
     watch = Watch(zoned())
-    assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
+    assert watch.world.plant.zones.acquire("ra2", frozenset({"table"}))
     monkeypatch.setattr(zone_watch.ZoneWatch, "look", lambda self: None)
     watch.task("sis_a palletizing", wait_s=3.1)
     watch.world.stall(PLANT, 0.3)

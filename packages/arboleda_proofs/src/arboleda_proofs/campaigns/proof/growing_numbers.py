@@ -11,7 +11,7 @@ from arboleda.engine.inspection import SETTLES_IN, Stillness
 from arboleda.sim.freshness import Freshness
 from arboleda.sim.uplink import Uplink
 from arboleda.wire.link import BoardLink
-from arboleda.wire.values import EffectorGoal, HomeGoal, JointsGoal, OrderGoal, PathGoal
+from arboleda.wire.values import EffectorGoal, HomeGoal, JointsGoal, PathGoal, VerbGoal
 
 REPORTS = "reports"  # of a robot that have reached the plant
 TELEMETRY = "telemetry"  # of a board since its boot
@@ -43,7 +43,7 @@ SORTS: dict[type, dict[str, tuple[str, bool]]] = {
     PathGoal: {"heard": HEARD},
     EffectorGoal: {"heard": HEARD},
     HomeGoal: {"heard": HEARD},
-    OrderGoal: {"heard": HEARD},
+    VerbGoal: {"heard": HEARD},
 }
 """Attributes with such numbers by class: nobody reads them but to ask which one is higher."""
 

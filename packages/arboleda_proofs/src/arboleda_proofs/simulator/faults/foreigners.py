@@ -207,7 +207,7 @@ CHANNELS = {
     "EffectorGoal": Channel.EFFECTOR,
     "StopGoal": Channel.STOP,
     "HomeGoal": Channel.HOME,
-    "OrderGoal": Channel.ORDER,
+    "VerbGoal": Channel.ORDER,
 }
 
 KINDS = (

@@ -6,7 +6,7 @@ from arboleda.drivers import Command, Robot, Switch, Value, needs_clear
 from arboleda.model.plant_model import Cell, Interlock
 from arboleda.rig.network import Client
 from arboleda.sim.board import Board
-from arboleda.wire.payloads import Goal, OrderGoal
+from arboleda.wire.payloads import Goal, VerbGoal
 
 from .robot import Act, RobotTruth
 
@@ -88,7 +88,7 @@ class MachineTruth(RobotTruth):
         self.homed, self.work = True, None
 
     def _moves(self, goal: Goal) -> bool:
-        return isinstance(goal, OrderGoal) and self.body.is_work(goal)
+        return isinstance(goal, VerbGoal) and self.body.is_work(goal)
 
     def _grips(self, goal: Goal) -> bool:
         """True for a goal other than work that a stop forbids: neither a question nor a release."""
@@ -96,7 +96,7 @@ class MachineTruth(RobotTruth):
         return command is not None and needs_clear(command)
 
     def _command(self, goal: Goal) -> Command | None:
-        command: Command | None = self.body.command(goal) if isinstance(goal, OrderGoal) else None
+        command: Command | None = self.body.command(goal) if isinstance(goal, VerbGoal) else None
         return command
 
     def _follow(self, was_moving: bool) -> None:

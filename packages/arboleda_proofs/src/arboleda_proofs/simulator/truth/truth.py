@@ -10,7 +10,7 @@ from arboleda.model.messages import ENDED, Check, Fact, OperatorAnswer, TaskChan
 from arboleda.model.whole_cells import whole_cell
 from arboleda.rig.world import World
 from arboleda.wire.hop import FromPlant
-from arboleda.wire.payloads import OrderGoal
+from arboleda.wire.payloads import VerbGoal
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
@@ -169,7 +169,7 @@ class Truth(RobotsTruth):
                 continue
             goal = goal_of(each.topic, each.payload, self.robots[name].body.axes)
             for question in [each for each in questions if each.robot == name]:
-                if isinstance(goal, OrderGoal) and is_order_of(goal, self.robots[name].robot, question):
+                if isinstance(goal, VerbGoal) and is_order_of(goal, self.robots[name].robot, question):
                     questions.remove(question)
                     self._questions[name, goal.epoch or 0, goal.seq or 0] = question.id
                     break
