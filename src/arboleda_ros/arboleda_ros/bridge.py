@@ -18,7 +18,6 @@ from std_msgs.msg import String, UInt32
 from arboleda.adapters.rate_limit import RateLimit
 from arboleda.drivers import Command, Report, Robot
 from arboleda.extension import PayloadError
-from arboleda.model import refusals
 from arboleda.model.messages import Heartbeat
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.wire import epochs, rejections
@@ -138,7 +137,7 @@ class BridgePort(Port):
                     robot=robot.name,
                     command=topic,
                     id="",
-                    reason=refusals.FORMAT,
+                    reason="formato",
                     sentence=sentence,
                 )
             )
