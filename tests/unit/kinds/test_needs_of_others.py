@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.model.messages import Reason
 
-from ...plants import changed, plant_text, read, refused
+from ...plants import changed, plant_text, read, refused, rows
 from .lab import Bench
 
 PLANT = plant_text(__file__, "needs_of_others")
@@ -90,23 +90,7 @@ def test_a_verb_is_refused_while_the_other_device_is_not_heard(bench: Bench) -> 
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("old", "new", "problem"),
-    [
-        ("jaw.close: {", "jaw.shut: {", 'bench.needs.jaw.shut: verbs of jaw are close or open, is "shut"'),
-        ("jaw.close: {", "jow.close: {", 'there is no role "jow"; did you mean "jaw"?'),
-        ("{reader.lid: open}", "{reader.lit: open}", 'is "reader.lit"; did you mean "reader.lid"?'),
-        (
-            "{lamp.lit: true}",
-            "{reader.lid: closed}",
-            "lid is a fact of reader itself; say that as needs: {lid",
-        ),
-        ("{reader.lid: open}", "{reader.lid: ajar}", 'lid of reader must be open, closed, is "ajar"'),
-        ("{reader.lid: closed}", "{oven.lid: closed}", "devices.lamp: light of lamp needs oven.lid: must be"),
-        (
-            "{reader.lid: closed}",
-            "{reader.lid: ajar}",
-            "needs reader.lid: lid of reader must be open, closed",
-        ),
-    ],
+    rows(__file__, "wrong_needs"),
 )
 def test_a_wrong_need_is_named_with_what_is_allowed(tmp_path: Path, old: str, new: str, problem: str) -> None:
     found = refused(tmp_path, changed(PLANT, (old, new)), RECIPES)

@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.plant_check import place_check
 
-from ...plants import changed, plant_text, read
+from ...plants import changed, plant_text, read, rows
 
 PLANT = plant_text(__file__, "place_check")
 RECIPES = """
@@ -30,37 +30,7 @@ def test_nothing_is_wrong_with_a_plant_that_says_all(tmp_path: Path) -> None:
     assert warned(tmp_path) == ()
 
 
-@pytest.mark.parametrize(
-    ("edit", "sentence"),
-    [
-        (
-            (IN_THE_OVEN, ""),
-            "lab: inside is at oven, which moves (open, close), and nothing keeps left out of there "
-            "meanwhile; a zone with this target and free_while or held_while of the device does",
-        ),
-        (
-            ("inside: {of: oven}", "inside: {}"),
-            "lab: oven works on a part (bake), and no place is of it; say where: "
-            "places: {TARGET: {of: oven}}",
-        ),
-        (
-            ("nest:   {of: clamp}", "nest:   {of: clamp, output: true}"),
-            "lab: nest is inside clamp, and an output, so it counts as empty when a task begins, whoever "
-            "has looked; leave out `output`, and say unload once it is empty",
-        ),
-        (
-            ("jaw:   {kind: gripper, tool_of: left}", "jaw:   {kind: gripper}"),
-            "lab: jaw takes hold of a part (close), and no place is of it; say where: "
-            "places: {TARGET: {of: jaw}}, or tool_of",
-        ),
-        (
-            ("right: {kind: arm, model: scara, base: {origin_m: [0.6, 0], yaw_deg: 45}}",
-             "right: {kind: arm, model: scara, base: {origin_m: [0.5, 0], yaw_deg: 45}}"),
-            "lab: nest is one place, and left and right go 100 mm apart; correct a target, or "
-            "write base: {origin_m: [x, y]}",
-        ),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("edit", "sentence"), rows(__file__, "places"))
 def test_it_warns(tmp_path: Path, edit: tuple[str, str], sentence: str) -> None:
     assert warned(tmp_path, edit) == (sentence,)
 
