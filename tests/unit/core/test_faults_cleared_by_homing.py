@@ -1,4 +1,4 @@
-"""Robots whose driver's homing leads out of a fault: the advice says so, and a task is not lost by it."""
+"""Faults that a driver's homing leads out of, and links that are lost for a reason: the advice leads on."""
 
 from __future__ import annotations
 
@@ -6,13 +6,17 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from tests.following import follow
 
 from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Home
-from arboleda.model.messages import MotionState, Verb
+from arboleda.model.messages import MotionState, Reason, Report, TaskState, Verb
 from arboleda.model.plant_model import DriverUse, Evidence, PlantModel, Robot
+from arboleda.model.sentence import OWN
 from arboleda.testing import shipped
 
+from ...plants import made
+from ..kinds.lab import Bench, model
 from .conftest import Hand
 from .test_plant import driven_to_the_arm
 
@@ -80,3 +84,26 @@ def test_homing_a_robot_in_fault_is_refused_unless_its_driver_leads_out(recovers
     plant = _in_fault(recovers=recovers)
     plant.operate(Verb.HOME, "ra1")
     assert len(plant.commands(Home)) == recovers
+
+
+WHY = OWN(text="its driver plc has said nothing for 1.5 s")
+
+
+shut = made("shut", lambda cell: cell.device("oven").close())
+
+
+def lost(robot: str, at: float) -> Report:
+    return Report(at=at, robot=robot, state=MotionState.NO_LINK, lost=WHY)
+
+
+def test_a_command_that_was_open_fails_with_the_reason_and_the_advice_leads_back() -> None:
+    bench = Bench(model(shut))
+    bench.submit("bench shut")
+    assert bench.wait(20.0, lambda: "oven close" in bench.told)
+    bench.tell(lost("oven", bench.now))
+    end = bench.outcome()
+    assert (end.state, end.reason) == (TaskState.FAILED, Reason.LINK_LOST)
+    assert str(end.sentence) == f"oven: the link was lost while doing close: {WHY}"
+    follow(bench, "bench")
+    bench.submit("bench shut #again")
+    assert bench.outcome().state is TaskState.DONE

@@ -1,4 +1,4 @@
-"""A tool that was told to let go may do it late: its robot stays where it is until that is settled."""
+"""A tool that may let go late keeps its robot; a part in a device that no robot carries is to be released."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from arboleda.core import reasons
 from arboleda.core.plant import Plant
 from arboleda.model.advice import sentence
 from arboleda.model.grips import Grip
-from arboleda.model.messages import Fact, Verb
+from arboleda.model.messages import Fact, TaskState, Verb
 from arboleda.recipes import Kit, recipe, work
 
-from .lab import Bench
+from .lab import Bench, model
 from .tending import plant
 from .test_recipes_of_robots import load, moved
 
@@ -140,3 +140,27 @@ def test_a_held_task_that_can_only_be_abandoned_keeps_no_zone_that_its_robot_has
     assert here.plant.zones.holder("vise") == "left"
     assert here.operate(Verb.HOME, "left") is None
     assert here.wait(30.0, lambda: here.plant.zones.holder("vise") is None)
+
+
+def test_after_a_failure_the_device_is_to_be_released() -> None:
+    here = Bench(model())
+    here.submit("bench careless")
+    assert here.outcome().state is TaskState.FAILED
+    assert here.wait(30.0, lambda: bool(here.plant.advice("bench")))
+    ways = here.plant.advice("bench")
+    assert str(sentence(ways)) == "release oven, then resume bench"
+    assert "oven may hold a part: clamped is true" in str(reasons.of_hold(here.plant.cells["bench"]))
+    for each in ways:  # none is refused once those before it are done
+        assert here.operate(Verb(each.do), each.scope) is None
+        here.wait(3.0)
+    assert here.plant.advice("bench") == ()
+
+
+def test_after_a_stop_the_device_is_to_be_released_once_the_cell_is_reset() -> None:
+    here = Bench(model())
+    here.submit("bench bake 10")
+    assert here.wait(30.0, lambda: here.told[-1:] == ["oven close"])
+    assert here.operate(Verb.STOP) is None
+    here.wait(3.0)
+    told = str(sentence(here.plant.advice("bench")))
+    assert told == "clear bench, then reset bench, then release oven, then resume bench"

@@ -1,4 +1,4 @@
-"""Simulated time is refused, at the start of a node and while it runs; how far ROS 2 is heard."""
+"""Simulated time is refused, at the start of a node and while it runs."""
 
 from __future__ import annotations
 
