@@ -53,12 +53,17 @@ def read(folder: Path, plant: str, recipes: str = "", beside: Mapping[str, str] 
     return loader.load(written(folder, plant, recipes, beside))
 
 
+def problems_of(file: Path) -> list[str]:
+    """What is wrong with a plant: the names of files without that of their folder."""
+    with pytest.raises(ConfigError) as refusal:
+        loader.load(file)
+    return [each.removeprefix(f"{file.parent}/") for each in refusal.value.problems]
+
+
 def refused(folder: Path, plant: str, recipes: str = "", beside: Mapping[str, str] = {}) -> list[str]:
     """The problems of a plant: in its own file from the line on, in others with their names."""
-    with pytest.raises(ConfigError) as refusal:
-        read(folder, plant, recipes, beside)
-    here = f"{folder}/"
-    return [each.removeprefix(here).removeprefix("plant.yaml:") for each in refusal.value.problems]
+    found = problems_of(written(folder, plant, recipes, beside))
+    return [each.removeprefix("plant.yaml:") for each in found]
 
 
 def made(name: str, build: Callable[..., Any]) -> Recipe:

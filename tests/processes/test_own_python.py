@@ -9,8 +9,9 @@ import pytest
 from arboleda.host import abilities, forks
 from arboleda.plant_file import recipe_trial
 
+from ..plants import problems_of
 from ..unit.plant_file import test_own_kinds as kinds
-from ..unit.plant_file.test_own_recipes import GOOD, HEAD, MISTAKES, PLANT, load, refused, write
+from ..unit.plant_file.test_own_recipes import GOOD, HEAD, MISTAKES, PLANT, load, write
 
 
 @pytest.fixture(params=[True, False], ids=["in a fork", "in another Python"], autouse=True)
@@ -37,7 +38,7 @@ def test_a_file_that_never_ends_is_a_problem_like_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, recipes: str, told: str
 ) -> None:
     monkeypatch.setattr(recipe_trial, "LONGEST_S", 0.5)
-    (found,) = refused(write(tmp_path, recipes))
+    (found,) = problems_of(write(tmp_path, recipes))
     assert found.startswith(told)
 
 
@@ -46,7 +47,7 @@ def test_a_file_that_waits_for_ever_is_ended_by_the_clock(
 ) -> None:
     monkeypatch.setattr(recipe_trial, "LONGEST_S", 0.5)
     monkeypatch.setattr(recipe_trial, "WAITS", 4.0)
-    (found,) = refused(write(tmp_path, "import threading\nthreading.Event().wait()\n" + GOOD))
+    (found,) = problems_of(write(tmp_path, "import threading\nthreading.Event().wait()\n" + GOOD))
     assert found.startswith("recipes.py:2:1: importing this takes more than 2 s")
 
 
@@ -65,13 +66,13 @@ def test_where_there_are_no_processes_recipes_are_tried_in_this_one(
     monkeypatch.setattr(recipe_trial, "subprocess", None)
     (cell,) = load(tmp_path, GOOD).cells
     assert [each.name for each in cell.recipes] == [each.name for each in known.cells[0].recipes] == ["heat"]
-    assert words in refused(write(tmp_path, f'{HEAD}@recipe("heat")\ndef heat(cell):\n{body}\n'))[0]
+    assert words in problems_of(write(tmp_path, f'{HEAD}@recipe("heat")\ndef heat(cell):\n{body}\n'))[0]
 
 
 def test_a_kind_that_ends_python_is_a_problem_like_others(tmp_path: Path) -> None:
     ends = kinds.SAW.replace("mm / settings.mm_s", "__import__('os')._exit(7)", 1)
     plant = kinds.PLANT.replace("{kind: camera}", "{kind: camera, answer: [a]}")
-    missing, found = kinds.refused(kinds.write(tmp_path, ends, plant))
+    missing, found = problems_of(kinds.write(tmp_path, ends, plant))
     assert found.startswith("kinds/saw.py:16:1: making saw for saw ends Python")
     assert "plant.yaml:7:" in missing, "what else is wrong with the plant file is told besides"
 
@@ -83,5 +84,5 @@ def test_a_package_that_ends_python_is_a_problem_and_is_not_imported_again(
     folder.mkdir()
     monkeypatch.syspath_prepend(folder)
     kinds.install(folder, "acme_saws", "saw = acme_saws:saw", "__import__('os')._exit(7)\n")
-    (found,) = kinds.refused(kinds.write(tmp_path, plant=kinds.PLANT.replace("kinds/saw.py, ", "")))
+    (found,) = problems_of(kinds.write(tmp_path, plant=kinds.PLANT.replace("kinds/saw.py, ", "")))
     assert found.startswith("acme_saws:1:1: importing the kind saw ends Python")

@@ -14,7 +14,7 @@ from arboleda.model.errors import ConfigError
 from arboleda.plant_file import loader
 from arboleda.plant_file.recipe_check import trial
 
-from ...plants import plant_text, rows
+from ...plants import plant_text, problems_of, rows
 
 SAW = """\
 from dataclasses import dataclass
@@ -71,12 +71,6 @@ def problems(file: Path) -> list[str]:
     found = trial(file.name, file.read_bytes(), file.parent, lambda spot, doing: None)
     told = [f"plant.yaml:{line}:{column}: {sentence}" for line, column, sentence in found.here]
     return [*told, *(each.removeprefix(f"{file.parent}/") for each in found.elsewhere)]
-
-
-def refused(file: Path) -> list[str]:
-    with pytest.raises(ConfigError) as refusal:
-        loader.load(file)
-    return [each.removeprefix(f"{file.parent}/") for each in refusal.value.problems]
 
 
 def install(folder: Path, package: str, entry: str, content: str = SAW) -> None:
@@ -187,7 +181,7 @@ def test_an_installed_package_brings_a_kind(tmp_path: Path, site: Path) -> None:
     file = write(tmp_path, plant=PLANT.replace("kinds/saw.py, ", ""))
     assert loader.load(file).robots["saw"].kind_name == "saw"
     unknown = write(tmp_path, plant=PLANT.replace("kinds/saw.py, ", "").replace("kind: saw", "kind: xyz"))
-    assert ", sensor or saw, is" in refused(unknown)[0], "what packages register is named"
+    assert ", sensor or saw, is" in problems_of(unknown)[0], "what packages register is named"
 
 
 def test_a_package_is_not_imported_for_plants_without_its_kind(tmp_path: Path, site: Path) -> None:
@@ -222,14 +216,14 @@ def test_a_package_that_brings_no_right_kind_is_one_sentence(
 ) -> None:
     entry, content, words = case
     install(site, "acme_saws", entry, content)
-    (found,) = refused(write(tmp_path, plant=PLANT.replace("kinds/saw.py, ", "")))
+    (found,) = problems_of(write(tmp_path, plant=PLANT.replace("kinds/saw.py, ", "")))
     assert found.startswith("plant.yaml:6:19: cells.bench.devices.saw.kind: ") and words in found
 
 
 def test_a_name_that_two_packages_register_is_one_sentence(tmp_path: Path, site: Path) -> None:
     install(site, "acme_saws", "saw = acme_saws:saw")
     install(site, "more_saws", "saw = more_saws:saw")
-    (found,) = refused(write(tmp_path, plant=PLANT.replace("kinds/saw.py, ", "")))
+    (found,) = problems_of(write(tmp_path, plant=PLANT.replace("kinds/saw.py, ", "")))
     assert (
         "acme_saws 1.2 and more_saws 1.2 both register a kind" in found or "more_saws 1.2 and acme" in found
     )
@@ -240,6 +234,6 @@ def test_a_package_that_registers_the_name_of_a_shipped_kind_is_one_sentence(
     tmp_path: Path, site: Path
 ) -> None:
     install(site, "acme_saws", "camera = acme_saws:saw")
-    (found,) = refused(write(tmp_path))
+    (found,) = problems_of(write(tmp_path))
     said = 'the kind "camera" comes with Arboleda, and acme_saws 1.2 registers another one'
     assert found.startswith("plant.yaml:7:19: ") and said in found

@@ -16,7 +16,7 @@ from arboleda.plant_file import loader, recipe_trial
 from arboleda.plant_file.python_uses import SourceSpot
 from arboleda.plant_file.recipe_check import trial
 
-from ...plants import plant_text
+from ...plants import plant_text, problems_of
 
 PLANT = plant_text(__file__, "own_recipes")
 SECOND = """\
@@ -132,12 +132,6 @@ def problems(folder: Path, recipes: str, plant: str = PLANT) -> list[str]:
     return [*told, *(each.removeprefix(f"{folder}/") for each in found.elsewhere)]
 
 
-def refused(file: Path) -> list[str]:
-    with pytest.raises(ConfigError) as refusal:
-        loader.load(file)
-    return [each.removeprefix(f"{file.parent}/") for each in refusal.value.problems]
-
-
 def load(folder: Path, recipes: str, plant: str = PLANT) -> PlantModel:
     return loader.load(write(folder, recipes, plant))
 
@@ -176,7 +170,7 @@ def test_everything_is_told_at_once(tmp_path: Path) -> None:
         plant + SECOND.replace("kind: eye", "kind: oven, name: lamp").replace("lamp:", "oven:"),
     )
     (tmp_path / "more.py").write_text("def f(:\n", "utf-8")
-    assert [each.split(": ")[0] for each in refused(file)] == [
+    assert [each.split(": ")[0] for each in problems_of(file)] == [
         "plant.yaml:16:19",
         "more.py:1:1",
         "recipes.py:5:1",
@@ -360,7 +354,7 @@ def test_a_value_that_is_the_name_of_the_only_recipe_stays_a_value(tmp_path: Pat
 
 def test_a_file_that_is_good_only_once_is_a_problem_too(tmp_path: Path) -> None:
     once = f"from pathlib import Path\nPath({str(tmp_path / 'been')!r}).touch(exist_ok=False)\n"
-    (found,) = refused(write(tmp_path, once + GOOD))
+    (found,) = problems_of(write(tmp_path, once + GOOD))
     assert found.startswith("recipes.py:2:1: cannot be imported: FileExistsError: ")
 
 
@@ -397,7 +391,7 @@ def test_a_cell_without_the_device_that_lists_the_values_of_a_tree_is_told_of_it
     tree = f'<root BTCPP_format="4">{body}<TreeNodesModel>{ports}</TreeNodesModel></root>'
     (tmp_path / "warm.xml").write_text(tree, "utf-8")
     file = write(tmp_path, GOOD, (PLANT + SECOND).replace("recipes.py", "warm.xml"))
-    (found,) = refused(file)
+    (found,) = problems_of(file)
     assert found.endswith("(no device of shelf makes a node oven_heat; there are lamp_look)")
 
 
