@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.dashboard import frames
 from arboleda.dashboard.frames import ended
-from arboleda.dashboard.page_budget import PageBudget
+from arboleda.dashboard.shell import PageBudget
 
 
 class Page:

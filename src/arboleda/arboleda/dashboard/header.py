@@ -75,3 +75,10 @@ def _tabs(words: Words, places: Places) -> None:
         for place, parts in places.items():
             there = {"data_tab": place, "data_parts": " ".join(parts)}
             link(words.of("tab", place), tab=parts[0], classes="tab", **there)
+
+
+def told() -> None:
+    """Draw the alarms of packages (the package, the cell, what it says), and what packages ask."""
+    with tag("div", classes="told", role="status", aria_live="polite"):
+        rows("alarms", ["", "", ""], classes="alarms")
+        rows("asks", ["", ""], classes="asks")

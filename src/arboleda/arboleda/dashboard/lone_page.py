@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from . import header, links, menu, settings, tasks, timeline, told, trees
+from . import header, links, menu, settings, tasks, timeline, trees
 from .body import Parts, Places, body
 from .page_api import Layout
 from .wording import Words
@@ -47,6 +47,6 @@ def record_page(
 
     def top(places: Places) -> None:
         header.of_record(layout, wording, places, role, beside=beside)
-        told.build()
+        header.told()
 
     return body(layout, wording, OF_RECORD, header=top, footer=below)

@@ -12,11 +12,13 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 
 from arboleda.host.pieces import Pieces
+from arboleda.model.packages import FLEET, MAKE, MISSING, PROOFS
+from arboleda.model.sentence import Phrase
 from arboleda.store.task_rows import TaskQuery
 from arboleda.web.request import HISTORY, TASK
 
-from . import header, links, menu, missing_packages, settings, shell, tasks, timeline, told, trees
-from .added import PAST, AddedParts
+from . import header, links, menu, settings, shell, tasks, timeline, trees
+from .added import PAST, AddedParts, installed
 from .added_sections import LeftOut
 from .asset_files import own
 from .body import WITHIN, Parts, Places, body
@@ -27,12 +29,18 @@ from .frames import Background
 from .page_api import Layout, PageApi, Seen
 from .page_part import Place, Put
 from .shell import language_of, role_shown
+from .tags import tag
 from .toolkit import Client, app, ui
 from .twin import window
 from .twin.show import Show
 from .wording import Words, words
 
 OWN = ("cells", "tasks", "events", "links", "settings")
+WHAT = {
+    FLEET: Phrase("package.oee", "The OEE of the cells"),
+    MAKE: Phrase("package.changing", "Changing and teaching this plant"),
+    PROOFS: Phrase("package.reporting", "Reporting failures and provoking faults"),
+}
 Asked = Annotated[str, Query(alias="words", max_length=100)]
 Most = Annotated[int, Query(ge=1, le=200)]
 
@@ -85,7 +93,7 @@ def drawn(added: AddedParts, plant: PageApi, layout: Layout, wording: Words, rol
 
     def top(places: Places) -> None:
         header.build(layout, wording, places)
-        told.build()
+        header.told()
         drawing.put(Place.TOP)
 
     def foot() -> None:
@@ -102,7 +110,7 @@ def all_parts(added: Parts, role: str | None, put: Put) -> Parts:
 
     def last(_layout: Layout, wording: Words) -> None:
         settings.build(wording, role, put)
-        missing_packages.build(wording)
+        _say_missing(wording)
 
     return {
         "cells": partial(trees.build, put=put),
@@ -112,6 +120,18 @@ def all_parts(added: Parts, role: str | None, put: Put) -> Parts:
         "links": links.build,
         "settings": last,
     }
+
+
+def _say_missing(words: Words) -> None:
+    """Draw a line on the packages that are missing; nothing where all are there."""
+    there = installed()
+    said = [
+        words.say(MISSING(what=what(), package=package))
+        for package, what in WHAT.items()
+        if package not in there
+    ]
+    if said:
+        tag("p", ". ".join(said), classes="hint")
 
 
 def _serve_tasks(server: FastAPI, plant: PageApi, feed: Feed) -> None:

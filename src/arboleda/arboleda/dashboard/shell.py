@@ -18,7 +18,6 @@ from arboleda.web.request import PAGE
 from .asset_files import Assets, own, own_address, own_folder
 from .body import script_data
 from .page_api import Layout
-from .page_budget import PageBudget
 from .toolkit import HTML_ESCAPE_TABLE, Client, app, ui
 from .wording import Words, words
 
@@ -27,6 +26,7 @@ PARTS_HERE = "arboleda-parts-here"  # where the HTML of the parts is put into wh
 STYLES = ("page", "twin")
 LANGUAGE_COOKIE = "arboleda_language"
 _here: list[FastAPI] = []
+MOST_UNOPENED = 40  # a browser opens its page within a second or two
 
 
 def serve(
@@ -68,6 +68,26 @@ def serve(
         show_welcome_message=False,
         favicon=str(own_folder() / "tree.svg"),
     )
+
+
+class PageBudget:
+    """PageBudget: forgets the oldest page that no browser has opened yet if too many wait: each costs a
+    megabyte, and NiceGUI would keep it for a minute."""
+
+    def __init__(self, most: int = MOST_UNOPENED) -> None:
+        self._most = most
+        self._waiting: dict[str, Client] = {}
+
+    def add(self, client: Client) -> None:
+        """Add a page that was just built; its browser reports that it has opened it."""
+        self._waiting[client.id] = client
+        client.on_connect(lambda: self._forget(client.id))
+        client.on_delete(lambda: self._forget(client.id))
+        if len(self._waiting) > self._most:
+            next(iter(self._waiting.values())).delete()
+
+    def _forget(self, id: str) -> None:
+        self._waiting.pop(id, None)
 
 
 def language_of(request: Request) -> str:

@@ -6,14 +6,15 @@ from typing import Any
 
 from arboleda.views.view import devices_once
 
-from . import menu, ready
+from . import menu
 from .page_api import Layout
 from .page_part import Place, Put, put_nothing
 from .tags import link, live, rows, tag, way
-from .twin import pane
 from .wording import Words
 
 CROWD = 6  # cells, of which each has a small card; of fewer all have their trees on a wall screen
+TWIN_TOOLS = {"reset": "⌂", "top": "▦", "in": "+", "out": "−"}  # noqa: RUF001 - a minus sign
+TWIN_KINDS = ("measured", "estimated", "stale", "unknown", "goal", "part")
 
 
 def build(layout: Layout, words: Words, put: Put = put_nothing) -> None:
@@ -26,7 +27,7 @@ def build(layout: Layout, words: Words, put: Put = put_nothing) -> None:
                     tree_box(cell, words, put)
                     _changes(layout, cell["name"], words)
         if layout["places"]["robots"]:
-            pane.build(layout, words)
+            _twin(layout, words)
 
 
 def _changes(layout: Layout, cell: str, words: Words) -> None:
@@ -66,7 +67,7 @@ def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words, p
     for device in devices:
         if device["asked"]:
             _question(device["name"])
-    ready.build(cell, words)
+    _ready(cell, words)
     if layout["places"] or layout["stations"]:
         rows(f"places.{cell}", ["", ""], classes="places")
     if any(device["position"] is None for device in devices):
@@ -134,3 +135,41 @@ def detail(words: Words) -> None:
         tag("p", id="node-feedback")
         tag("p", id="node-failure", classes="trouble", data_label=words("node.failure"))
         tag("dl", id="node-given")
+
+
+def _ready(cell: str, words: Words) -> None:
+    """Draw the button of a cell, and the list of its advice."""
+    rows(f"ready.{cell}", ["", ""], classes="ways")
+    with tag("details", classes="more"):
+        tag("summary", words("ready.more"))
+        rows(f"ways.{cell}", ["", ""], classes="ways")
+
+
+def _twin(layout: Layout, words: Words) -> None:
+    """Draw the box that the script of the twin draws into, and the controls beside it."""
+    with tag("div", classes="box twin"):
+        with tag("div", classes="box-head"):
+            tag("h2", words("js.twin_plant"), id="twin-title")
+            _twin_tools(words)
+        with tag("div", id="twin", classes="twin-view"):
+            tag("p", words("twin.loading"), id="twin-note", role="status", data_flat=words("twin.flat"))
+        tag("ul", id="twin-robots", classes="twin-robots", aria_label=words("twin.robots"))
+        with tag("details", classes="twin-how"):
+            tag("summary", words("twin.legend"))
+            _twin_legend(layout, words)
+
+
+def _twin_tools(words: Words) -> None:
+    with tag("div", classes="twin-tools"):
+        for name, sign in TWIN_TOOLS.items():
+            does = words(f"twin.{name}")
+            tag("button", sign, type="button", classes="tool", data_twin=name, title=does, aria_label=does)
+
+
+def _twin_legend(layout: Layout, words: Words) -> None:
+    kinds = [*TWIN_KINDS, *(("held", "quarantined") if layout["zones"] else ())]
+    with tag("ul", classes="twin-legend", aria_label=words("twin.legend")):
+        for kind in kinds:
+            with tag("li", title=words(f"twin.about_{kind}")):
+                tag("span", classes=f"swatch {kind}")
+                tag("span", words(f"twin.{kind}"))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
-from . import estimate
-
 Row = dict[str, Any]
+Position = Sequence[float]
 SEEN_APART_S = 0.03  # an estimate that is nearer to what was measured is not drawn beside it
 MEASURED, ESTIMATED, STALE, UNHOMED, UNKNOWN = KINDS = (
     "measured",
@@ -49,7 +51,7 @@ class Track:
             return {"kind": UNHOMED, "q": q}
         self._guess = q
         ahead = self._ahead(row, q, now)
-        shown = ahead is not None and estimate.apart(q, ahead, self._speeds, SEEN_APART_S)
+        shown = ahead is not None and apart(q, ahead, self._speeds, SEEN_APART_S)
         return {"kind": MEASURED, "q": q, "estimate": ahead if shown else None}
 
     def _silent(self, row: Row, now: float) -> Row:
@@ -71,9 +73,9 @@ class Track:
 
     def _on_the_way(self, goal: Row, start: list[float], seconds: float) -> list[float]:
         if self._nodes is None:
-            return estimate.towards(start, goal["q"], self._speeds, seconds)
+            return towards(start, goal["q"], self._speeds, seconds)
         points = [start, *(self._nodes[node] for node in goal["nodes"])]
-        return estimate.along(points, self._speeds[0], seconds)
+        return along(points, self._speeds[0], seconds)
 
     def _ahead(self, row: Row, q: list[float], now: float) -> list[float] | None:
         """The estimated position of a robot that reports, some time after its last report; a mobile gets at
@@ -82,9 +84,9 @@ class Track:
         if goal is None or since is None:
             return None
         if self._nodes is None:
-            return estimate.towards(q, goal["q"], self._speeds, now - max(since, row["position_at"]))
+            return towards(q, goal["q"], self._speeds, now - max(since, row["position_at"]))
         seconds = now - max(since, self._node_since)
-        return estimate.along([q, *self._next(goal["nodes"])], self._speeds[0], seconds)
+        return along([q, *self._next(goal["nodes"])], self._speeds[0], seconds)
 
     def _next(self, way: list[int]) -> list[list[float]]:
         """The node after the one where it stands, in a list; empty at the end of its way and beside it."""
@@ -105,3 +107,32 @@ class Track:
         if goal is None:
             return None
         return goal["q"] if self._nodes is None else self._nodes[goal["nodes"][-1]]
+
+
+def towards(start: Position, goal: Position, speeds: Position, seconds: float) -> list[float]:
+    """The position after so many seconds, every joint on its own way at its own full speed (rad/s, m/s)."""
+    rows = zip(start, goal, speeds, strict=True)
+    return [_nearer(here, there, speed * max(0.0, seconds)) for here, there, speed in rows]
+
+
+def along(points: Sequence[Position], speed: float, seconds: float) -> list[float]:
+    """The point after so many seconds on straight pieces at one speed, m/s; ValueError without points."""
+    if not points:
+        raise ValueError("a way has at least one point")
+    left = speed * max(0.0, seconds)
+    for here, there in pairwise(points):
+        length = math.dist(here, there)
+        if left < length:
+            return [a + (b - a) * left / length for a, b in zip(here, there, strict=True)]
+        left -= length
+    return list(points[-1])
+
+
+def apart(a: Position, b: Position, speeds: Position, seconds: float) -> bool:
+    """True if two positions are further apart, in any joint, than so many seconds at full speed."""
+    rows = zip(a, b, speeds, strict=True)
+    return any(abs(here - there) > speed * seconds for here, there, speed in rows)
+
+
+def _nearer(here: float, there: float, most: float) -> float:
+    return there if abs(there - here) <= most else here + math.copysign(most, there - here)
