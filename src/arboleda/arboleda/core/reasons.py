@@ -77,7 +77,6 @@ def of_hold(run: CellRun) -> Sentence | None:
 
 
 def cause_of_hold(run: CellRun) -> Sentence:
-    """The cause of a hold."""
     why = run.trouble.sentence if run.trouble else None
     if (at_work := _at_work(run)) is None:
         return why or BY_OPERATOR()

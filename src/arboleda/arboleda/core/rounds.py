@@ -25,8 +25,6 @@ ROUND_BOUND = 100  # rounds in one step; more means cells that wake each other f
 
 
 class Rounds:
-    """Rounds over the cells of a plant."""
-
     def __init__(self, state: PlantState, guard: CellGuard, watch: ZoneWatch) -> None:
         self._state = state
         self._guard = guard

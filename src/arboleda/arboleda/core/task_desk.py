@@ -30,8 +30,6 @@ OWN_CYCLE = Phrase("cell.own_cycle", "{arm} is in its own cycle; its plant file 
 
 
 class TaskDesk:
-    """Desk for the tasks of a plant."""
-
     def __init__(self, state: PlantState) -> None:
         self._state = state
 
@@ -88,7 +86,6 @@ class TaskDesk:
         self.tell(task, request.request)
 
     def tell(self, task: Task, request: str | None = None) -> None:
-        """Tell of a change of a task."""
         self._state.news.changes += 1
         sentence = (
             reasons.of_waiting(self._state.cells[task.order.cell]) if task.state is TaskState.QUEUED else None

@@ -68,7 +68,6 @@ NO_MATTER = frozenset({"recipes", "queue_limit", "goes_on", "goes_on_after_absen
 
 
 def joined(*words: str) -> str:
-    """The hash of some words."""
     return blake2b("\n".join(words).encode(), digest_size=16).hexdigest()
 
 

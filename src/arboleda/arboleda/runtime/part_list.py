@@ -59,7 +59,6 @@ class PartList:
                 self._made += [_Made(part, _piece(spared, "the part", type(part))) for part in parts]
 
     def start(self) -> None:
-        """Start every part in order."""
         for each in self._made:
             self._started.append(each)
             with self._calling(each.piece):

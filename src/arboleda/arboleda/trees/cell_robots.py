@@ -43,7 +43,6 @@ class CellRobots:
         self._cell = cell
 
     def belief(self, robot: str) -> Belief:
-        """The belief about a robot."""
         return self._dispatcher.beliefs[robot]
 
     def fact(self, robot: str, name: str) -> Value | None:

@@ -107,7 +107,6 @@ class BoardReports:
         ]
 
     def rejection(self, at: float, command: Command, word: str, sender: str, *, by_board: bool) -> Rejection:
-        """The rejection of a command with a word."""
         return Rejection(
             at=at,
             robot=self._robot.name,
@@ -118,7 +117,6 @@ class BoardReports:
         )
 
     def count_foreign(self, sentence: Sentence, *, refused: bool) -> None:
-        """Count a foreign command."""
         before = self._foreign
         self._foreign = ForeignCommandCount(
             refused=before.refused + refused, obeyed=before.obeyed + (not refused), last=sentence

@@ -28,8 +28,6 @@ QUESTION_OVER = Phrase(
 
 
 class Answering:
-    """Answers of the people of a plant."""
-
     def __init__(self, state: PlantState) -> None:
         self._state = state
 

@@ -26,8 +26,6 @@ _begun = in_states(CellState.EXECUTE, CellState.HELD)
 
 
 class Cancelling:
-    """Cancelling of tasks that wait or run."""
-
     def __init__(self, state: PlantState, scopes: Scopes, doing: Doing) -> None:
         self._state = state
         self._scopes = scopes

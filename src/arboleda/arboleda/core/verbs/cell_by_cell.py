@@ -34,7 +34,6 @@ class Doing:
         self._broke = broke
 
     def begin(self) -> None:
-        """Begin the next act."""
         self.sent, self.defects = [], []
 
     def do(self, act: Do, cell: CellRun, robots: frozenset[str]) -> None:

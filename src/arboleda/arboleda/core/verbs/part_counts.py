@@ -25,8 +25,6 @@ RACK_EMPTY = Phrase("refusal.rack_empty", "no part is known to be in the rack of
 
 
 class PartCounts:
-    """Counts of parts that people change."""
-
     def __init__(self, state: PlantState, scopes: Scopes) -> None:
         self._state = state
         self._scopes = scopes

@@ -28,7 +28,6 @@ class Listeners(list[Callable[[T], None]]):
         super().append(listener)
 
     def tell(self, what: T) -> None:
-        """Tell all of them."""
         for _ in self.telling(what):
             pass
 

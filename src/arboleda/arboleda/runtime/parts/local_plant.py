@@ -53,7 +53,6 @@ class LocalPlant(PlantApi):
         return self._offers.ask(kind)
 
     def post(self, event: Event) -> None:
-        """Give the plant an event."""
         self._plant.hear(event)
 
     def find(self, task: str) -> dict[str, Any] | None:
