@@ -185,12 +185,26 @@ def test_after_a_defect_in_send_the_link_is_lost_and_nobody_says_that_nothing_le
 def test_a_driver_that_does_not_come_back_from_send_has_lost_its_devices(driven: Driven) -> None:
     driven.asks(GO)
     driven.says(after=1.0)
-    (gone,) = driven.step(after=0.5)
-    assert isinstance(gone, Report)
+    gone, halt = driven.step(after=0.5)
+    assert isinstance(gone, Report) and isinstance(halt, Give)
     assert str(gone.lost) == "its driver plc has not come back from send for 1.5 s"
     assert driven.says() == []  # its own thread still reads, but commands would not leave
-    driven.step(SendResult(at=driven.now, life=driven.life, command=GO))
+    for command in (GO, halt.command):
+        driven.step(SendResult(at=driven.now, life=driven.life, command=command))
     assert len(reports(driven.says())) == 1
+
+
+def test_an_order_that_has_not_left_as_the_link_is_lost_is_called_back_by_a_stop(driven: Driven) -> None:
+    driven.asks(GO)
+    told, halt = driven.step(
+        DriverOutput(at=driven.now, life=driven.life, report=lost("station", at=driven.now, why="no answer"))
+    )
+    assert isinstance(told, Report) and str(told.lost) == "no answer"
+    assert halt == driven.given(Stop(id="", robot="station", mode=StopMode.HALT))
+    driven.step(SendResult(at=driven.now, life=driven.life, command=GO))
+    driven.says()
+    (told_again,) = driven.says(state=MotionState.NO_LINK)
+    assert isinstance(told_again, Report)  # nothing is on its way any more
 
 
 def test_a_driver_that_broke_down_is_ended_and_started_again_later_and_later(driven: Driven) -> None:

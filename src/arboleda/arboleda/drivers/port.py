@@ -43,6 +43,7 @@ class Driver(Protocol):
     """Connection to one or several devices.
 
     All three methods are called in one thread of the driver's own, so a slow one holds up no other driver.
+    A stop goes before every order that waits for that thread, and these are not sent any more.
     """
 
     def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
@@ -70,6 +71,18 @@ class Listens(Protocol):
 
     def listen(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
         """The same as `start`, but nothing is written to the devices, and nobody's control is taken."""
+
+
+@runtime_checkable
+class Interruptible(Protocol):
+    """Driver whose `send` waits for the device, as where an order is several telegrams."""
+
+    def interrupt(self, robot: str) -> None:
+        """Have nothing more leave of what `send` was given for this device: a stop for it comes next.
+
+        Called in another thread, also while `send` is under way, and never waits. The order under way ends
+        with NotSent if nothing of it has begun. All may go on once `send` has the stop.
+        """
 
 
 @runtime_checkable

@@ -9,7 +9,6 @@ A device at work is halted where its plant is not heard, as a board halts itself
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -29,6 +28,7 @@ STUCK = Phrase("driver.stuck", "its driver {driver} has not come back from send 
 FAILED = Phrase("driver.failed", "its driver {driver} broke down ({error}), and is started again")
 NOT_STARTED = Phrase("driver.not_started", "its driver {driver} cannot start ({error}), and tries again")
 LATE = Phrase("driver.late", "it waited for too long and must not leave any more")
+OVERTAKEN = Phrase("driver.overtaken", "a stop came first")
 NOT_SENT = Phrase("driver.not_sent", "its driver {driver} could not send a command ({error})")
 BROKE_IN_SEND = Phrase(
     "driver.broke_in_send",
@@ -159,7 +159,7 @@ class SupervisedDriver:
         self.life = Life(driver=number, number=0)
         self.begin_at = -math.inf  # time of the next start; inf while there is a life
         self._stuck_after_s = stuck_after_s
-        self._sends: deque[float] = deque()  # start times of the calls of `send` that have not returned
+        self._sends: list[tuple[float, Command]] = []  # calls of `send` that have not returned, since when
         self._stuck = False
         self._began_at = 0.0
         self._delay_s = FIRST_RETRY_S
@@ -167,8 +167,13 @@ class SupervisedDriver:
     @property
     def next_deadline(self) -> float:
         stale_at = min(device.stale_at for device in self.devices.values())
-        stuck_at = self._sends[0] + self._stuck_after_s if self._sends and not self._stuck else math.inf
+        stuck_at = self._waits_since + self._stuck_after_s if not self._stuck else math.inf
         return min(self.begin_at, stuck_at, stale_at)
+
+    @property
+    def _waits_since(self) -> float:
+        """The time (s) since when the oldest call of `send` has not returned; inf where all have."""
+        return min((at for at, _ in self._sends), default=math.inf)
 
     def begin(self, now: float) -> list[Message]:
         first = self.life.number == 0
@@ -193,14 +198,17 @@ class SupervisedDriver:
 
     def taken(self, event: SendResult) -> list[Message]:
         """Note that the driver came back from `send`."""
-        if self._sends:
-            self._sends.popleft()
+        at = next((at for at, (_, command) in enumerate(self._sends) if command == event.command), None)
+        if at is not None:
+            del self._sends[at]
         self._stuck = self._stuck and bool(self._sends)
         if event.error is None:
             return []
         name = event.command.robot
         if event.broken:
-            return [*self.devices[name].lose(event.at, BROKE_IN_SEND(driver=self.name, error=event.error))]
+            return self._lose(
+                event.at, self.devices[name], BROKE_IN_SEND(driver=self.name, error=event.error)
+            )
         if not event.command.id:
             return []  # the plant has not asked for it
         why = NOT_SENT(driver=self.name, error=event.error)
@@ -230,7 +238,8 @@ class SupervisedDriver:
         if self._stuck or device.is_late(report, event.at):
             return []
         if report.state is MotionState.NO_LINK:
-            return [*device.say_lost(report.at, report.lost or UNSAID(driver=self.name))]
+            told = device.say_lost(report.at, report.lost or UNSAID(driver=self.name))
+            return [*told, *self._call_back(event.at, device)]
         taken, stop = device.hear(report)
         return [taken] if stop is None else [taken, self._give(event.at, device, stop)]
 
@@ -238,13 +247,13 @@ class SupervisedDriver:
         """Losses that the passing of time brings: silent devices, and a `send` that does not return."""
         if self.begin_at <= now:
             return self.begin(now)
-        if self._sends and not self._stuck and self._sends[0] + self._stuck_after_s <= now:
+        if not self._stuck and self._waits_since + self._stuck_after_s <= now:
             self._stuck = True
             why = STUCK(driver=self.name, seconds=self._stuck_after_s)
-            return [message for device in self.devices.values() for message in device.lose(now, why)]
+            return [message for device in self.devices.values() for message in self._lose(now, device, why)]
         silent = [device for device in self.devices.values() if device.stale_at <= now]
         why = SILENT(driver=self.name, seconds=self._stuck_after_s)
-        return [message for device in silent for message in device.lose(now, why)]
+        return [message for device in silent for message in self._lose(now, device, why)]
 
     @property
     def needs_plant(self) -> bool:
@@ -270,14 +279,27 @@ class SupervisedDriver:
         alive, self.begin_at = self.begin_at == math.inf, math.inf
         return [*halting, *([End(life=self.life)] if alive else [])]
 
+    def _lose(self, at: float, device: DrivenDevice, why: Sentence) -> list[Message]:
+        """Lose the link to a device, and call back what is on its way there."""
+        return [*device.lose(at, why), *self._call_back(at, device)]
+
+    def _call_back(self, at: float, device: DrivenDevice) -> list[Message]:
+        """A stop for an order that `send` still has: its task has failed, so it must not begin any more."""
+        has_order = any(
+            command.robot == device.robot.name and not isinstance(command, Stop) for _, command in self._sends
+        )
+        if not has_order or not device.robot.has_stop:
+            return []
+        return [self._give(at, device, Stop(id="", robot=device.robot.name, mode=StopMode.HALT))]
+
     def _give(self, at: float, device: DrivenDevice, command: Command) -> Give:
         """The message that hands a command to the driver's `send`.
 
         It expires with a `send` that is stuck before it; a stop never expires.
         """
         device.leaves(command)
-        self._sends.append(at)
-        until = math.inf if isinstance(command, Stop) else self._sends[0] + self._stuck_after_s
+        self._sends.append((at, command))
+        until = math.inf if isinstance(command, Stop) else self._waits_since + self._stuck_after_s
         return Give(life=self.life, command=command, until=until)
 
 

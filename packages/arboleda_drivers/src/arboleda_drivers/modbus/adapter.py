@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from arboleda.drivers import Command, DriverError, Report, Robot, driver
+from arboleda.drivers import Command, DriverError, Report, Robot, Stop, driver
 from arboleda_drivers.modbus.machine import Block, ModbusDevice, Raw, WriteRequest
 from arboleda_drivers.modbus.settings import Settings
 from arboleda_drivers.plc import polled
@@ -38,7 +38,7 @@ class Line(polled.Line):
         self._settings = settings
         self._client: ModbusBaseSyncClient | None = None
 
-    def open(self) -> None:
+    def _open(self) -> None:
         """Connect, unless connected; raises ConnectionError if nobody answers."""
         if self._client is None:
             self._client = _client(self._settings)
@@ -51,9 +51,13 @@ class Line(polled.Line):
 
     def read(self, unit: int, block: Block) -> list[int]:
         """The values of a block."""
-        self.open()
-        read: Any = getattr(self._client, READS[block.table])
-        answer = read(block.address, count=block.length, device_id=unit)
+        with self.turn():
+            self._open()
+            read: Any = getattr(self._client, READS[block.table])
+            answer = read(block.address, count=block.length, device_id=unit)
+            return self._values(block, answer)
+
+    def _values(self, block: Block, answer: Any) -> list[int]:
         _check(answer, f"to show {block.table} {block.address}", CODES[block.table])
         values = answer.bits if block.table in ("coil", "discrete") else answer.registers
         whole = -(-block.length // 8) * 8 if block.table in ("coil", "discrete") else block.length
@@ -65,25 +69,24 @@ class Line(polled.Line):
 
     def write(self, unit: int, put: WriteRequest) -> None:
         """Write the values of a put."""
-        self.open()
-        client: Any = self._client
-        values: list[Any] = list(put.values)
-        if put.table == "coil":
-            values = [bool(value) for value in values]
-        one, many = (
-            (client.write_coil, client.write_coils)
-            if put.table == "coil"
-            else (client.write_register, client.write_registers)
-        )
-        answer = (
-            one(put.address, values[0], device_id=unit)
-            if len(values) == 1
-            else many(put.address, values, device_id=unit)
-        )
-        code = WRITES[put.table, len(values) == 1]
-        _check(answer, f"to take {put.table} {put.address}", code)
-        if answer.address != put.address:
-            raise ConnectionError(f"{self._settings.peer} has answered to another write")
+        is_one, is_coil = len(put.values) == 1, put.table == "coil"
+        values: list[Any] = [bool(value) for value in put.values] if is_coil else list(put.values)
+        with self.turn():
+            self._open()
+            client: Any = self._client
+            one, many = (
+                (client.write_coil, client.write_coils)
+                if is_coil
+                else (client.write_register, client.write_registers)
+            )
+            answer = (
+                one(put.address, values[0], device_id=unit)
+                if is_one
+                else many(put.address, values, device_id=unit)
+            )
+            _check(answer, f"to take {put.table} {put.address}", WRITES[put.table, is_one])
+            if answer.address != put.address:
+                raise ConnectionError(f"{self._settings.peer} has answered to another write")
 
 
 READS = {
@@ -103,7 +106,7 @@ LINES: polled.Lines[Line] = polled.Lines()
 
 
 @driver("modbus", settings=Settings)
-class Modbus(polled.Polled[Settings, Line]):
+class Modbus(polled.Polled[Settings, Line, WriteRequest]):
     """Driver of one device behind Modbus."""
 
     protocol = "modbus"
@@ -123,29 +126,39 @@ class Modbus(polled.Polled[Settings, Line]):
         return Line(self._settings)
 
     def begin(self, line: Line) -> None:
-        self._device.begin(self._read(line, self._device.first_blocks))
+        for _ in self._read(line, self._device.first_blocks):
+            pass
+        with self._machine:
+            self._device.begin(self._raw)
 
-    def read(self, line: Line, at: float) -> Report:
-        return self._device.report(at, self._read(line, self._device.blocks))
+    def reads(self, line: Line) -> Iterator[None]:
+        return self._read(line, self._device.blocks)
 
-    def give(self, line: Line, command: Command) -> None:
-        for put in self._device.order(command):
-            line.write(self._settings.unit, put)
+    def report(self, at: float) -> Report:
+        return self._device.report(at, self._raw)
 
-    def beat(self, line: Line, number: int) -> None:
+    def writing(self, command: Command) -> polled.Writing[WriteRequest]:
+        puts = self._device.order(command)
+        begins_last = self._settings.sequence is not None and not isinstance(command, Stop)
+        return polled.Writing(puts=puts, begins_last=begins_last or len(puts) == 1)
+
+    def write(self, line: Line, put: WriteRequest) -> None:
+        line.write(self._settings.unit, put)
+
+    def heartbeat(self, number: int) -> WriteRequest | None:
         place = self._settings.heartbeat
-        if place is not None:
-            value = number % 2 if place.table == "coil" else number
-            line.write(
-                self._settings.unit, WriteRequest(table=place.table, address=place.address, values=(value,))
-            )
+        if place is None:
+            return None
+        value = number % 2 if place.table == "coil" else number
+        return WriteRequest(table=place.table, address=place.address, values=(value,))
 
-    def _read(self, line: Line, blocks: Sequence[Block]) -> Raw:
+    def _read(self, line: Line, blocks: Sequence[Block]) -> Iterator[None]:
         raw: dict[tuple[str, int], int] = {}
         for block in blocks:
             values = line.read(self._settings.unit, block)
             raw |= {(block.table, block.address + at): value for at, value in enumerate(values)}
-        return raw
+            yield
+        self._raw: Raw = raw
 
 
 def _client(settings: Settings) -> ModbusBaseSyncClient:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from arboleda.drivers import Command, DriverError, Report, Robot, Stop, driver
+from arboleda.drivers import Command, DriverError, Report, Robot, driver
 from arboleda_drivers.plc import polled
 from arboleda_drivers.plc.handshake import Read
 from arboleda_drivers.s7.addresses import Area, address
@@ -73,25 +73,27 @@ class Line(polled.Line):
         """The bytes of a block."""
         from snap7.datatypes import S7WordLen
 
-        self.open()
         place = f"{block.area}{block.db or ''} from byte {block.byte} on, {block.length} bytes"
-        request = self._protocol.build_read_request(
-            _area(block.area), block.db, block.byte, S7WordLen.BYTE, block.length
-        )
-        answer = self._answer(request, f"to show {place}")
-        return bytes(self._protocol.extract_read_data(answer, S7WordLen.BYTE, block.length))
+        with self.turn():
+            self.open()
+            request = self._protocol.build_read_request(
+                _area(block.area), block.db, block.byte, S7WordLen.BYTE, block.length
+            )
+            answer = self._answer(request, f"to show {place}")
+            return bytes(self._protocol.extract_read_data(answer, S7WordLen.BYTE, block.length))
 
     def write(self, put: WriteRequest) -> None:
         """Write one value; a bit by itself, so that its neighbours in the byte stay as they are."""
         from snap7.datatypes import S7WordLen
 
-        self.open()
         at = put.place
         start, width = at.byte, S7WordLen.BYTE
         if at.bit is not None:
             start, width = 8 * at.byte + at.bit, S7WordLen.BIT
-        request = self._protocol.build_write_request(_area(at.area), at.db, start, width, put.raw)
-        self._protocol.check_write_response(self._answer(request, f"to take {at.text}"))
+        with self.turn():
+            self.open()
+            request = self._protocol.build_write_request(_area(at.area), at.db, start, width, put.raw)
+            self._protocol.check_write_response(self._answer(request, f"to take {at.text}"))
 
     def _agreed(self) -> int:
         """The length of messages that the PLC agrees to."""
@@ -134,7 +136,7 @@ LINES: polled.Lines[Line] = polled.Lines()
 
 
 @driver("s7", settings=Settings)
-class S7(polled.Polled[Settings, Line]):
+class S7(polled.Polled[Settings, Line, WriteRequest]):
     """Driver of one device behind a Siemens S7."""
 
     protocol = "s7"
@@ -152,33 +154,35 @@ class S7(polled.Polled[Settings, Line]):
         return Line(self._settings)
 
     def begin(self, line: Line) -> None:
-        line.open()
+        with line.turn():
+            line.open()
         self._blocks = self._device.blocks(line.pdu)
-        self._device.begin(self._read(line))
+        for _ in self.reads(line):
+            pass
+        with self._machine:
+            self._device.begin(self._values)
 
-    def read(self, line: Line, at: float) -> Report:
-        return self._device.report(at, self._read(line))
+    def reads(self, line: Line) -> Iterator[None]:
+        raw: dict[Block, bytes] = {}
+        for block in self._blocks:
+            raw[block] = line.read(block)
+            yield
+        self._values: Read = self._device.values(raw)
 
-    def give(self, line: Line, command: Command) -> None:
-        """Write what a command is; one of which a part may have begun ends the connection, as does a stop."""
-        writing = self._device.order(command)
-        for number, put in enumerate(writing.puts):
-            try:
-                line.write(put)
-            except polled.RequestRefused as error:
-                if isinstance(command, Stop):
-                    raise ConnectionError(f"{error}; it was a stop") from error
-                if number > 0 and not writing.begins_last:
-                    raise ConnectionError(f"{error}; what was written before may have begun") from error
-                raise
+    def report(self, at: float) -> Report:
+        return self._device.report(at, self._values)
 
-    def beat(self, line: Line, number: int) -> None:
-        if self._settings.heartbeat is not None:
-            at = address(self._settings.heartbeat)
-            line.write(WriteRequest(place=at, raw=at.raw(number % (at.greatest + 1))))
+    def writing(self, command: Command) -> polled.Writing[WriteRequest]:
+        return self._device.order(command)
 
-    def _read(self, line: Line) -> Read:
-        return self._device.values({block: line.read(block) for block in self._blocks})
+    def write(self, line: Line, put: WriteRequest) -> None:
+        line.write(put)
+
+    def heartbeat(self, number: int) -> WriteRequest | None:
+        if self._settings.heartbeat is None:
+            return None
+        at = address(self._settings.heartbeat)
+        return WriteRequest(place=at, raw=at.raw(number % (at.greatest + 1)))
 
 
 def refused(what: str, word: str, reason: str) -> polled.RequestRefused:

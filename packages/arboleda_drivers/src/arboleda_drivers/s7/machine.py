@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from arboleda.drivers import Command, Robot, Stop
 from arboleda_drivers.plc.handshake import Handshake, Read, stop_order
+from arboleda_drivers.plc.polled import Writing
 
 from .addresses import Address, Area, address
 from .settings import Settings
@@ -34,17 +35,6 @@ class WriteRequest:
     raw: bytes
 
 
-@dataclass(frozen=True, kw_only=True)
-class Writing:
-    """Values to write, one after the other.
-
-    `begins_last`: the device does nothing before the last one, so one that fails has begun nothing.
-    """
-
-    puts: tuple[WriteRequest, ...]
-    begins_last: bool
-
-
 class S7Device(Handshake):
     """Device behind a Siemens S7: makes writes of commands and reports of values read."""
 
@@ -66,7 +56,7 @@ class S7Device(Handshake):
             read[place] = at.value(raw[block][begin : begin + at.length])
         return read
 
-    def order(self, command: Command) -> Writing:
+    def order(self, command: Command) -> Writing[WriteRequest]:
         """The writes for a command, in order; raises NotSent if the mapping does not know it."""
         if isinstance(command, Stop):
             stop = stop_order(self._mapping, command.mode)

@@ -5,16 +5,16 @@ from __future__ import annotations
 import logging
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from functools import partial
-from queue import SimpleQueue
 from traceback import walk_tb
-from typing import Any
+from typing import Any, TypeGuard
 
 from arboleda.adapters import clock
 from arboleda.adapters.rate_limit import RateLimit
 from arboleda.drivers import supervisor
-from arboleda.drivers.port import Driver, NotSent
+from arboleda.drivers.port import Driver, Interruptible, NotSent
 from arboleda.drivers.supervisor import (
     Begin,
     DeviceHalt,
@@ -28,7 +28,7 @@ from arboleda.drivers.supervisor import (
     SendResult,
     Supervisor,
 )
-from arboleda.model.commands import Command
+from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.messages import Heartbeat, Notice, Report, Undelivered
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import DriverUse, PlantModel, Robot
@@ -105,8 +105,14 @@ class DriversPart:
         return bool(owners)
 
 
+Job = Begin | Give | End | None
+
+
 class Worker:
-    """Worker: one driver in a thread of its own: an error becomes an event, a slow call delays no other."""
+    """Worker: one driver in a thread of its own: an error becomes an event, a slow call delays no other.
+
+    A stop goes before the orders that wait, and those of its device are never sent.
+    """
 
     def __init__(
         self, use: DriverUse, robots: tuple[Robot, ...], post: Callable[[supervisor.Event], None]
@@ -114,7 +120,8 @@ class Worker:
         self._use = use
         self._robots = robots
         self._post = post
-        self._jobs: SimpleQueue[Begin | Give | End | None] = SimpleQueue()
+        self._jobs: deque[Job] = deque()
+        self._come = threading.Condition()  # around the jobs
         self._driver: Driver | None = None
         self._life: Life | None = None
         self._thread = threading.Thread(target=self._run, name=f"driver {use.name}", daemon=True)
@@ -124,11 +131,24 @@ class Worker:
 
     def do(self, job: Begin | Give | End) -> None:
         """Queue a call to the driver; from any thread, never blocks."""
-        self._jobs.put(job)
+        stop = _stop_in(job)
+        if stop is None:
+            self._queue(job)
+            return
+        with self._come:
+            overtaken = [each for each in self._jobs if _is_order(each, stop.robot)]
+            kept = [each for each in self._jobs if not _is_order(each, stop.robot)]
+            lives = [at for at, each in enumerate(kept) if not isinstance(each, Give) or _stop_in(each)]
+            kept.insert(lives[-1] + 1 if lives else 0, job)
+            self._jobs = deque(kept)
+            self._come.notify()
+        for each in overtaken:
+            self._back(each, error=supervisor.OVERTAKEN())
+        self._interrupt(job.life, stop.robot)
 
     def end(self, until: float) -> None:
         """End after the queued calls, at that monotonic time at the latest."""
-        self._jobs.put(None)
+        self._queue(None)
         if self._thread.ident is not None:
             self._thread.join(max(0.0, until - time.monotonic()))
         if self._thread.is_alive():
@@ -156,13 +176,34 @@ class Worker:
             self._broke(self._life, f"a thread of it died: {in_words(error)}", error)
 
     def _run(self) -> None:
-        while (job := self._jobs.get()) is not None:
+        while (job := self._next()) is not None:
             if isinstance(job, Begin):
                 self._begin(job.life)
             elif isinstance(job, Give):
                 self._give(job)
             else:
                 self._end()
+
+    def _queue(self, job: Job) -> None:
+        with self._come:
+            self._jobs.append(job)
+            self._come.notify()
+
+    def _next(self) -> Job:
+        with self._come:
+            while not self._jobs:
+                self._come.wait()
+            return self._jobs.popleft()
+
+    def _interrupt(self, life: Life, robot: str) -> None:
+        """Have a driver that waits in `send` come back soon."""
+        driver = self._driver
+        if life != self._life or not isinstance(driver, Interruptible):
+            return
+        try:
+            driver.interrupt(robot)
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+            self._broke(life, in_words(error), error)
 
     def _begin(self, life: Life) -> None:
         self._life = life
@@ -173,19 +214,22 @@ class Worker:
             self._broke(life, in_words(error), error, started=False)
 
     def _give(self, job: Give) -> None:
-        life, command = job.life, job.command
         back: dict[str, Any] = {}
         try:
             if clock.seconds() > job.until:
                 back = {"error": supervisor.LATE()}
-            elif self._driver is not None and life == self._life:
-                self._driver.send(command)
+            elif self._driver is not None and job.life == self._life:
+                self._driver.send(job.command)
         except NotSent as error:
             back = {"error": error.sentence}
         except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
             self._log(in_words(error), error)
             back = {"error": OWN(text=in_words(error)), "broken": True}
-        self._post(SendResult(at=clock.seconds(), life=life, command=command, **back))
+        self._back(job, **back)
+
+    def _back(self, job: Give, **back: Any) -> None:
+        """Post what came of a command."""
+        self._post(SendResult(at=clock.seconds(), life=job.life, command=job.command, **back))
 
     def _end(self) -> None:
         self._life = None
@@ -207,6 +251,17 @@ class Worker:
     def _log(self, why: str, error: BaseException) -> None:
         LOG.warning("the driver %s: %s", self._use.name, why)
         LOG.debug("the error of the driver %s, whole", self._use.name, exc_info=error)
+
+
+def _stop_in(job: Job) -> Stop | None:
+    """The stop that is to be sent; None for all else, also for the word that clears a stop."""
+    command = job.command if isinstance(job, Give) else None
+    return command if isinstance(command, Stop) and command.mode is not StopMode.CLEAR else None
+
+
+def _is_order(job: Job, robot: str) -> TypeGuard[Give]:
+    """True for what is to be sent to this device, and is no stop."""
+    return isinstance(job, Give) and job.command.robot == robot and _stop_in(job) is None
 
 
 class DeadThreads:
