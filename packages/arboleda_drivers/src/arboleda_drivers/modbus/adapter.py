@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import logging
+import os
+import select
+import time
 from collections.abc import Hashable, Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from arboleda.drivers import Command, DriverError, Report, Robot, Stop, driver
@@ -28,34 +32,86 @@ WORDS = {
     11: "no_gateway_answer",
 }
 """The exception codes of the standard."""
+STEPS = (1, 2, 2, 1)  # lengths of reads in a row: an answer of one or two requests before has another length
+QUIET_AT_MOST_S = 10.0
+TOLD = (1, 10, 100, 1000, 10_000)  # how many late answers are told in the log
+LOG = logging.getLogger("arboleda.drivers")
 
 
 class Line(polled.Line):
-    """Connection to a PLC, or a serial line."""
+    """Connection to a PLC, or a serial line.
+
+    An answer in RTU has no number, and a gateway gives one that is late to whoever is connected by then. So
+    after a request without an answer the line is listened to until it is quiet; then reads of different
+    lengths show whether each answer is that of its own request. pymodbus empties serial lines alone.
+    """
 
     def __init__(self, settings: Settings) -> None:
         super().__init__()
         self._settings = settings
         self._client: ModbusBaseSyncClient | None = None
+        self._is_owed = not settings.has_numbers  # an answer may come yet, also one to an earlier start
+        self._known: tuple[tuple[int, Block], ...] = ()  # the unit and block that were read last
+        self._late = 0  # answers that nobody waited for any more
 
-    def _open(self) -> None:
-        """Connect, unless connected; raises ConnectionError if nobody answers."""
+    def hang_up(self) -> None:
+        self._is_owed = not self._settings.has_numbers
+        if self._client is not None:
+            self._client.close()
+
+    def _asked(self, *what: tuple[int, Block]) -> Any:
+        """The client, connected, and with every answer taken; `what` can be read. Raises ConnectionError if
+        nobody answers."""
+        self._connect()
+        if self._is_owed:
+            for unit, block in self._known or what:
+                self._fall_in_step(unit, block)
+            self._is_owed = False
+        if self._came(0.0):
+            raise ConnectionError(f"{self._settings.peer} has answered what it was not asked")
+        return self._client
+
+    def _connect(self) -> None:
         if self._client is None:
             self._client = _client(self._settings)
         if not self._client.connect():
             raise ConnectionError(f"{self._settings.peer} is not there")
 
-    def hang_up(self) -> None:
-        if self._client is not None:
-            self._client.close()
+    def _fall_in_step(self, unit: int, block: Block) -> None:
+        """Take what comes late, and make sure that each answer is that of its request."""
+        until = time.monotonic() + QUIET_AT_MOST_S
+        while self._came(self._settings.timeout_s):
+            if time.monotonic() > until:
+                raise ConnectionError(f"{self._settings.peer} sends all the time")
+        read: Any = getattr(self._client, READS[block.table])
+        for length in STEPS:
+            answer = read(block.address, count=length, device_id=unit)
+            if not answer.isError():
+                self._values(replace(block, length=length), answer)
+            elif answer.function_code & 0x7F != CODES[block.table]:
+                raise ConnectionError(f"{self._settings.peer} has answered another request")
+
+    def _came(self, within_s: float) -> bool:
+        """True where something came within this time; it is left out."""
+        client: Any = self._client
+        there = client.socket
+        if not select.select([there], [], [], within_s)[0]:
+            return False
+        if not os.read(there.fileno(), 4096):
+            raise ConnectionError(f"{self._settings.peer} has closed the connection")
+        self._late += 1
+        if self._late in TOLD:
+            what = "an answer came too late and is left out"
+            LOG.warning("%s: %s, %d so far", self._settings.peer, what, self._late)
+        return True
 
     def read(self, unit: int, block: Block) -> list[int]:
         """The values of a block."""
         with self.turn():
-            self._open()
-            read: Any = getattr(self._client, READS[block.table])
-            answer = read(block.address, count=block.length, device_id=unit)
-            return self._values(block, answer)
+            read: Any = getattr(self._asked((unit, block)), READS[block.table])
+            values = self._values(block, read(block.address, count=block.length, device_id=unit))
+            self._known = ((unit, block),)
+            return values
 
     def _values(self, block: Block, answer: Any) -> list[int]:
         _check(answer, f"to show {block.table} {block.address}", CODES[block.table])
@@ -72,8 +128,7 @@ class Line(polled.Line):
         is_one, is_coil = len(put.values) == 1, put.table == "coil"
         values: list[Any] = [bool(value) for value in put.values] if is_coil else list(put.values)
         with self.turn():
-            self._open()
-            client: Any = self._client
+            client = self._asked()
             one, many = (
                 (client.write_coil, client.write_coils)
                 if is_coil

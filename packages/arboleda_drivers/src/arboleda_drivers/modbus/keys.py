@@ -67,6 +67,11 @@ class ModbusKeys:
             raise DriverError(f"unit is {self.unit}; allowed: 0 to 255")
 
     @property
+    def has_numbers(self) -> bool:
+        """True where each answer has the number of its request."""
+        return not self.serial and self.framing == "tcp"
+
+    @property
     def peer(self) -> str:
         """The name of the PLC for sentences."""
         return f"{self.serial} unit {self.unit}" if self.serial else f"{self.host}:{self.port}"

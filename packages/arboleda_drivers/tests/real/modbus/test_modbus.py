@@ -5,18 +5,22 @@ from __future__ import annotations
 import json
 import os
 import queue
+import socket
+import struct
 import subprocess
 import sys
 import threading
+import time
 import tty
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 from pymodbus.client import ModbusTcpClient
+from pymodbus.framer import FramerRTU
 from tests.patience import PATIENCE_S
 
 from arboleda.drivers import MotionState
@@ -122,6 +126,99 @@ def test_a_gateway_speaks_rtu_over_tcp(belt: Device) -> None:
     with served(memory, framing="rtu", trace=note) as port:
         loads(belt, memory, mapping(belt, port=port, unit=7, framing="rtu"))
     assert all(packet[0] == 7 for packet in sent), "the unit is the first byte of RTU"
+
+
+@pytest.mark.parametrize("owed", [1, 2])
+def test_a_late_answer_is_never_taken_for_that_of_another_request(belt: Device, owed: int) -> None:
+    memory, kept = Memory(), list[bytes]()
+    memory.inputs = [0] * 40
+    memory.inputs[20], memory.inputs[30] = 1, 2  # a part at the entry; 2 mm/s
+    left = 0
+
+    def late(is_sent: bool, packet: bytes) -> bytes:
+        """For a while each answer is the one of a request before."""
+        nonlocal left
+        if not is_sent or not left:
+            return packet
+        left -= 1
+        kept.append(packet)
+        return kept.pop(0) if len(kept) > owed else b""
+
+    facts = {
+        **belt.driver.settings.facts,
+        "part_at": Register(input=20, words={"none": 0, "entry": 1, "exit": 2}),
+    }
+    facts["mm_s"] = Register(input=30)
+    with served(memory, framing="rtu", trace=late) as port:
+        at = mapping(belt, port=port, framing="rtu", timeout_s=0.2, facts=facts)
+        with driven(Modbus(at), belt) as (_, heard):
+            heard.until(is_heard)
+            left = 8 + owed
+            lost = heard.until(is_lost)
+            assert "No response" in str(lost.lost)
+            back = heard.until(lambda report: is_heard(report) and left == 0)
+            assert (dict(back.facts or ())["part_at"], dict(back.facts or ())["mm_s"]) == ("entry", 2)
+            assert all(dict(each.facts or ()).get("part_at", "entry") == "entry" for each in heard.all)
+
+
+class Gateway:
+    """Serial gateway at TCP: it hands what comes from its slave to whoever is connected by then."""
+
+    def __init__(self) -> None:
+        self._listening = socket.create_server(("127.0.0.1", 0))
+        self.port = self._listening.getsockname()[1]
+        self.late_s = 0.0  # of the next answer
+        self._asked: queue.Queue[bytes | None] = queue.Queue()
+        self._client: socket.socket | None = None
+        self._threads = [threading.Thread(target=each) for each in (self._serve, self._answer)]
+
+    def __enter__(self) -> Gateway:
+        for each in self._threads:
+            each.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._listening.shutdown(socket.SHUT_RDWR)
+        self._listening.close()
+        self._asked.put(None)
+        for each in self._threads:
+            each.join()
+
+    def _serve(self) -> None:
+        with suppress(OSError):
+            while True:
+                self._client, _ = self._listening.accept()
+                with self._client, suppress(OSError):
+                    while frame := self._client.recv(8, socket.MSG_WAITALL):
+                        self._asked.put(frame)
+
+    def _answer(self) -> None:
+        while (frame := self._asked.get()) is not None:
+            unit, code, address, count = struct.unpack(">BBHH", frame[:6])
+            late_s, self.late_s = self.late_s, 0.0
+            time.sleep(late_s)
+            values = b"".join(struct.pack(">H", address + at) for at in range(count))
+            body = bytes([unit, code, len(values)]) + values
+            client = self._client
+            with suppress(OSError, AttributeError):
+                client.sendall(body + FramerRTU.compute_CRC(body).to_bytes(2, "big"))
+
+
+def test_an_answer_that_came_too_late_is_left_out_and_told(
+    belt: Device, caplog: pytest.LogCaptureFixture
+) -> None:
+    facts = {"mm_s": Register(input=11)}
+    with Gateway() as gateway:
+        at = mapping(belt, port=gateway.port, framing="rtu", timeout_s=0.2, facts=facts)
+        at = replace(at, boot=None, sequence=None, state=Register(input=3, words={"stopped": 3}), verbs={})
+        with driven(Modbus(at), belt) as (_, heard):
+            heard.until(is_heard)
+            gateway.late_s = 0.9  # the driver is connected again by then
+            heard.until(is_lost)
+            heard.until(is_heard)
+            heard.until(is_heard)
+            assert {dict(each.facts)["mm_s"] for each in heard.all if each.facts} == {11.0}
+    assert "an answer came too late and is left out, 1 so far" in caplog.text
 
 
 def loads(belt: Device, memory: Memory, at: Settings) -> None:

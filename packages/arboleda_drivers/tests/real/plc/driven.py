@@ -26,8 +26,10 @@ class Heard:
 
     def __init__(self) -> None:
         self._reports: queue.Queue[Report] = queue.Queue()
+        self.all: list[Report] = []
 
     def __call__(self, report: Report) -> None:
+        self.all.append(report)
         self._reports.put(report)
 
     def until(self, fits: Callable[[Report], bool]) -> Report:
