@@ -339,6 +339,16 @@ def test_reports_that_were_overtaken_or_lay_somewhere_prove_nothing(driven: Driv
     assert isinstance(gone, Report) and gone.state is MotionState.NO_LINK
 
 
+def test_a_driver_that_reads_slowly_is_named_and_its_device_does_not_come_and_go(driven: Driven) -> None:
+    driven.step(after=STALE_S)  # it says nothing for so long
+    (slow,) = driven.says(late=0.8)
+    assert isinstance(slow, Report) and slow.state is MotionState.NO_LINK
+    assert "a reading takes its driver plc 0.8 s, and must take less than half of" in str(slow.lost)
+    assert driven.says(after=0.8, late=0.8) == []  # it was said
+    (back,) = driven.says(after=0.7, late=0.7)
+    assert isinstance(back, Report) and back.state is MotionState.STOPPED
+
+
 def test_nobody_has_heard_of_what_is_to_come(driven: Driven) -> None:
     (heard,) = driven.says(late=-60.0)
     assert isinstance(heard, Report) and heard.at == driven.now

@@ -101,9 +101,17 @@ class DrivenDevice:
         self._unseen = True
         return self._stamped(Report(at=at, robot=self.robot.name, state=MotionState.NO_LINK, lost=why))
 
-    def is_late(self, report: Report, now: float) -> bool:
-        """True if a newer report was heard, or this one is so old that its age alone would lose the link."""
-        return report.at < self._reported_at or now - report.at > self._longest_s
+    def is_overtaken(self, report: Report) -> bool:
+        """True if a newer report was heard."""
+        return report.at < self._reported_at
+
+    def is_old(self, report: Report, now: float) -> bool:
+        """True for a report so old that its age alone would lose the link.
+
+        Once it is lost, a report is old after half that time: the next one must come before this one is old,
+        or the link would be lost again each time.
+        """
+        return now - report.at > (self._longest_s if self.up else self._longest_s / 2)
 
     def hear(self, report: Report) -> tuple[Report, Stop | None]:
         """The report for the plant, and a stop to send because of it; None for no stop.

@@ -24,6 +24,11 @@ FIRST_RETRY_S, LAST_RETRY_S = 0.5, 30.0
 PLANT_GONE_S = 1.0  # without heartbeat or command: as long as a board waits
 STARTING = Phrase("driver.starting", "its driver {driver} was started and has said nothing yet")
 SILENT = Phrase("driver.silent", "its driver {driver} has said nothing for {seconds:g} s")
+SLOW = Phrase(
+    "driver.slow",
+    "a reading takes its driver {driver} {seconds:.1f} s, and must take less than half of"
+    " stale_after_s ({stale:g} s): map fewer values, or set timing.stale_after_s higher",
+)
 STUCK = Phrase("driver.stuck", "its driver {driver} has not come back from send for {seconds:g} s")
 FAILED = Phrase("driver.failed", "its driver {driver} broke down ({error}), and is started again")
 NOT_STARTED = Phrase("driver.not_started", "its driver {driver} cannot start ({error}), and tries again")
@@ -235,8 +240,11 @@ class SupervisedDriver:
         assert isinstance(event.report, Report)
         device = self.devices[event.report.robot]
         report = event.report.again(min(event.report.at, event.at))  # no report is of the future
-        if self._stuck or device.is_late(report, event.at):
+        if self._stuck or device.is_overtaken(report):
             return []
+        if report.state is not MotionState.NO_LINK and device.is_old(report, event.at):
+            why = SLOW(driver=self.name, seconds=round(event.at - report.at, 1), stale=self._stuck_after_s)
+            return [*device.say_lost(event.at, why), *self._call_back(event.at, device)]
         if report.state is MotionState.NO_LINK:
             told = device.say_lost(report.at, report.lost or UNSAID(driver=self.name))
             return [*told, *self._call_back(event.at, device)]
