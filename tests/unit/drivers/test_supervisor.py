@@ -27,7 +27,7 @@ from arboleda.drivers.supervisor import (
     SendResult,
     Supervisor,
 )
-from arboleda.model.commands import Command, Stop, StopMode
+from arboleda.model.commands import Command, OnStop, Stop, StopMode
 from arboleda.model.messages import MotionState, Report, Undelivered
 from arboleda.model.plant_model import Evidence, Link
 from arboleda.model.sentence import OWN
@@ -310,10 +310,22 @@ def test_an_arm_that_moves_as_its_driver_was_made_anew_is_halted() -> None:
     assert arm.says(MotionState.MOVING) == [ARM_HALT]
 
 
-def test_a_device_that_goes_nowhere_may_be_at_work_that_ends_by_itself() -> None:
+def test_a_device_may_be_at_work_that_ends_by_itself() -> None:
     driven = Driven()
     driven.step()
     assert len(driven.says(state=MotionState.MOVING)) == 1
+
+
+def test_a_device_of_which_no_work_ends_by_itself_is_halted_when_it_is_found_at_work() -> None:
+    verbs = {name: verb for name, verb in STATION.verbs.items() if verb.on_stop is OnStop.HALT}
+    (station,) = plant().robots.values()
+    driven = Driven()
+    held = replace(station, kind=replace(STATION, verbs=verbs))
+    driven.machine = Supervisor([("plc", [held])], epoch=EPOCH, stale_after_s=STALE_S)
+    driven.step()
+    heard, halt = driven.says(state=MotionState.MOVING)
+    assert isinstance(heard, Report)
+    assert halt == driven.given(Stop(id="", robot="station", mode=StopMode.HALT))
 
 
 def test_an_answer_to_the_plants_own_repetition_is_passed_over(driven: Driven) -> None:

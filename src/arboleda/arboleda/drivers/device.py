@@ -133,14 +133,12 @@ class DrivenDevice:
         return self._stamped(self._of_ours(report)), stop
 
     def _strays(self, report: Report) -> bool:
-        """True for a robot that moves as its link comes up.
-
-        A device that goes nowhere may do work that has to end by itself, or switch.
-        """
+        """True for a robot that moves as its link comes up, but not where its work may have to end by itself."""
         if report.state is None:
             return False
         unseen, self._unseen = self._unseen, False
-        return unseen and self._work is None and self.robot.goes and report.state is MotionState.MOVING
+        is_at_work = report.state is MotionState.MOVING
+        return unseen and self._work is None and is_at_work and not self.robot.finishes
 
     @property
     def _can_stop(self) -> bool:
