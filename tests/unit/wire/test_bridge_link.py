@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from arboleda.kinds.joints import MoveJoints
-from arboleda.model.messages import MotionState
+from arboleda.model.messages import MotionState, Report
 from arboleda.model.plant_model import Evidence
 
 MOVING, STOPPED, NO_LINK = MotionState.MOVING, MotionState.STOPPED, MotionState.NO_LINK
@@ -123,6 +123,42 @@ def test_a_board_that_talked_in_its_absence_is_back_with_its_presence(linked) ->
     talks_on(linked)
     assert linked.presence(True) == []
     assert lost(linked.tell()) == [(STOPPED, None)]
+
+
+def of_ra1(messages: list) -> list[Report]:
+    return [each for each in messages if isinstance(each, Report) and each.robot == "ra1"]
+
+
+def talk_in_turn(linked, times: int) -> list:
+    """What comes of the last message of two boards of one name, which count their own messages."""
+    said = []
+    for number in range(times):
+        said = linked.tell(boot_id=30 + number % 2, seq=100 + number)
+    return of_ra1(said)
+
+
+def test_two_boards_of_one_name_are_named_once_and_commanded_by_nobody(linked) -> None:
+    ((state, why),) = lost(talk_in_turn(linked, 5))
+    assert state is NO_LINK and why.startswith(
+        "two boards call themselves ra_1, as their boot numbers alternate"
+    )
+    assert talk_in_turn(linked, 3) == []
+    (refused,) = of_ra1(linked.order(move(1)))
+    assert refused.refusal == "no_link"
+
+
+def test_a_board_whose_twin_was_switched_off_is_back_as_one_that_booted(linked) -> None:
+    talk_in_turn(linked, 5)
+    linked.tell(boot_id=31, seq=200)
+    linked.now += 10.0
+    (report,) = of_ra1(linked.tell(boot_id=31, seq=201))
+    assert (report.state, report.boot_id) == (STOPPED, 31)
+
+
+def test_a_board_that_boots_often_has_no_twin(linked) -> None:
+    for boot in range(40, 60):
+        (report,) = of_ra1(linked.tell(boot_id=boot, seq=1))
+        assert (report.state, report.boot_id) == (STOPPED, boot)
 
 
 def test_a_board_is_back_when_it_speaks_again(linked) -> None:

@@ -133,7 +133,7 @@ class DrivenDevice:
         return self._stamped(self._of_ours(report)), stop
 
     def _strays(self, report: Report) -> bool:
-        """True for a robot that moves as its link comes up, but not where its work may have to end by itself."""
+        """True for a device at work as its link comes up; not where its work may have to end by itself."""
         if report.state is None:
             return False
         unseen, self._unseen = self._unseen, False

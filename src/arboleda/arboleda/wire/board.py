@@ -43,6 +43,11 @@ DENIED = Phrase(
     "its board talks, but its `conexion` says 0; "
     "the board has to publish 1 there, retained, when it connects",
 )
+TWINS = Phrase(
+    "link.twins",
+    "two boards call themselves {board}, as their boot numbers alternate; "
+    "give one of them another name, or switch it off",
+)
 AGAIN_S = 0.1  # least time between two reports in a burst of foreign commands
 
 
@@ -231,6 +236,10 @@ class Board:
             self.reports.count(ABSENT())
         if update is LinkUpdate.DENIED:
             return [self.reports.no_link(at, lost=DENIED())]
+        if update is LinkUpdate.TWINS:
+            self._motion, self._words = None, None
+            self.rivals.lose()
+            return [self.reports.no_link(at, lost=TWINS(board=self.robot.mqtt))]
         if update in (LinkUpdate.LATE, LinkUpdate.ABSENT, LinkUpdate.OLD):
             return []
         if update is LinkUpdate.REBOOT:

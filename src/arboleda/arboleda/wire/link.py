@@ -8,6 +8,7 @@ an overtaken message, unless lower numbers go on rising: then the counter has be
 from __future__ import annotations
 
 import math
+from collections import deque
 from enum import Enum
 
 from .payloads import Telemetry
@@ -19,6 +20,7 @@ class LinkUpdate(Enum):
     LATE = "late"  # it left the broker before the connection was lost
     ABSENT = "absent"  # the board's presence says that nobody is there
     DENIED = "denied"  # the presence says so, but the board goes on talking; reported once
+    TWINS = "twins"  # two boards of one name talk in turn; reported once
     OLD = "old"  # overtaken by a newer one of the same boot
     NEWS = "news"
     ARRIVAL = "arrival"  # the link came up with it
@@ -26,6 +28,8 @@ class LinkUpdate(Enum):
 
 
 DENIED_S = 2.0  # after an absence; older messages have arrived by then
+TWINS, TWINS_S = 3, 10.0  # so many returns to an earlier boot in this time (s): no board boots into one again
+BOOTS = 8  # that are remembered
 
 
 class BoardLink:
@@ -44,6 +48,9 @@ class BoardLink:
         self.returns = 0  # returns of an absent board; without ids each counts as a boot
         self._absent_since: float | None = None
         self._denied = False  # the board talks, though its presence says that nobody is there
+        self._twins = False  # two boards talk in turn
+        self._earlier: deque[int | None] = deque(maxlen=BOOTS)  # boots before this one
+        self._returned_at: deque[float] = deque(maxlen=TWINS)  # when an earlier one talked again
         self.number: int | None = None  # of the last telemetry, counted since boot
         self._below: tuple[float, int] | None = None  # since when lower numbers rise, and the last of them
 
@@ -62,8 +69,8 @@ class BoardLink:
 
     def lose(self) -> bool:
         """Lose the board, also one that talks although it counts as absent; True if that is new."""
-        was_heard = self.up or self._denied
-        self.up, self._denied, self.stale_at, self._below = False, False, math.inf, None
+        was_heard = self.up or self._denied or self._twins
+        self.up, self._denied, self._twins, self.stale_at, self._below = False, False, False, math.inf, None
         return was_heard
 
     def hear(self, at: float, telemetry: Telemetry) -> LinkUpdate:
@@ -75,13 +82,24 @@ class BoardLink:
         if self._overtaken(telemetry) and not self._counts_anew(at, telemetry.seq):
             return LinkUpdate.OLD
         rebooted = telemetry.boot_id != self.boot_id and None not in (telemetry.boot_id, self.boot_id)
-        arrived, self.up = not self.up, True
+        if rebooted:
+            self._note_boot(at, telemetry.boot_id)
         self.stale_at = at + self._stale_after_s
         self.number = telemetry.seq
         self.boot_id = self.boot_id if telemetry.boot_id is None else telemetry.boot_id
-        if rebooted:
+        if len(self._returned_at) == TWINS and at - self._returned_at[0] <= TWINS_S:
+            was_said, self._twins, self.up = self._twins, True, False
+            return LinkUpdate.LATE if was_said else LinkUpdate.TWINS
+        arrived, self.up = not self.up, True
+        were_twins, self._twins = self._twins, False
+        if rebooted or were_twins:  # after twins nobody knows what the board has heard
             return LinkUpdate.REBOOT
         return LinkUpdate.ARRIVAL if arrived else LinkUpdate.NEWS
+
+    def _note_boot(self, at: float, boot_id: int | None) -> None:
+        if boot_id in self._earlier:
+            self._returned_at.append(at)
+        self._earlier.append(self.boot_id)
 
     def _hear_absent(self, at: float, since: float) -> LinkUpdate:
         if at - since < DENIED_S:
