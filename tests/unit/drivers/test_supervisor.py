@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.drivers import lost
+from arboleda.drivers import Device, lost
 from arboleda.drivers.supervisor import (
     FIRST_RETRY_S,
     PLANT_GONE_S,
@@ -320,6 +320,7 @@ def test_a_device_of_which_no_work_ends_by_itself_is_halted_when_it_is_found_at_
     verbs = {name: verb for name, verb in STATION.verbs.items() if verb.on_stop is OnStop.HALT}
     (station,) = plant().robots.values()
     driven = Driven()
+    assert isinstance(station, Device)
     held = replace(station, kind=replace(STATION, verbs=verbs))
     driven.machine = Supervisor([("plc", [held])], epoch=EPOCH, stale_after_s=STALE_S)
     driven.step()

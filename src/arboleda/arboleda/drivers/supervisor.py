@@ -243,11 +243,11 @@ class SupervisedDriver:
         if self._stuck or device.is_overtaken(report):
             return []
         if report.state is not MotionState.NO_LINK and device.is_old(report, event.at):
-            why = SLOW(driver=self.name, seconds=round(event.at - report.at, 1), stale=self._stuck_after_s)
-            return [*device.say_lost(event.at, why), *self._call_back(event.at, device)]
+            slow = SLOW(driver=self.name, seconds=round(event.at - report.at, 1), stale=self._stuck_after_s)
+            return self._call_back(event.at, device, device.say_lost(event.at, slow))
         if report.state is MotionState.NO_LINK:
             told = device.say_lost(report.at, report.lost or UNSAID(driver=self.name))
-            return [*told, *self._call_back(event.at, device)]
+            return self._call_back(event.at, device, told)
         taken, stop = device.hear(report)
         return [taken] if stop is None else [taken, self._give(event.at, device, stop)]
 
@@ -288,17 +288,17 @@ class SupervisedDriver:
         return [*halting, *([End(life=self.life)] if alive else [])]
 
     def _lose(self, at: float, device: DrivenDevice, why: Sentence) -> list[Message]:
-        """Lose the link to a device, and call back what is on its way there."""
-        return [*device.lose(at, why), *self._call_back(at, device)]
+        return self._call_back(at, device, device.lose(at, why))
 
-    def _call_back(self, at: float, device: DrivenDevice) -> list[Message]:
-        """A stop for an order that `send` still has: its task has failed, so it must not begin any more."""
+    def _call_back(self, at: float, device: DrivenDevice, told: Sequence[Report]) -> list[Message]:
+        """What is told of a lost link, and a stop for an order that `send` still has: its task has failed, so
+        it must not begin any more."""
         has_order = any(
             command.robot == device.robot.name and not isinstance(command, Stop) for _, command in self._sends
         )
-        if not has_order or not device.robot.has_stop:
-            return []
-        return [self._give(at, device, Stop(id="", robot=device.robot.name, mode=StopMode.HALT))]
+        if not told or not has_order or not device.robot.has_stop:
+            return [*told]
+        return [*told, self._give(at, device, Stop(id="", robot=device.robot.name, mode=StopMode.HALT))]
 
     def _give(self, at: float, device: DrivenDevice, command: Command) -> Give:
         """The message that hands a command to the driver's `send`.
