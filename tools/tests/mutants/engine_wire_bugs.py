@@ -59,7 +59,8 @@ WIRE_BUGS = (
     bug(
         LINK,
         "A boot is not noticed.",
-        "        if rebooted:\n            return LinkUpdate.REBOOT\n",
+        "        if rebooted or were_twins:  # after twins nobody knows what the board has heard\n"
+        "            return LinkUpdate.REBOOT\n",
         "",
     ),
 )

@@ -25,6 +25,8 @@ class DrivenDevice:
         self.robot = robot
         self.up = False
         self.stale_at = math.inf
+        calls = (make(id="") for make in robot.calls.values())
+        self._finishes = any(isinstance(call, Work) and call.on_stop is OnStop.FINISH for call in calls)
         self._epoch = epoch
         self._silence_s = math.inf if robot.evidence is Evidence.STATE else stale_after_s
         self._longest_s = stale_after_s
@@ -138,7 +140,7 @@ class DrivenDevice:
             return False
         unseen, self._unseen = self._unseen, False
         is_at_work = report.state is MotionState.MOVING
-        return unseen and self._work is None and is_at_work and not self.robot.finishes
+        return unseen and self._work is None and is_at_work and not self._finishes
 
     @property
     def _can_stop(self) -> bool:

@@ -357,10 +357,6 @@ class Device(Robot):
     def kind_name(self) -> str:
         return self.kind.name
 
-    @property
-    def finishes(self) -> bool:
-        return any(verb.on_stop is OnStop.FINISH for verb in self.kind.verbs.values())
-
     @cached_property
     def verb_names(self) -> tuple[str, ...]:
         return tuple(self.kind.verbs)

@@ -143,11 +143,6 @@ class Robot:
         return self.position_key is not None
 
     @property
-    def finishes(self) -> bool:
-        """True where some of its work goes on through a stop, and may be under way without any harm."""
-        return False
-
-    @property
     def pace(self) -> float:
         """The share of its model's speed at which it moves."""
         return 1.0 if self.driver is None else self.driver.pace

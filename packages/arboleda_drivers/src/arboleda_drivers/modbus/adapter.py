@@ -68,7 +68,7 @@ class Line(polled.Line):
                 self._fall_in_step(unit, block)
             self._is_owed = False
         if self._came(0.0):
-            raise ConnectionError(f"{self._settings.peer} has answered what it was not asked")
+            raise ConnectionError(f"{self._settings.peer} has answered to another request")
         return self._client
 
     def _connect(self) -> None:
@@ -89,7 +89,7 @@ class Line(polled.Line):
             if not answer.isError():
                 self._values(replace(block, length=length), answer)
             elif answer.function_code & 0x7F != CODES[block.table]:
-                raise ConnectionError(f"{self._settings.peer} has answered another request")
+                raise ConnectionError(f"{self._settings.peer} has answered to another request")
 
     def _came(self, within_s: float) -> bool:
         """True where something came within this time; it is left out."""
@@ -101,8 +101,7 @@ class Line(polled.Line):
             raise ConnectionError(f"{self._settings.peer} has closed the connection")
         self._late += 1
         if self._late in TOLD:
-            what = "an answer came too late and is left out"
-            LOG.warning("%s: %s, %d so far", self._settings.peer, what, self._late)
+            LOG.warning("%s: %d answers came too late and are left out", self._settings.peer, self._late)
         return True
 
     def read(self, unit: int, block: Block) -> list[int]:

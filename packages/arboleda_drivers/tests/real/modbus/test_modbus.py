@@ -218,7 +218,7 @@ def test_an_answer_that_came_too_late_is_left_out_and_told(
             heard.until(is_heard)
             heard.until(is_heard)
             assert {dict(each.facts)["mm_s"] for each in heard.all if each.facts} == {11.0}
-    assert "an answer came too late and is left out, 1 so far" in caplog.text
+    assert "1 answers came too late and are left out" in caplog.text
 
 
 def loads(belt: Device, memory: Memory, at: Settings) -> None:
