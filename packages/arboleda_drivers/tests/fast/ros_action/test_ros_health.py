@@ -5,10 +5,12 @@ from __future__ import annotations
 import pytest
 
 from arboleda.drivers import Home, MotionState, Stop, StopMode
+from arboleda.drivers.port import DriverError
 from arboleda_drivers.joint_trajectory.machine import machine
 from arboleda_drivers.joint_trajectory.settings import Settings
 from arboleda_drivers.ros_action.events import CancelAll, CancelAnswer, MakeCall
 from arboleda_drivers.ros_action.health import READY_S, Call, CallAnswer, Health, HealthReading
+from arboleda_drivers.ros_action.health_link import HealthLink
 
 from ..joint_trajectory.test_joint_trajectory import ARM, GO, HALT, Rig
 
@@ -157,3 +159,11 @@ def test_a_latched_stop_shows_before_the_fault_so_that_it_can_be_cleared(rig: He
 def test_settings_that_cannot_be_meant_are_refused_with_what_is_allowed(settings, sentence: str):
     with pytest.raises(ValueError, match=sentence):
         settings()
+
+
+@pytest.mark.requires("rclpy")
+def test_a_type_that_is_not_installed_is_told_with_what_to_install() -> None:
+    unknown = Health(topic="t", type="ur_dashboard_msgs/msg/SafetyMode", field="mode", well=(1,))
+    with pytest.raises(DriverError, match="install ur_dashboard_msgs") as told:
+        HealthLink(None, unknown, lambda message, event: None)
+    assert "ur_dashboard_msgs/msg/SafetyMode" in str(told.value)

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Collection
 
 import pytest
 
+from arboleda.model.errors import StartError
 from arboleda_drivers.gripper_command.virtual import machine as gripper
 from arboleda_drivers.gripper_command.virtual.machine import Grip, GripperBody
 from arboleda_drivers.joint_trajectory.virtual import machine as trajectory
 from arboleda_drivers.joint_trajectory.virtual.machine import ArmBody, Points
+from arboleda_drivers.joint_trajectory.virtual.server import controller
 from arboleda_drivers.nav2.localisation import MapPose, OdometryPose
 from arboleda_drivers.nav2.pose import Pose
 from arboleda_drivers.nav2.virtual import machine as nav2
@@ -183,3 +186,14 @@ def test_a_missed_waypoint_is_named_in_a_success() -> None:
 @pytest.mark.parametrize("known", [trajectory.FAULTS, gripper.FAULTS, nav2.FAULTS])
 def test_there_are_at_least_ten_faults_each_with_a_sentence(known: dict[str, str]) -> None:
     assert len(known) >= 10 and all(known.values())
+
+
+def test_what_it_needs_is_one_sentence_with_the_line_that_installs_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setitem(sys.modules, "arboleda_ros.link", None)
+    arm = controller(
+        Faults(trajectory.FAULTS, ()), action="move", joint_states="j", joints=("a",), rate=50.0, lan=False
+    )
+    with pytest.raises(StartError, match=r"the virtual arm needs ROS 2, .*pip install 'arboleda\[ros\]'"):
+        arm.start()
