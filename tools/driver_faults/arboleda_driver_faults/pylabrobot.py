@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Sequence
-from functools import partial
 from typing import Any
 
 from pylabrobot.heating_shaking import HeaterShaker, HeaterShakerBackend
@@ -271,6 +270,3 @@ class ShakerRig(Rig):
     def bystanders(self, now: float) -> list[Report]:
         tip = (("tip", "none"),)
         return [Report(at=now, robot="handler", state=MotionState.STOPPED, boot_id=1, facts=tip)]
-
-
-SIDE_BY_SIDE = partial(ShakerRig, side_by_side=True)

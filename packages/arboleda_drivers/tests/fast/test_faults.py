@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import cache
 from typing import Any
 
 import pytest
@@ -15,11 +14,10 @@ from tests.lengths import sample
 from arboleda.dispatch import evidence
 from arboleda.kinds.joints.motion import JointMotion
 from arboleda.kinds.mobile.motion import GridMotion
-from arboleda.model.plant_model import PlantModel
-from arboleda.plant_file.loader import load
 from arboleda_driver_faults.modbus import Registers
 from arboleda_driver_faults.nav2 import BASE_CAUSES
-from arboleda_driver_faults.rig import TASKS, Rig, run
+from arboleda_driver_faults.rig import TASKS, run
+from arboleda_driver_faults.rigs import rig_of
 from arboleda_driver_faults.ros_action import CAUSES as ACTION_CAUSES
 from arboleda_drivers.connections.receipts import Look
 from arboleda_drivers.dobot import frames
@@ -103,18 +101,6 @@ DRIVERS = {  # by the names of `tools/driver-faults`
     "vda5050-2.1": replace(AGV, alone=sample(AGV_FAULTS, every=2)),
     "vda5050-3.0": AGV,
 }
-
-
-@cache
-def model_of(plant: object) -> PlantModel:
-    return load(plant)  # type: ignore[arg-type]
-
-
-def rig_of(driver: str) -> Rig:
-    from arboleda_driver_faults.__main__ import RIGS  # it imports pylabrobot
-
-    plant, rig = RIGS[driver]
-    return rig(model_of(plant))
 
 
 def breaches(driver: str, seed: int, *names: str, tasks: int = TASKS) -> list[str]:

@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 import pytest
-from tests.packages import ROOT
 
 from arboleda.model.messages import TaskState, Verb
-from arboleda.plant_file.loader import load
 from arboleda.views import view
 from arboleda_driver_faults.gripper import CarryRig
-from arboleda_driver_faults.modbus import ModbusRig
-from arboleda_driver_faults.opcua import OpcUaRig
 from arboleda_driver_faults.plc import BeltRig
 from arboleda_driver_faults.rig import Result, Rig, World
-from arboleda_driver_faults.s7 import S7Rig
+from arboleda_driver_faults.rigs import rig_of
 from arboleda_drivers.ros_action.events import ListedGoal
 
-EXAMPLES = ROOT / "examples"
 ORDERS = 5  # of the belt for one part: the gate, in, to the exit, the gate, a look
 ELSEWHERE = bytes(range(16))  # the id of a goal that no plant made
 
@@ -50,27 +45,12 @@ class OneTask(World):
         pass
 
 
-RIGS: dict[str, tuple[str, type[ModbusRig] | type[OpcUaRig] | type[S7Rig]]] = {
-    "modbus": ("plant.yaml", ModbusRig),
-    "opcua": ("opcua.yaml", OpcUaRig),
-    "s7": ("s7.yaml", S7Rig),
-}
-
-
-def belt(protocol: str) -> BeltRig:
-    file, rig = RIGS[protocol]
-    return rig(load(EXAMPLES / "plc_conveyor" / file))
-
-
-def arm() -> CarryRig:
-    return CarryRig(load(EXAMPLES / "ros2_control/plant.yaml"))
-
-
 @pytest.mark.sampled(12)
-@pytest.mark.parametrize("protocol", RIGS)
+@pytest.mark.parametrize("protocol", ["modbus", "opcua", "s7"])
 @pytest.mark.parametrize("after_s", [0.1, 0.5, 1.5, 2.2])
 def test_a_plc_that_numbers_its_orders_is_given_none_of_them_twice(protocol: str, after_s: float) -> None:
-    rig = belt(protocol)
+    rig = rig_of(protocol)
+    assert isinstance(rig, BeltRig)
     world = OneTask(rig).killed_after(after_s)
     assert world.offers() == {Verb.RESUME, Verb.ABANDON}
     world.operate(Verb.RESUME)
@@ -79,7 +59,8 @@ def test_a_plc_that_numbers_its_orders_is_given_none_of_them_twice(protocol: str
 
 
 def test_an_order_that_came_from_elsewhere_leaves_only_the_end_of_the_task() -> None:
-    rig = belt("modbus")
+    rig = rig_of("modbus")
+    assert isinstance(rig, BeltRig)
     world = OneTask(rig)
     world.advance(1.5)
     rig.belt.shown.accepted += 2
@@ -91,14 +72,15 @@ def test_an_order_that_came_from_elsewhere_leaves_only_the_end_of_the_task() -> 
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("after_s", [0.3, 2.0])
 def test_a_move_that_went_on_without_its_plant_is_resumed(after_s: float) -> None:
-    world = OneTask(arm()).killed_after(after_s)
+    world = OneTask(rig_of("ros2_control")).killed_after(after_s)
     assert world.offers() == {Verb.RESUME, Verb.ABANDON}
     world.operate(Verb.RESUME)
     assert world.advance(60.0, until=lambda: world.task is TaskState.DONE)
 
 
 def test_a_goal_of_another_client_leaves_only_the_end_of_the_task() -> None:
-    rig = arm()
+    rig = rig_of("ros2_control")
+    assert isinstance(rig, CarryRig)
     world = OneTask(rig)
     world.advance(2.0)
     later = (int(world.now) + 1, 0)
@@ -109,7 +91,8 @@ def test_a_goal_of_another_client_leaves_only_the_end_of_the_task() -> None:
 
 
 def test_a_server_that_lists_no_goal_any_more_proves_nothing() -> None:
-    rig = arm()
+    rig = rig_of("ros2_control")
+    assert isinstance(rig, CarryRig)
     world = OneTask(rig)
     world.advance(2.0)
     rig.listed["arm"].clear()

@@ -2,51 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-
 import pytest
 
 from arboleda.model.messages import MotionState
-from arboleda.plant_file.loader import load
-from arboleda.testing.plants import shipped
 from arboleda.views import view
-from arboleda_driver_faults.dobot import DobotRig
-from arboleda_driver_faults.gcode import GantryRig, MarlinRig, MoonrakerRig
-from arboleda_driver_faults.gripper import CarryRig
-from arboleda_driver_faults.nav2 import RoundRig, WaypointsRig
-from arboleda_driver_faults.rig import Result, Rig, World
-from arboleda_driver_faults.serial_arm import ServoRig
-from arboleda_driver_faults.ur import UrRig
-from arboleda_driver_faults.vda5050 import AgvRig
+from arboleda_driver_faults.rig import Result, World
+from arboleda_driver_faults.rigs import RIGS, rig_of
 
-EXAMPLES = Path(__file__).parents[5] / "examples"
-SLOW = {
-    "follow_joint_trajectory": "arm.slow",
-    "navigate_to_pose": "cart.slow",
-    "follow_waypoints": "cart.slow",
-}
+SLOW = {"ros2_control": "arm.slow", "navigate_to_pose": "cart.slow", "follow_waypoints": "cart.slow"}
+STILL = (
+    "modbus",
+    "opcua",
+    "s7",
+    "pylabrobot",
+    "pylabrobot-side_by_side",
+)  # they move no robot
+ALIKE = ("gcode-limp", "vda5050-2.0", "vda5050-3.0")
+ROBOTS = [name for name in RIGS if name not in (*STILL, *ALIKE)]
 HALTS_S = 4.5  # Klipper's queue is given 3.5 s to end before it is shut down
-ROBOTS: dict[str, Callable[[], Rig]] = {
-    "dobot": lambda: DobotRig(shipped()),
-    "ur": lambda: UrRig(shipped()),
-    "serial_arm-feetech": lambda: ServoRig(load(EXAMPLES / "serial_arm/desk.yaml")),
-    "serial_arm-dynamixel": lambda: ServoRig(load(EXAMPLES / "serial_arm/desk.yaml"), "dynamixel"),
-    "gcode-grbl": lambda: GantryRig(load(EXAMPLES / "gantry/bench.yaml")),
-    "gcode-marlin": lambda: MarlinRig(load(EXAMPLES / "gantry/marlin.yaml")),
-    "gcode-moonraker": lambda: MoonrakerRig(load(EXAMPLES / "gantry/moonraker.yaml")),
-    "follow_joint_trajectory": lambda: CarryRig(load(EXAMPLES / "ros2_control/plant.yaml")),
-    "navigate_to_pose": lambda: RoundRig(load(EXAMPLES / "nav2/plant.yaml")),
-    "follow_waypoints": lambda: WaypointsRig(load(EXAMPLES / "nav2/plant.yaml")),
-    "vda5050": lambda: AgvRig(load(EXAMPLES / "agv/plant.yaml")),
-}
 
 
 class SlowMove(World):
     """A world whose robot is in the middle of a move, at a tenth of its speed."""
 
     def __init__(self, name: str) -> None:
-        super().__init__(ROBOTS[name](), Result(seed=0, faults=()), tasks=1)
+        super().__init__(rig_of(name), Result(seed=0, faults=()), tasks=1)
         self._is_killed = False
         self.advance(30.0, until=lambda: not self.plant.advice(self._cell.name))
         self.rig.faults.switch(SLOW.get(name, "slow"), on=True)
