@@ -8,7 +8,7 @@ from typing import Any
 
 import httpx
 import pytest
-from packages.arboleda_drivers.tests.real.modbus.bench import ModbusWire
+from packages.arboleda_drivers.tests.real.modbus.bench import PlayedModbus
 from tests.chromium import leave
 from tests.lengths import sample
 from tests.patience import PATIENCE_MS, PATIENCE_S
@@ -239,7 +239,7 @@ def test_a_tryout_is_looked_at_as_a_record_and_the_way_leads_back(browser: Any, 
 def test_a_new_device_with_a_driver_is_reached_before_it_is_added(
     browser: Any, address: str, folder: Path
 ) -> None:
-    wire = ModbusWire()
+    wire = PlayedModbus()
     me = Person(browser, address, **LAPTOP)
     me.panel("device")
     me.write("#make-role", "door")

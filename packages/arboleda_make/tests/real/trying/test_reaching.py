@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from packages.arboleda_drivers.tests.real.contract.press import Order, plant
-from packages.arboleda_drivers.tests.real.modbus.bench import DRIVER, ModbusWire
+from packages.arboleda_drivers.tests.real.modbus.bench import DRIVER, PlayedModbus
 
 from arboleda.drivers import lost
 from arboleda.model.plant_model import DriverUse, Robot
@@ -24,7 +24,7 @@ def press(folder: Path, driver: str) -> Robot:
 
 
 def test_a_plc_that_is_there_says_its_facts_and_is_told_nothing(tmp_path: Path) -> None:
-    wire, told = ModbusWire(), list[Order]()
+    wire, told = PlayedModbus(), list[Order]()
     wire.connect(told.append)
     beating = DRIVER % wire.port + "\n            heartbeat: {coil: 7}"
     try:
