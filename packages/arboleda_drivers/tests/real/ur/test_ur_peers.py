@@ -5,21 +5,19 @@ Its ports cannot be chosen, so that each test has an address of its own.
 
 from __future__ import annotations
 
-import re
-import sys
 import time
-import urllib.request
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 from tests.patience import PATIENCE_S
 
+from ..played import Played, play
+
 rtde_receive = pytest.importorskip("rtde_receive", reason="ur-rtde is not there")
 dashboard_client = pytest.importorskip("dashboard_client", reason="ur-rtde is not there")
 pytestmark = pytest.mark.system
 
-COMMAND = "from arboleda.cli.main import main; main()"
 VARIABLES = [
     "timestamp",
     "actual_q",
@@ -41,39 +39,33 @@ def until(is_so: Callable[[], bool]) -> None:
         time.sleep(0.02)
 
 
-@pytest.fixture
-def controller(request: pytest.FixtureRequest, start: Callable[..., Any]) -> tuple[str, str]:
-    """Address of a virtual arm, and where its faults are; a process of its own, as ur_rtde keeps the GIL."""
-    host = f"127.0.29.{1 + sum(request.node.name.encode()) % 250}"
-    process = start(sys.executable, "-c", COMMAND, "virtual", "ur", "--host", host, "--fault-port", "0")
-    process.wait_for("faults are switched on ")
-    faults = re.search(r"switched on (\S+)", process.output)
-    assert faults
-    return host, faults[1]
-
-
-def switch(faults: str, name: str, method: str) -> None:
-    request = urllib.request.Request(f"{faults}/{name}", method=method)
-    urllib.request.urlopen(request, timeout=PATIENCE_S).close()
+def host_of(request: pytest.FixtureRequest) -> str:
+    return f"127.0.29.{1 + sum(request.node.name.encode()) % 250}"
 
 
 @pytest.fixture
-def dashboard(controller: tuple[str, str]) -> Iterator[Any]:
-    client = dashboard_client.DashboardClient(controller[0])
+def controller(request: pytest.FixtureRequest, start: Callable[..., Any]) -> Played:
+    """A virtual arm; a process of its own, as ur_rtde keeps the GIL."""
+    return play(start, "ur", "--host", host_of(request))
+
+
+@pytest.fixture
+def dashboard(request: pytest.FixtureRequest, controller: Played) -> Iterator[Any]:
+    client = dashboard_client.DashboardClient(host_of(request))
     client.connect()
     yield client
     client.disconnect()
 
 
 @pytest.fixture
-def receive(controller: tuple[str, str]) -> Iterator[Any]:
-    client = rtde_receive.RTDEReceiveInterface(controller[0], 125.0, VARIABLES)
+def receive(request: pytest.FixtureRequest, controller: Played) -> Iterator[Any]:
+    client = rtde_receive.RTDEReceiveInterface(host_of(request), 125.0, VARIABLES)
     yield client
     client.disconnect()
 
 
 def test_a_foreign_client_reads_power_speed_and_a_protective_stop_and_unlocks_it(
-    controller: tuple[str, str], dashboard: Any, receive: Any
+    controller: Played, dashboard: Any, receive: Any
 ) -> None:
     assert dashboard.robotmode() == "Robotmode: POWER_OFF"
     dashboard.powerOn()
@@ -83,12 +75,12 @@ def test_a_foreign_client_reads_power_speed_and_a_protective_stop_and_unlocks_it
     assert dashboard.safetystatus() == "Safetystatus: NORMAL"
     assert dashboard.isInRemoteControl() is True
     assert receive.getActualQ() == [0.0] * 6
-    switch(controller[1], "slider", "PUT")
+    controller.switch("slider", on=True)
     until(lambda: receive.getTargetSpeedFraction() == pytest.approx(0.03))
     assert receive.getSpeedScaling() == pytest.approx(0.03)
-    switch(controller[1], "safeguard", "PUT")
+    controller.switch("safeguard", on=True)
     until(lambda: receive.getSafetyMode() == 5)
-    switch(controller[1], "safeguard", "DELETE")
+    controller.switch("safeguard", on=False)
     until(lambda: receive.getSafetyMode() == 1)
     assert not receive.isProtectiveStopped()
     dashboard.closeSafetyPopup()
