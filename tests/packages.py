@@ -40,10 +40,11 @@ def leave_out(patch: pytest.MonkeyPatch, folder: Path, *packages: str) -> None:
     entry_points = metadata.entry_points
     patch.setattr(MadeOnce(), "left_out", packages)
 
-    def left() -> metadata.EntryPoints:
+    def left(**wanted: str) -> metadata.EntryPoints:
         found = entry_points()
         points = (each for group in found.groups for each in found.select(group=group))
-        return metadata.EntryPoints(each for each in points if each.value.partition(".")[0] not in packages)
+        kept = (each for each in points if each.value.partition(".")[0] not in packages)
+        return metadata.EntryPoints(kept).select(**wanted)
 
     patch.setattr(metadata, "entry_points", left)
     patch.syspath_prepend(folder)  # what is installed is read anew

@@ -23,7 +23,7 @@ setup(
         ("share/ament_index/resource_index/packages", ["resource/arboleda_class"]),
         ("share/arboleda_class", ["package.xml"]),
     ],
-    install_requires=["arboleda==0.1.0", "arboleda_proofs==0.1.0"],
+    install_requires=["arboleda==0.1.0", "arboleda_proofs==0.1.0", "arboleda_trees==0.1.0"],
     entry_points={
         "arboleda.commands": ["class = arboleda_class.commands:COMMANDS"],
         "arboleda.languages": ["class = arboleda_class"],

@@ -15,7 +15,7 @@ setup(
         ("share/ament_index/resource_index/packages", ["resource/arboleda_make"]),
         ("share/arboleda_make", ["package.xml"]),
     ],
-    install_requires=["arboleda==0.1.0", "arboleda_proofs==0.1.0"],
+    install_requires=["arboleda==0.1.0", "arboleda_proofs==0.1.0", "arboleda_trees==0.1.0"],
     extras_require={"mcp": ["mcp>=2.3,<3"]},  # assistants (`arboleda mcp`)
     entry_points={
         "arboleda.client": ["make = arboleda_make.client.methods:MakeRoutes"],

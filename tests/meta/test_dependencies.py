@@ -12,7 +12,7 @@ from packaging.requirements import Requirement
 from tests.packages import PACKAGES
 
 ROOT = Path(__file__).parents[2]
-HOUSE = ROOT / "src/arboleda/arboleda"
+HOUSES = (ROOT / "src/arboleda/arboleda", PACKAGES["arboleda_trees"])  # with libraries behind extras
 IMPORTED_AS = {"msgpack": "msgpack", "pillow": "PIL", "pyzmq": "zmq"}
 KEY = re.compile(r"<(?:exec_)?depend>(?:python3-)?([\w-]+)</")
 
@@ -31,11 +31,15 @@ def asked_of_pip() -> list[str]:
 
 
 def asked_of_extras() -> dict[str, list[str]]:
-    """The libraries, with their bounds, that extras of the runner bring and it does not need."""
+    """The libraries, with their bounds, that extras bring and nobody needs who does not ask for them."""
     text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-    names = ("groot2", "pictures")
-    rows = {name: re.search(rf"^{name} = \[(.*)\]$", text, re.MULTILINE) for name in names}
-    return {name: re.findall(r'"([^"]+)"', row[1]) for name, row in rows.items() if row}
+    pictures = re.search(r"^pictures = \[(.*)\]$", text, re.MULTILINE)
+    assert pictures
+    groot2 = [line for line in requires("arboleda_trees") or () if 'extra == "groot2"' in line]
+    return {
+        "groot2": [line.partition(";")[0].replace(" ", "") for line in groot2],
+        "pictures": re.findall(r'"([^"]+)"', pictures[1]),
+    }
 
 
 def asked_of_packages() -> set[str]:
@@ -91,9 +95,9 @@ def test_the_wheels_of_ros_2_are_asked_for_where_they_exist_only() -> None:
     assert not any(marker.evaluate(elsewhere) for each in asked if (marker := Requirement(each).marker))
 
 
-def imported_at_once(path: Path) -> set[str]:
+def imported_at_once(path: Path, house: Path) -> set[str]:
     """The modules that a file imports as soon as it is loaded itself, by their whole names."""
-    package = path.relative_to(HOUSE.parent).parent.parts
+    package = path.relative_to(house.parent).parent.parts
     found = set()
     for node in ast.parse(path.read_text(encoding="utf-8")).body:
         if isinstance(node, ast.Import):
@@ -110,10 +114,13 @@ def test_the_library_of_an_extra_is_loaded_where_it_is_asked_for_and_nobody_need
     assert len(libraries) == len(IMPORTED_AS) and not {*libraries} & {
         Requirement(e).name for e in asked_of_pip()
     }
-    imports = {path: imported_at_once(path) for path in HOUSE.rglob("*.py") if "examples" not in path.parts}
+    files = [
+        (path, house) for house in HOUSES for path in house.rglob("*.py") if "examples" not in path.parts
+    ]
+    imports = {path.relative_to(house.parent): imported_at_once(path, house) for path, house in files}
     names = {IMPORTED_AS[each] for each in libraries}
     users = {path: names & {each.partition(".")[0] for each in found} for path, found in imports.items()}
     users = {path: found for path, found in users.items() if found}
     assert set().union(*users.values()) == names
-    modules = {".".join(path.relative_to(HOUSE.parent).with_suffix("").parts) for path in users}
+    modules = {".".join(path.with_suffix("").parts) for path in users}
     assert [str(path) for path, found in imports.items() if found & modules] == []

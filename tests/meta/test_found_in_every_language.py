@@ -22,6 +22,7 @@ OF_CLASS = PACKAGES["arboleda_class"]
 OF_MAKERS = PACKAGES["arboleda_drivers"]
 OF_MAKING = PACKAGES["arboleda_make"]
 OF_PROOFS = PACKAGES["arboleda_proofs"]
+OF_TREES = PACKAGES["arboleda_trees"]
 AT_A_START = {  # of a driver, which `check` says, too
     *("addresses.py", "checks.py", "health.py", "limits.py", "nodes.py", "paths.py", "port.py", "reading.py"),
     *("keys.py", "registers.py", "settings.py", "stream.py", "variables.py"),
@@ -38,12 +39,12 @@ def _files(folder: Path, *patterns: str) -> list[Path]:
 FILES = (
     *_files(PACKAGE, "plant_file/*.py", "plant_check/*.py", "kinds/*.py"),
     *_files(PACKAGE, "wire/strict.py", "wire/payloads.py", "client/http.py"),
-    *_files(PACKAGE, "bt_xml/checking.py", "bt_xml/reading.py"),
     *_files(PACKAGE, "drivers/*.py"),  # settings, and why there is no link or nothing is sent
     *_files(OF_BOARDS, "conformance/*.py"),
     *_files(OF_CLASS, "exercises/trial_run.py", "playground/*.py"),
     *_files(OF_PROOFS, "campaigns/*.py", "campaigns/proof/*.py", "simulator/findings.py"),
     *_files(OF_PROOFS, *(f"simulator/{folder}/*.py" for folder in SEEING)),
+    *_files(OF_TREES, "bt_xml/checking.py", "bt_xml/reading.py", "checks/*.py", "files/*.py"),
     *_files(OF_MAKING, "drafts/*.py", "trying/*.py", "proposals/*.py"),
     *_files(OF_MAKING, *(f"versions/{name}.py" for name in ("change", "desk", "restart"))),
     *(

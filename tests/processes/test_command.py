@@ -58,7 +58,7 @@ print(*sys.modules)
 """
 OF_A_PLANT = {"asyncio", "fastapi", "httpx", "nicegui", "paho", "rclpy", "ssl", "uvicorn"}
 OF_OTHER_COMMANDS = {
-    "arboleda.bt_xml",
+    "arboleda_trees.bt_xml",
     "arboleda_proofs.campaigns",
     "arboleda.plant_file.loader",
     "arboleda.plant_check.checks",

@@ -1,4 +1,4 @@
-"""`cell.recover` and TryCatch: what has failed first stays the cause, whatever the rescue comes to."""
+"""`cell.recover`: what has failed first stays the cause, whatever the rescue comes to."""
 
 from __future__ import annotations
 
@@ -24,15 +24,14 @@ def assay(cell):
     mover, reader = cell.devices("mover", "reader")
     return {body}
 """
-TREE = '<root BTCPP_format="4"><BehaviorTree ID="T">{body}</BehaviorTree></root>'
 UNCLEAR = "no clear reading"
 FAILS = f"cell.fail('{UNCLEAR}')"
 PLATE = "mover says false of plate; true is needed"
 BOTH = f"{UNCLEAR}; and the rescue failed: {PLATE}"
 
 
-def written(folder: Path, *, python: str = "mover.put_away()", xml: str = "<mover_put_away/>") -> Rig:
-    rig = Rig(read(folder, PLANT, RECIPES.format(body=python), beside={"tree.xml": TREE.format(body=xml)}))
+def written(folder: Path, *, python: str) -> Rig:
+    rig = Rig(read(folder, PLANT, RECIPES.format(body=python)))
     rig.wait(5.0)
     return rig
 
@@ -83,49 +82,19 @@ def test_the_first_cause_stays_in_a_recipe(tmp_path: Path, body: str, why: str, 
     assert told(rig) == commands
 
 
-CHECK = '<reader_says lid="closed"/>'
-NOT_CLOSED = "reader says open of lid; closed is needed"
-XML_BOTH = f"{NOT_CLOSED}; and the rescue failed: {PLATE}"
-TRY = f"<TryCatch>{CHECK}<mover_put_away/></TryCatch>"
+def test_the_first_cause_outlives_the_plant(tmp_path: Path) -> None:
+    outlives_the_plant(written(tmp_path, python=RESCUE), "assay", UNCLEAR)
 
 
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize(
-    ("body", "why", "commands"),
-    [
-        (f"<TryCatch><mover_take_out/>{CHECK}</TryCatch>", "", ["mover take_out"]),
-        (TRY, NOT_CLOSED, ["mover put_away"]),
-        (f'<TryCatch>{CHECK}<mover_says plate="true"/></TryCatch>', XML_BOTH, []),
-        ('<TryCatch name="try"><AlwaysFailure/><mover_says plate="true"/></TryCatch>',
-         f"the tree try has failed; and the rescue failed: {PLATE}", []),
-        (f'<TryCatch>{CHECK}<Fallback><mover_says plate="true"/><mover_put_away/></Fallback></TryCatch>',
-         NOT_CLOSED, ["mover put_away"]),
-        (f"<Fallback>{TRY}<reader_open/></Fallback>", "", ["mover put_away", "reader open"]),
-        (f"<TryCatch>{TRY}<mover_take_out/></TryCatch>", NOT_CLOSED, ["mover put_away", "mover take_out"]),
-        (f'<TryCatch>{CHECK}<ScriptCondition code="1 / 0 == 1"/></TryCatch>',
-         f"{NOT_CLOSED}; and the rescue failed: a division by zero", []),
-        (f'<Timeout msec="1000">{TRY}</Timeout>', NOT_CLOSED, ["mover put_away"]),
-    ],
-)  # fmt: skip
-def test_the_first_cause_stays_in_a_tree_as_xml(
-    tmp_path: Path, body: str, why: str, commands: list[str]
-) -> None:
-    rig = written(tmp_path, xml=body)
-    outcome = run(rig, "tree")
-    assert str(outcome.sentence or "") == why
-    assert told(rig) == commands
-
-
-@pytest.mark.parametrize("recipe", ["assay", "tree"])
-def test_the_first_cause_outlives_the_plant(tmp_path: Path, recipe: str) -> None:
-    rig = written(tmp_path, python=RESCUE, xml=TRY)
+def outlives_the_plant(rig: Rig, recipe: str, cause: str) -> None:
+    """The first cause of a task is still told when the plant was started anew during its rescue."""
     rig.submit(f"bench {recipe} #one")
     rig.wait(2.0)
     assert told(rig) == ["mover put_away"]
     restart(rig, after_s=0.5)
     rig.wait(1.0)
     assert rig.operate(Verb.RESUME, "bench") is None
-    assert str(ended(rig).sentence) == (UNCLEAR if recipe == "assay" else NOT_CLOSED)
+    assert str(ended(rig).sentence) == cause
 
 
 def test_the_step_of_a_rescue_is_named(tmp_path: Path) -> None:
@@ -135,22 +104,15 @@ def test_the_step_of_a_rescue_is_named(tmp_path: Path) -> None:
     assert str(step_of(rig.plant.cells["bench"].tree)) == "mover put_away"
 
 
-@pytest.mark.parametrize("recipe", ["assay", "tree"])
-def test_nothing_is_rescued_after_a_stop(tmp_path: Path, recipe: str) -> None:
-    python = "cell.recover(mover.put_away(), mover.take_out())"
-    rig = written(tmp_path, python=python, xml="<TryCatch><mover_put_away/><mover_take_out/></TryCatch>")
+def test_nothing_is_rescued_after_a_stop(tmp_path: Path) -> None:
+    rig = written(tmp_path, python="cell.recover(mover.put_away(), mover.take_out())")
+    not_rescued_after_a_stop(rig, "assay")
+
+
+def not_rescued_after_a_stop(rig: Rig, recipe: str) -> None:
+    """The rescue of a task that puts something away does not begin after a stop."""
     rig.submit(f"bench {recipe} #one")
     rig.wait(2.0)
     assert rig.operate(Verb.STOP, "bench") is None
     assert ended(rig).reason is Reason.STOPPED
     assert told(rig)[0] == "mover put_away" and "mover take_out" not in told(rig)
-
-
-def test_a_failure_that_the_tree_asks_for_keeps_its_words_while_the_rescue_takes_its_time(
-    tmp_path: Path,
-) -> None:
-    body = '<TryCatch><AlwaysFailure name="it says 2"/><Sleep msec="300"/></TryCatch>'
-    rig = written(tmp_path, xml=body)
-    outcome = run(rig, "tree")
-    assert outcome.state is TaskState.FAILED
-    assert str(rig.plant.intake.tasks[outcome.task].failed_step) == "it says 2"

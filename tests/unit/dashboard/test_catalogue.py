@@ -33,7 +33,6 @@ TOLD_BY = (
     "drivers",
     "views",
     "oee",
-    "bt_xml",
     "recorder",
     "wire",
     "runtime",

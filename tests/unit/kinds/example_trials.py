@@ -41,6 +41,7 @@ OF_DRIVERS = (
     "plc_conveyor",
     "ros2_control",
 )  # tried by the tests of arboleda_drivers
+OF_TREES = ("own_tree",)  # by those of arboleda_trees
 ENDED = (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED, TaskState.REFUSED)
 SAME_M, APART_M = 0.001, 0.05
 

@@ -23,23 +23,21 @@ from arboleda.model.messages import TaskState
 from arboleda.model.text import parse
 
 from . import example_trials
-from .example_trials import ENDED, EXAMPLES, OF_DRIVERS, OF_STORAGE, Case, Shop, arms, load
+from .example_trials import ENDED, EXAMPLES, OF_DRIVERS, OF_STORAGE, OF_TREES, Case, Shop, arms, load
 
 PAGES = EXAMPLES.parent / "docs/examples"
 ALL = sorted({file.parent.name for file in EXAMPLES.glob("*/plant.yaml")} - {OF_STORAGE})
-FOLDERS = [folder for folder in ALL if folder not in OF_DRIVERS]
-OF_HOW_TOS = ("own_board", "own_driver", "own_tree", "press_board")  # their pages are in docs/how-to
+FOLDERS = [folder for folder in ALL if folder not in (*OF_DRIVERS, *OF_TREES)]
+OF_HOW_TOS = ("own_board", "own_driver", "press_board")  # their pages are in docs/how-to
 SHOWN = [folder for folder in FOLDERS if folder not in OF_HOW_TOS]
-WITH_ARMS = ("assembly", "kitting", "machine_tending", "own_tree")
+WITH_ARMS = ("assembly", "kitting", "machine_tending")
 PUBLIC = {each.__name__: each.__all__ for each in (arboleda.drivers, arboleda.kinds, arboleda.recipes)}
 BASE, MILL, PALLET = "station assemble base_1 lid_3", "tending mill slot_2 1002", "tending pallet 1001"
 SOLD = ("tender to belt", "tender lets go", "tender to home", "belt clear")
 KIT, WAVE, COLLECT = "kitting kit 2 tray_4", "kitting wave tray_1", "packing collect"
 REJECTED = ("tender to reject", "tender lets go", "tender to home")
 bench, tending = partial(Case, folder="lab_bench"), partial(Case, folder="machine_tending")
-kitting, tree = partial(Case, folder="kitting"), partial(Case, folder="own_tree")
-TAKEN = ("loader to done", "jaw open", "loader to home")
-SCRAPPED = ("loader to reject", "jaw open", "loader to home")
+kitting = partial(Case, folder="kitting")
 CASES = (
     Case(folder="assembly", task=BASE, ends_with=("left to done", "left lets go", "left to home")),
     bench(task="bench weigh 10", ends_with=("pump dispense", "scale weigh")),
@@ -59,10 +57,6 @@ CASES = (
     Case(folder="own_driver", task="shop form 1", answers={"press": "bad"}, why="the part is out of measure"),
     Case(folder="press_board", task="bench stamp 1", ends_with=("press open", "press clamp")),
     Case(folder="press_board", task="bench stamp 2", answers={"press": "absent"}, why="there is no part"),
-    tree(task="cell tend slot_1 1002", ends_with=TAKEN, tries_again=frozenset({("mill", "run")})),
-    tree(task="cell tend slot_1 1001", answers={"camera": "bad"}, ends_with=SCRAPPED),
-    tree(task="cell tend slot_2 1001", answers={"camera": "unsure"}, ends_with=TAKEN),
-    tree(task="cell tend slot_2 1002", answers={"camera": "unsure", "operator": "bad"}, ends_with=SCRAPPED),
     tending(task=PALLET, ends_with=SOLD),
     tending(task=PALLET, answers={"operator": "no blanks left"}, why="no blanks are left"),
     kitting(task=KIT, ends_with=("lift roll_in", "cart_2 to home", "lift up", "picker to home")),
@@ -99,7 +93,7 @@ def test_after_a_stop_at_any_time_the_first_advice_leads_back_to_work(case: Case
     example_trials.works_again_after_a_stop(case, CASES)
 
 
-@pytest.mark.parametrize("folder", [each for each in ALL if each != "own_tree"])
+@pytest.mark.parametrize("folder", [each for each in ALL if each not in OF_TREES])
 def test_recipes_import_nothing_else_of_arboleda_than_what_is_public(folder: str) -> None:
     files = list((EXAMPLES / folder).glob("**/*.py"))
     assert files

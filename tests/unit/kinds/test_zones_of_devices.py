@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from arboleda.model.plant_model import PlantModel
+
 from ...plants import changed, plant_text, read, refused
 from .lab import Bench
 
@@ -37,17 +39,6 @@ def look(cell):
     seen = feeder.look()
     ways = {"free": ram.lift(), "jammed": cell.fail("jammed")}
     return work(parallel(seen, work(cell.wait(0.5), ram.press())), cell.choose(seen, ways))
-"""
-TREE = """
-<root BTCPP_format="4"><BehaviorTree ID="Tree"><Sequence>
-  <Parallel failure_count="1" success_count="-1">
-    <feeder_look answer="{seen}"/>
-    <Sequence><Sleep msec="500"/><ram_press/></Sequence>
-  </Parallel>
-  <Switch2 variable="{seen}" case_1="free" case_2="jammed">
-    <ram_lift/><AlwaysFailure/><AlwaysFailure/>
-  </Switch2>
-</Sequence></BehaviorTree></root>
 """
 
 
@@ -83,12 +74,16 @@ def test_a_verb_is_not_told_into_a_zone_that_stays_taken(press: Bench) -> None:
     assert "feeder push" not in press.told
 
 
-@pytest.mark.parametrize("recipe", ["look", "tree"])
-def test_a_device_that_is_asked_is_in_the_zone_until_it_has_answered(tmp_path: Path, recipe: str) -> None:
-    asks = "look: {effect: query, answers: [free, jammed], takes_s: 2}\n      push:"
-    plant = PLANT.replace("push:", asks, 1).replace("[push]", "[look]").replace("[rec", "[tree.xml, rec")
-    recipes = RECIPES + (LOOKS if recipe == "look" else "")
-    here = Bench(read(tmp_path, plant, recipes, {"tree.xml": TREE}))
+ASKS = "look: {effect: query, answers: [free, jammed], takes_s: 2}\n      push:"
+ASKED = PLANT.replace("push:", ASKS, 1).replace("[push]", "[look]")
+
+
+def test_a_device_that_is_asked_is_in_the_zone_until_it_has_answered(tmp_path: Path) -> None:
+    in_the_zone_until_it_has_answered(read(tmp_path, ASKED, RECIPES + LOOKS), "look")
+
+
+def in_the_zone_until_it_has_answered(plant: PlantModel, recipe: str) -> None:
+    here = Bench(plant)
     here.wait(1.0)
     here.submit(f"press {recipe}")
     assert here.wait(1.0, lambda: "feeder look" in here.told)

@@ -45,32 +45,20 @@ def sort(cell, one=Choice(*WORDS), other=Choice(*WORDS)):
     return work(arm.visit("in", jaw.close(width_mm=30, force_n=20)), arm.visit(place, jaw.open()), arm.home())
 """
 FEW, MANY = "abc", "abcdefghijklmno"  # values of each of two parameters
-TREE = """
-<root BTCPP_format="4" main_tree_to_execute="Sort">
-<BehaviorTree ID="Sort"><Sequence>
-  <camera_look answer="{seen}"/>
-  <arm_visit target="in"><jaw_close width_mm="30" force_n="20"/></arm_visit>
-  <Switch2 variable="{seen}" case_1="good" case_2="bad">
-    <arm_visit target="GOOD"><jaw_open/></arm_visit>
-    <arm_visit target="BAD"><jaw_open/></arm_visit>
-    <AlwaysFailure/>
-  </Switch2>
-  <arm_home/>
-</Sequence></BehaviorTree>
-<TreeNodesModel><SubTree ID="Sort"><MetadataFields>
-  <Metadata ends_with="ENDS"/>
-</MetadataFields></SubTree></TreeNodesModel>
-</root>
-"""
 BY_ANSWER = '[{"camera.look": "good", "press": 1}, {"camera.look": "bad", "reject": 1}]'
 EITHER = '[{"press": 1}, {"reject": 1}]'
 RIGHT, SWAPPED, ONE_PLACE = ("press", "reject"), ("reject", "press"), ("press", "press")
 
 
 def sorting(
-    folder: Path, ends: str, ways: tuple[str, str] = RIGHT, *, recipe: str = RECIPES, plant: str = PLANT
+    folder: Path,
+    ends: str,
+    ways: tuple[str, str] = RIGHT,
+    *,
+    recipe: str = RECIPES,
+    plant: str = PLANT,
+    name: str = "recipes.py",
 ) -> PlantModel:
-    name = "sort.xml" if recipe is TREE else "recipes.py"
     text = recipe.replace("ENDS", ends).replace("GOOD", ways[0]).replace("BAD", ways[1])
     (folder / name).write_text(text, "utf-8")
     return read(folder, plant.replace("USES", name))
@@ -80,32 +68,21 @@ def warned(plant: PlantModel) -> list[str]:
     return [each.split(" sort ", 1)[1].partition(";")[0] for each in advance_check.warnings(plant)]
 
 
-def as_xml(ends: str) -> str:
-    """The ends as the metadata of a tree: by an answer, or one of them."""
-    return {
-        BY_ANSWER: "camera.look: good; press: 1 | camera.look: bad; reject: 1",
-        EITHER: "press: 1 | reject: 1",
-    }[ends]
-
-
-@pytest.mark.parametrize("recipe", [RECIPES, TREE], ids=["python", "xml"])
 @pytest.mark.parametrize("ends", [BY_ANSWER, EITHER], ids=["by answer", "either"])
-def test_nothing_is_said_against_a_recipe_that_ends_as_it_says_on_each_way(
-    tmp_path: Path, ends: str, recipe: str
-) -> None:
-    stated = ends if recipe is RECIPES else as_xml(ends)
-    assert warned(sorting(tmp_path, stated, recipe=recipe)) == []
+def test_nothing_is_said_against_a_recipe_that_ends_as_it_says_on_each_way(tmp_path: Path, ends: str) -> None:
+    assert warned(sorting(tmp_path, ends)) == []
 
 
-@pytest.mark.parametrize("recipe", [RECIPES, TREE], ids=["python", "xml"])
-def test_check_finds_the_parts_of_two_answers_swapped(tmp_path: Path, recipe: str) -> None:
-    stated = BY_ANSWER if recipe is RECIPES else as_xml(BY_ANSWER)
-    assert warned(sorting(tmp_path, stated, SWAPPED, recipe=recipe)) == [
-        "ends with press 0, and says that it ends with 1",
-        "ends with reject 0, and says that it ends with 1",
-        "says that it may end with camera.look good and press 1, and never ends so",
-        "says that it may end with camera.look bad and reject 1, and never ends so",
-    ]
+PARTS_SWAPPED = [
+    "ends with press 0, and says that it ends with 1",
+    "ends with reject 0, and says that it ends with 1",
+    "says that it may end with camera.look good and press 1, and never ends so",
+    "says that it may end with camera.look bad and reject 1, and never ends so",
+]
+
+
+def test_check_finds_the_parts_of_two_answers_swapped(tmp_path: Path) -> None:
+    assert warned(sorting(tmp_path, BY_ANSWER, SWAPPED)) == PARTS_SWAPPED
 
 
 def test_only_the_last_question_to_a_device_has_its_last_answer(tmp_path: Path) -> None:

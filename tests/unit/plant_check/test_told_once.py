@@ -94,7 +94,7 @@ def test_devices_of_other_roles_are_no_one_mistake() -> None:
 
 NEEDY = """
 name: lab
-uses: [turn.xml]
+uses: [recipes.py]
 kinds:
   oven:
     facts: {{door: [closed, open]}}
@@ -112,7 +112,13 @@ cells:
       mill: {{kind: mill}}
     needs: {{mill.turn: {{oven.door: open}}}}
 """
-TREE = '<root BTCPP_format="4"><BehaviorTree ID="Turn"><mill_turn/></BehaviorTree></root>'
+TURN = """
+from arboleda.recipes import recipe
+
+@recipe("turn")
+def turn(cell):
+    return cell.device("mill").turn()
+"""
 OWN = ", needs: {door: open}"
 SILENT = "of oven, and oven reports no facts (evidence: state); it is always refused; write another evidence"
 
@@ -129,5 +135,5 @@ SILENT = "of oven, and oven reports no facts (evidence: state); it is always ref
 def test_it_names_verbs_that_need_what_a_device_never_reports(
     tmp_path: Path, own: str, evidence: str, said: list[str]
 ) -> None:
-    plant = read(tmp_path, NEEDY.format(own=own, evidence=evidence), beside={"turn.xml": TREE})
+    plant = read(tmp_path, NEEDY.format(own=own, evidence=evidence), TURN)
     assert list(checks.unmet_needs(plant)) == said

@@ -383,18 +383,6 @@ def test_check_says_which_cell_offers_what_and_why_not_the_rest(tmp_path: Path) 
     ]
 
 
-def test_a_cell_without_the_device_that_lists_the_values_of_a_tree_is_told_of_its_node(
-    tmp_path: Path,
-) -> None:
-    body = '<BehaviorTree ID="Warm"><oven_heat celsius="{celsius}"/></BehaviorTree>'
-    ports = '<SubTree ID="Warm"><input_port name="celsius"/></SubTree>'
-    tree = f'<root BTCPP_format="4">{body}<TreeNodesModel>{ports}</TreeNodesModel></root>'
-    (tmp_path / "warm.xml").write_text(tree, "utf-8")
-    file = write(tmp_path, GOOD, (PLANT + SECOND).replace("recipes.py", "warm.xml"))
-    (found,) = problems_of(file)
-    assert found.endswith("(no device of shelf makes a node oven_heat; there are lamp_look)")
-
-
 def test_a_recipe_without_targets_to_choose_from_is_told_which_group_its_cell_lacks(tmp_path: Path) -> None:
     (found,) = problems(tmp_path, PALLET)
     assert 'slot of lay has no value to choose; bench has no targets "slots"' in found
@@ -416,35 +404,28 @@ def test_one_mistake_in_a_cell_brings_no_others(tmp_path: Path, plant: str, reci
 
 BROKEN = "is no Python\n"
 ARM = "  press:\n    devices:\n      arm: {kind: arm, model: arm.yaml}\n"
-TREE = """<root BTCPP_format="4"><BehaviorTree ID="Turn"><own_step to="{to}"/></BehaviorTree><TreeNodesModel>
-<SubTree ID="Turn"><input_port name="to"/></SubTree></TreeNodesModel></root>"""
-THREE_FILES = PLANT.replace("[recipes.py]", "[recipes.py, more.py, turn.xml]")
+TWO_FILES = PLANT.replace("[recipes.py]", "[recipes.py, more.py]")
 
 
 @pytest.mark.parametrize(
     ("plant", "recipes"),
     [
         (PLANT + ARM, PALLET),
-        (PLANT.replace("[recipes.py]", "[recipes.py, more.py]"), PALLET),
-        (THREE_FILES + "    recipes: [heat, warm]\n", GOOD),
-        (THREE_FILES + "    recipes: [heat, turn]\n", GOOD),
-        (THREE_FILES + "    recipes: [heat, turn]\n", GOOD.replace('"heat"', '"turn_it"') + BROKEN),
-        (THREE_FILES + "    recipes: [heat]\n    default_recipe: warm\n", GOOD),
-        (THREE_FILES + "    recipes: [lay]\n", PALLET),
+        (TWO_FILES, PALLET),
+        (TWO_FILES + "    recipes: [heat, warm]\n", GOOD),
+        (TWO_FILES + "    recipes: [heat]\n    default_recipe: warm\n", GOOD),
+        (TWO_FILES + "    recipes: [lay]\n", PALLET),
     ],
     ids=[
         "targets of a cell whose model is wrong",
         "targets of a kind of a file that is wrong",
         "a recipe of a file that is wrong",
-        "a node of a file that is wrong",
-        "a node of a file that is wrong, and no other recipe",
         "a default recipe of a file that is wrong",
         "targets of a cell that names the recipe",
     ],
 )
 def test_a_mistake_in_another_file_brings_no_others(tmp_path: Path, plant: str, recipes: str) -> None:
     (tmp_path / "more.py").write_text(BROKEN, "utf-8")
-    (tmp_path / "turn.xml").write_text(TREE, "utf-8")
     (tmp_path / "arm.yaml").write_text("joints: 5\n", "utf-8")
     found = problems(tmp_path, recipes, plant)
     assert found

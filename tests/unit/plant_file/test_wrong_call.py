@@ -51,24 +51,6 @@ def test_a_call_of_other_code_is_told_as_python_says_it(tmp_path: Path) -> None:
     assert refusal(tmp_path, "len()") == "TypeError: len() takes exactly one argument (0 given)"
 
 
-TREE = """<root BTCPP_format="4"><BehaviorTree ID="Go"><Sequence>
-<press_opne/>
-<pres_open/>
-<press_opne/>
-</Sequence></BehaviorTree></root>
-"""
-
-
-def test_all_nodes_of_a_tree_that_no_device_makes_are_told_at_once_each_kind_once(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError) as refused:
-        read(tmp_path, PLANT.replace("recipes.py", "go.xml"), beside={"go.xml": TREE})
-    said = [each.removeprefix(f"{tmp_path}/go.xml:").partition(";")[0] for each in refused.value.problems]
-    assert said == [
-        "2:1: go: no device of a makes a node press_opne",
-        "3:1: go: no device of a makes a node pres_open",
-    ]
-
-
 class Loader(Offers):
     def __str__(self) -> str:
         return "loader"

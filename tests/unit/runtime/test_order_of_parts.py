@@ -50,7 +50,14 @@ class Lamps:
     def send(self, command): ...
     def stop(self): ...
 """
-SHINE = '<root BTCPP_format="4"><BehaviorTree ID="Shine"><lamp_shine/></BehaviorTree></root>'
+SHINE = """
+from arboleda.recipes import recipe
+
+
+@recipe("shine")
+def shine(cell):
+    return cell.device("lamp").shine()
+"""
 
 
 class Ros:
@@ -130,18 +137,14 @@ def test_a_node_of_ros_has_its_own_parts(tmp_path: Path, parts: set[str], expect
     assert names(tmp_path, frozenset(parts), link=Ros()) == expected
 
 
-def test_a_view_for_another_program_comes_after_the_page(tmp_path: Path) -> None:
-    assert names(tmp_path, model=replace(SHIPPED, groot2_port=0))[-2:] == ["WebPart", "Groot2Part"]
-
-
 def test_alarms_start_right_before_the_plant(tmp_path: Path) -> None:
     found = names(tmp_path, of_parts=(AlarmOptions(topic="arboleda/alarms"),))
     assert found[found.index("Orchestrator") - 1] == "AlarmsPart"
 
 
 def test_drivers_start_before_what_keeps_the_plant(tmp_path: Path) -> None:
-    (tmp_path / "lab.yaml").write_text(DRIVEN + "uses: [lamps.py, shine.xml]\n", "utf-8")
-    (tmp_path / "shine.xml").write_text(SHINE, "utf-8")
+    (tmp_path / "lab.yaml").write_text(DRIVEN + "uses: [lamps.py, shine.py]\n", "utf-8")
+    (tmp_path / "shine.py").write_text(SHINE, "utf-8")
     (tmp_path / "lamps.py").write_text(DRIVER, "utf-8")
     model = loader.load(tmp_path / "lab.yaml")
     found = names(tmp_path, ALL - OF_BOARDS, model=model, recorded=False)

@@ -19,7 +19,13 @@ from .planted import plant
 from .reach import Reach, Tracer
 from .sources import MUTATED, PACKAGE, Sources
 
-TESTS = ("tests/unit", "tests/scenario", "tools/tests/fast", "packages/arboleda_proofs/tests/fast")
+TESTS = (
+    "tests/unit",
+    "tests/scenario",
+    "tools/tests/fast",
+    "packages/arboleda_proofs/tests/fast",
+    "packages/arboleda_trees/tests/fast",
+)
 LEAST_CPU_S, TIMES = 20.0, 10.0  # what computes longer, and so much longer than it did, hangs
 # pytest would load a package that has a plugin by itself, to rewrite its asserts, and so without the mutant
 ARGUMENTS = (

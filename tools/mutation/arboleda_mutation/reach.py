@@ -64,11 +64,11 @@ class Reach:
 
 
 class Tracer:
-    """Measures the files of `package`; `during(name)` says who runs."""
+    """Measures the files in folders of `package`, and in `beside`; `during(name)` says who runs."""
 
-    def __init__(self, package: Path, folders: tuple[str, ...]) -> None:
-        self._package = package
-        source = [str(package / folder) for folder in folders]
+    def __init__(self, package: Path, folders: tuple[str, ...], *beside: Path) -> None:
+        self._packages = (*(each.parent for each in beside), package)
+        source = [str(each) for each in (*(package / folder for folder in folders), *beside)]
         self._coverage = Coverage(data_file=None, source=source, config_file=False, messages=False)
         self.reach = Reach()
 
@@ -93,7 +93,8 @@ class Tracer:
     def _take_over(self) -> None:
         data = self._coverage.get_data()
         for path in data.measured_files():
-            file = Path(path).relative_to(self._package).as_posix()
+            package = next(each for each in self._packages if Path(path).is_relative_to(each))
+            file = Path(path).relative_to(package).as_posix()
             rows, imported = {}, {}
             for line, contexts in data.contexts_by_lineno(path).items():
                 bits = sum(1 << int(context) for context in contexts if context)

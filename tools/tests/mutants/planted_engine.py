@@ -33,7 +33,9 @@ from .engine_bugs import ENGINE_BUGS
 
 ROOT = Path(__file__).parents[3]
 SEEDS = 25
-LAYERS = ("kinds", "dispatch", "recipes", "trees", "resume", "departures", "model", "bt_xml", "core", "wire")
+LAYERS = ("kinds", "dispatch", "recipes", "trees", "resume", "departures", "model", "core", "wire")
+OF_FILES = "bt_xml"  # the layer of arboleda_trees
+TREES = Path("packages/arboleda_trees/src/arboleda_trees")
 LEAST_CPU_S = 30.0  # a seed takes less than a second
 Task = tuple[EngineBug, str]
 
@@ -43,6 +45,22 @@ class BugSources(Sources):
 
     def mutated(self, mutant: Any) -> ast.Module:
         return ast.parse(mutant.edited(self.path(mutant.file).read_text(encoding="utf-8")))
+
+    def path(self, file: str) -> Path:
+        return self.root / TREES / file if _layer(file) == OF_FILES else super().path(file)
+
+    def module(self, file: str) -> str:
+        return f"{_package(file)}.{Path(file).stem}".removesuffix(".__init__")
+
+
+def _layer(file: str) -> str:
+    return file.split("/")[0]
+
+
+def _package(file: str) -> str:
+    """The package in which a file is a module."""
+    root = TREES.name if _layer(file) == OF_FILES else "arboleda"
+    return ".".join((root, *Path(file).parts[:-1]))
 
 
 class Place(NamedTuple):
@@ -55,7 +73,7 @@ class Place(NamedTuple):
 
 def measure(seeds: int, say: Say) -> dict[str, Any]:
     """What each seed reaches, with nothing planted."""
-    tracer = Tracer(ROOT / PACKAGE, LAYERS)
+    tracer = Tracer(ROOT / PACKAGE, LAYERS, ROOT / TREES / OF_FILES)
     with tracer.running():
         from . import engine_weathers
 
@@ -96,13 +114,13 @@ def nearest(file: str) -> list[str]:
     """The tests of a file: those of its layer before others, then the scenarios; in each those that import it
     first.
     """
-    layer, module = file.split("/")[0], Path(file).stem
-    package = ".".join(("arboleda", *Path(file).parts[:-1]))
+    layer, module, package = _layer(file), Path(file).stem, _package(file)
+    room = f"{package.partition('.')[0]}.{layer}"
     named = re.compile(rf"from {re.escape(package)}(\.{module} import| import [^\n]*\b{module}\b)")
     ranks = {
-        path: (path.startswith("tests/scenario/"), not path.startswith(f"tests/unit/{layer}/"), not found)
+        path: (path.startswith("tests/scenario/"), f"/{layer}/" not in path, not found)
         for path, text in _tests().items()
-        if (found := bool(named.search(text))) or f"arboleda.{layer}" in text or "/scenario/" in path
+        if (found := bool(named.search(text))) or room in text or "/scenario/" in path
     }
     return sorted(ranks, key=lambda path: (ranks[path], path))
 
@@ -132,12 +150,13 @@ class Looking:
         self.book = Book(state / "engine.jsonl")
         files = [Path(__file__).with_name(name) for name in ("engine_weathers.py", "themes.py")]
         weathers = b"".join(each.read_bytes() for each in files)
-        engine = fingerprint(ROOT, (*FOLDERS[SIMULATOR], str(PACKAGE / "bt_xml")))
-        runs = fingerprint(ROOT, [*(str(PACKAGE / each) for each in LAYERS), *map(str, _worlds())])
+        engine = fingerprint(ROOT, (*FOLDERS[SIMULATOR], str(TREES / OF_FILES)))
+        layers = [*(PACKAGE / each for each in LAYERS), TREES / OF_FILES]
+        runs = fingerprint(ROOT, map(str, (*layers, *_worlds())))
         self._run_by = sha256(runs.encode() + weathers).hexdigest()[:16]
         self._of = {
             SIMULATOR: sha256(engine.encode() + weathers).hexdigest()[:16],
-            TESTS: fingerprint(ROOT, (str(PACKAGE), *by_tests.TESTS)),
+            TESTS: fingerprint(ROOT, (str(PACKAGE), str(TREES), *by_tests.TESTS)),
         }
 
     def verdict(self, bug: EngineBug, judge: str) -> Verdict | None:

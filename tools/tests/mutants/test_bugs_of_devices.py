@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import pytest
 import yaml
 
-from arboleda.bt_xml.running.decorators import Loop
 from arboleda.kinds.declared import FactType
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Limits
@@ -17,6 +16,7 @@ from arboleda_proofs.simulator.climate import Climate
 from arboleda_proofs.simulator.invariants import Invariant
 from arboleda_proofs.simulator.judged import INVARIANTS
 from arboleda_proofs.simulator.run import Simulation
+from arboleda_trees.bt_xml.running.decorators import Loop
 
 from .mutant import Edit, edit
 

@@ -9,22 +9,19 @@ from typing import Annotated
 
 import typer
 
-from arboleda.bt_xml.leaves import NotTheSame
 from arboleda.host.packages import extra
-from arboleda.model.errors import ConfigError
-from arboleda.model.packages import MAKE
-from arboleda.model.plant_model import PlantModel
+from arboleda.model.packages import MAKE, TREES
 from arboleda.model.sentence import Phrase
 from arboleda.plant_check import advance_check, checks, unstated
 from arboleda.plant_check.check_answer import check_answer
 from arboleda.plant_check.findings import Source
-from arboleda.plant_file import extensions, loader, tree_file
+from arboleda.plant_file import extensions, loader
+from arboleda.plant_file.recipe_forms import is_tree_file
 from arboleda.plant_file.user_file import check_writable
 
-from . import nodes
 from .commands import tell_left_out
 from .language import finding, say
-from .plant_options import IN_FOLDER, PLANT_VARIABLE, is_typed, plant_here
+from .plant_options import IN_FOLDER, PLANT_VARIABLE, CellName, is_typed, plant_here
 from .working import working
 
 MEND_S = 120.0  # a mend is looked for so long
@@ -79,7 +76,7 @@ def check(
             help="The plant whose devices a tree is to tell what to do; alone, the plant to check.",
         ),
     ] = None,
-    cell: nodes.CellName = None,
+    cell: CellName = None,
     ends: Annotated[
         bool, typer.Option("--ends", help="Say what holds once a task of each recipe is done.")
     ] = False,
@@ -97,12 +94,13 @@ def check(
         file, plant = plant_here(plant), None
     if file is None:
         raise typer.BadParameter(say(NO_FILE(file=str(IN_FOLDER))))
-    if tree_file.is_tree_file(file):
+    if is_tree_file(file):
         if json is not None or mend:
             raise typer.BadParameter(say(FOR_PLANTS()))
+        of_trees = extra("check", TREES, str(file))
         with working():
             model = None if plant is None else loader.load(plant)
-            lines = _of_trees(file, model, cell)
+            lines = of_trees(file, model, cell)
         print(finding("\n".join(lines)))
         return
     if (plant is not None and is_typed(context, "plant")) or cell is not None:
@@ -111,30 +109,6 @@ def check(
         _as_data(file, json, mend=mend)
     if json is None or str(json) != TO_SCREEN:
         _in_words(file, ends=ends)
-
-
-def _of_trees(file: Path, model: PlantModel | None, cell: str | None) -> list[str]:
-    """The lines about a file of trees; where nodes are not the same in all cells, those of the cells that can
-    run it, if these are alike.
-    """
-    if model is None:
-        return tree_file.report(file)
-    try:
-        known = nodes.of_plant(model, cell)
-    except NotTheSame:
-        found = [lines for each in model.cells if (lines := _of_cell(file, model, each.name)) is not None]
-        if not found or any(lines != found[0] for lines in found):
-            raise
-        return found[0]
-    return tree_file.report(file, known)
-
-
-def _of_cell(file: Path, model: PlantModel, cell: str) -> list[str] | None:
-    """The lines about a file of trees for this cell; None if it cannot run them."""
-    try:
-        return tree_file.report(file, nodes.of_plant(model, cell))
-    except ConfigError:
-        return None
 
 
 def _as_data(file: Path, json: Path | None, *, mend: bool) -> None:

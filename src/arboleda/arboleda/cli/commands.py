@@ -20,7 +20,17 @@ from arboleda.host.packages import left_out, registered
 from arboleda.host.pieces import LONGEST, RUNNER, Pieces, piece_of
 from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain
-from arboleda.model.packages import BOARDS, CLASS, DRIVERS, FLEET, MAKE, MISSING, PROOFS, PackageMissing
+from arboleda.model.packages import (
+    BOARDS,
+    CLASS,
+    DRIVERS,
+    FLEET,
+    MAKE,
+    MISSING,
+    PROOFS,
+    TREES,
+    PackageMissing,
+)
 from arboleda.model.sentence import Phrase
 from arboleda.model.verbs import Verb
 from arboleda.views.verb_words import ABOUT
@@ -42,6 +52,7 @@ OF_PACKAGES = {  # extras of `arboleda`, by command
     "firmware-config": BOARDS,
     "handover": FLEET,
     "mcp": MAKE,
+    "nodes": TREES,
     "oee": FLEET,
     "prove": PROOFS,
     "record replay": PROOFS,
@@ -91,7 +102,6 @@ OURS: Mapping[str, Command] = {
         "once, each with its line.",
     ),
     "tree": Command("tree", "Draw the behavior tree of a recipe, or the one that runs."),
-    "nodes": Command("nodes", "List what a tree can tell the devices of a plant, and ask them, with values."),
     "new": Command(
         "new", "Write a plant of your own: an arm, a device, a recipe and a test, in a folder of its own."
     ),

@@ -6,11 +6,12 @@ from collections.abc import Callable, Sequence
 from enum import Enum
 from typing import Any
 
-from arboleda.bt_xml.export import export
 from arboleda.drawing.picture import picture
 from arboleda.drawing.svg import svg
 from arboleda.drawing.words import dot, outline
+from arboleda.host.packages import extra
 from arboleda.model.errors import StartError
+from arboleda.model.packages import TREES
 from arboleda.model.sentence import Phrase
 from arboleda.runtime import invocation
 
@@ -50,5 +51,5 @@ FORMATS: dict[Format, Callable[[Rows, bool], bytes]] = {
     Format.SVG: lambda rows, _: svg(picture(rows)).encode(),
     Format.PNG: _png,
     Format.DOT: lambda rows, _: dot(rows).encode(),
-    Format.XML: lambda rows, _: export(rows).encode(),
+    Format.XML: lambda rows, _: extra("export", TREES, "--format xml")(rows).encode(),
 }

@@ -56,6 +56,7 @@ RunningPlant = Annotated[
         help=f"Plant file. [default: {IN_FOLDER} of this folder if it runs, else the plant that runs]",
     ),
 ]
+CellName = Annotated[str | None, typer.Option("--cell", help="Only for this cell. [default: for all]")]
 StateFolder = Annotated[
     Path | None,
     typer.Option(

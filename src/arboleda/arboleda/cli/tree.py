@@ -8,20 +8,21 @@ from typing import Annotated, Any
 
 import typer
 
-from arboleda.bt_xml import rows as tree_rows
 from arboleda.engine import Plant
+from arboleda.host.packages import extra
 from arboleda.model import text
-from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.model.errors import ArboledaError
+from arboleda.model.packages import TREES
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.sentence import Phrase
 from arboleda.model.task import Order
-from arboleda.plant_file import loader, tree_file
+from arboleda.plant_file import loader
+from arboleda.plant_file.recipe_forms import is_tree_file
 from arboleda.views import tree_view
 
 from .client import PlantClient
 from .draw import Format, draw
 from .language import allowed, say
-from .nodes import NO_CELL
 from .plant_options import PlantFile, StateFolder, StoreAddress, TokensFile, client
 from .working import working
 
@@ -31,7 +32,7 @@ Drawn = Annotated[
 Live = Annotated[bool, typer.Option("--live", help="The tree that runs now, with its statuses.")]
 NO_PNG = Phrase("cli.tree.no_png", "a PNG is not for a terminal; add > {recipe}.png")
 XML_ALREADY = Phrase("cli.tree.xml_already", "{recipe} is XML already")
-WHICH_TREE = Phrase("cli.tree.which", '{file}: which tree? <root main_tree_to_execute="...">; {others}')
+NO_CELL = Phrase("cli.tree.no_cell", "'{name}' is not a cell; {others}")
 NO_RECIPE = Phrase("cli.tree.no_recipe", "'{recipe}' is not a recipe of {cell}; {others}")
 NONE_IN = Phrase("cli.tree.none_in", "No {recipe} runs in {cell} now")
 NONE_ANYWHERE = Phrase("cli.tree.none_anywhere", "No {recipe} runs in any cell now")
@@ -68,7 +69,7 @@ def tree(
     """
     if format is Format.PNG and sys.stdout.isatty():
         raise typer.BadParameter(say(NO_PNG(recipe=recipe)), param_hint="--format")
-    if tree_file.is_tree_file(Path(recipe)) and not live and format is Format.XML:
+    if is_tree_file(Path(recipe)) and not live and format is Format.XML:
         raise typer.BadParameter(say(XML_ALREADY(recipe=recipe)), param_hint="--format")
     with working():
         drawn = draw(
@@ -86,17 +87,10 @@ def _rows_of(
     """The tree that runs in the plant that is reached, if one is; else that of a file or a recipe."""
     if reached is not None:
         return _running(recipe, cell, reached)
-    if tree_file.is_tree_file(Path(recipe)):
-        return _of_file(Path(recipe))
+    if is_tree_file(Path(recipe)):
+        rows: list[dict[str, Any]] = extra("rows", TREES, recipe)(Path(recipe))
+        return rows
     return _planned(recipe, cell, loader.load(plant))
-
-
-def _of_file(path: Path) -> list[dict[str, Any]]:
-    """The tree that a file of trees names as its main one, or its only one."""
-    forest = tree_file.load(path).forest
-    if forest.main is None:
-        raise ConfigError((say(WHICH_TREE(file=str(path), others=allowed("", forest.trees))),))
-    return tree_rows.rows(forest, forest.main)
 
 
 def _planned(recipe: str, cell: str | None, model: PlantModel) -> list[dict[str, Any]]:

@@ -16,7 +16,7 @@ from .wording import REASONS as DRIVERS
 from .wording import SENTENCES, words
 
 # Rooms whose phrases are reasons.
-GIVING = ("bt_xml", "core", "departures", "dispatch", "model", "recipes", "resume", "trees", "wire")
+GIVING = ("core", "departures", "dispatch", "model", "recipes", "resume", "trees", "wire")
 REASONS = frozenset(
     {
         "advice",

@@ -24,7 +24,13 @@ API = 1
 """The number of what `arboleda.extension` offers. It grows where a package has to be changed for it."""
 OURS, APIS = "arboleda", "arboleda.api"
 OF_PACKAGES = ("client", "commands", "languages", "page", "parts", "routes")  # groups of names of packages
-OF_THINGS = ("drivers", "kinds", "stores")  # groups in which names are not those of packages
+OF_THINGS = (
+    "checks",
+    "drivers",
+    "kinds",
+    "recipes",
+    "stores",
+)  # groups in which names are not those of packages
 OFF = "ARBOLEDA_EXTENSIONS_OFF"  # names with commas between
 OTHER_API = (
     "Arboleda goes on without {package}: it is written for API {theirs}, and here is API {ours}; "

@@ -6,7 +6,7 @@ from .errors import ArboledaError
 from .sentence import Phrase
 
 BOARDS, CLASS, DRIVERS = "boards", "class", "drivers"
-FLEET, MAKE, PROOFS = "fleet", "make", "proofs"
+FLEET, MAKE, PROOFS, TREES = "fleet", "make", "proofs", "trees"
 THIS = Phrase("package.this", "This")
 MISSING = Phrase(
     "package.missing",

@@ -7,12 +7,6 @@ from dataclasses import dataclass, field
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.bt_xml.recipe import TreeRecipe
-from arboleda.bt_xml.running.controls import Parallel, ParallelAll, Reactive, WhileDoElse
-from arboleda.bt_xml.running.decorators import Loop, TimedDecorator
-from arboleda.bt_xml.running.memory import Scope
-from arboleda.bt_xml.running.node import Result
-from arboleda.bt_xml.running.scripts import ScriptError
 from arboleda.engine import Context, Plant
 from arboleda.model.facts import Value
 from arboleda.model.orders import MOST, combinations, orders
@@ -22,21 +16,19 @@ from arboleda.model.task import Order
 from arboleda.plant_file.target_pose import START
 from arboleda.recipes.authoring import WrittenRecipe
 from arboleda.recipes.decorators import Again, AtMost
+from arboleda.recipes.of_files import FAILURE, ROUNDS, FileNode, FileRecipe
 
+from . import form_checks
 from .foresight import OVER, Foresight, Scene
-from .node_rules import RULES as NODE_RULES
 from .notation import Notation
 from .recipe_ends import certain_ends, met, never_met, of_ends
-from .scene_variables import first_values
 from .step_rules import RULES as STEP_RULES
-from .walkthrough import Rule, Walkthrough
+from .walkthrough import Rule, Walkthrough, first_values
 
 MOST_TRIES, LONGEST_S = 100, 3600.0  # of a retry, and the time of its pauses
 ENDLESS = "tries {step} again {how_often}; a task that cannot be done never ends so"
 AROUND = "; write {limit} around it"
 IN_PYTHON, IN_XML = "cell.timeout(step, seconds)", '<Timeout msec="60000">'
-LIMITS = (AtMost, TimedDecorator, Reactive, Parallel, ParallelAll, WhileDoElse)
-RULES: Mapping[type[Behaviour], Rule] = {**STEP_RULES, **NODE_RULES}
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
@@ -50,8 +42,10 @@ def ends(plant: PlantModel) -> tuple[str, ...]:
 
 
 def _checks(plant: PlantModel) -> list[CellCheck]:
-    runs = Plant(plant, epoch=0, now=0.0).cells
-    return [CellCheck(cell=cell, context=runs[cell.name].context) for cell in plant.cells]
+    runs, rules = Plant(plant, epoch=0, now=0.0).cells, dict(STEP_RULES)
+    for form in form_checks.of_plant(plant):
+        rules |= form.rules
+    return [CellCheck(cell=cell, context=runs[cell.name].context, rules=rules) for cell in plant.cells]
 
 
 @dataclass(kw_only=True)
@@ -60,6 +54,7 @@ class CellCheck:
 
     cell: Cell
     context: Context
+    rules: Mapping[type[Behaviour], Rule]
     sentences: dict[str, None] = field(default_factory=dict)
     waits: dict[str, dict[str, str]] = field(default_factory=dict)  # by robot and recipe: its last target
 
@@ -85,7 +80,7 @@ class CellCheck:
 
     def _followed(self, tree: Behaviour, notation: Notation) -> tuple[Walkthrough, tuple[Scene, ...]]:
         """The walkthrough of a recipe's tree, and the scenes at the ends of all paths."""
-        walk = Walkthrough(foresight=Foresight(self.cell, self._back(), notation), rules=RULES)
+        walk = Walkthrough(foresight=Foresight(self.cell, self._back(), notation), rules=self.rules)
         begin = walk.foresight.begin().put(first_values(tree))
         return walk, walk.follow(tree.children[0], [begin]).passed
 
@@ -128,7 +123,7 @@ class CellCheck:
                 yield unlike + f"; write {home} at its end"
 
     def _notation(self, recipe: Recipe) -> Notation:
-        return Notation(cell=self.cell, is_tree=isinstance(recipe, TreeRecipe))
+        return Notation(cell=self.cell, is_tree=isinstance(recipe, FileRecipe))
 
     def _say(self, recipe: Recipe, sentences: Iterable[str], place: str | None = None) -> None:
         where = f"{place or _place(recipe)}: {self.cell.name}: {recipe.name}"
@@ -137,7 +132,7 @@ class CellCheck:
 
 def _place(recipe: Recipe) -> str | None:
     """The place of a recipe in its file; None for a recipe that no file of the plant has."""
-    if isinstance(recipe, TreeRecipe):
+    if isinstance(recipe, FileRecipe):
         return str(recipe.place)
     if not isinstance(recipe, WrittenRecipe):
         return None
@@ -164,25 +159,29 @@ def _endless(tree: Behaviour) -> Iterator[tuple[str | None, str]]:
                     ENDLESS.format(step=node.decorated.name, how_often=how_often)
                     + AROUND.format(limit=IN_PYTHON),
                 )
-        elif isinstance(node, Loop) and node.goes_on is Result.FAILURE and not _is_limited(node):
-            times = _written_rounds(node)
+        elif isinstance(node, FileNode) and not _is_limited(node):
+            times = _written_retries(node)
             if times is not None and (times < 0 or times > MOST_TRIES):
                 how_often = f"{times:,} times" if times > 0 else "without end"
                 yield (
                     str(node.place),
-                    ENDLESS.format(step=node.child.name, how_often=how_often) + AROUND.format(limit=IN_XML),
+                    ENDLESS.format(step=node.children[0].name, how_often=how_often)
+                    + AROUND.format(limit=IN_XML),
                 )
 
 
-def _written_rounds(loop: Loop) -> int | None:
-    """The number of rounds that the file of a loop has; None where the number is a variable."""
-    try:
-        return loop.most(Scope())
-    except ScriptError:
+def _written_retries(node: FileNode) -> int | None:
+    """How often the file has a node try a failed step again, -1: for ever; None where it says no number."""
+    if ROUNDS not in node.counts or node.goes_on.name != FAILURE:
         return None
+    text = node.ports.texts[node.port]
+    return int(text) if text.removeprefix("-").isdecimal() else None
 
 
 def _is_limited(node: Behaviour) -> bool:
     """True for a step inside a step that ends it after some time, or by a condition."""
     around = node.parent
-    return around is not None and (isinstance(around, LIMITS) or _is_limited(around))
+    if around is None:
+        return False
+    is_limit = isinstance(around, AtMost) or (isinstance(around, FileNode) and around.is_limit)
+    return is_limit or _is_limited(around)

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.bt_xml.running.device_steps import FactStep
 from arboleda.engine import Act
 from arboleda.model.commands import Command, Motion, Query
 from arboleda.model.facts import shown
 from arboleda.model.plant_model import Cell, Robot
 from arboleda.plant_file.declared_kinds import verbs_of
 from arboleda.recipes.handles import FactCheck, FactWait
+from arboleda.recipes.of_files import FileNode
 
 ANSWER = "=answer"  # in place of a fact: the answer to a question
 DeviceFact = tuple[str, str]
@@ -34,7 +34,7 @@ def facts_asked(node: Behaviour, cell: Cell) -> Iterator[DeviceFact]:
     """The facts without which a step fails, or waits, or which it stores."""
     if isinstance(node, FactCheck | FactWait):
         yield from ((node.device, fact) for fact in node.facts)
-    elif isinstance(node, FactStep):
+    elif isinstance(node, FileNode):
         yield from node.facts.values()
     elif isinstance(node, Act):
         yield from _needed(node.make(id=""), cell)

@@ -10,7 +10,7 @@ from arboleda.plant_file.declared_kinds import verbs_of
 from arboleda.plant_file.problems import counted
 from arboleda.recipes.authoring import WrittenRecipe
 
-from . import advance_check, grid_check, layout_check, meeting_points, passed_over, place_check
+from . import advance_check, form_checks, grid_check, layout_check, meeting_points, place_check
 
 OTHERWISE = "; write another evidence"
 
@@ -61,5 +61,5 @@ CHECKS: tuple[Callable[[PlantModel], tuple[str, ...]], ...] = (
     unmet_needs,
     unused_steps,
     advance_check.warnings,
-    passed_over.warnings,
+    form_checks.warnings,
 )

@@ -12,7 +12,6 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.engine import Act, Plant
 from arboleda.kinds.declared import Effect
 from arboleda.model.commands import Motion, Switch
@@ -23,6 +22,7 @@ from arboleda.plant_file.declared_kinds import verbs_of
 from arboleda.plant_file.document import Place
 from arboleda.plant_file.draft import Unstated
 from arboleda.recipes.authoring import WrittenRecipe
+from arboleda.recipes.of_files import FileRecipe
 
 from .walkthrough import in_order
 
@@ -36,7 +36,7 @@ def unstated(plant: PlantModel) -> tuple[Unstated, ...]:
     runs, by_place = Plant(plant, epoch=0, now=0.0).cells, dict[Place, Unstated]()
     for cell in (each for each in plant.cells if each.handover is None):
         seen = _Seen(cell=cell)
-        for recipe in (each for each in cell.recipes if isinstance(each, TreeRecipe | WrittenRecipe)):
+        for recipe in (each for each in cell.recipes if isinstance(each, FileRecipe | WrittenRecipe)):
             for order, _ in zip(orders(cell, recipe), range(MOST_ORDERS), strict=False):
                 seen.follow(recipe.build(order, runs[cell.name].context).children[0])
         for each in (*_places(seen), *_guards(plant, seen), *_needs(seen)):

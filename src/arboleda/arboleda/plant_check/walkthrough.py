@@ -9,15 +9,14 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.bt_xml.running.node import Node
 from arboleda.engine import Act
 from arboleda.model.by_class import nearest
 from arboleda.model.facts import Value
 from arboleda.recipes.handles import Ask
+from arboleda.recipes.of_files import FileNode, Variables
 from arboleda.recipes.place_questions import PlaceQuestion
 
 from .foresight import ANSWER, ASKER, Foresight, Scene, SceneKey, common, still_holding
-from .scene_variables import key_of
 
 MOST_SCENES = 256  # that are followed at once
 MOST_ROUNDS = 25  # of a repeat
@@ -124,7 +123,7 @@ class Walkthrough:
 
     def _touched(self, node: Behaviour) -> Iterator[SceneKey]:
         for each in node.iterate():
-            if isinstance(each, Node):
+            if isinstance(each, FileNode):
                 yield from map(key_of, each.writes)
             elif isinstance(each, PlaceQuestion):
                 yield answer_key(each)
@@ -166,6 +165,18 @@ def asked_by(step: Behaviour) -> dict[SceneKey, Value]:
 def last_answer(question: Behaviour, answer: Value) -> dict[SceneKey, Value]:
     """The last answer of a device or a person; empty where the plant's own books answer."""
     return {last_answer_key(question): answer} if isinstance(question, Ask) else {}
+
+
+def key_of(variable: tuple[Variables, str]) -> SceneKey:
+    """The key of a variable in scenes."""
+    scope, name = variable
+    return f"scope {id(scope)}", name
+
+
+def first_values(tree: Behaviour) -> dict[SceneKey, Value]:
+    """The values that variables have when the tree begins: parameters, and constants of subtrees."""
+    scopes = {id(node.scope): node.scope for node in tree.iterate() if isinstance(node, FileNode)}
+    return {key_of((each, name)): value for each in scopes.values() for name, value in each.values.items()}
 
 
 def few(scenes: Iterable[Scene]) -> tuple[Scene, ...]:

@@ -15,11 +15,6 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from arboleda.bt_xml import checking, reading, runnable
-from arboleda.bt_xml.findings import Findings, Mark
-from arboleda.bt_xml.findings import Place as TreePlace
-from arboleda.bt_xml.nodes import OTHER_SPELLINGS, Category, built_in
-from arboleda.bt_xml.recipe import tree_recipe
 from arboleda.drivers.port import spec_of
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
@@ -27,11 +22,12 @@ from arboleda.model.plant_model import Link
 from arboleda.model.recipe import Recipe
 from arboleda.recipes import WrittenNode
 
-from . import tree_includes, user_file
+from . import recipe_forms, user_file
 from .document import Document, Place, nearest, shown
 from .lost_steps import KEEP, NAME, LostSteps, noting
 from .moving_kinds import as_read
 from .python_uses import LONGEST, PythonUses, SourceSpot, Watch, Written, error_text, unwatched
+from .recipe_forms import RecipeForm
 from .shapes import NAME_RULE, WORDS, is_name
 from .shipped_kinds import IN_PYTHON, RESERVED
 from .source_text import source_of
@@ -39,8 +35,7 @@ from .storage_form import TAKEN
 
 SECTION: Place = ("uses",)
 NODE = re.compile("[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
-CATEGORIES = tuple(each.value for each in Category)
-ENDING, TREES = ".py", ".xml"
+ENDING = ".py"
 USES = "arboleda_uses_"  # before the names of modules that are files of plants
 READ = "__arboleda_read__"  # of a module: the files that were read for it, with their contents
 LARGEST = 256 * 1024  # bytes of a file
@@ -59,23 +54,41 @@ def listed(document: Document) -> tuple[str, ...]:
 def imported(document: Document, words: Sequence[str], watch: Watch) -> PythonUses:
     """Everything that the used files and modules have; problems of failed imports are kept."""
     used = PythonUses(watch=watch, lost=None if watch is unwatched else LostSteps())
+    forms: dict[str, RecipeForm] = {}
     for index, word in enumerate(words):
         place = (*SECTION, index)
-        if word.endswith(TREES):
-            _trees(document, place, word, used)
+        if recipe_forms.has_form(word):
+            _of_form(document, place, word, used, forms)
             continue
         module = (_file if _is_file(word) else _module)(document, place, word, used, watch)
         if module is None:
             used.is_whole = False
         else:
             _collect(document, place, module, used)
+    for node in used.nodes.values():
+        for problem in filter(None, [form.objection(node.name) for form in forms.values()]):
+            used.keep(document, used.spot(node).problem(problem))
     if all(_is_file(word) for word in words):  # the files of an installed module are not known
         used.source = source_of(document.files, document.folder)
     return used
 
 
+def _of_form(
+    document: Document, place: Place, word: str, used: PythonUses, forms: dict[str, RecipeForm]
+) -> None:
+    """Add the recipe of a file that is no Python, and its form to `forms`."""
+    suffix = Path(word).suffix
+    try:
+        forms[suffix] = forms.get(suffix) or recipe_forms.form_of(word)
+    except ConfigError as error:
+        document.problem(place, plain(str(error), LONGEST))
+        used.is_whole = False
+        return
+    forms[suffix].add(document, place, word, used)
+
+
 def _is_file(word: str) -> bool:
-    return word.endswith((ENDING, TREES)) or "/" in word
+    return word.endswith(ENDING) or recipe_forms.has_form(word) or "/" in word
 
 
 def _file(document: Document, place: Place, word: str, used: PythonUses, watch: Watch) -> ModuleType | None:
@@ -137,51 +150,6 @@ def _content(path: Path) -> bytes | None:
 
 def _module_name(path: Path) -> str:
     return f"{USES}{sha256(str(path).encode()).hexdigest()[:12]}_{path.stem}"
-
-
-def _trees(document: Document, place: Place, word: str, used: PythonUses) -> None:
-    """Add the recipe of a file of trees; nothing in the file is executed."""
-    if document.folder is None:
-        document.problem(place, "this plant file lies in no folder, so no trees can lie beside it")
-        return
-    shown_path = str(document.folder / word)
-
-    def fetch(file: str, path: str, package: str) -> tuple[str, bytes]:
-        included, content = tree_includes.read(file, path, package)
-        document.files[Path(included).absolute()] = content
-        return included, content
-
-    findings = Findings()
-    try:
-        content = user_file.read_bytes(Path(shown_path), LARGEST)
-    except ConfigError as error:
-        document.problem(place, plain(str(error), LONGEST))
-        used.is_whole = False
-        return
-    document.files[Path(shown_path).absolute()] = content
-    forest = reading.read(shown_path, content, findings, fetch)
-    checked = checking.check(forest, findings, {}, others_are_checked_elsewhere=True)
-    is_open = forest.main is None and len(forest.trees) > 1
-    if forest.main not in forest.trees and (is_open or not findings.mistakes):
-        findings.mistake(TreePlace(shown_path, Mark(1, 1)), 'which tree? <root main_tree_to_execute="...">')
-    if forest.main not in forest.trees or forest.main is None or checked.has_ring:
-        document.keep_those_of(ConfigError(_lines(findings)))
-        return
-    forest = runnable.part_of(forest, forest.main)
-    can_be_searched = runnable.check(forest, findings)
-    mistakes = _lines(findings)
-    document.keep_those_of(ConfigError(mistakes))
-    if not can_be_searched:
-        return
-    used.in_trees.update(mistakes)
-    recipe = tree_recipe(Path(word).stem, shown_path, content, forest, used.nodes, mistakes)
-    if problem := _objection("recipe", recipe, used.recipes, TAKEN, used):
-        document.keep_those_of(ConfigError((used.spot(recipe).problem(problem),)))
-    used.recipes.setdefault(recipe.name, recipe)
-
-
-def _lines(findings: Findings) -> tuple[str, ...]:
-    return tuple(plain(each, LONGEST) for each in findings.mistakes)
 
 
 def _module(document: Document, place: Place, word: str, used: PythonUses, watch: Watch) -> ModuleType | None:
@@ -260,7 +228,7 @@ def _collect(document: Document, place: Place, module: ModuleType, used: PythonU
     for recipe in recipes.values():
         if not inspect.isfunction(inspect.unwrap(recipe.build)):
             document.problem(place, f"the recipe {shown(recipe.name)} is no function")
-        elif problem := _objection("recipe", recipe, used.recipes, TAKEN, used):
+        elif problem := objection_to_recipe(recipe, used):
             used.keep(document, used.spot(recipe).problem(problem))
         else:
             used.recipes[recipe.name] = recipe
@@ -281,6 +249,11 @@ def _collect(document: Document, place: Place, module: ModuleType, used: PythonU
             used.drivers[spec.name] = spec
 
 
+def objection_to_recipe(recipe: Recipe, used: PythonUses) -> str | None:
+    """The reason why a recipe cannot have its name; None where it can."""
+    return _objection("recipe", recipe, used.recipes, TAKEN, used)
+
+
 def _objection(
     what: str, written: Written, there: Mapping[str, Any], taken: Sequence[str], used: PythonUses
 ) -> str | None:
@@ -297,8 +270,6 @@ def _objection_to_node(node: WrittenNode, used: PythonUses) -> str | None:
     """The reason why trees as XML cannot have a node of this name; None where they can."""
     if not isinstance(node.name, str) or not NODE.fullmatch(node.name):
         return f"{shown(node.name)} cannot be the name of a node; it must be letters, digits and _"
-    if built_in(node.name) is not None or node.name in (*OTHER_SPELLINGS, *CATEGORIES):
-        return f"the node {shown(node.name)} comes with BehaviorTree.CPP; give this one another name"
     return _twice("node", node, used.nodes, used)
 
 

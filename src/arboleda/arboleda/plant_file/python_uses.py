@@ -7,8 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from traceback import extract_tb
 
-from arboleda.bt_xml.recipe import TreeRecipe
-from arboleda.bt_xml.running.errors import NoDeviceError, TreeError
 from arboleda.drivers.port import DriverSpec
 from arboleda.kinds import WrittenKind
 from arboleda.model.errors import ArboledaError, ConfigError
@@ -16,6 +14,7 @@ from arboleda.model.outside import plain
 from arboleda.model.recipe import Recipe
 from arboleda.recipes import WrittenNode
 from arboleda.recipes.errors import misspelled
+from arboleda.recipes.of_files import FileRecipe, NoDeviceError, TreeError
 
 from .document import Document
 from .lost_steps import LostSteps
@@ -65,7 +64,7 @@ class PythonUses:
 
     def spot(self, written: Written) -> SourceSpot:
         """The beginning of the function of a recipe, a kind or a node, or of the first method of a driver."""
-        if isinstance(written, TreeRecipe):
+        if isinstance(written, FileRecipe):
             return SourceSpot(file=written.file)
         code = inspect.unwrap(_function(written)).__code__
         return SourceSpot(file=self.files.get(code.co_filename, code.co_filename), line=code.co_firstlineno)

@@ -10,10 +10,6 @@ from pathlib import Path
 from py_trees import behaviours, decorators, timers
 from py_trees.behaviour import Behaviour
 
-from arboleda.bt_xml.findings import Place as XmlPlace
-from arboleda.bt_xml.recipe import TreeRecipe
-from arboleda.bt_xml.running.errors import NoDeviceError, TreeMistakes
-from arboleda.bt_xml.running.node import Node
 from arboleda.engine import Act, Context, Plant
 from arboleda.model.commands import Work
 from arboleda.model.errors import ConfigError
@@ -24,6 +20,8 @@ from arboleda.model.recipe import Parameter, Recipe, spelling
 from arboleda.model.task import Order
 from arboleda.model.tree_nodes import nodes_of
 from arboleda.recipes.errors import RoleError
+from arboleda.recipes.of_files import FileNode, FileRecipe, NoDeviceError, TreeMistakes
+from arboleda.recipes.of_files import Place as FilePlace
 from arboleda.views import tree_view
 
 from . import drivers, extensions, own_recipes
@@ -219,7 +217,7 @@ class RecipeTrial:
 
         First the sentence that the cell has no device for it, if so.
         """
-        if isinstance(recipe, TreeRecipe):
+        if isinstance(recipe, FileRecipe):
             try:
                 recipe.check(cell)
             except NoDeviceError as error:
@@ -274,7 +272,7 @@ class _Objection:
     """Objection to a tree, and the place of its node in a file of XML."""
 
     why: str
-    place: XmlPlace | None = None
+    place: FilePlace | None = None
 
     def at(self, spot: SourceSpot) -> SourceSpot:
         """The place of the node in its file of XML; `spot` for a tree of Python."""
@@ -298,7 +296,7 @@ def _objections(tree: Behaviour) -> Iterator[_Objection]:
                 break
 
 
-def _at_once(tree: Behaviour) -> Iterator[tuple[str, XmlPlace | None]]:
+def _at_once(tree: Behaviour) -> Iterator[tuple[str, FilePlace | None]]:
     """The devices to which two branches of a parallel give work; a device refuses the second.
 
     Each has the place of the parallel in its file of XML; None in a tree of Python.
@@ -306,7 +304,7 @@ def _at_once(tree: Behaviour) -> Iterator[tuple[str, XmlPlace | None]]:
     for node in nodes_of(tree):
         branches = [_at_work(child) for child in node.children] if tree_view.kind(node) == "parallel" else []
         for one, other in pairs(branches, 2):
-            place = node.place if isinstance(node, Node) else None
+            place = node.place if isinstance(node, FileNode) else None
             yield from ((device, place) for device in sorted(one & other))
 
 
@@ -318,7 +316,7 @@ def _at_work(branch: Behaviour) -> set[str]:
 
 def _handed_on(recipe: Recipe) -> Collection[str]:
     """The parameters that lack a value, perhaps, only because they are given to a node with a mistake."""
-    return recipe.handed_on if isinstance(recipe, TreeRecipe) else ()
+    return recipe.handed_on if isinstance(recipe, FileRecipe) else ()
 
 
 def _without_value(cell: Cell, recipe: Recipe, but: Collection[str] = ()) -> str | None:
@@ -330,10 +328,10 @@ def _without_value(cell: Cell, recipe: Recipe, but: Collection[str] = ()) -> str
 
 
 def _how_to_choose(cell: Cell, recipe: Recipe, parameter: Parameter) -> str:
-    group = recipe.groups.get(parameter.name) if isinstance(recipe, TreeRecipe) else parameter.group
+    group = recipe.groups.get(parameter.name) if isinstance(recipe, FileRecipe) else parameter.group
     if group is not None:
         return f"; {cell.name} has no targets {shown(group)}"
-    return HOW_TO_CHOOSE if isinstance(recipe, TreeRecipe) else ""
+    return HOW_TO_CHOOSE if isinstance(recipe, FileRecipe) else ""
 
 
 def _unspellable(cell: Cell, recipe: Recipe) -> str | None:

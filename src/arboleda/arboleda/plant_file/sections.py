@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from arboleda.host.packages import entry_points, package_of
 from arboleda.model.assistants import AssistantLimits, Assistants, hours
-from arboleda.model.packages import FLEET, MISSING
+from arboleda.model.packages import FLEET, MISSING, TREES
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import OpcUaView, Timing
 from arboleda.model.recording import Limits, Recording
@@ -65,6 +65,8 @@ def _has_reports(document: Document) -> bool:
 def check_ports(document: Document, shape: FileShape | None) -> None:
     """Keep a problem where `groot2` leaves too few ports: each cell has two ports for Groot2."""
     if shape is not None:
+        if shape.groot2 and TREES not in {package_of(each) for each in entry_points("arboleda.parts")}:
+            document.problem(("groot2",), str(MISSING(what=OWN(text="groot2"), package=TREES)))
         last = 65_536 - 2 * len(shape.cells)
         if shape.groot2 > last:
             rule = f"must be at most {last}, for each of the {len(shape.cells)} cells has two ports"

@@ -17,7 +17,7 @@ from arboleda.model.errors import ConfigError, StartError
 from arboleda.model.plant_files import PlantFiles
 
 from .draft import root_of
-from .tree_file import ENDING
+from .recipe_forms import XML
 
 FOLDER, FACTS, CONTENTS = ".arboleda", "version.json", "files"
 MARK = "bringing_back"  # a file with the number of the version whose files are being written
@@ -57,7 +57,7 @@ def version_of(files: PlantFiles, *, at: str, number: int = 0, by: str = "", not
 
 def is_editable(files: PlantFiles, name: str) -> bool:
     """True for the plant file and for trees, which a version can bring back."""
-    return name == files.plant or name.endswith(ENDING)
+    return name == files.plant or name.endswith(XML)
 
 
 def whole(version: Version) -> PlantFiles:

@@ -26,7 +26,7 @@ Seen = dict[int, tuple[int, object]]
 """By the identity of each value that was met: its number, and itself, so that its identity stays its own."""
 Parts = Callable[[Any], Iterable[Any]]
 BY_SOURCE = "source:"  # begins a hash of this version; a hash without it counts the code of functions
-OURS = "arboleda."  # packages whose functions change with the version of the plant alone
+OURS = ("arboleda.", "arboleda_trees.")  # packages whose functions change with the version of the plant alone
 PLAIN = (str, int, float, bool, bytes, type(None))
 PLAIN_TYPES = frozenset(PLAIN)
 # Attributes of py_trees, attributes that only show how far a node came, and those that repeat its name.

@@ -52,7 +52,6 @@ OWN = (
     Factory(phase=Phase.ALARMS, make=plant.alarms),
     Factory(phase=Phase.PLANT, make=plant.the_plant),
     Factory(phase=Phase.PAGE, make=faces.web),
-    Factory(phase=Phase.VIEWS, make=faces.groot2),
     Factory(phase=Phase.READY, make=faces.systemd),
 )
 # A thread that has to wait for Python's lock gets it so late; a stop over HTTP waits for it a dozen times.

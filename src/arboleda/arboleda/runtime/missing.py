@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import Protocol
 
 from arboleda.model.errors import StartError
-from arboleda.model.packages import FLEET, MISSING
+from arboleda.model.packages import FLEET, MISSING, TREES
 from arboleda.model.sentence import Phrase
 
 from .registry import Assembly
 
 LEAD = Phrase("package.lead", "Leading a plant whose database several hosts reach")
+GROOT2 = Phrase("package.groot2", "Showing trees to Groot2")
 OPCUA = Phrase("package.opcua_view", "`opcua_view` of the plant file")
 
 
@@ -26,6 +27,18 @@ class OpcUaView(Protocol):
     def stop(self) -> None: ...
 
 
+class Groot2View(Protocol):
+    """Part that shows trees to Groot2."""
+
+    def stop(self) -> None: ...
+
+
+def wants_groot2(assembly: Assembly) -> bool:
+    """True if trees are to be shown to Groot2: by the command line, or else by the plant file."""
+    by_option = assembly.options.groot2
+    return assembly.model.groot2_port is not None if by_option is None else by_option
+
+
 def refuse_missing(assembly: Assembly) -> None:
     """Raise StartError, with the line that installs it, if a package is not there that the plant needs."""
     if "orchestrator" not in assembly.parts:
@@ -34,3 +47,5 @@ def refuse_missing(assembly: Assembly) -> None:
         raise StartError(MISSING(what=LEAD(), package=FLEET))
     if assembly.model.opcua_view is not None and assembly.ask(OpcUaView) is None:
         raise StartError(MISSING(what=OPCUA(), package=FLEET))
+    if wants_groot2(assembly) and assembly.ask(Groot2View) is None:
+        raise StartError(MISSING(what=GROOT2(), package=TREES))

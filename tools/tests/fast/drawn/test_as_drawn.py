@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import pytest
 
-from arboleda.bt_xml.running.device_steps import DeviceStep
 from arboleda.recipes.decorators import Times
 from arboleda_drawn.as_drawn import NAME
 from arboleda_drawn.devices.meaning import Meaning, Unsure, plain
@@ -33,6 +32,7 @@ from arboleda_drawn.devices.steps import (
 )
 from arboleda_drawn.plants import of_devices
 from arboleda_proofs.campaigns.setting import Setting
+from arboleda_trees.bt_xml.running.device_steps import DeviceStep
 
 from ...mutants.mutant import edit
 

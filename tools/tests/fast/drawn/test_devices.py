@@ -11,8 +11,6 @@ from xml.etree import ElementTree
 
 import pytest
 
-from arboleda.bt_xml.running import controls
-from arboleda.bt_xml.running.node import Node, Result
 from arboleda.dispatch.obstacles import Obstacles
 from arboleda.plant_check import meeting_points
 from arboleda.plant_file import loader
@@ -27,6 +25,8 @@ from arboleda_proofs.campaigns.plants import Plant, PlantRotation
 from arboleda_proofs.campaigns.setting import Setting
 from arboleda_proofs.simulator.invariants.part_places import done_tasks_leave_nothing_behind
 from arboleda_proofs.simulator.truth.shared_devices import SharedDevicesTruth
+from arboleda_trees.bt_xml.running import controls
+from arboleda_trees.bt_xml.running.node import Node, Result
 
 from ...mutants.mutant import Edit, edit
 

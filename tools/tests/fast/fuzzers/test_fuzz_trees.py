@@ -9,7 +9,7 @@ import pytest
 from tests.lengths import length
 from tests.scripts import load
 
-from arboleda.bt_xml import script
+from arboleda_trees.bt_xml import script
 
 RUNS = length(150, whole=1500)
 ENOUGH, SEED = 100, 13  # to find what is planted

@@ -36,8 +36,7 @@ def test_times_of_cells_are_taken_before_alarms_and_the_plant(tmp_path: Path) ->
     assert found[found.index("Orchestrator") - 2 :][:2] == ["CellTimes", "AlarmsPart"]
 
 
-def test_a_server_of_opc_ua_comes_after_the_page_and_the_views_of_the_runner(tmp_path: Path) -> None:
-    model = replace(SHIPPED, groot2_port=0, opcua_view=SimpleNamespace(port=0, isa95=()))
+def test_a_server_of_opc_ua_comes_after_the_page(tmp_path: Path) -> None:
+    model = replace(SHIPPED, opcua_view=SimpleNamespace(port=0, isa95=()))
     found = names(tmp_path, model=model)
-    view = found.index("Groot2Part")
-    assert view > found.index("WebPart") and found[view + 1] == "OpcUaViewPart"
+    assert found.index("OpcUaViewPart") > found.index("WebPart")

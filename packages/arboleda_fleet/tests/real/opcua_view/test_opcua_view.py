@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 from asyncua import Client, Node, ua
 from packages.arboleda_drivers.tests.real.opcua.test_opcua_node import PACKAGES
-from tests.contract.test_groot2 import children
+from packages.arboleda_trees.tests.real.test_groot2 import children
 from tests.patience import PATIENCE_S
 from tests.shared import need_tool
 

@@ -14,7 +14,7 @@ from arboleda.drivers import plain, quoted
 from arboleda.extension import StartError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.draft import DraftCheck
-from arboleda.plant_file.tree_file import ENDING
+from arboleda.plant_file.recipe_forms import XML
 from arboleda.plant_file.versions import Version, Versions, version_of
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.plant_file.yaml_marks import parse
@@ -147,7 +147,7 @@ class DraftDesk(DraftApi):
     def trees(self, file: str) -> State:
         with self._turns:
             contents = self._open.read().files.contents
-        if file not in contents or not file.endswith(ENDING):
+        if file not in contents or not file.endswith(XML):
             raise DraftRefused(NO_TREES.format(file=quoted(file)))
         return {"file": file, "text": contents[file].decode("utf-8", "replace")}
 
@@ -255,7 +255,7 @@ class DraftDesk(DraftApi):
             "undo": len(draft.past),
             "redo": len(draft.future),
             "values": root.value,
-            "trees": sorted(name for name in contents if name.endswith(ENDING)),
+            "trees": sorted(name for name in contents if name.endswith(XML)),
             "restart": needing_restart(draft.changes),
             "is_ours": self._folder.is_ours,
             "set_aside": self._open.set_aside,

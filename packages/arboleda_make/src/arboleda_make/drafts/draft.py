@@ -8,15 +8,15 @@ from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 from typing import Any
 
-from arboleda.bt_xml.markup import LARGEST as LARGEST_TREES
 from arboleda.drivers import quoted
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.document import Place
-from arboleda.plant_file.tree_file import ENDING
+from arboleda.plant_file.recipe_forms import XML
 from arboleda.plant_file.yaml_edit import EditRefused, with_value, without
 from arboleda.plant_file.yaml_marks import parse
 from arboleda_make.versions.change import MISSING, Change
 from arboleda_make.versions.changes import changes
+from arboleda_trees.bt_xml.markup import LARGEST as LARGEST_TREES
 
 MOST_STEPS = 1000  # that can be undone
 MOST_BYTES = 64 * 1024 * 1024  # of all that they keep
@@ -67,7 +67,7 @@ class Draft:
         check_name(name)
         if len(content) > LARGEST_TREES:
             raise EditRefused(f"{name} would be larger than {LARGEST_TREES // 1024} KiB")
-        count = sum(each.endswith(ENDING) for each in {*self.files.contents, name})
+        count = sum(each.endswith(XML) for each in {*self.files.contents, name})
         if count > MOST_FILES:
             raise EditRefused(f"a plant has at most {MOST_FILES} files of trees")
         return self._with(name, content)
@@ -192,5 +192,5 @@ def check_name(name: str) -> None:
     path = PurePosixPath(name)
     is_inside = not path.is_absolute() and ".." not in path.parts and name.isprintable() and "\\" not in name
     is_hidden = path.name.startswith((".", "-")) or KEPT in path.parts  # or taken for an option of a command
-    if not is_inside or is_hidden or path.suffix != ENDING or not path.stem or len(name) > 200:
-        raise EditRefused(f"{quoted(name)} is no file of trees, *{ENDING}, in the plant's folder")
+    if not is_inside or is_hidden or path.suffix != XML or not path.stem or len(name) > 200:
+        raise EditRefused(f"{quoted(name)} is no file of trees, *{XML}, in the plant's folder")

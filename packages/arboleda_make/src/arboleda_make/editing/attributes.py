@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from arboleda.bt_xml.markup import ATTRIBUTE, Element
 from arboleda.drivers import quoted
+from arboleda_trees.bt_xml.markup import ATTRIBUTE, Element
 
 from .errors import EditError
 from .layout import Splice

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from arboleda.bt_xml.writing import attribute_value
 from arboleda.drivers import Device, DeviceVerb, FactType, Robot, Slot, Value, among, quoted, shown
 from arboleda.extension import ArboledaError
 from arboleda.model.plant_model import Cell
+from arboleda_trees.bt_xml.writing import attribute_value
 
 NO_HAND = "{robot} of {cell} has nothing to take a part with; {known}"
 FORM = """<?xml version="1.0" encoding="UTF-8"?>

@@ -14,11 +14,6 @@ from typing import cast
 from py_trees import common, composites
 from py_trees.behaviour import Behaviour
 
-from arboleda.bt_xml import listed_values, reading, target_groups, writing
-from arboleda.bt_xml.findings import Findings
-from arboleda.bt_xml.forest import Forest
-from arboleda.bt_xml.recipe import tree_recipe
-from arboleda.bt_xml.writing import Tag
 from arboleda.drivers import Value, quoted, shown
 from arboleda.engine import Context
 from arboleda.extension import ArboledaError
@@ -27,6 +22,11 @@ from arboleda.model.recipe import Limits
 from arboleda.recipes import Parameter, Step, WrittenRecipe
 from arboleda.recipes.handles import Chain, usable
 from arboleda.recipes.place_questions import PlaceQuestion
+from arboleda_trees.bt_xml import listed_values, reading, target_groups, writing
+from arboleda_trees.bt_xml.findings import Findings
+from arboleda_trees.bt_xml.forest import Forest
+from arboleda_trees.bt_xml.recipe import tree_recipe
+from arboleda_trees.bt_xml.writing import Tag
 
 from . import carry
 from .drawing_kit import MOST_WAYS, DrawingKit, DrawnStep, refusal

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from arboleda.bt_xml import leaves
-from arboleda.bt_xml.recipe import TreeRecipe, own_nodes
 from arboleda.drivers import among, quoted
 from arboleda.engine import Plant
 from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.recipes.of_files import FileRecipe
+from arboleda_trees.bt_xml import leaves
+from arboleda_trees.bt_xml.recipe import own_nodes
 
 from . import copy_recipe
 from .apply import apply
@@ -33,7 +34,7 @@ def tree_files(model: PlantModel) -> list[Row]:
             "text": each.content.decode(),
         }
         for each in model.recipes
-        if isinstance(each, TreeRecipe)
+        if isinstance(each, FileRecipe)
     ]
 
 

@@ -7,15 +7,15 @@ from typing import Any
 
 from py_trees import composites
 
-from arboleda.bt_xml import leaves, values
-from arboleda.bt_xml.nodes import Kind, PortDirection
-from arboleda.bt_xml.values import Variable
 from arboleda.drivers import Value, quoted, shown
 from arboleda.engine import Context
 from arboleda.model.messages import Reason
 from arboleda.recipes import Kit, Step, work
 from arboleda.recipes.authoring import Making
 from arboleda.recipes.handles import flat, question_of
+from arboleda_trees.bt_xml import leaves, values
+from arboleda_trees.bt_xml.nodes import Kind, PortDirection
+from arboleda_trees.bt_xml.values import Variable
 
 from .errors import EditError
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from arboleda.bt_xml.markup import TAG, Element, Span
+from arboleda_trees.bt_xml.markup import TAG, Element, Span
 
 UNIT = b"  "  # of a file that has no level of its own
 BLANKS = b" \t"

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from arboleda.bt_xml import checking, parameters, reading, runnable
-from arboleda.bt_xml.findings import Findings, Mark, TreeFinding
-from arboleda.bt_xml.nodes import Kind
-from arboleda.bt_xml.reading import Fetch, MissingInclude
+from arboleda.recipes.of_files import Mark
+from arboleda_trees.bt_xml import checking, parameters, reading, runnable
+from arboleda_trees.bt_xml.findings import Findings, TreeFinding
+from arboleda_trees.bt_xml.nodes import Kind
+from arboleda_trees.bt_xml.reading import Fetch, MissingInclude
 
 from .tree_text import TreeText, walk
 

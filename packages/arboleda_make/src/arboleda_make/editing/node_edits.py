@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from arboleda.bt_xml import names
-from arboleda.bt_xml.markup import Element
-from arboleda.bt_xml.reading import TAGS
 from arboleda.drivers import quoted
+from arboleda_trees.bt_xml import names
+from arboleda_trees.bt_xml.markup import Element
+from arboleda_trees.bt_xml.reading import TAGS
 
 from . import attributes, layout
 from .errors import EditError

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from arboleda.bt_xml import leaves
-from arboleda.bt_xml.nodes import OF_LIBRARY, OF_MOVEIT, OF_NAV2, Category, Kind, Port
-from arboleda.bt_xml.runnable import INSTEAD
 from arboleda.model.plant_model import Cell
 from arboleda.recipes import WrittenNode
+from arboleda_trees.bt_xml import leaves
+from arboleda_trees.bt_xml.nodes import OF_LIBRARY, OF_MOVEIT, OF_NAV2, Category, Kind, Port
+from arboleda_trees.bt_xml.runnable import INSTEAD
 
 Row = dict[str, Any]
 OLD = ("success_threshold", "failure_threshold", "threshold")  # ports of version 3

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from arboleda.bt_xml.markup import Element
-from arboleda.bt_xml.nodes import Category, Kind, PortDirection, built_in, children
-from arboleda.bt_xml.reading import TAGS
+from arboleda_trees.bt_xml.markup import Element
+from arboleda_trees.bt_xml.nodes import Category, Kind, PortDirection, built_in, children
+from arboleda_trees.bt_xml.reading import TAGS
 
 from .tree_edits import MAIN
 from .tree_text import TreeText, is_subtree, kind_of, walk

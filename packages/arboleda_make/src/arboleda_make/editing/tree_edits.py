@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from html import escape
 
-from arboleda.bt_xml import names
-from arboleda.bt_xml.markup import Element
-from arboleda.bt_xml.nodes import Category, PortDirection, built_in
-from arboleda.bt_xml.reading import MODELS, TAGS, TREE
 from arboleda.drivers import quoted
+from arboleda_trees.bt_xml import names
+from arboleda_trees.bt_xml.markup import Element
+from arboleda_trees.bt_xml.nodes import Category, PortDirection, built_in
+from arboleda_trees.bt_xml.reading import MODELS, TAGS, TREE
 
 from . import attributes, layout
 from .attributes import written

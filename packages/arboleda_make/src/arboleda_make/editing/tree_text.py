@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import count
 
-from arboleda.bt_xml.findings import XmlFault
-from arboleda.bt_xml.markup import LARGEST, Element, parse
-from arboleda.bt_xml.nodes import OTHER_SPELLINGS, Category
-from arboleda.bt_xml.reading import MODELS, ROOT, TAGS, TREE
 from arboleda.drivers import among, quoted
+from arboleda_trees.bt_xml.findings import XmlFault
+from arboleda_trees.bt_xml.markup import LARGEST, Element, parse
+from arboleda_trees.bt_xml.nodes import OTHER_SPELLINGS, Category
+from arboleda_trees.bt_xml.reading import MODELS, ROOT, TAGS, TREE
 
 from .errors import EditError
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from arboleda.drivers import among, plain, quoted
 from arboleda.model.assistants import Assistants
-from arboleda.plant_file.tree_file import ENDING
+from arboleda.plant_file.recipe_forms import XML
 from arboleda.plant_file.versions import Version, version_of
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda_make.drafts.api import DraftRefused, State
@@ -107,7 +107,7 @@ class ProposalDesk(ProposalsApi):
         trees = {
             name: text.decode("utf-8", "replace")
             for name, text in proposal.files.contents.items()
-            if name.endswith(ENDING)
+            if name.endswith(XML)
         }
         before = self._versions.at_work().files.contents if self._fits(proposal) else {}
         differing = [name for name in trees if before.get(name) != proposal.files.contents[name]]
@@ -278,7 +278,7 @@ def _differences(before: Mapping[str, bytes], after: Mapping[str, bytes]) -> dic
     return {
         name: "\n".join(unified_diff(_lines(before.get(name)), _lines(after.get(name)), lineterm="", n=2))
         for name in sorted(before.keys() | after.keys() if before else ())
-        if name.endswith(ENDING) and before.get(name) != after.get(name)
+        if name.endswith(XML) and before.get(name) != after.get(name)
     }
 
 

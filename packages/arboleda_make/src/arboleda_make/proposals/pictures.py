@@ -7,10 +7,10 @@ from arboleda.extension import ConfigError
 
 def picture_of(file: str, content: bytes) -> str:
     """The main tree of a file, or its first one; "" where nothing of it can be drawn."""
-    from arboleda.bt_xml import reading, rows  # which a plant without proposals does not need
-    from arboleda.bt_xml.findings import Findings
     from arboleda.drawing.picture import picture
     from arboleda.drawing.svg import svg
+    from arboleda_trees.bt_xml import reading, rows  # which a plant without proposals does not need
+    from arboleda_trees.bt_xml.findings import Findings
 
     try:
         forest = reading.read(file, content, Findings())

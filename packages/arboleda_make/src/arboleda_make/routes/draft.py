@@ -11,13 +11,13 @@ from fastapi.responses import JSONResponse
 from pydantic import Field
 from starlette.exceptions import HTTPException
 
-from arboleda.bt_xml.markup import LARGEST
 from arboleda.extension import PlantApi, Role, needs, takes
 from arboleda.web.schema.bodies import BodyModel, Sentence
 from arboleda.web.schema.plain_json import PlainJson
 from arboleda.web.schema.queries import Answers, answering, described_body, read_body
 from arboleda_make.answers.drafts import AppliedDraft, CheckedDraft, DraftState, KeptDraft, TreesText
 from arboleda_make.drafts.api import DraftApi, State
+from arboleda_trees.bt_xml.markup import LARGEST
 
 MAY = "editing a draft"
 TREES = takes(kilobytes=512)  # a file of trees, of a recipe with its 2,000 nodes, as JSON

@@ -10,7 +10,6 @@ from fastapi.responses import JSONResponse
 from pydantic import Field
 from starlette.exceptions import HTTPException
 
-from arboleda.bt_xml.markup import LARGEST
 from arboleda.client import Task
 from arboleda.extension import PlantApi, Role, needs
 from arboleda.model.sentence import explained
@@ -26,6 +25,7 @@ from arboleda_make.answers.proposals import (
     WholeProposal,
 )
 from arboleda_make.proposals.api import ProposalsApi
+from arboleda_trees.bt_xml.markup import LARGEST
 
 from .draft import REFUSED, SHIPPED, TREES, Key
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from arboleda.drivers import Robot, plain
 from arboleda.model.plant_files import PlantFiles
+from arboleda.plant_file.recipe_forms import XML
 from arboleda.plant_file.robot_models import pose_at_home
-from arboleda.plant_file.tree_file import ENDING
 from arboleda.plant_file.yaml_edit import EditRefused
 from arboleda.web.languages import spoken, texts
 from arboleda_make.drafts.api import DraftRefused
@@ -79,11 +79,11 @@ class MakeBench(MakeApi):
 
     def carry(self, editor: str, recipe: str, way: Mapping[str, str]) -> Row:
         text = self._workshop.carrying(*self._desk.files, way["cell"], recipe, way)
-        return self._desk.add_trees(editor, f"{recipe}{ENDING}", text)
+        return self._desk.add_trees(editor, f"{recipe}{XML}", text)
 
     def copy(self, editor: str, cell: str, recipe: str, name: str) -> Row:
         text = self._workshop.copied(*self._desk.files, cell, recipe, name)
-        return self._desk.add_trees(editor, f"{name}{ENDING}", text)
+        return self._desk.add_trees(editor, f"{name}{XML}", text)
 
     def translate(self, language: str, lines: list[str]) -> list[str]:
         return self._workshop.translate(spoken([language]), lines)

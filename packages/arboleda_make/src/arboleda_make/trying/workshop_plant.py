@@ -7,8 +7,6 @@ from contextlib import ExitStack
 from pathlib import Path, PurePath
 from typing import Any
 
-from arboleda.bt_xml import export
-from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.dashboard.findings import findings
 from arboleda.drivers import Robot, quoted
 from arboleda.drivers.port import DriverSpec
@@ -20,12 +18,14 @@ from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.plant_file import driver_forms, loader
 from arboleda.plant_file.draft import shaded
 from arboleda.recipes import Recipe, WrittenRecipe
+from arboleda.recipes.of_files import FileRecipe
 from arboleda.views import forms, tree_view
 from arboleda.web.languages import texts
 from arboleda_make.editing import carry, desk
 from arboleda_make.editing.operations import Operation
 from arboleda_proofs.campaigns.proof.single_faults import possible_kinds
 from arboleda_proofs.simulator.faults.titles import title
+from arboleda_trees.bt_xml import export
 
 Row = dict[str, Any]
 UNREAD = "the draft cannot be read yet; its problems say why"
@@ -161,7 +161,7 @@ def _robots_at(cell: Cell, target: str) -> list[str]:
 
 
 def _written(recipe: Recipe) -> Row:
-    if isinstance(recipe, TreeRecipe):
+    if isinstance(recipe, FileRecipe):
         return {"sort": "drawn", "file": recipe.file.rpartition("/")[2]}
     if isinstance(recipe, WrittenRecipe) and not recipe.is_shipped:
         return {"sort": "python", "file": PurePath(recipe.function.__code__.co_filename).name}

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file.document import Place
-from arboleda.plant_file.tree_file import ENDING
+from arboleda.plant_file.recipe_forms import XML
 from arboleda.plant_file.yaml_marks import YamlFault, parse
 
 from .change import CELLS, KINDS, MISSING, TARGETS, VERBS, Change
 
 if TYPE_CHECKING:
-    from arboleda.bt_xml.forest import Node
+    from arboleda_trees.bt_xml.forest import Node
 
 
 def changes(before: PlantFiles, after: PlantFiles) -> tuple[Change, ...]:
@@ -75,7 +75,7 @@ def _is_listed_apart(place: Place, before: Any, after: Any) -> bool:
 def _of_file(name: str, before: bytes | None, after: bytes | None) -> Iterator[Change]:
     if before == after:
         return
-    if before is not None and after is not None and name.endswith(ENDING):
+    if before is not None and after is not None and name.endswith(XML):
         yield from _of_trees(name, before, after)
         return
     values = [MISSING if each is None else None for each in (before, after)]
@@ -98,8 +98,8 @@ def _of_trees(name: str, before: bytes, after: bytes) -> Iterator[Change]:
 
 def _trees(name: str, content: bytes) -> dict[str, str]:
     """The trees of one file by name, as text that does not depend on its layout."""
-    from arboleda.bt_xml import reading  # which a plant without trees as XML does not need
-    from arboleda.bt_xml.findings import Findings
+    from arboleda_trees.bt_xml import reading  # which a plant without trees as XML does not need
+    from arboleda_trees.bt_xml.findings import Findings
 
     forest = reading.read(name, content, Findings())
     return {each: _tree_text(tree.root) for each, tree in forest.trees.items()}

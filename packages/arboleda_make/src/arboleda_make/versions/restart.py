@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from arboleda.plant_file.own_recipes import TREES
+from arboleda.plant_file.recipe_forms import XML
 
 from .change import MISSING, Change
 
@@ -59,7 +59,7 @@ def _reason(change: Change) -> str:
     """The reason why a running plant cannot take a change; "" where the plant can."""
     place = [str(key) for key in change.place]
     if not place:
-        return "" if change.file.endswith(TREES) else _of_file(change)
+        return "" if change.file.endswith(XML) else _of_file(change)
     if place[0] == CELLS:
         return _of_cell(change, place[1:])
     if place[0] == TIMING:
@@ -90,4 +90,4 @@ def _touches(change: Change, place: list[str], key: str) -> bool:
 def _python(value: Any) -> list[object]:
     """Entries of `uses` that are no trees."""
     words = value if value is not MISSING and isinstance(value, list) else []
-    return [each for each in words if not str(each).endswith(TREES)]
+    return [each for each in words if not str(each).endswith(XML)]

@@ -10,7 +10,7 @@ from arboleda_make.editing.errors import EditError
 from arboleda_make.editing.tree_text import TreeText
 
 HERE = Path(__file__).parents[5]
-RULES = HERE / "tests/unit/bt_xml"
+RULES = HERE / "packages/arboleda_trees/tests/fast/bt_xml"
 WHERE = (
     *("examples/**/*.xml", "tests/**/*.py", "packages/*/tests/**/*.py", "docs/**/*.md", "tools/fuzz-trees"),
     "tests/**/*.xml",

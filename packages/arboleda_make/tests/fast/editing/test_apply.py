@@ -11,7 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from packages.arboleda_make.tests.fast.editing.corpus import texts
 
-from arboleda.bt_xml.markup import Element
 from arboleda_make.editing.apply import apply
 from arboleda_make.editing.errors import EditError
 from arboleda_make.editing.operations import (
@@ -31,6 +30,7 @@ from arboleda_make.editing.operations import (
     Wrap,
 )
 from arboleda_make.editing.tree_text import TreeText, kind_of, steps, walk
+from arboleda_trees.bt_xml.markup import Element
 
 COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 NEW = NewNode(kind="Sleep", attributes={"msec": "5"})

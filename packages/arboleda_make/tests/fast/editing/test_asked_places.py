@@ -8,14 +8,14 @@ import pytest
 from tests.plants import read
 from tests.unit.kinds.test_asked_places import PLANT, RECIPES
 
-from arboleda.bt_xml import leaves
-from arboleda.cli.nodes import of_plant
 from arboleda.core.plant import Plant
 from arboleda.model.errors import ConfigError
 from arboleda.plant_check import advance_check
 from arboleda.plant_file.loader import load
 from arboleda_make.editing import copy_recipe
 from arboleda_proofs.simulator.judged_world import JudgedWorld
+from arboleda_trees.bt_xml import leaves
+from arboleda_trees.commands.nodes import of_plant
 
 CARRY = """
 <arm_visit target="{source}"><jaw_close width_mm="30" force_n="20"/></arm_visit>

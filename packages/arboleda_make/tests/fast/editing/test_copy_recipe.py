@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 from tests.lengths import length
 
-from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.plant_file.loader import load
+from arboleda.recipes.of_files import FileRecipe
 from arboleda_drawn.forms import differences_of
 from arboleda_make.editing import desk
 from arboleda_make.editing.errors import EditError
@@ -94,7 +94,7 @@ def test_the_copy_is_accepted_by_check_and_tells_devices_the_same(name: str, tmp
     both = load(plant)
     for recipe, copy in copies.items():
         python, tree = both.cells[0].recipe(recipe), both.cells[0].recipe(copy)
-        assert isinstance(tree, TreeRecipe) and (tree.about, tree.ends_with) == (
+        assert isinstance(tree, FileRecipe) and (tree.about, tree.ends_with) == (
             python.about,
             python.ends_with,
         )

@@ -6,10 +6,8 @@ from pathlib import Path
 
 import pytest
 from packages.arboleda_make.tests.fast.editing.corpus import HERE, texts
-from tests.unit.bt_xml.findings import mistakes, tree, warnings
+from packages.arboleda_trees.tests.fast.bt_xml.findings import mistakes, tree, warnings
 
-from arboleda.bt_xml.nodes import BUILT_IN
-from arboleda.bt_xml.runnable import INSTEAD
 from arboleda.plant_file import loader
 from arboleda.web.languages import LANGUAGES, contents
 from arboleda_make.editing import desk
@@ -17,6 +15,8 @@ from arboleda_make.editing.errors import EditError
 from arboleda_make.editing.marks import marks
 from arboleda_make.editing.picture import picture
 from arboleda_make.editing.tree_text import TreeText
+from arboleda_trees.bt_xml.nodes import BUILT_IN
+from arboleda_trees.bt_xml.runnable import INSTEAD
 
 OWN_TREE = HERE / "examples/own_tree/plant.yaml"
 

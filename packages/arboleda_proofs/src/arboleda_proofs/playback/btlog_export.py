@@ -9,9 +9,10 @@ from typing import Any
 
 from arboleda.drivers import plain
 from arboleda.extension import ConfigError
+from arboleda.host.packages import extra
 from arboleda.model.messages import ENDED, TaskState
+from arboleda.model.packages import TREES
 from arboleda.recorder.reader import Record
-from arboleda.viewers.btlog import btlog
 
 from .cell_history import followed
 from .views import Views
@@ -29,7 +30,9 @@ def write(record: Record, task: str, output: Path) -> int:
     moments = list(_moments(record, changes))
     if not any(rows for _, rows in moments):
         raise ConfigError((f"{plain(task, 80)}: it did not run in {record.paths[0]}",))
-    content = btlog(moments, has_succeeded=changes[-1][1]["state"] == TaskState.DONE.value)
+    content: bytes = extra("btlog_content", TREES, str(output))(
+        moments, has_succeeded=changes[-1][1]["state"] == TaskState.DONE.value
+    )
     try:
         with open(output, "xb") as file:
             file.write(content)

@@ -6,15 +6,15 @@ from collections import Counter
 from dataclasses import dataclass, field
 from enum import Enum
 
-from arboleda.bt_xml.running.leaves import FAILS
-from arboleda.bt_xml.running.root import FAILED as TREE_FAILED
-from arboleda.bt_xml.running.root import FAILED_AT as TREE_FAILED_AT
 from arboleda.engine import Entry, State
 from arboleda.engine.inspection import EMPTY, not_given_count_of, tasks_of, trouble_in
 from arboleda.model.messages import Reason, TaskChanged, TaskState
 from arboleda.recipes import Sentence
 from arboleda.recipes.authoring import FAIL
 from arboleda.recipes.decorators import RESCUE_FAILED
+from arboleda.recipes.of_files import FAILED as TREE_FAILED
+from arboleda.recipes.of_files import FAILED_AT as TREE_FAILED_AT
+from arboleda.recipes.of_files import FAILS
 from arboleda.recipes.place_questions import NO_PART_YET, NO_ROOM_YET
 from arboleda.rig.world import World
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import count
 
-from arboleda.bt_xml import telling
 from arboleda.drivers import Value
 from arboleda.engine import title_of
 from arboleda.engine.inspection import Question, ledger_of
@@ -23,6 +22,7 @@ from arboleda.rig.world import World
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import VerbGoal
 
+from . import branch_numbers
 from .chance import Dice
 from .cycles import has_told
 from .recorded.zone_users import running
@@ -208,12 +208,12 @@ def any_text(cell: Cell, dice: Dice) -> str:
 
 def answer_anything(world: World, seed: int) -> None:
     """Have devices that are queried give any of their answers: a camera sees bad parts, too."""
-    numbers = telling.numbers(world.model)
+    answers = branch_numbers.numbers(world.model)
     for robot in world.model.robots.values():
         board = world.boards.get(robot.mqtt)
         if board is not None and isinstance(board.body, MachineBody):
             dice = Dice(seed, "answers", robot.mqtt)
-            own = {verb: those for (device, verb), those in numbers.items() if device == robot.name}
+            own = {verb: those for (device, verb), those in answers.items() if device == robot.name}
             board.body.answer = partial(_any_answer, board.body, own, dice)
 
 

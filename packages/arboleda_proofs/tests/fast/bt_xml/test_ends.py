@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.unit.bt_xml.test_ends import plant
+from packages.arboleda_trees.tests.fast.bt_xml.test_ends import plant
 
 from arboleda_proofs.simulator.run import Simulation
 

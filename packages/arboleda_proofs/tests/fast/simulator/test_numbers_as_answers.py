@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.bt_xml import telling
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_check import advance_check
@@ -15,6 +14,7 @@ from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import VerbGoal
 from arboleda_proofs.campaigns.proof.calm import calm_runs
 from arboleda_proofs.campaigns.proof.scenario import scenarios
+from arboleda_proofs.simulator.branch_numbers import numbers
 from arboleda_proofs.simulator.people import answer_anything
 from arboleda_proofs.testing import Sim
 
@@ -69,8 +69,7 @@ def sorter(request: pytest.FixtureRequest, tmp_path: Path) -> PlantModel:
 
 
 def test_answers_are_in_each_range_and_at_each_limit(sorter: PlantModel) -> None:
-    numbers = telling.numbers(sorter)
-    assert numbers == {("scale", "weigh"): (0.0, 99.0, 100.0, 110.0, 120.0, 121.0)}
+    assert numbers(sorter) == {("scale", "weigh"): (0.0, 99.0, 100.0, 110.0, 120.0, 121.0)}
 
 
 def test_a_simulated_scale_gives_all_of_them(sorter: PlantModel) -> None:

@@ -14,9 +14,6 @@ import pytest
 from tests.cells import with_poses
 from tests.lengths import sample
 
-from arboleda.bt_xml import reading
-from arboleda.bt_xml.findings import Findings
-from arboleda.bt_xml.recipe import tree_recipe
 from arboleda.core import cell, people, plant, zone_watch
 from arboleda.dispatch import belief, evidence, latches, ledger, obstacles, time_limits
 from arboleda.dispatch.ledger import TABLE, Feed, State
@@ -42,6 +39,9 @@ from arboleda_proofs.simulator.invariants.liveness import LIVENESS, ready
 from arboleda_proofs.simulator.invariants.memory_bounds import BOOKS
 from arboleda_proofs.simulator.invariants.tasks import TASKS
 from arboleda_proofs.simulator.invariants.wire import WIRE
+from arboleda_trees.bt_xml import reading
+from arboleda_trees.bt_xml.findings import Findings
+from arboleda_trees.bt_xml.recipe import tree_recipe
 
 from .watch import Watched
 

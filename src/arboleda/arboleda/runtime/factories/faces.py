@@ -1,4 +1,4 @@
-"""Factories of the HTTP server with its page, of the view for Groot2, and of the notices to systemd."""
+"""Factories of the HTTP server with its page, and of the notices to systemd."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from arboleda.adapters import descriptors
 from arboleda.model.errors import ArboledaError
 from arboleda.web.access.names import other_address
 
-from ..parts.groot2 import Groot2Options, Groot2Part
 from ..parts.local_plant import LocalPlant
 from ..parts.orchestrator import Orchestrator
 from ..parts.part import PageAddress, Part
@@ -68,20 +67,6 @@ class _Announcement:
     def _own_address(self) -> str:
         """The address of this host that hosts which reach the memory may reach it by."""
         return self._held.memory.lead.own_address() or other_address()
-
-
-def groot2(assembly: Assembly) -> Iterator[Part]:
-    """The part that shows trees to Groot2, if wanted; on the address of the HTTP API."""
-    model, options = assembly.model, assembly.options
-    is_wanted = model.groot2_port is not None if options.groot2 is None else options.groot2
-    running = assembly.ask(Orchestrator)
-    if running is None or not is_wanted:
-        return
-    where = Groot2Options(host=options.web.address, port=model.groot2_port)
-    part = Groot2Part([cell.name for cell in model.cells], where)
-    assembly.notes.append(lambda: part.notes)
-    running.screens.watchers.append(part.saw)
-    yield part
 
 
 def systemd(assembly: Assembly) -> Iterator[Part]:

@@ -10,13 +10,11 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Any
 
-from arboleda.bt_xml import reading
-from arboleda.bt_xml.findings import Findings
-from arboleda.bt_xml.recipe import TreeRecipe, tree_recipe
 from arboleda.drivers import Value, shown
 from arboleda.extension import ArboledaError
 from arboleda.model import text
 from arboleda.model.plant_model import PlantModel
+from arboleda.recipes.of_files import FileRecipe
 from arboleda_make.editing import desk
 from arboleda_make.editing.operations import Insert, NewNode, Operation, Wrap
 from arboleda_proofs.campaigns.proof.calm import calm_run
@@ -24,6 +22,9 @@ from arboleda_proofs.campaigns.proof.changed_recipe import WITHIN_S, noticed_wit
 from arboleda_proofs.campaigns.proof.outcome import plain
 from arboleda_proofs.campaigns.proof.scenario import Scenario
 from arboleda_proofs.simulator.faults import Fault
+from arboleda_trees.bt_xml import reading
+from arboleda_trees.bt_xml.findings import Findings
+from arboleda_trees.bt_xml.recipe import tree_recipe
 
 from .process import errand, say, write
 from .tryout import RESULT
@@ -60,7 +61,7 @@ def noticed(model: PlantModel, wanted: Mapping[str, Any]) -> Row:
     """
     order = text.parse(wanted["task"], model)
     recipe = model.cell(order.cell).recipe(order.recipe)
-    if not isinstance(recipe, TreeRecipe):
+    if not isinstance(recipe, FileRecipe):
         raise ArboledaError(NOT_DRAWN.format(recipe=order.recipe))
     answers = tuple(sorted(dict(wanted.get("answers", {})).items()))
     scenario = Scenario(cell=order.cell, recipe=order.recipe, task=wanted["task"], answers=answers)
@@ -78,7 +79,7 @@ def noticed(model: PlantModel, wanted: Mapping[str, Any]) -> Row:
     return {"tried": tried, "file": "", "text": None}
 
 
-def checks(model: PlantModel, recipe: TreeRecipe, cell: str) -> Iterator[Check]:
+def checks(model: PlantModel, recipe: FileRecipe, cell: str) -> Iterator[Check]:
     """All checks of facts that have a few values, after each step of the main tree; the last steps first."""
     where = model.cell(cell)
     drawn = desk.drawn(model, cell, recipe.content.decode())
@@ -96,7 +97,7 @@ def checks(model: PlantModel, recipe: TreeRecipe, cell: str) -> Iterator[Check]:
 
 
 def _tried(
-    model: PlantModel, scenario: Scenario, recipe: TreeRecipe, check: Check, faults: list[Fault]
+    model: PlantModel, scenario: Scenario, recipe: FileRecipe, check: Check, faults: list[Fault]
 ) -> Row | None:
     """The text with a check that notices these faults, and disturbs nothing without them; None for others."""
     try:
@@ -114,7 +115,7 @@ def _tried(
     }
 
 
-def _text(model: PlantModel, cell: str, recipe: TreeRecipe, check: Check) -> str:
+def _text(model: PlantModel, cell: str, recipe: FileRecipe, check: Check) -> str:
     found = recipe.content.decode()
     for operation in _operations(model, cell, found, check):
         found = str(desk.drawn(model, cell, found, operation)["text"])
@@ -137,7 +138,7 @@ def _operations(model: PlantModel, cell: str, content: str, check: Check) -> Ite
     yield Insert(tree=check.tree, parent=check.path, index=1, node=node)
 
 
-def _recipe(before: TreeRecipe, content: str) -> TreeRecipe:
+def _recipe(before: FileRecipe, content: str) -> FileRecipe:
     findings = Findings()
     forest = reading.read(before.file, content.encode(), findings)
     fresh = tree_recipe(before.name, before.file, content.encode(), forest, before.own)

@@ -6,7 +6,6 @@ from collections import deque
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
-from arboleda.bt_xml import telling
 from arboleda.drivers import Command, Query, Value, VerbCommand
 from arboleda.engine import Entry
 from arboleda.engine.inspection import Question, ledger_of
@@ -16,6 +15,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_check.findings import PlantFinding, Source
 from arboleda.rig.plant_process import Fuse, Side
 
+from ...simulator.branch_numbers import numbers
 from .end_state import EndState
 from .instants import Instant, Mark, instants
 from .outcome import End, Run
@@ -69,7 +69,7 @@ class _Marks:
         self._fuse = Fuse(FAR, Side.AFTER, lambda: None)
         self._counted = FAR
         self._ended = False
-        self._numbers = telling.numbers(stage.world.model)
+        self._numbers = numbers(stage.world.model)
         stage.world.plant_process.fuses.append(self._fuse)
         stage.world.watchers.append(self._look)
 

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.bt_xml.running.decorators import Loop
 from arboleda.drivers import (
     Command,
     Evidence,
@@ -27,6 +26,7 @@ from arboleda.kinds.joints.motion import JointMotion
 from arboleda.model.cell_states import CellState
 from arboleda.model.messages import Reason, Verb
 from arboleda.model.plant_model import Cell, Timing
+from arboleda.recipes.of_files import ROUNDS, FileNode
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import Commands, SentCommand
@@ -206,14 +206,14 @@ def _too_many_turns(cell: KnownCell, leaf: Behaviour) -> Iterator[str]:
         yield f"{cell.name}: {leaf.name} gave its command {count} times in all, allowed are {most:g}"
     node = leaf.parent
     while node is not None:
-        if isinstance(node, Loop) and node.rounds >= _rounds(node):
+        if isinstance(node, FileNode) and ROUNDS in node.counts and node.rounds >= _rounds(node):
             yield f"{cell.name}: {node.name} has done its step {node.rounds} times, and does it again"
         node = node.parent
 
 
-def _rounds(loop: Loop) -> float:
-    """The number that a loop of a file says of its rounds; without end where that is a variable, or -1."""
-    text = loop.ports.texts[loop.port]
+def _rounds(node: FileNode) -> float:
+    """The number that a node of a file says of its rounds; without end where that is a variable, or -1."""
+    text = node.ports.texts[node.port]
     return int(text) if text.isdecimal() else math.inf
 
 

@@ -14,17 +14,18 @@ from operator import attrgetter
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.bt_xml.running.leaves import Step as StepOfFile
 from arboleda.drivers import Command, Motion, Query
 from arboleda.engine.inspection import path_of
 from arboleda.model.messages import ENDED, TaskChanged, TaskState
 from arboleda.model.plant_model import PlantModel
 from arboleda.recipes.decorators import Again, Times
+from arboleda.recipes.of_files import FileNode
 from arboleda.wire.payloads import Goal
 
 from ..truth.stops import is_order_of
 
 UNDER_WAY = 16  # commands of a robot that may still reach its board
+TURN = "turn"  # of a step in a tree of a file, the count of its begins
 TASKS = 2000  # tasks that are followed; older ones are dropped
 
 
@@ -173,7 +174,9 @@ def turns_of(leaf: Behaviour) -> list[int]:
 @cache
 def _turn_in(kind: type[Behaviour]) -> Callable[[Behaviour], int] | None:
     """The number of the turn in nodes of a class that repeats; in trees of files each step counts its own."""
-    counts = ((StepOfFile, "turn"), (Times, "done"), (Again, "tries"))
+    if issubclass(kind, FileNode):
+        return attrgetter(TURN) if TURN in kind.counts else None
+    counts = ((Times, "done"), (Again, "tries"))
     return next((attrgetter(count) for repeats, count in counts if issubclass(kind, repeats)), None)
 
 
@@ -181,7 +184,7 @@ def most_turns(leaf: Behaviour) -> float:
     """The most often that the steps around a step have it done, for one turn of what is around those."""
     most, node = 1.0, leaf.parent
     while node is not None:
-        if isinstance(node, StepOfFile):
+        if isinstance(node, FileNode) and TURN in node.counts:
             return math.inf  # nodes of files may halt and begin one another
         if isinstance(node, Times | Again):
             most *= node.times + isinstance(node, Again)

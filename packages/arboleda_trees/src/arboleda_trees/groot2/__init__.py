@@ -1,0 +1,1 @@
+"""Trees for Groot2 and for other viewers of BehaviorTree.CPP."""
