@@ -83,7 +83,7 @@ def test_a_report_that_differs_is_found(
 ) -> None:
     step.out = [*altered(reports(step)[0]), *step.out[1:]]
     bridges.look([step])
-    assert bridges.wrong[REPORTS]
+    assert any(bridges.wrong.values())
 
 
 def test_telemetry_that_came_before_is_found_if_it_is_reported(bridges: Bridges, step: BridgeStep) -> None:

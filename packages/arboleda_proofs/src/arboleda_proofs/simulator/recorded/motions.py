@@ -1,93 +1,79 @@
-"""Rule of beats: a board gets those of the plant while its motion has not ended, and none once it has."""
+"""Property of beats: a board gets the plant's while its motion has not ended, and none once it surely has.
+
+`who_moves_hears_the_beat` finds by it beats to boards that need not move.
+"""
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from arboleda.drivers import MotionState, Robot
-from arboleda.wire.transport import Publication
+from arboleda.drivers import Evidence, MotionState, Robot
 
-from .board_link import KnownLink
+from .board_step import BoardStep
 from .boards import fields as fields_of
-from .telemetry import EXACT
 
 BEATS = "beats"
+MOTIONS = ("/juntas", "/camino", "/referencia")
 MOVING = MotionState.MOVING.value
-LINGER_S = 1.0  # how long a board that names no command must report standing still
+LINGER_S = 1.0 + 1e-9  # how long a board that names no command must report standing still
 
 
-class KnownMotion:
-    """Last motion that was sent to a board.
+class Motions:
+    """The last motion that left for one board, by its `_number`.
 
-    `number`: that of a motion which surely has not ended; `is_open`: one may be open; `had_ended`: none was
-    after the step before. `moved`: the board has reported moving since, or a stop followed. `still_since`:
-    it has reported standing still since then.
+    `lasts`: it surely has not ended, `may_last`: it may not have. `_moved`: the board has reported moving
+    since, or a stop followed; `_still_since`: it has reported standing still since then. `_least` is the
+    oldest epoch that the board says it obeys.
     """
 
-    def __init__(self) -> None:
-        self.number: int | None = None
-        self.is_open = self.had_ended = self.moved = False
-        self.still_since: float | None = None
-        self._newest: tuple[int, int] | None = None  # (epoca, seq) of the last motion
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        self._by_ids = robot.evidence is Evidence.IDS
+        self._number: tuple[Any, Any] = (None, None)
+        self.lasts = self.may_last = self._moved = False
+        self._still_since: float | None = None
+        self._boot: int | None = None
+        self._least = -1
 
-    def begin(self, newest: tuple[int, int] | None) -> None:
-        """Begin a motion; `newest` is its (epoca, seq) where the board has numbers."""
-        self.is_open, self.moved, self.had_ended, self.still_since = True, False, False, None
-        self._newest, self.number = newest, newest and newest[1]
+    def breaches(self, step: BoardStep) -> Iterator[str]:
+        lasted, may_have_lasted, least = self.lasts, self.may_last, self._least
+        for report, fields in step.told:
+            self._follow(report.at, report.boot_id, fields)
+        if step.is_lost or step.is_shut:
+            self.lasts = self.may_last = False
+        beats = []
+        for each in step.published:
+            if each.topic.endswith("/latido"):
+                beats.append(fields_of(each.payload).get("epoca", -1))
+            elif each.topic.endswith(MOTIONS):
+                self._begin(fields_of(each.payload), is_sure=not step.is_lost)
+                may_have_lasted = True
+            elif each.topic.endswith("/paro"):
+                self.lasts, self._moved = False, True
+        # one of an epoch that the board has not confirmed yet fences those of before off
+        fences = self._by_ids and any(epoch > min(least, self._least) for epoch in beats)
+        if beats and not (may_have_lasted or self.may_last or fences):
+            yield f"{self._robot.name} is told that somebody is there, and need not move"
+        if step.is_beaten and lasted and self.lasts and not beats and not step.late:
+            yield f"{self._robot.name} moves, and is not told that somebody is there"
 
-    def halt(self) -> None:
-        self.number, self.moved = None, True
+    def _begin(self, body: Mapping[str, Any], *, is_sure: bool) -> None:
+        self._number, self._still_since = (body.get("epoca"), body.get("seq")), None
+        self.lasts, self.may_last, self._moved = is_sure and self._by_ids, True, False
 
-    def lose(self) -> None:
-        """Count no motion any more: the board is out of reach, or has booted."""
-        self.number, self.is_open = None, False
-
-    def follow(self, at: float, fields: dict[str, Any], *, by_ids: bool, booted: bool) -> None:
-        """Take telemetry that counts, while a motion may be open."""
-        if booted:
-            self.lose()
-        if by_ids and self._newest == (fields.get("epoca_ack"), fields.get("hecho")):
-            self.is_open = False
+    def _follow(self, at: float, boot: int | None, fields: Mapping[str, Any]) -> None:
+        epoch, seq = self._number
+        if boot != self._boot or seq in (fields.get("hecho"), fields.get("rechazo_seq")):
+            self.lasts = False
+        if boot != self._boot or (
+            self._by_ids and (fields.get("epoca_ack"), fields.get("hecho")) == (epoch, seq)
+        ):
+            self.may_last = False
+        self._boot, self._least = boot, max(fields.get("epoca_ack", -1), fields.get("epoca_min", -1))
         if fields["estado"] == MOVING:
-            self.moved, self.still_since = True, None
-        elif self.moved and self.still_since is None:
-            self.still_since = at
-
-
-class Beats:
-    """Beats to one board; `has_arrived`: the plant's reached the bridge in this step."""
-
-    def __init__(
-        self, robot: Robot, motion: KnownMotion, *, by_ids: bool, wrong: defaultdict[str, list[str]]
-    ) -> None:
-        self.has_arrived = False
-        self._name = robot.name
-        self._motion = motion
-        self._by_ids = by_ids
-        self._wrong = wrong
-
-    def compare(self, published: list[Publication], link: KnownLink, *, begins: bool, late: bool) -> None:
-        """Compare what left in a step with what had to.
-
-        `begins`: a motion was given in it, or a board came back whose counter began anew, and which may
-        have forgotten the epoch of the bridge. `late`: the bridge was away before.
-        """
-        motion = self._motion
-        arrived, self.has_arrived = self.has_arrived, False
-        ended = not motion.is_open
-        if motion.still_since is not None and not self._by_ids:
-            ended |= link.telemetry_at >= motion.still_since + LINGER_S + EXACT
-        before, motion.had_ended = motion.had_ended, ended
-        if not (published or arrived):
-            return
-        beats = [each for each in published if each.topic.endswith("/latido")]
-        if ended and before and not begins and beats and not self._fences(beats, link):
-            self._wrong[BEATS].append(f"{self._name} is told that somebody is there, and need not move")
-        if arrived and motion.number is not None and not beats and not late:
-            self._wrong[BEATS].append(f"{self._name} moves, and is not told that somebody is there")
-
-    def _fences(self, beats: list[Publication], link: KnownLink) -> bool:
-        """True if a beat fences older epochs off, which the board has not confirmed yet."""
-        least = min(link.least, link.least_before)
-        return self._by_ids and any(fields_of(each.payload).get("epoca", -1) > least for each in beats)
+            self._moved, self._still_since = True, None
+        elif self._moved and self._still_since is None:
+            self._still_since = at
+        if not self._by_ids and self._still_since is not None and at >= self._still_since + LINGER_S:
+            self.may_last = False

@@ -1,131 +1,166 @@
-"""Rule of reports: what a board publishes while it is there is reported at once, as it is; nothing else."""
+"""Property of reports: each repeats telemetry of its step, and all of a board that is there is reported.
+
+`telemetry_is_reported` finds by it retained telemetry that is believed, as it repeats the last.
+"""
 
 from __future__ import annotations
 
-from collections import defaultdict
+import math
+from collections.abc import Iterator, Mapping
+from functools import cache
 from typing import Any
 
 from arboleda.drivers import Evidence, MotionState, Report, Robot
-from arboleda.wire.transport import Delivery
+from arboleda.engine import Belief
+from arboleda.wire.rejections import ForeignCommand, Rejection
 
-from .board_link import KnownLink
+from .board_step import BoardStep
+from .boards import fields as fields_of
 from .boards import parts
-from .motions import KnownMotion
-from .numbers import KnownNumbers
-from .telemetry import TelemetryReader, agrees, is_same, read
 
 REPORTS = "reports"
+EXACT = 1e-9
+FOREIGN_TO_ARMS, FOREIGN_TO_MOBILES = ("nodo",), ("efector", "pieza", "q1_mov")
+FLAGS = (("homed", "ref"), ("effector", "efector"), ("piece", "pieza"))
+SAME = ("state", "q", "node", "homed", "effector", "piece", "boot_id")
 
 
 class ReportedTelemetry:
-    """Telemetry of one board, against the bridge's reports.
+    """What the bridge reported last of one board: `_last`, by telemetry with these `_words`.
 
-    `last` is the last telemetry, by its bytes before and after its number, and its report. `counted` is the
-    telemetry of this step with the number of commands before it, `maybe` what may count in hindsight.
-    `plant` is the plant that the bridge hears, `is_new_plant` if it did not before this step. Of others'
-    commands `foreign` counts those that were refused, and obeyed, as people were told; `is_foreign_new`: they
-    were told of one in this step.
+    `silent_at`: when the silence of a board that is there has lasted too long.
     """
 
-    def __init__(
-        self,
-        robot: Robot,
-        link: KnownLink,
-        motion: KnownMotion,
-        numbers: KnownNumbers,
-        wrong: defaultdict[str, list[str]],
-    ) -> None:
-        self.last: tuple[Any, ...] = ()
-        self.counted: list[tuple[Delivery, int]] = []
-        self.maybe: list[tuple[Delivery, int]] = []
-        self.plant: int | None = None
-        self.plants: set[int | None] = {None}  # of this step: beats of several may come between reports
-        self.is_new_plant = False
-        self.is_taken_over = False  # the first reports are not known
-        self.foreign = (0, 0)
-        self.is_foreign_new = False
+    def __init__(self, robot: Robot, stale_after_s: float) -> None:
+        self.silent_at = -math.inf
         self._robot = robot
-        self._by_ids = robot.evidence is Evidence.IDS
-        self._link, self._motion, self._numbers = link, motion, numbers
-        self._wrong = wrong
-        self._reader = TelemetryReader(robot)
+        self._patience_s = math.inf if robot.evidence is Evidence.STATE else stale_after_s
+        self._number: int | None = None
+        self._boot: int | None = None
+        self._last: Report | None = None
+        self._words: tuple[object, ...] = ()  # of the last telemetry and of its report
+        self._is_taken_over = False  # the first reports are not known
+        self._foreign = (0, 0)  # commands of others that were refused, and obeyed, as people were told
 
-    def hear(self, delivery: Delivery, place: int) -> None:
-        """Take telemetry that came after `place` commands of this step."""
-        fields = self._reader.fields(delivery.payload)
-        if fields is None:
-            return
-        if self._motion.number in (fields.get("hecho"), fields.get("rechazo_seq")):
-            self._motion.number = None
-        if self._link.hear(delivery.at, fields):
-            if self._motion.is_open:
-                self._motion.follow(delivery.at, fields, by_ids=self._by_ids, booted=self._link.is_boot)
-            self.counted.append((delivery, place))
-        elif not self._link.up:  # a counter that began anew counts again after some time
-            self.maybe.append((delivery, place))
+    def take_over(self, now: float, belief: Belief) -> None:
+        """Begin with what the plant believes."""
+        self.silent_at, self._boot, self._is_taken_over = now + self._patience_s, belief.boot_id, True
 
-    def is_reported_late(self, reports: list[Report]) -> bool:
-        """True if a lost board is reported by telemetry that counts only in hindsight."""
-        return any(report.at == delivery.at for delivery, _ in self.maybe for report in reports)
-
-    def compare(self, reports: list[Report]) -> None:
-        """Compare the reports of a step with the telemetry that came in it."""
-        name, lost, states = self._robot.name, False, []
-        for each in reports:
-            if each.state is MotionState.NO_LINK:
-                lost = True
-            elif each.state is not None:
-                states.append(each)
-        if self._link.fell and not lost:
-            self._breach(f"the link to {name} was lost, and nobody was told")
-        if lost and self._link.up and not (self._link.fell or self._link.was_down):
-            self._breach(f"{name} is reported lost, and is there")
-        before = [self.last[2] if self.last else None, *states]
-        rest = list(zip(before, states, strict=False))
-        for delivery, place in self.counted:
-            for pair in rest:
-                if self._repeats(pair[1], delivery, place):
-                    rest.remove(pair)
-                    break
-            else:
-                self._breach(f"{delivery.payload!r} of {name} is not reported as it is: {states}")
-                return
-        for last, report in rest:
-            if not self._is_known(report, last):
-                self._breach(f"{name} is reported with what it has not said: {report}")
-        if reports and self.counted and not (self.is_new_plant or self.is_foreign_new):
-            last = reports[-1]
-            counts = (last.foreign_refused or 0, last.foreign_obeyed or 0)
-            if counts != self.foreign or (last.foreign is None) is any(counts):
-                text = f"commands of others are counted ({last.foreign}), of {self.foreign}"
-                self._breach(f"{counts} {text}")
-
-    def _is_known(self, report: Report, last: Report | None) -> bool:
-        """True if an unexpected report is right: a repetition for a new plant, or what may count."""
-        for delivery, place in self.maybe:
-            if self._repeats(report, delivery, place):
-                fields = read(delivery.payload, self._robot) or {}
-                self._link.hear(delivery.at, fields, in_hindsight=True)
-                self.counted = []
-                return True
-        if last is None:
-            return self.is_new_plant and self.is_taken_over
-        return self.is_new_plant and is_same(report, last)
-
-    def _repeats(self, report: Report, delivery: Delivery, place: int) -> bool:
-        """True if a report repeats this telemetry."""
-        if report.at != delivery.at or report.plant not in self.plants:
+    def is_told_again(self, step: BoardStep) -> bool:
+        """True if all in a step is newer telemetry that says the same, and a report that says it again."""
+        if step.is_stirred or step.orders or step.strangers or step.published or step.notices:
             return False
-        before, _, after = parts(delivery.payload)
-        alike = self.last and not self._numbers.given and (before, after) == self.last[:2]
-        if not (alike and report.words == self.last[2].words):
-            fields = self._reader.fields(delivery.payload)
-            if fields is None or not agrees(report, fields, self._robot):
-                return False
-            if not self._numbers.names(report, fields, place):
-                return False
-        self.last = (before, after, report)
-        return True
+        if not step.was_up or len(step.plants) != 1 or len(step.heard) != 1 or len(step.reports) != 1:
+            return False
+        (delivery,), (report,) = step.heard, step.reports
+        before, number, after = parts(delivery.payload)
+        if delivery.retain or self._words != (before, after, *report.words) or report.at != delivery.at:
+            return False
+        if not number or self._number is None or not self._number < int(number) == report.number:
+            return False
+        self._last, self._number, self.silent_at = report, report.number, delivery.at + self._patience_s
+        return step.now < self.silent_at
 
-    def _breach(self, sentence: str) -> None:
-        self._wrong[REPORTS].append(sentence)
+    def breaches(self, step: BoardStep) -> Iterator[str]:
+        last, is_sure = self._last, step.was_up and not step.is_stirred and not step.is_lost
+        for delivery in step.heard:
+            fields = None if delivery.retain else read(delivery.payload, self._robot)
+            if fields is None:
+                continue
+            before, _, after = parts(delivery.payload)
+            number, boot = fields.get("seq"), fields.get("arranque")
+            is_newer = boot is None or boot != self._boot
+            is_newer = is_newer or number is None or self._number is None or number > self._number
+            told: Report | None = None
+            for report in step.states:
+                if (report.at, report.number) == (delivery.at, number) and (
+                    self._words == (before, after, *report.words) or agrees(report, fields, self._robot)
+                ):
+                    self._last, self._words = report, (before, after, *report.words)
+                    self._number, self._boot = number, boot if boot is not None else self._boot
+                    self.silent_at = delivery.at + self._patience_s
+                    step.states.remove(report)
+                    step.told.append((report, fields))
+                    told = report
+                    break
+            if is_sure and is_newer is (told is None):
+                word = "reported, and is overtaken" if told else "not reported as it is"
+                yield f"{delivery.payload!r} of {self._robot.name} is {word}: {step.reports}"
+            if told is not None and told.plant not in step.plants:
+                yield f"{self._robot.name} is reported to another plant than {step.plants}: {told}"
+        for report in step.states:
+            if len(step.plants) == 1 or not self._is_said_again(report, last, step):
+                yield f"{self._robot.name} is reported with what it has not said: {report}"
+        if step.was_up:
+            is_silent = self.silent_at <= step.now
+            if (is_silent or step.is_shut) and not step.is_lost:
+                yield f"the link to {self._robot.name} was lost, and nobody was told"
+            if step.is_lost and not (is_silent or step.is_stirred):
+                yield f"{self._robot.name} is reported lost, and is there"
+        if step.notices:
+            self._count(step)
+        elif step.told and len(step.plants) == 1:
+            last = step.reports[-1]
+            counts = (last.foreign_refused or 0, last.foreign_obeyed or 0)
+            if counts != self._foreign or (last.foreign is None) is any(counts):
+                yield f"{counts} commands of others are counted ({last.foreign}), of {self._foreign}"
+
+    def _is_said_again(self, report: Report, last: Report | None, step: BoardStep) -> bool:
+        """True if a report says to another plant what was said just before it; `last`: before this step."""
+        for each in step.reports:
+            if each is report:
+                break
+            last = last if each.state in (None, MotionState.NO_LINK) else each
+        return self._is_taken_over if last is None else is_same(report, last)
+
+    def _count(self, step: BoardStep) -> None:
+        """Count the commands of others of which people are told."""
+        refused, obeyed = self._foreign
+        for each in step.notices:
+            refused += isinstance(each, Rejection) and each.reason == "foreign"
+            obeyed += isinstance(each, ForeignCommand)
+        self._foreign = refused, obeyed
+
+
+def read(payload: bytes, robot: Robot) -> Mapping[str, Any] | None:
+    """The fields of telemetry; None if it is to be refused, for the reasons that occur in simulations."""
+    fields, place = fields_of(payload), _place_keys(len(robot.joints))
+    if len(payload) > 512 or not fields.keys() >= place:
+        return None
+    if not fields.keys().isdisjoint(FOREIGN_TO_ARMS if robot.joints else FOREIGN_TO_MOBILES):
+        return None
+    grid = robot.floor_grid
+    if grid and not 0 <= fields["nodo"] < grid.size:
+        return None
+    for key in place:
+        if type(fields[key]) not in (int, float) or not math.isfinite(fields[key]):
+            return None
+    return fields if type(fields.get("estado")) is int and 0 <= fields["estado"] <= 4 else None
+
+
+def agrees(report: Report, fields: Mapping[str, Any], robot: Robot) -> bool:
+    """True if a report has the state, the place and the flags of this telemetry."""
+    for flag, key in FLAGS:
+        if getattr(report, flag) != (None if key not in fields else fields[key] == 1):
+            return False
+    if report.state is None or report.state != fields["estado"]:
+        return False
+    if not robot.joints:
+        return report.node == fields["nodo"] and report.q is None
+    if report.q is None or report.node is not None:
+        return False
+    for number, (joint, value) in enumerate(zip(robot.joints, report.q, strict=True), start=1):
+        published = math.radians(fields[f"q{number}_mov"]) * (joint.pinion_radius_m or 1.0)
+        if not abs(value - published) < EXACT:
+            return False
+    return True
+
+
+def is_same(report: Report, other: Report) -> bool:
+    """True if two reports say the same of a robot."""
+    return all(getattr(report, name) == getattr(other, name) for name in SAME)
+
+
+@cache
+def _place_keys(joints: int) -> frozenset[str]:
+    return frozenset(f"q{number}_mov" for number in range(1, joints + 1)) if joints else frozenset({"nodo"})
