@@ -14,6 +14,7 @@ from arboleda.drivers import Command, DriverError, Report, Robot, Stop, driver
 from arboleda_drivers.modbus.machine import Block, ModbusDevice, Raw, WriteRequest
 from arboleda_drivers.modbus.settings import Settings
 from arboleda_drivers.plc import polled
+from arboleda_drivers.plc.plc_snapshot import Writing
 
 if TYPE_CHECKING:
     from pymodbus.client.base import ModbusBaseSyncClient
@@ -191,10 +192,10 @@ class Modbus(polled.Polled[Settings, Line, WriteRequest]):
     def report(self, at: float) -> Report:
         return self._device.report(at, self._raw)
 
-    def writing(self, command: Command) -> polled.Writing[WriteRequest]:
+    def writing(self, command: Command) -> Writing[WriteRequest]:
         puts = self._device.order(command)
         begins_last = self._settings.sequence is not None and not isinstance(command, Stop)
-        return polled.Writing(puts=puts, begins_last=begins_last or len(puts) == 1)
+        return Writing(puts=puts, begins_last=begins_last or len(puts) == 1)
 
     def write(self, line: Line, put: WriteRequest) -> None:
         line.write(self._settings.unit, put)

@@ -1,8 +1,9 @@
-"""Values that a PLC shows at one moment, and the report made of them."""
+"""Values that a PLC shows at one moment, the report made of them, and values to be written."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 from arboleda.drivers import DriverError, Facts, MotionState, Receipt, Report, Value
 
@@ -16,6 +17,9 @@ STATES = {
 }
 UNNAMED = "no reason given"
 PLC_EPOCH = 0  # of the numbers that a PLC shows: they go on over all starts of the plant
+
+
+W = TypeVar("W")
 
 
 class UnreadableValue(DriverError):
@@ -43,6 +47,17 @@ class Question:
 
     number: int
     answer: Value
+
+
+@dataclass(frozen=True, kw_only=True)
+class Writing(Generic[W]):
+    """Values to write, one telegram after the other.
+
+    `begins_last`: the device does nothing before the last one, so one that fails has begun nothing.
+    """
+
+    puts: tuple[W, ...]
+    begins_last: bool
 
 
 def report(

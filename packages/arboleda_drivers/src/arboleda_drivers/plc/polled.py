@@ -13,7 +13,7 @@ import threading
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 from arboleda.drivers import (
@@ -28,7 +28,7 @@ from arboleda.drivers import (
     StopMode,
     lost,
 )
-from arboleda_drivers.plc.plc_snapshot import UnreadableValue
+from arboleda_drivers.plc.plc_snapshot import UnreadableValue, W, Writing
 
 BEAT_S = 0.2  # period of reports without a change
 AGAIN_S = 0.5
@@ -156,18 +156,6 @@ class PollSettings(Protocol):
 
 
 S = TypeVar("S", bound=PollSettings)
-W = TypeVar("W")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Writing(Generic[W]):
-    """Values to write, one telegram after the other.
-
-    `begins_last`: the device does nothing before the last one, so one that fails has begun nothing.
-    """
-
-    puts: tuple[W, ...]
-    begins_last: bool
 
 
 class Polled(ABC, Generic[S, L, W]):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from arboleda.drivers import Command, DriverError, Report, Robot, driver
 from arboleda_drivers.plc import polled
 from arboleda_drivers.plc.handshake import Read
+from arboleda_drivers.plc.plc_snapshot import Writing
 from arboleda_drivers.s7.addresses import Area, address
 from arboleda_drivers.s7.machine import LEAST_PDU, Block, S7Device, WriteRequest
 from arboleda_drivers.s7.settings import Settings
@@ -172,7 +173,7 @@ class S7(polled.Polled[Settings, Line, WriteRequest]):
     def report(self, at: float) -> Report:
         return self._device.report(at, self._values)
 
-    def writing(self, command: Command) -> polled.Writing[WriteRequest]:
+    def writing(self, command: Command) -> Writing[WriteRequest]:
         return self._device.order(command)
 
     def write(self, line: Line, put: WriteRequest) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from arboleda.drivers import Command, Robot, Stop
 from arboleda_drivers.plc.handshake import Handshake, Read, stop_order
-from arboleda_drivers.plc.polled import Writing
+from arboleda_drivers.plc.plc_snapshot import Writing
 
 from .addresses import Address, Area, address
 from .settings import Settings

@@ -14,7 +14,8 @@ from tests.patience import PATIENCE_S
 
 from arboleda.drivers import Command, NotSent, Report, Stop, StopMode
 from arboleda_drivers.plc import polled
-from arboleda_drivers.plc.polled import RequestRefused, Writing
+from arboleda_drivers.plc.plc_snapshot import Writing
+from arboleda_drivers.plc.polled import RequestRefused
 
 GO: Any = SimpleNamespace(id="9-1", robot="press")
 HALT = Stop(id="9-2", robot="press", mode=StopMode.HALT)
