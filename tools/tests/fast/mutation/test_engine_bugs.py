@@ -7,18 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from arboleda_mutation.sources import PACKAGE
-
 from ...mutants.engine_bug import EngineBug, bug
 from ...mutants.engine_bugs import ENGINE_BUGS
-from ...mutants.planted_engine import nearest, sample
+from ...mutants.planted_engine import BugSources, nearest, sample
 
 ROOT = Path(__file__).parents[4]
+SOURCES = BugSources(ROOT)
 
 
 @cache
 def text_of(file: str) -> str:
-    return (ROOT / PACKAGE / file).read_text(encoding="utf-8")
+    return SOURCES.path(file).read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("planted", ENGINE_BUGS, ids=lambda planted: planted.about[:60])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.unit.plant_check.test_unstated import GUARD, NEEDS, PLACES, PLANT, written
+from tests.unit.plant_check.test_unstated import GUARD, NEEDS, PLACES, PLANT, RECIPE, written
 
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_check import draft_check, unstated
@@ -15,7 +15,7 @@ from arboleda_proofs.campaigns.plants import Plant, notes
 
 
 def test_what_a_file_does_not_state_is_offered_with_its_place_in_the_file(tmp_path: Path) -> None:
-    model = loader.load(written(tmp_path, PLANT))
+    model = loader.load(written(tmp_path, PLANT, RECIPE))
     assert unstated.notes(model) == (
         f"{PLACES}; cells.lab.places: {{inside: {{output: true}}, rack: {{supply: true}}}} would state it",
         f"{GUARD}; zones.in_the_oven.free_while: "
@@ -27,7 +27,7 @@ def test_what_a_file_does_not_state_is_offered_with_its_place_in_the_file(tmp_pa
 
 @pytest.mark.parametrize("number", range(3))
 def test_an_offer_for_a_draft_is_a_step_of_it(tmp_path: Path, number: int) -> None:
-    file = written(tmp_path, PLANT)
+    file = written(tmp_path, PLANT, RECIPE)
     draft = draft_of(PlantFiles(plant=file.name, contents={file.name: file.read_bytes()}))
     offer = draft_check.check(draft.files, file).unstated[number]
     for value in offer.values:
