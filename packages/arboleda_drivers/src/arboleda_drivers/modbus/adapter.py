@@ -33,7 +33,8 @@ WORDS = {
     11: "no_gateway_answer",
 }
 """The exception codes of the standard."""
-STEPS = (1, 2, 2, 1)  # lengths of reads in a row: an answer of one or two requests before has another length
+READS_IN_STEP = 5  # the first one is short: an answer of one to four requests before has another length
+BITS = ("coil", "discrete")  # tables of which an answer has whole bytes
 QUIET_AT_MOST_S = 10.0
 TOLD = (1, 10, 100, 1000, 10_000)  # how many late answers are told in the log
 LOG = logging.getLogger("arboleda.drivers")
@@ -52,7 +53,7 @@ class Line(polled.Line):
         self._settings = settings
         self._client: ModbusBaseSyncClient | None = None
         self._is_owed = not settings.has_numbers  # an answer may come yet, also one to an earlier start
-        self._known: tuple[tuple[int, Block], ...] = ()  # the unit and block that were read last
+        self._known: tuple[int, Block] | None = None  # the unit and block that were read last
         self._late = 0  # answers that nobody waited for any more
 
     def hang_up(self) -> None:
@@ -60,13 +61,13 @@ class Line(polled.Line):
         if self._client is not None:
             self._client.close()
 
-    def _asked(self, *what: tuple[int, Block]) -> Any:
-        """The client, connected, and with every answer taken; `what` can be read. Raises ConnectionError if
-        nobody answers."""
+    def _ready(self, block: tuple[int, Block] | None = None) -> Any:
+        """The client, connected, which owes no answer; `block`, with its unit, shows that where none was
+        read yet. Raises ConnectionError if nobody answers."""
         self._connect()
         if self._is_owed:
-            for unit, block in self._known or what:
-                self._fall_in_step(unit, block)
+            if (known := self._known or block) is not None:
+                self._fall_in_step(*known)
             self._is_owed = False
         if self._came(0.0):
             raise ConnectionError(f"{self._settings.peer} has answered to another request")
@@ -85,7 +86,8 @@ class Line(polled.Line):
             if time.monotonic() > until:
                 raise ConnectionError(f"{self._settings.peer} sends all the time")
         read: Any = getattr(self._client, READS[block.table])
-        for length in STEPS:
+        long = 9 if block.table in BITS else 2
+        for length in (1, *(READS_IN_STEP - 1) * (long,)):
             answer = read(block.address, count=length, device_id=unit)
             if not answer.isError():
                 self._values(replace(block, length=length), answer)
@@ -102,21 +104,23 @@ class Line(polled.Line):
             raise ConnectionError(f"{self._settings.peer} has closed the connection")
         self._late += 1
         if self._late in TOLD:
-            LOG.warning("%s: %d answers came too late and are left out", self._settings.peer, self._late)
+            LOG.warning(
+                "%s: an answer came too late and is left out (number %d)", self._settings.peer, self._late
+            )
         return True
 
     def read(self, unit: int, block: Block) -> list[int]:
         """The values of a block."""
         with self.turn():
-            read: Any = getattr(self._asked((unit, block)), READS[block.table])
+            read: Any = getattr(self._ready((unit, block)), READS[block.table])
             values = self._values(block, read(block.address, count=block.length, device_id=unit))
-            self._known = ((unit, block),)
+            self._known = (unit, block)
             return values
 
     def _values(self, block: Block, answer: Any) -> list[int]:
         _check(answer, f"to show {block.table} {block.address}", CODES[block.table])
-        values = answer.bits if block.table in ("coil", "discrete") else answer.registers
-        whole = -(-block.length // 8) * 8 if block.table in ("coil", "discrete") else block.length
+        values = answer.bits if block.table in BITS else answer.registers
+        whole = -(-block.length // 8) * 8 if block.table in BITS else block.length
         if len(values) != whole:
             raise ConnectionError(
                 f"{self._settings.peer} has answered with {len(values)} values, not {whole}"
@@ -128,7 +132,7 @@ class Line(polled.Line):
         is_one, is_coil = len(put.values) == 1, put.table == "coil"
         values: list[Any] = [bool(value) for value in put.values] if is_coil else list(put.values)
         with self.turn():
-            client = self._asked()
+            client = self._ready()
             one, many = (
                 (client.write_coil, client.write_coils)
                 if is_coil

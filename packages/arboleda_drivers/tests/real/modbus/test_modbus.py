@@ -20,12 +20,14 @@ from typing import Any
 
 import pytest
 from pymodbus.client import ModbusTcpClient
+from pymodbus.exceptions import ModbusException
 from pymodbus.framer import FramerRTU
 from tests.patience import PATIENCE_S
 
 from arboleda.drivers import MotionState
 from arboleda.kinds.declared import Device
-from arboleda_drivers.modbus.adapter import LINES, Modbus
+from arboleda_drivers.modbus.adapter import LINES, Line, Modbus
+from arboleda_drivers.modbus.machine import Block
 from arboleda_drivers.modbus.registers import Register
 from arboleda_drivers.modbus.server import ModbusServer
 from arboleda_drivers.modbus.settings import Settings
@@ -40,11 +42,13 @@ class Memory:
 
     def __init__(self) -> None:
         self.inputs = [0] * 16
+        self.coils: list[int] = []
         self.written: queue.Queue[tuple[str, int, list[int]]] = queue.Queue()
         self.refuses: int | None = None
 
     def read(self, table: str, address: int, count: int) -> list[int] | int:
-        return ((self.inputs if table == "input" else []) + [0] * 256)[address : address + count]
+        shown = {"input": self.inputs, "coil": self.coils}.get(table, [])
+        return (shown + [0] * 256)[address : address + count]
 
     def write(self, table: str, address: int, values: list[int]) -> int | None:
         self.written.put((table, address, values))
@@ -128,22 +132,33 @@ def test_a_gateway_speaks_rtu_over_tcp(belt: Device) -> None:
     assert all(packet[0] == 7 for packet in sent), "the unit is the first byte of RTU"
 
 
-@pytest.mark.parametrize("owed", [1, 2])
-def test_a_late_answer_is_never_taken_for_that_of_another_request(belt: Device, owed: int) -> None:
-    memory, kept = Memory(), list[bytes]()
+class LateAnswers:
+    """Line on which the next `left` answers are each the one of as many requests before as are owed."""
+
+    def __init__(self, owed: int) -> None:
+        self._owed = owed
+        self._kept: list[bytes] = []
+        self.left = 0
+
+    def begin(self) -> None:
+        self.left = 8 + self._owed
+
+    def __call__(self, is_sent: bool, packet: bytes) -> bytes:
+        if not is_sent or not self.left:
+            return packet
+        self.left -= 1
+        self._kept.append(packet)
+        return self._kept.pop(0) if len(self._kept) > self._owed else b""
+
+
+OWED = pytest.mark.parametrize("owed", [1, 2, 3, 4])
+
+
+@OWED
+def test_a_late_answer_is_not_taken_for_that_of_another_request(belt: Device, owed: int) -> None:
+    memory, late = Memory(), LateAnswers(owed)
     memory.inputs = [0] * 40
     memory.inputs[20], memory.inputs[30] = 1, 2  # a part at the entry; 2 mm/s
-    left = 0
-
-    def late(is_sent: bool, packet: bytes) -> bytes:
-        """For a while each answer is the one of a request before."""
-        nonlocal left
-        if not is_sent or not left:
-            return packet
-        left -= 1
-        kept.append(packet)
-        return kept.pop(0) if len(kept) > owed else b""
-
     facts = {
         **belt.driver.settings.facts,
         "part_at": Register(input=20, words={"none": 0, "entry": 1, "exit": 2}),
@@ -153,12 +168,29 @@ def test_a_late_answer_is_never_taken_for_that_of_another_request(belt: Device, 
         at = mapping(belt, port=port, framing="rtu", timeout_s=0.2, facts=facts)
         with driven(Modbus(at), belt) as (_, heard):
             heard.until(is_heard)
-            left = 8 + owed
+            late.begin()
             lost = heard.until(is_lost)
             assert "No response" in str(lost.lost)
-            back = heard.until(lambda report: is_heard(report) and left == 0)
+            back = heard.until(lambda report: is_heard(report) and not late.left)
             assert (dict(back.facts or ())["part_at"], dict(back.facts or ())["mm_s"]) == ("entry", 2)
             assert all(dict(each.facts or ()).get("part_at", "entry") == "entry" for each in heard.all)
+
+
+@OWED
+def test_a_late_bit_is_not_taken_for_another_one(belt: Device, owed: int) -> None:
+    memory, late, seen = Memory(), LateAnswers(owed), list[tuple[int, int]]()
+    memory.coils = [0, 1]
+    late.begin()
+    with served(memory, framing="rtu", trace=late) as port:
+        line = Line(mapping(belt, port=port, framing="rtu", timeout_s=0.1))
+        while late.left or len(seen) < 4:
+            at = len(seen) % 2
+            try:
+                seen.append((at, *line.read(1, Block(table="coil", address=at, length=1))))
+            except (ConnectionError, ModbusException):
+                line.hang_up()
+        line.hang_up()
+    assert seen and all(at == value for at, value in seen)
 
 
 class Gateway:
@@ -218,7 +250,7 @@ def test_an_answer_that_came_too_late_is_left_out_and_told(
             heard.until(is_heard)
             heard.until(is_heard)
             assert {dict(each.facts)["mm_s"] for each in heard.all if each.facts} == {11.0}
-    assert "1 answers came too late and are left out" in caplog.text
+    assert "an answer came too late and is left out (number 1)" in caplog.text
 
 
 def loads(belt: Device, memory: Memory, at: Settings) -> None:
