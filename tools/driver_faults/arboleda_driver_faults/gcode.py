@@ -155,12 +155,23 @@ class GantryRig(Rig):
         return (len(MOVE.findall(b"".join(self._driver.written))), self._driver.given)
 
 
+def _without_switches(example: PlantModel) -> PlantModel:
+    """The example with a gantry that only a person can say to stand at its zero."""
+
+    def limp(robot: Robot) -> Robot:
+        assert robot.driver is not None and isinstance(robot.driver.settings, Settings)
+        settings = replace(robot.driver.settings, homing=False)
+        driver = replace(robot.driver, settings=settings, home_moves=False, home_is_claim=True)
+        return replace(robot, driver=driver, home_at_start=False)
+
+    return replace(example, cells=tuple(cell.with_robots(limp) for cell in example.cells))
+
+
 class LimpRig(GantryRig):
     """Test with a gantry without switches, which does not lock itself when it boots."""
 
     def __init__(self, example: PlantModel) -> None:
-        super().__init__(example)
-        self._settings = replace(self._settings, homing=False)
+        super().__init__(_without_switches(example))
 
     def _controller(self) -> VirtualGrbl:
         self._grbl = VirtualGrbl(self.faults, homed=True)
@@ -168,7 +179,7 @@ class LimpRig(GantryRig):
         return self._grbl
 
     def before_home(self) -> None:
-        self._grbl.push_to_count()
+        self._grbl.begin_at_zero()
 
 
 class MoonrakerRig(GantryRig):
@@ -212,3 +223,13 @@ class MarlinRig(GantryRig):
         """Press the button on its board, where that is what it waits for."""
         if self._marlin.needs_reset:
             self._marlin.press_reset()
+
+
+class LimpMarlinRig(MarlinRig):
+    """Test with a gantry with Marlin without switches."""
+
+    def __init__(self, example: PlantModel) -> None:
+        super().__init__(_without_switches(example))
+
+    def before_home(self) -> None:
+        self._marlin.push_to_zero()

@@ -10,7 +10,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
 
 from .dobot import DobotRig
-from .gcode import GantryRig, LimpRig, MarlinRig, MoonrakerRig
+from .gcode import GantryRig, LimpMarlinRig, LimpRig, MarlinRig, MoonrakerRig
 from .gripper import CarryRig
 from .modbus import ModbusRig
 from .nav2 import RoundRig, WaypointsRig
@@ -42,6 +42,7 @@ RIGS: dict[str, tuple[Path | None, Callable[..., Rig]]] = {
     "gcode-grbl": (EXAMPLES / "gantry/bench.yaml", GantryRig),
     "gcode-limp": (EXAMPLES / "gantry/bench.yaml", LimpRig),
     "gcode-marlin": (EXAMPLES / "gantry/marlin.yaml", MarlinRig),
+    "gcode-marlin-limp": (EXAMPLES / "gantry/marlin.yaml", LimpMarlinRig),
     "gcode-moonraker": (EXAMPLES / "gantry/moonraker.yaml", MoonrakerRig),
     "pylabrobot": (EXAMPLES / "plate_bench/bench.yaml", _shaker),
     "pylabrobot-side_by_side": (EXAMPLES / "plate_bench/bench.yaml", partial(_shaker, side_by_side=True)),

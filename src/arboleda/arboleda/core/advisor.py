@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from arboleda.dispatch.obstacles import MAY_LET_GO
+from arboleda.dispatch.obstacles import MAY_LET_GO, Make
 from arboleda.model.advice import Advice, Hand
 from arboleda.model.cell_states import CellState
 from arboleda.model.facts import Facts, Value, shown
@@ -28,6 +28,7 @@ from .verbs.device_verbs import works
 
 WILL_BE_HOMED = Phrase("cell.will_be_homed", "{arm} will have been homed")
 IN_THE_WAY = Phrase("advice.in_the_way", "{device} does not say {facts}")
+NOT_SAID = Phrase("advice.not_said", "{device} does not say its {fact}")
 HOLDS_ZONES = Phrase("advice.holds_zones", "{arm} holds zone {zones}")
 MAY_BE_IN = Phrase("zone.may_be_in", "{arm} may still be in {zone}, which is quarantined")
 Refusal = Callable[[OperatorRequest], "Sentence | None"]
@@ -85,7 +86,7 @@ class Advisor:
             for each in readying
             if each.do is Verb.HOME
             and each.scope in run.cell.workspaces
-            and not _is_cleared_by_homing(run, each.scope)
+            and not run.context.robots.belief(each.scope).stands_while_cleared
             and run.context.devices.has(each.scope)
         ]
         if run.task is None:
@@ -153,6 +154,7 @@ class Advisor:
         for robot in run.cell.reached:
             obstacle = obstacle_of(robot.name)
             if obstacle is None:
+                by_reason += _making_known(run, robot) if run.state in AT_HAND else ()
                 continue
             if obstacle.reason is Reason.STOPPED and (others := self._stoppers(run, robot.name)):
                 for other in others:
@@ -165,7 +167,7 @@ class Advisor:
                 yield from _stopping(run, obstacle.sentence)
                 return
             if _is_cleared_by_homing(run, robot.name):
-                by_reason.append(Advice(do=Verb.HOME, scope=robot.name, why=obstacle.sentence))
+                by_reason += self._clearing(run, robot.name, obstacle.sentence, visited)
             elif is_hearsay:
                 by_reason += self._homing(run, robot.name, obstacle.sentence, visited)
             elif obstacle.reason in HANDS:
@@ -184,6 +186,13 @@ class Advisor:
             return []
         return [other.cell.name for other in runs if other.state in STOPPING]
 
+    def _clearing(self, run: CellRun, robot: str, why: Sentence, visited: frozenset[str]) -> Iterator[Advice]:
+        """Advice to home a robot out of its fault."""
+        if run.context.robots.belief(robot).stands_while_cleared:
+            yield Advice(do=Verb.HOME, scope=robot, why=why)
+        else:
+            yield from self._homing(run, robot, why, visited)
+
     def _homing(self, run: CellRun, robot: str, why: Sentence, visited: frozenset[str]) -> Iterator[Advice]:
         by_routine = run.context.robots.homes_by_routine(robot)
         if by_routine:
@@ -198,9 +207,10 @@ class Advisor:
             yield from _running_home(run, robot, why)
             return
         belief = run.context.robots.belief(robot)
-        if belief.says_unhomed:
+        is_claim = belief.robot.home_is_claim
+        if (Verb.HOME, robot) in run.in_vain if is_claim else belief.says_unhomed:
             yield Advice(do=Hand.REFERENCE, scope=robot, why=why)
-            if not belief.displaced:
+            if not (is_claim or belief.displaced):
                 return
         yield Advice(do=Verb.HOME, scope=robot, why=why, by_hand=True)
 
@@ -319,15 +329,40 @@ def _out_of_the_way(run: CellRun, device: str, wanted: Facts) -> Iterator[Advice
         yield Advice(do=Verb.DO, scope=device, arguments=((WORK.name, words),), why=why, moves=(device,))
 
 
+def _making_known(run: CellRun, robot: Robot) -> Iterator[Advice]:
+    """Advice to have a robot do what sets a fact that it does not say, and that a verb needs.
+
+    Each of its verbs that sets the fact is an alternative.
+    """
+    belief = run.context.robots.belief(robot.name)
+    unsaid = {name for name in robot.fact_names if belief.fact(name) is None}
+    if not unsaid:
+        return
+    needed = {name for make in robot.calls.values() for name, _ in make(id="").needs}
+    needed |= {need.fact for need in run.cell.needs if need.other == robot.name}
+    for fact in sorted(unsaid & needed):
+        setting = ((words, make) for words, make in works(robot) if fact in dict(make(id="").sets))
+        verbs = {make(id="").word: words for words, make in setting if _is_fit(run, make)}
+        why = NOT_SAID(device=robot.name, fact=fact)
+        for number, words in enumerate(verbs.values()):
+            told = ((WORK.name, words),)
+            moves, instead = (robot.name,), number > 0
+            yield Advice(do=Verb.DO, scope=robot.name, arguments=told, why=why, moves=moves, instead=instead)
+
+
+def _is_fit(run: CellRun, make: Make) -> bool:
+    """True for a command of which every need is met."""
+    failure = run.context.commands.objection(make)
+    return failure is None or failure.reason is not Reason.PRECONDITION
+
+
 def _words_for(run: CellRun, robot: Robot, fact: tuple[str, Value]) -> str | None:
     """The words of a verb that sets a fact; None where the device has none, or cannot do it as it stands."""
     if run.state is CellState.EXECUTE or (Verb.DO, robot.name) in run.in_vain:
         return None
     for words, make in works(robot):
-        if fact in make(id="").sets:
-            failure = run.context.commands.objection(make)
-            if failure is None or failure.reason is not Reason.PRECONDITION:
-                return words
+        if fact in make(id="").sets and _is_fit(run, make):
+            return words
     return None
 
 

@@ -191,6 +191,9 @@ class Belief:
             self.tokens = report.tokens  # None too: tokens belong to the numbers of one report
         if report.facts:
             self._merge_facts(report.facts)
+        for name in report.unknown:
+            if self.facts.pop(name, None) is not None:
+                self.facts_no = self.reports
         self.position = self.position_in(self)
         if self.held_in(report) is not None:
             self.held_boot = self.boot_id
@@ -329,10 +332,17 @@ class Belief:
 
     @property
     def is_cleared_by_homing(self) -> bool:
-        """True where it is in a fault that its driver's homing leads out of, without a move."""
+        """True where it is in a fault that its driver's homing leads out of."""
         trouble, driver = self.trouble, self.robot.driver
         in_fault = trouble is not None and trouble.reason is Reason.DEVICE_FAULT
         return in_fault and driver is not None and driver.recovers
+
+    @property
+    def stands_while_cleared(self) -> bool:
+        """True where homing leads it out of its fault, and it keeps its place."""
+        driver = self.robot.driver
+        keeps = driver is not None and not (driver.home_moves or driver.home_is_claim)
+        return keeps and self.is_cleared_by_homing
 
     @property
     def is_led_out_by_homing(self) -> bool:

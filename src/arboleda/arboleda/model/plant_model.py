@@ -72,7 +72,8 @@ class MqttVersion(str, Enum):
 class DriverUse:
     """The driver that reaches a robot, and its settings; `make` makes one with them. `pace` is the share of
     its model's speed at which it moves the robot. `facts` names the facts that it reports beside those of the
-    robot's kind; `recovers`: homing leads the robot out of a fault, and does not move it.
+    robot's kind. `recovers`: homing leads the robot out of a fault. `home_moves`: homing moves it.
+    `home_is_claim`: homing is the word of a person that the robot stands at its zero.
     """
 
     name: str
@@ -80,6 +81,8 @@ class DriverUse:
     pace: float = 1.0
     facts: tuple[str, ...] = ()
     recovers: bool = False
+    home_moves: bool = True
+    home_is_claim: bool = False
     make: Callable[[], Any] = field(compare=False, repr=False)
 
 
@@ -244,6 +247,11 @@ class Robot:
         What has no homing never loses a position, and so never has to say it.
         """
         return (self.evidence is Evidence.IDS and not self.assume_homed) or not self.homes
+
+    @property
+    def home_is_claim(self) -> bool:
+        """True where only a person can say that it is homed, and its driver takes that word."""
+        return self.driver is not None and self.driver.home_is_claim
 
 
 @dataclass(frozen=True, kw_only=True)

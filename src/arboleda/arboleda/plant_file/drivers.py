@@ -97,13 +97,17 @@ def _use(document: Document, place: Place, used: PythonUses) -> DriverUse | None
     read = _settings(document, here, spec, used)
     if read is FAULTY:
         return None
+    recovers = _offered(document, here, read, RECOVERS, False) is True
+    is_claim = _offered(document, here, read, CLAIM, False) is True
     return DriverUse(
         name=name,
         settings=read,
         make=partial(spec.make, read),
         pace=_pace(document, here, read),
         facts=_facts(document, here, read),
-        recovers=_offered(document, here, read, RECOVERS, False) is True,
+        recovers=recovers,
+        home_moves=_offered(document, here, read, MOVES, not recovers) is True and not is_claim,
+        home_is_claim=is_claim,
     )
 
 
@@ -179,7 +183,8 @@ def _installed(document: Document, place: Place, name: str, used: PythonUses) ->
     return spec
 
 
-SHARE, FACTS, RECOVERS = "model_speed_share", "reported_facts", "home_clears_faults"
+SHARE, FACTS = "model_speed_share", "reported_facts"
+RECOVERS, MOVES, CLAIM = "home_clears_faults", "home_moves", "home_is_claim"
 OF_DEVICES = (Link.MQTT.value, Link.ROS.value)
 COME_WITH_IT = (*OF_DEVICES, Link.NONE.value)
 """The drivers that come with Arboleda, by their names in a plant file."""

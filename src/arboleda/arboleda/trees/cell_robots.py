@@ -133,7 +133,8 @@ class CellRobots:
     def homes_by_routine(self, robot: str) -> bool:
         """True for a robot that finds its reference by itself; a person puts any other robot there."""
         belief = self._dispatcher.beliefs[robot]
-        return belief.robot.evidence is Evidence.IDS and (belief.robot.says_homed or belief.says_unhomed)
+        knows = belief.robot.says_homed or belief.says_unhomed
+        return belief.robot.evidence is Evidence.IDS and knows and not belief.robot.home_is_claim
 
     def receiving(self, names: Iterable[str]) -> list[tuple[Belief, int]]:
         """The beliefs about these robots, and about those of the cell whose boards number their commands.

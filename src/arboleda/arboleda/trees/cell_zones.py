@@ -154,8 +154,9 @@ class CellZones:
         """
         for robot in self._cell.shared_movers:
             if not (self._devices.is_lent(robot) or self._devices.hand_over.is_home(robot)):
-                homed = self._dispatcher.beliefs[robot].robot.says_homed
-                astray = ASTRAY_SHARED if homed else ASTRAY_SHARED_BY_HAND
+                known = self._dispatcher.beliefs[robot].robot
+                says_homed = known.says_homed and not known.home_is_claim
+                astray = ASTRAY_SHARED if says_homed else ASTRAY_SHARED_BY_HAND
                 return robot, Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=astray(arm=robot))
         for robot in self._cell.zone_users:
             if robot in self._cell.shared:
@@ -164,7 +165,8 @@ class CellZones:
             unknown = not belief.supervised and robot not in self._dispatcher.whereabouts.reached
             if unknown or self._dispatcher.whereabouts.place(space) is not None:
                 continue
-            astray = ASTRAY if belief.robot.says_homed else ASTRAY_BY_HAND
+            says_homed = belief.robot.says_homed and not belief.robot.home_is_claim
+            astray = ASTRAY if says_homed else ASTRAY_BY_HAND
             return robot, Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=astray(arm=robot))
         return None
 

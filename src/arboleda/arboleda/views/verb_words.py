@@ -136,7 +136,8 @@ ABOUT: dict[Verb, VerbWords] = {
         by_hand=ByHand(
             label="Homed by hand",
             page="Moves nothing. You declare that the robot stands at its reference, a mobile robot at home.",
-            asks="Does {of} stand at its reference, a mobile robot at home? The plant will believe it.",
+            asks="Does {of} stand at its reference: a mobile robot at home, a machine without switches at "
+            "its zero? The plant will believe it.",
             option="Move nothing: you declare that the robot stands at its reference, "
             "a mobile robot at home.",
         ),
@@ -146,7 +147,7 @@ ABOUT: dict[Verb, VerbWords] = {
         refused="while its cell works on a task, the robot is latched, in fault, offline, only drawn or "
         "being homed, or another robot holds a zone that the arm may cross on its way. By hand it is "
         "refused where the robot reports itself whether it is homed (not with `assume_homed`), or says that "
-        "it is not. Below `evidence: ids` a robot is homed by hand only",
+        "it is not. Below `evidence: ids` and without switches, a robot is homed by hand only",
     ),
     Verb.DO: VerbWords(
         label="Do",

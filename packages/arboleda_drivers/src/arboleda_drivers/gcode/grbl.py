@@ -25,9 +25,11 @@ from .grbl_lines import (
 from .grbl_stop import SILENT_S, GrblStop, Step
 from .grbl_work import GrblLook, Homing, LastAlarm, Move, Work
 from .lines import LineReader, written
+from .settings import LETTERS
 
 BOOT_S = 3.0  # an Arduino boots when its line is opened
 MOVES = {State.RUN, State.JOG, State.HOME, State.HOLD}
+ZERO = (0.0,) * len(LETTERS)
 UNHOMED, JUMPED = "not_homed", "place_jumped"
 
 
@@ -99,7 +101,13 @@ class Grbl(GcodeController):
 
     def home(self, now: float, command: Home) -> None:
         # It goes on once it was reported as not homed.
-        self._work = Homing(id=command.id, began_at=now, has_switches=self.settings.homing)
+        settings, stands_at = self.settings, self.robot.motion.stands_at
+        self._work = Homing(
+            id=command.id,
+            began_at=now,
+            has_switches=settings.homing,
+            is_at_zero=lambda status: stands_at(settings.joints(status.position), settings.joints(ZERO)),
+        )
         self.receipts.tell(accepted=command.id)
 
     def halt(self, now: float) -> None:

@@ -65,7 +65,7 @@ class Book:
         last, time_s = self._last, now - self._last_at
         if status.state in LOCKED:
             self.lose()
-        elif last is not None and last.state in LOCKED:
+        elif last is not None and last.state in LOCKED and self._settings.homing:
             self.trust()  # somebody has homed it, or has unlocked it
         elif status.homed is not None and (self._may_ask or not status.homed):
             self.homed, self._may_ask = status.homed, False

@@ -11,6 +11,7 @@ from arboleda_drivers.connections.receipts import Look
 from .grbl_lines import LOCKS, Alarm, Answer, State, Status
 from .grbl_stop import IDLE_ENOUGH, RESETTABLE, SETTLE_S
 
+NOT_AT_ZERO = "not_at_zero"
 TROUBLES = {
     State.DOOR: "door",
     State.CHECK: "check_mode",
@@ -89,11 +90,14 @@ class Move:
 
 @dataclass(kw_only=True)
 class Homing:
-    """Homing: a reset where one is needed, the cycle, or a person's word where it `has_switches` not."""
+    """Homing: a reset where one is needed, and the cycle. One that `has_switches` not is unlocked instead: a
+    person says that it stands at its zero, which has to be where it counts 0.
+    """
 
     id: str
     began_at: float
     has_switches: bool
+    is_at_zero: Callable[[Status], bool]
     was_reset: bool = False
     sent: bool = False
     answered: bool = False
@@ -109,7 +113,9 @@ class Homing:
         return GrblLook(failed=answer.word) if answer.error else NOTHING
 
     def look(self, now: float, status: Status, alarm: LastAlarm) -> GrblLook:
-        if status.state is State.IDLE and (self.answered or not self.has_switches):
+        if status.state is State.IDLE and not self.has_switches:
+            return GrblLook(done=True) if self.is_at_zero(status) else GrblLook(failed=NOT_AT_ZERO)
+        if status.state is State.IDLE and self.answered:
             return GrblLook(done=True)
         if self.sent or status.state is State.RUN:
             return NOTHING

@@ -37,6 +37,7 @@ SILENT_S = 3.0  # a busy controller says so once a second
 BOOT_S = 10.0  # a board boots when its line is opened, some with a picture on their screen
 SHUTDOWN_S = 2.0  # it moves on for 0.6 s after it says that it is halted, longer the faster it steps
 SET_NUMBER, ASK_PLACE, FINISH, HOME_ALL, MOTORS_ON = "M110 N0", "M114", "M400", "G28", "M17"
+ZERO_HERE = "G92"  # from here on it counts so
 SETTINGS = ("M113 S1", "M84 S0")  # a sign of life each second; motors that never go off by themselves
 
 
@@ -131,7 +132,10 @@ class Marlin(GcodeController):
         self._work = Homing(id=command.id, began_at=now)
         self._is_homed = False
         self.receipts.tell(accepted=command.id)
-        self.queue.waiting.extend((HOME_ALL if self.settings.homing else MOTORS_ON, ASK_PLACE))
+        if self.settings.homing:
+            self.queue.waiting.extend((HOME_ALL, ASK_PLACE))
+        else:
+            self.queue.waiting.extend((f"{ZERO_HERE} {self.settings.words_of_zero}", MOTORS_ON, ASK_PLACE))
 
     def halt(self, now: float) -> None:
         """Drop all moves. Homing would go on with its next leg, and believe its end: that is shut down."""

@@ -61,6 +61,16 @@ class Settings(StreamAddress):
         return self.dialect == "grbl"
 
     @property
+    def home_moves(self) -> bool:
+        """True where the machine homes by its switches."""
+        return self.homing
+
+    @property
+    def home_is_claim(self) -> bool:
+        """True for a machine without switches: only a person knows that it stands at its zero."""
+        return not self.homing
+
+    @property
     def model_speed_share(self) -> float:
         """The share of the model's speed at which the machine is moved."""
         return self.speed_percent / 100
@@ -79,6 +89,11 @@ class Settings(StreamAddress):
         """The words of G-code for the axes at `q`, m."""
         rows = zip(self.axes, q, self.zeros, strict=True)
         return "".join(f"{letter}{at * MM + zero:.3f}" for letter, at, zero in rows)
+
+    @property
+    def words_of_zero(self) -> str:
+        """The words of G-code for the place where the machine counts 0."""
+        return " ".join(f"{letter}0" for letter in self.axes)
 
     def place(self, q: tuple[float, ...], before: tuple[float, ...]) -> tuple[float, ...]:
         """The place of the machine, mm, with its axes at `q`, m; others stay where they were before."""

@@ -64,6 +64,28 @@ def test_a_machine_without_switches_is_unlocked() -> None:
     assert rig.written.endswith(b"$X\n")
 
 
+def test_a_machine_without_switches_that_counts_elsewhere_is_not_at_its_zero() -> None:
+    rig = GrblRig(homing=False)
+    rig.until(done=rig.home(), homed=True)
+    rig.faults.switch("hard_limit", on=True)
+    rig.move(-60, 0, 0)
+    assert rig.told("failure") == "hard_limit"
+    rig.faults.switch("hard_limit", on=False)
+    rig.home()
+    rig.wait(1.0)
+    assert (rig.told("failure"), rig.report.homed) == ("not_at_zero", False)
+    rig.grbl.begin_at_zero()
+    rig.wait(1.0)
+    rig.until(done=rig.home(), state=STILL, homed=True)
+
+
+def test_a_machine_without_switches_that_somebody_else_unlocks_is_not_homed() -> None:
+    rig = GrblRig(homed=False, homing=False)
+    rig.grbl.step(rig.line.now, b"$X\n")
+    rig.wait(2.0)
+    assert (rig.report.state, rig.report.homed) == (MotionState.NOT_HOMED, False)
+
+
 def test_homing_of_a_ready_machine_shows_that_it_was_not() -> None:
     """The plant believes a homing that it has seen."""
     rig = GrblRig(homing=False)

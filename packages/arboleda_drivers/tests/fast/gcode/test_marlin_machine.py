@@ -103,10 +103,16 @@ def test_it_has_to_be_homed_as_nobody_tells_whether_it_is() -> None:
     assert b"G28*" in rig.written
 
 
-def test_a_machine_without_switches_holds_its_motors() -> None:
-    rig = MarlinRig(homing=False)
+def test_a_machine_without_switches_counts_from_where_a_person_says_that_its_zero_is() -> None:
+    rig = MarlinRig("slips", homing=False)
     assert b" M17*" in rig.written and b"G28" not in rig.written
+    rig.move(200, 0, 0)
+    rig.wait(1.0)
+    rig.until(accepted=rig.stop())
+    rig.marlin.push_to_zero()
+    rig.until(done=rig.home(), state=STILL, homed=True)
     rig.until(done=rig.move(10, 0, 0))
+    assert rig.marlin.place == pytest.approx((10, 0, 0))
 
 
 def test_homing_that_finds_no_switch_halts_it_until_it_is_reset() -> None:

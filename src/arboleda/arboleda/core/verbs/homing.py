@@ -33,6 +33,10 @@ SAYS_UNHOMED_BY_HAND = Phrase(
     "refusal.says_unhomed_by_hand",
     "{robot} says that it is not homed; home {robot} at its own controls first",
 )
+ONLY_BY_HAND = Phrase(
+    "refusal.home_only_by_hand",
+    "{robot} finds no reference by itself; put it at its zero and say: home {robot} --by-hand",
+)
 NO_HOMING = Phrase("refusal.no_homing", "{robot} has no homing")
 CANNOT_REPORT = Phrase(
     "refusal.cannot_report",
@@ -67,9 +71,12 @@ class Homing:
         return partial(self._home, robots, by_hand=by_hand)
 
     def home(self, name: str) -> Entry:
-        """Have a robot run its homing routine; no other robot gets into its zones meanwhile."""
+        """Have a robot run its homing routine; no other robot gets into its zones meanwhile.
+
+        One that has none is told that it stands at its zero, and does not move.
+        """
         cell = self._scopes.in_charge(name)
-        if not self._state.dispatcher.beliefs[name].is_cleared_by_homing:
+        if not self._state.dispatcher.beliefs[name].stands_while_cleared:
             _uproot(cell, name)
         users = [run for run in self._scopes.of_robots(frozenset([name])) if name in run.cell.zone_users]
         for run in (each for each in users if each.state in AT_REST):
@@ -103,7 +110,7 @@ class Homing:
 
     def _home(self, robots: frozenset[str], *, by_hand: bool) -> None:
         for name in sorted(robots):
-            if by_hand:
+            if by_hand and not self._state.dispatcher.beliefs[name].robot.home_is_claim:
                 run = self._scopes.in_charge(name)
                 space = run.cell.workspaces.get(name)
                 self._state.dispatcher.declare_homed(name, space.home.q if space is not None else None)
@@ -127,6 +134,8 @@ class Homing:
         if work := self._state.dispatcher.ledger.work_of(name):
             return STILL_DOING(robot=name, doing=work.doing)
         robot, has_routine = belief.robot, belief.robot.evidence is Evidence.IDS
+        if robot.home_is_claim:
+            return self._objection(name) if by_hand else ONLY_BY_HAND(robot=name)
         if by_hand and robot.says_homed:
             return SAYS_ITSELF(robot=name)
         if belief.says_unhomed and (by_hand or not has_routine):
@@ -135,6 +144,10 @@ class Homing:
             return None
         if not has_routine:
             return CANNOT_REPORT(robot=name)
+        return self._objection(name)
+
+    def _objection(self, name: str) -> Sentence | None:
+        """The reason why a robot would not take the command to home."""
         obstacle = self._state.dispatcher.obstacles.objection(partial(Home, robot=name))
         return obstacle.sentence if obstacle else None
 

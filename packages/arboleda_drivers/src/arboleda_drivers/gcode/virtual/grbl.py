@@ -7,7 +7,7 @@ import re
 from collections.abc import Collection
 from dataclasses import replace
 
-from .machine import Path, Place, VirtualMachine, words_of
+from .machine import ZERO, Path, Place, VirtualMachine, words_of
 
 BANNER = "Grbl 1.1h ['$' for help]"
 LOCKED_MESSAGE = "[MSG:'$H'|'$X' to unlock]"
@@ -30,7 +30,7 @@ class VirtualGrbl(VirtualMachine):
         self._locked = not homed
         self._is_critical = False
         self._homing_on = True  # its setting $22, which outlives a boot
-        self._zero: Place = (0.0, 0.0, 0.0)  # the place where it counts 0
+        self._zero: Place = ZERO  # the place where it counts 0
         self._rest = b""
         self._statuses = 0
         self._was_off = self._was_asleep = False
@@ -53,9 +53,10 @@ class VirtualGrbl(VirtualMachine):
             out += self._take(now, data[at : at + 1])
         return self._sent(out)
 
-    def push_to_count(self) -> None:
-        """Have somebody push its axes to where it counts that they are."""
-        self.place, self._zero = self._count, (0.0, 0.0, 0.0)
+    def begin_at_zero(self) -> None:
+        """Have somebody switch it off, push it to its zero and switch it on, unless it counts 0 there."""
+        if self.place != ZERO or self._count != ZERO:
+            self.place, self._was_off = ZERO, True
 
     @property
     def _count(self) -> Place:
@@ -87,7 +88,7 @@ class VirtualGrbl(VirtualMachine):
             self._homes_at = math.inf
             if "homing_fails" in self.faults:
                 return self._alarm(NO_SWITCH)
-            self._locked, self.place, self._zero = False, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+            self._locked, self.place, self._zero = False, ZERO, ZERO
             return ["ok"]
         return []
 

@@ -11,6 +11,7 @@ WORD = re.compile(r"([XYZF])(-?\d+(?:\.\d+)?)")
 SHORT_MM = 2.0
 FASTEST_MM_S = 100.0
 Place = tuple[float, ...]
+ZERO: Place = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +46,7 @@ class VirtualMachine:
 
     def __init__(self, faults: Collection[str]) -> None:
         self.faults = faults
-        self.place: Place = (0.0, 0.0, 0.0)
+        self.place = ZERO
         self._now = 0.0
         self._lines = 0
 

@@ -9,7 +9,7 @@ from collections.abc import Collection
 from functools import reduce
 from operator import xor
 
-from .machine import Path, Place, VirtualMachine, words_of
+from .machine import ZERO, Path, Place, VirtualMachine, words_of
 
 NUMBERED = re.compile(r"N(\d+) (.*)\*(\d+)")
 AT_ONCE = re.compile(r"(?:N\d+ )?(M410|M112)(?:\*\d+)?")
@@ -19,7 +19,6 @@ SLIP_MM = 3.0
 STEPS_PER_MM = 80
 HALTED = "Error:Printer halted. kill() called!"
 STOPPED = "Error:Printer stopped due to errors. Fix the error and use M999 to restart."
-ZERO: Place = (0.0, 0.0, 0.0)
 
 
 class VirtualMarlin(VirtualMachine):
@@ -60,6 +59,11 @@ class VirtualMarlin(VirtualMachine):
     def press_reset(self) -> None:
         """Reset its controller, as with the button on its board."""
         self._was_off = True
+
+    def push_to_zero(self) -> None:
+        """Have somebody push its axes to their zero, which it does not see."""
+        self.place = ZERO
+        self._slip = tuple(-at for at in self._counted)
 
     # How time passes.
 
@@ -208,6 +212,9 @@ class VirtualMarlin(VirtualMachine):
             return []
         if line.startswith("G1"):
             return self._move(now, line)
+        if line.startswith("G92"):
+            self._slip, self._goal = self.place, ZERO
+            self._stand(ZERO)
         if line.startswith("M110"):
             self._last_number = int(line.partition("N")[2] or 0)  # a second time, after it was read
         if line == "M114":

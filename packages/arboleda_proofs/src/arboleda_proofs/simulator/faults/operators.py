@@ -47,7 +47,8 @@ def _zones(model: PlantModel) -> tuple[str, ...]:
 def _homings(model: PlantModel, target: str) -> tuple[str, ...]:
     """Verbs for homing; by hand only for robots that cannot report a homing, as people are asked then."""
     robot = model.robots.get(target)
-    return ("",) if robot is None or robot.says_homed else ("", BY_HAND)
+    by_itself = robot is None or (robot.says_homed and not robot.home_is_claim)
+    return ("",) if by_itself else ("", BY_HAND)
 
 
 def _cancellings(model: PlantModel, target: str) -> tuple[str, ...]:

@@ -146,8 +146,8 @@ def _not_so(look: Look, request: OperatorRequest) -> bool:
     robots = [look.world.model.robots[name] for name in look.record.scopes.robots(request.scope)]
     robots = [robot for robot in robots if robot.homes and robot.link is not Link.NONE] or robots
     if request.by_hand:
-        return any(robot.says_homed for robot in robots)
-    return any(robot.evidence is not Evidence.IDS for robot in robots)
+        return any(robot.says_homed and not robot.home_is_claim for robot in robots)
+    return any(robot.evidence is not Evidence.IDS or robot.home_is_claim for robot in robots)
 
 
 @invariant(Trigger.ASKED)
