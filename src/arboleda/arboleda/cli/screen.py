@@ -20,7 +20,7 @@ from rich.text import Text
 
 from arboleda.model.cell_states import CellState
 from arboleda.model.facts import Value, shown
-from arboleda.model.messages import MotionState, TaskChanged, TaskState
+from arboleda.model.messages import MotionState, TaskChanged, TaskState, Verb
 from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.views import view
@@ -390,13 +390,15 @@ def _why(cell: dict[str, Any]) -> Sentence | str | None:
         return STANDS(
             cell=cell["name"], state=word("cell_state", cell["state"]), advice=cell["advice"][0]["said"]
         )
-    return cell["held_by"] or cell["not_ready"] or _to_do_by_hand(cell)
+    return cell["held_by"] or cell["not_ready"] or _to_do(cell)
 
 
-def _to_do_by_hand(cell: dict[str, Any]) -> Sentence | None:
-    """The first advice to a person at a cell that takes tasks all the same."""
+def _to_do(cell: dict[str, Any]) -> Sentence | None:
+    """The first advice on a machine of a cell that takes tasks all the same."""
     first = next(iter(cell["advice"]), None)
-    return TO_DO(cell=cell["name"], advice=first["said"]) if first is not None and first["hand"] else None
+    if first is None or not (first["hand"] or first["do"] == Verb.DO):
+        return None
+    return TO_DO(cell=cell["name"], advice=first["said"])
 
 
 def _obstacles(snapshot: dict[str, Any]) -> list[str]:

@@ -31,7 +31,7 @@ BUSY_SWITCHING = (
 )
 NEEDS = Phrase("robot.needs", "{robot} needs {fact} to be {value}, and says {told}")
 NEEDED = Phrase("robot.needed", "{robot} needs {fact} to be {value}, and said {told}")
-NEEDS_UNSAID = Phrase("robot.needs_unsaid", "{robot} needs {fact} to be {value}, and never said it")
+NEEDS_UNSAID = Phrase("robot.needs_unsaid", "{robot} needs {fact} to be {value}, and does not say it")
 MAY_LET_GO = Phrase(
     "tool.may_let_go", "{robot} stays where it is: {tool} was told to let go and may still do it"
 )

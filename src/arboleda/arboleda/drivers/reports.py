@@ -61,6 +61,10 @@ def _are_facts(value: Any) -> bool:
     return pairs and all(isinstance(name, str) and _is_value(each) for name, each in value)
 
 
+def _are_names(value: object) -> bool:
+    return isinstance(value, tuple) and all(map(_is_text, value))
+
+
 def _is_position(value: object) -> bool:
     return isinstance(value, tuple) and all(map(is_number, value))
 
@@ -86,6 +90,7 @@ FIELDS: dict[str, tuple[Callable[[Any], bool], str]] = {
     "state": (lambda value: isinstance(value, MotionState), "a MotionState"),
     "q": (_is_position, "a tuple of numbers"),
     "facts": (_are_facts, 'a tuple of pairs, (("door", "open"),)'),
+    "unknown": (_are_names, 'a tuple of names of facts, ("door",)'),
     "receipt": (_is_receipt, "a Receipt of whole numbers of 0 or more"),
     "tokens": (_are_tokens, "Tokens, as commands carried them"),
     "lost": (lambda value: isinstance(value, Sentence), "a Sentence, as lost() makes it"),

@@ -331,14 +331,15 @@ class Report:
     """Report of a robot, in SI units; None stands for what it does not report.
 
     `epoch` names the bridge's start, `plant` the start of the plant whose heartbeat the bridge hears,
-    `boot_id` the board's; `accepted`, `done` and `rejected` are
-    command ids, the last of each; `refusal` is the word that came with `rejected`. `failed` is the last
-    command that the robot itself gave up, `failure` its word for why; `answered` is the last query that it
-    answered, with `answer`. `receipt` is what its board says of numbers, which outlive the start of plant and
-    bridge, and `tokens` what it echoes of those very commands. `facts` are what it reports beside the fields
-    here. `lost` says why there is no link, where whoever reports that knows it. `foreign_refused` and
-    `foreign_obeyed` count commands of others since the bridge's start, `foreign` tells of the last one.
-    `number` is that of the telemetry behind it, which its board counts from its boot on.
+    `boot_id` the board's; `accepted`, `done` and `rejected` are command ids, the last of each; `refusal` is
+    the word that came with `rejected`. `failed` is the last command that the robot itself gave up, `failure`
+    its word for why; `answered` is the last query that it answered, with `answer`. `receipt` is what its
+    board says of numbers, which outlive the start of plant and bridge, and `tokens` what it echoes of those
+    very commands. `facts` are what it reports beside the fields here, `unknown` the names of those of which
+    it does not know any more what they are. `lost` says why there is no link, where whoever reports that
+    knows it. `foreign_refused` and `foreign_obeyed` count commands of others since the bridge's start,
+    `foreign` tells of the last one. `number` is that of the telemetry behind it, which its board counts from
+    its boot on.
     """
 
     at: float
@@ -361,6 +362,7 @@ class Report:
     effector: bool | None = None
     piece: bool | None = None
     facts: Facts | None = None
+    unknown: tuple[str, ...] = ()
     receipt: Receipt | None = None
     tokens: Tokens | None = None
     lost: Sentence | None = None

@@ -10,7 +10,7 @@ from arboleda.model.plant_model import Cell, Need
 from arboleda.model.sentence import Phrase, Sentence
 
 NEEDS = Phrase("need.other", "{robot} needs {fact} of {other} to be {value}, and {other} said {told}")
-UNSAID = Phrase("need.unsaid", "{robot} needs {fact} of {other} to be {value}, and {other} never said it")
+UNSAID = Phrase("need.unsaid", "{robot} needs {fact} of {other} to be {value}, and {other} does not say it")
 SILENT = Phrase("need.silent", "{robot} needs {fact} of {other} to be {value}, and {other} was not heard")
 CHANGING = Phrase(
     "need.changing", "{robot} needs {fact} of {other} to be {value}, and {other} was told to change that"

@@ -1,8 +1,9 @@
 """State machine of the driver `pylabrobot`: calls and looks of one machine become reports.
 
-A call that returned is done once a look that began after it has read the facts. While a call is under way
-nothing is read, unless the backend takes questions beside it; an empty look then proves that the event loop
-runs. A call or a look without an end is silence.
+A call that returned is done once a look that began after it has read the facts. What PyLabRobot counts, and a
+call was to change that did not return, is unknown until a call that sets it returns. While a call is under
+way nothing is read, unless the backend takes questions beside it; an empty look then proves that the event
+loop runs. A call or a look without an end is silence.
 """
 
 from __future__ import annotations
@@ -67,10 +68,15 @@ class Machine:
         self._latched = False
         self._receipts: dict[str, object] = {}
         self._reported_at = -math.inf
+        self._counted = {name for name, one in settings.facts.items() if one.is_counted}
+        self._unknown: set[str] = set()  # facts that are counted, and that a call may have changed or not
+        self._tasks = Tasks(side_by_side=settings.side_by_side)
         self._forget(0.0)
 
     def _forget(self, now: float) -> None:
         """Forget the machine: its calls end with it."""
+        for task in self._tasks.values():
+            self._doubt(task)
         self._tasks = Tasks(side_by_side=self._settings.side_by_side)
         self._stops: deque[Stop] = deque()  # that wait for the end of another
         self._up = False
@@ -201,7 +207,7 @@ class Machine:
         if not self._is_full_look:
             return
         kinds = self._device.kind.facts
-        facts = self._settings.facts.items()
+        facts = ((name, one) for name, one in self._settings.facts.items() if name not in self._unknown)
         self._facts = tuple((name, one.value(values.get(one.read), kinds[name])) for name, one in facts)
         boot = None if self._settings.boot is None else str(values.get(self._settings.boot))
         if self._boot_shown is not None and boot != self._boot_shown:
@@ -244,6 +250,7 @@ class Machine:
             until=until,
             command=command,
             is_work=isinstance(command, Work),
+            sets=frozenset(name for name, _ in command.sets),
         )
         self._facts = None  # until they are read again
         beside = isinstance(command, Stop)
@@ -291,11 +298,24 @@ class Machine:
                 self._tell(now, accepted=task.command.id)
             return
         task.over = event
+        if isinstance(event, Returned):
+            self._unknown -= task.sets
+        elif not self._refuses(event):
+            self._doubt(task)
         if isinstance(task.command, Stop):
             self._stop_ended(now, task, task.command, event)
             return
         task.first_look = self._looks + 1
         self._look_at = now
+
+    def _refuses(self, raised: Raised) -> bool:
+        """True for an exception that says that nothing has begun."""
+        return raised.first and raised.name in self._settings.refusals
+
+    def _doubt(self, task: Task) -> None:
+        """Take for unknown what a call was to change that has not returned."""
+        if not isinstance(task.over, Returned):
+            self._unknown |= task.sets & self._counted
 
     def _stop_ended(self, now: float, task: Task, stop: Stop, event: Returned | Raised) -> None:
         del self._tasks[task.number]
@@ -313,7 +333,7 @@ class Machine:
             return
         if isinstance(event, Raised):
             word = plain(f"{event.name}: {event.text}" if event.text else event.name, LONGEST)
-            if event.first and event.name in self._settings.refusals:
+            if self._refuses(event):
                 self._receipts |= {"rejected": command.id, "refusal": word}
             else:
                 self._receipts |= {"failed": command.id, "failure": word}
@@ -346,4 +366,5 @@ class Machine:
     def _report(self, now: float) -> None:
         self._reported_at = now
         report = Report(at=now, robot=self._device.name, boot_id=self._boot, state=self._state())
-        self._out.append(report.again(now, facts=self._facts, **self._receipts))
+        unknown = tuple(sorted(self._unknown))
+        self._out.append(report.again(now, facts=self._facts, unknown=unknown, **self._receipts))

@@ -25,13 +25,20 @@ class Reading:
     """Path to a value, and what the value means.
 
     `words` are values by their words, each one value or its least and greatest; `near`, how far a number may
-    be from one that the kind names; `otherwise`, the word for anything else.
+    be from one that the kind names; `otherwise`, the word for anything else. `counted`: PyLabRobot counts it
+    by what was ordered, and does not ask the machine; by default where nothing is called on the path.
     """
 
     read: str = ""
     words: dict[str, Any] = field(default_factory=dict)
     near: float = 0.0
     otherwise: bool | int | float | str | None = None
+    counted: bool | None = None
+
+    @property
+    def is_counted(self) -> bool:
+        """True for a value of which only PyLabRobot's own count is read."""
+        return "()" not in self.read if self.counted is None else self.counted
 
     def __post_init__(self) -> None:
         steps(self.read)

@@ -11,13 +11,16 @@ from .messages import Raised, Returned
 
 @dataclass(kw_only=True)
 class Task:
-    """Calls under way; `command` None: nobody waits for their end any more. `over`: they have ended so."""
+    """Calls under way; `command` None: nobody waits for their end any more. `sets` are the facts that they
+    are to change. `over`: they have ended so.
+    """
 
     number: int
     began_at: float
     until: float
     command: VerbCommand | Stop | None
     is_work: bool = False
+    sets: frozenset[str] = frozenset()
     over: Returned | Raised | None = None
     first_look: int = 0  # the first look that began after the end
 

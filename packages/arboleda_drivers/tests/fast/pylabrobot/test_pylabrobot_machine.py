@@ -128,6 +128,52 @@ def test_an_exception_is_a_failure_unless_it_is_known_to_begin_nothing(
     assert (bench.report.refusal or bench.report.failure) == f"{name}: no"
 
 
+COUNTED = {"celsius": Reading(read=PATH, near=0.5, otherwise=0, counted=True)}
+
+
+def test_what_is_counted_is_unknown_after_a_call_that_failed_until_one_returns() -> None:
+    bench = Bench(facts=COUNTED)
+    bench.heat()
+    bench.step(Raised(number=bench.call, name="RuntimeError", text="no heat"))
+    bench.looks(37.0)
+    assert (bench.report.failed, bench.report.facts, bench.report.unknown) == ("c1", (), ("celsius",))
+    bench.heat()
+    bench.step(Returned(number=bench.call))
+    bench.looks(37.0)
+    assert (bench.report.facts, bench.report.unknown) == ((("celsius", 37),), ())
+
+
+def test_what_is_counted_stays_known_where_nothing_has_begun() -> None:
+    bench = Bench(facts=COUNTED)
+    bench.heat()
+    bench.step(Raised(number=bench.call, name="ValueError", text="not so", first=True))
+    bench.looks(20.0)
+    assert (bench.report.rejected, bench.report.facts) == ("c1", (("celsius", 0),))
+
+
+def test_what_is_counted_is_unknown_once_the_machine_is_left_at_work() -> None:
+    bench = Bench(facts=COUNTED)
+    bench.heat()
+    bench.step(Closed(why="pulled"))
+    bench.step(Opened())
+    bench.looks(20.0)
+    assert bench.report.unknown == ("celsius",)
+
+
+def test_what_the_machine_is_asked_for_is_known_after_a_call_that_failed() -> None:
+    bench = Bench()
+    bench.heat()
+    bench.step(Raised(number=bench.call, name="RuntimeError", text="no heat"))
+    bench.looks(37.0)
+    assert (bench.report.facts, bench.report.unknown) == ((("celsius", 37),), ())
+
+
+@pytest.mark.parametrize(("path", "counted"), [("head[0].has_tip", True), ("get_temperature()", False)])
+def test_a_value_is_counted_unless_something_is_called_for_it(path: str, *, counted: bool) -> None:
+    assert Reading(read=path).is_counted is counted
+    assert Reading(read=path, counted=not counted).is_counted is not counted
+
+
 def test_a_call_without_an_end_is_silence_and_is_back_with_its_end() -> None:
     bench = Bench(call_s=10.0)
     bench.heat()
