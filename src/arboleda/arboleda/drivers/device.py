@@ -26,7 +26,9 @@ class DrivenDevice:
         self.up = False
         self.stale_at = math.inf
         calls = (make(id="") for make in robot.calls.values())
-        self._finishes = any(isinstance(call, Work) and call.on_stop is OnStop.FINISH for call in calls)
+        finishes = any(isinstance(call, Work) and call.on_stop is OnStop.FINISH for call in calls)
+        watches = robot.driver is not None and robot.driver.watches_plant
+        self._may_be_at_work = finishes or (watches and robot.evidence is Evidence.IDS)
         self._epoch = epoch
         self._silence_s = math.inf if robot.evidence is Evidence.STATE else stale_after_s
         self._longest_s = stale_after_s
@@ -135,12 +137,16 @@ class DrivenDevice:
         return self._stamped(self._of_ours(report)), stop
 
     def _strays(self, report: Report) -> bool:
-        """True for a device at work as its link comes up; not where its work may have to end by itself."""
+        """True for a device at work as its link comes up.
+
+        Not where its work may have to end by itself, or a device that numbers its work would have ended it
+        without its plant: what it then says of that work is still believed.
+        """
         if report.state is None:
             return False
         unseen, self._unseen = self._unseen, False
         is_at_work = report.state is MotionState.MOVING
-        return unseen and self._work is None and is_at_work and not self._finishes
+        return unseen and self._work is None and is_at_work and not self._may_be_at_work
 
     @property
     def _can_stop(self) -> bool:

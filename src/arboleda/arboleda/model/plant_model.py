@@ -73,7 +73,8 @@ class DriverUse:
     """The driver that reaches a robot, and its settings; `make` makes one with them. `pace` is the share of
     its model's speed at which it moves the robot. `facts` names the facts that it reports beside those of the
     robot's kind. `recovers`: homing leads the robot out of a fault. `home_moves`: homing moves it.
-    `home_is_claim`: homing is the word of a person that the robot stands at its zero.
+    `home_is_claim`: homing is the word of a person that the robot stands at its zero. `watches_plant`: the
+    device ends its work by itself once the plant is gone.
     """
 
     name: str
@@ -83,6 +84,7 @@ class DriverUse:
     recovers: bool = False
     home_moves: bool = True
     home_is_claim: bool = False
+    watches_plant: bool = False
     make: Callable[[], Any] = field(compare=False, repr=False)
 
 

@@ -108,6 +108,7 @@ def _use(document: Document, place: Place, used: PythonUses) -> DriverUse | None
         recovers=recovers,
         home_moves=_offered(document, here, read, MOVES, not recovers) is True and not is_claim,
         home_is_claim=is_claim,
+        watches_plant=_offered(document, here, read, WATCHES, False) is True,
     )
 
 
@@ -185,6 +186,7 @@ def _installed(document: Document, place: Place, name: str, used: PythonUses) ->
 
 SHARE, FACTS = "model_speed_share", "reported_facts"
 RECOVERS, MOVES, CLAIM = "home_clears_faults", "home_moves", "home_is_claim"
+WATCHES = "watches_plant"
 OF_DEVICES = (Link.MQTT.value, Link.ROS.value)
 COME_WITH_IT = (*OF_DEVICES, Link.NONE.value)
 """The drivers that come with Arboleda, by their names in a plant file."""

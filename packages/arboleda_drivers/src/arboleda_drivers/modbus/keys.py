@@ -67,6 +67,11 @@ class ModbusKeys:
             raise DriverError(f"unit is {self.unit}; allowed: 0 to 255")
 
     @property
+    def watches_plant(self) -> bool:
+        """True where the PLC stops by itself without a heartbeat."""
+        return self.heartbeat is not None
+
+    @property
     def has_numbers(self) -> bool:
         """True where each answer has the number of its request."""
         return not self.serial and self.framing == "tcp"

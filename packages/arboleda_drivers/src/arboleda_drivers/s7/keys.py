@@ -137,6 +137,11 @@ class S7Keys:
             check_written(self.heartbeat)
 
     @property
+    def watches_plant(self) -> bool:
+        """True where the PLC stops by itself without a heartbeat."""
+        return self.heartbeat is not None
+
+    @property
     def peer(self) -> str:
         """The name of the PLC for sentences."""
         return f"{self.host}:{self.port}"
