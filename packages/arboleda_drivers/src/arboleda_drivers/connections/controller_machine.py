@@ -87,6 +87,8 @@ class ControllerMachine:
 
     def _command(self, now: float, command: Command) -> None:
         controller = self._controller
+        if not self._open and isinstance(command, Stop) and self._open_at < math.inf:
+            self._open_at = now  # the link waits for its next try; what was left at work is stopped by that
         if not self._open or not controller.takes_commands:
             raise NotSent(f"{controller.peer} is not connected")
         if isinstance(command, Stop):

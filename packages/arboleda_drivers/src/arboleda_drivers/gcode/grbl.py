@@ -171,8 +171,7 @@ class Grbl(GcodeController):
             self.receipts.forget()
 
     def _take_answer(self, now: float, answer: Answer) -> None:
-        if self.book.is_asking:
-            self.book.take_answer()
+        if self.book.take_answer(answer):
             self.is_heard, self.receipts.news = self.is_heard or self.book.is_known, True
         elif self._work is not None:
             if isinstance(self._work, Homing) and self._work.is_under_way:

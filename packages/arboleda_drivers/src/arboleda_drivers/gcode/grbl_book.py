@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from arboleda.drivers import Jointed
 
-from .grbl_lines import ASK_LOCK, LOCK_SIGNS, LockSign, State, Status
+from .grbl_lines import ASK_LOCK, LOCK_SIGNS, Answer, LockSign, State, Status
 from .settings import Settings
 
 ASK_S = 1.0  # for the answers about its lock
@@ -29,6 +29,7 @@ class Book:
         self._last_at = 0.0
         self._open_answers, self._asked_at = 0, 0.0
         self._signs: dict[str, bool] = {}
+        self._has_sign = False  # since the last answer
 
     @property
     def is_asking(self) -> bool:
@@ -96,11 +97,22 @@ class Book:
 
     def take_sign(self, sign: LockSign) -> None:
         """Note what it says of its lock, if it was asked."""
+        self._has_sign = True
         if self.is_asking:
             self._signs[sign.name] = sign.locks
 
-    def take_answer(self) -> None:
-        """Note the end of an answer: with the last one, one that locks itself and idles is homed."""
+    def take_answer(self, answer: Answer) -> bool:
+        """Note the end of an answer: with the last one, one that locks itself and idles is homed.
+
+        False for the answer to another line: GRBL numbers none, but one about its lock has a sign of it.
+        """
+        is_about_lock = self._has_sign or (self.is_asking and answer.error != 0)
+        self._has_sign = False
+        if self.is_asking and is_about_lock:
+            self._count_answer()
+        return is_about_lock
+
+    def _count_answer(self) -> None:
         self._open_answers -= 1
         if not self.is_asking:
             self.homed = len(self._signs) == LOCK_SIGNS and all(self._signs.values())

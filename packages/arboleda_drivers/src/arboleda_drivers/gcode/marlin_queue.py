@@ -13,6 +13,9 @@ from .controller import Halting
 from .lines import written
 from .marlin_lines import Capability, numbered
 
+UNENDED_S = (
+    10.0  # a stop without an end for so long: an answer was lost, and each one counts for a line before
+)
 STOP_AGAIN_S = 3.0  # Marlin drops all moves for a second, and for one more after a second stop
 ASK_NAME = "M115"
 PARSER = "EMERGENCY_PARSER"
@@ -67,7 +70,11 @@ class MarlinStop(Halting[Halt]):
 
     def __init__(self, queue: LineQueue, receipts: Receipts, now: float) -> None:
         super().__init__(receipts, now)
-        self._queue = queue
+        self._queue, self._first_said_at = queue, now
+
+    def begin(self, now: float, how: Halt) -> None:
+        self._first_said_at = now if self.how is None else self._first_said_at
+        super().begin(now, how)
 
     def say(self, now: float, halt: Halt) -> None:
         self.begin(now, halt)
@@ -78,7 +85,12 @@ class MarlinStop(Halting[Halt]):
             self.say(now, self.how)
 
     def insist(self, now: float) -> None:
-        """Say a stop again that has not ended for long: what it asks for is the same however often."""
+        """Say a stop again that has not ended for long: what it asks for is the same however often.
+
+        Raises LinkBroken once that is in vain.
+        """
+        if self.how is not None and now - self._first_said_at > UNENDED_S:
+            raise LinkBroken(f"it has confirmed no stop for {UNENDED_S:g} s; an answer of it was lost")
         if now - self.since > STOP_AGAIN_S:
             self.say_again(now)
 
