@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test smoke check long-test integration-test alone-test test-tools judge-test ros-test ros-build kilted-test newest-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost names-taken performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
+.PHONY: run test smoke check long-test integration-test alone-test test-tools judge-test ros-test ros-build kilted-test newest-test wheel-check aarch64-check images nightly campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants exercises cost lines names-taken performance firmware firmware-test firmware-robot fuzz install lint diagrams reference proof shots example-pictures moving-picture gallery clean help docs playground
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -126,6 +126,10 @@ hosts: install  ## a plant on hosts of its own (network namespaces; root): 1000 
 mutants:  ## plant 400 small bugs in core and wire, see which of them tests and simulator find; hours
 	@scripts/install test
 	PYTHONPATH=tools:tools/mutation:tools/drawn $(BIN)/python -m arboleda_mutation $(MUTANTS)
+
+lines:  ## try each driver whose machine runs in virtual time at bad lines: all forms, all moments; LINES="gcode-grbl --only stop" for some
+	@scripts/install test
+	@tools/bad-lines $(LINES)
 
 exercises:  ## judge every right and wrong work of the exercises; minutes
 	@scripts/install test

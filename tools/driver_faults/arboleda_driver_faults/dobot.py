@@ -95,18 +95,23 @@ class Loopback(loopback.Loopback[Event, ClientText]):
         """Send a line as another client of the dashboard."""
         self.dobot.step(self.now, [ClientText(client=-1, text=line)])
 
+    def _closed(self, why: str) -> Closed:
+        return Closed(why=why)
+
     def _do(self, message: Message) -> None:
         if isinstance(message, Open):
             off = self.dobot.is_off
             self._connected = not off
             self._client += 1
             self._to_driver.append(Closed(why="refused") if off else Opened())
+            self.line.opened(self.now)
         elif isinstance(message, Close):
             self._connected = False
+            self.line.closed()
             self._to_driver.clear()
         elif isinstance(message, SendLine) and self._connected:
             self.received.append(message.text)
-            self._to_device.append(ClientText(client=self._client, text=message.text))
+            self.line.asks(self.now, ClientText(client=self._client, text=message.text))
 
     def _step_device(self, *said: ClientText) -> None:
         for message in self.dobot.step(self.now, said):
@@ -116,6 +121,6 @@ class Loopback(loopback.Loopback[Event, ClientText]):
                 self._connected = False
                 self._to_driver.append(Closed(why="hung up"))
             elif isinstance(message, Frame):
-                self._to_driver.append(FeedbackData(data=message.data))
+                self.line.answers(self.now, FeedbackData(data=message.data))
             elif isinstance(message, Answer) and message.client == self._client:
-                self._to_driver.append(DashboardReply(data=message.text.encode()))
+                self.line.answers(self.now, DashboardReply(data=message.text.encode()))

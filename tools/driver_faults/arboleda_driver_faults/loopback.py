@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from random import Random
 from typing import Any, Generic, Protocol, TypeVar
 
 from arboleda.kinds.joints import MoveJoints
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda_drivers.connections.link import CommandNotSent, CommandRequest
+from arboleda_lines.line import CUT, Line
 
 from .rig import Hear
 
@@ -32,7 +34,8 @@ class Machine(Due, Protocol):
 
 
 class Loopback(ABC, Generic[Event, Said]):
-    """Driver and virtual device, connected: each gets the other's messages at once.
+    """Driver and virtual device, connected: each gets the other's messages as the `line` brings them, a good
+    one at once.
 
     `hear` takes the reports that the plant would get; `given` counts the moves that the driver was given.
     """
@@ -40,13 +43,14 @@ class Loopback(ABC, Generic[Event, Said]):
     def __init__(self, driver: Machine, device: Due, hear: Hear, now: float) -> None:
         self.driver, self.now, self.given = driver, now, 0
         self._device, self._hear = device, hear
-        self._to_device: deque[Said] = deque()
+        self.line = Line(Random(0))
         self._to_driver: deque[Event] = deque()
         self._connected = False
 
     @property
     def next_deadline(self) -> float:
-        return max(self.now, min(self._device.next_deadline, self.driver.next_deadline))
+        due = (self._device.next_deadline, self.driver.next_deadline, self.line.next_deadline)
+        return max(self.now, min(due))
 
     def ask(self, command: Command) -> str | None:
         """Command the device; returns the reason why the command could not leave, or None."""
@@ -64,11 +68,28 @@ class Loopback(ABC, Generic[Event, Said]):
 
     def _settle(self) -> None:
         """Pass messages in order until neither has any left."""
-        while self._to_device or self._to_driver:
-            while self._to_device:
-                self._step_device(self._to_device.popleft())
+        while True:
+            for said in self.line.sent(self.now):
+                self._step_device(said)
+            self._to_driver.extend(self._arrived())
+            if not self._to_driver:
+                return
             while self._to_driver:
                 self._step_driver(self._to_driver.popleft())
+
+    def _arrived(self) -> Iterator[Event]:
+        for message in self.line.arrived(self.now):
+            if message is CUT:
+                self.cut()
+            else:
+                yield message
+
+    def cut(self) -> None:
+        """End the connection, as where a gateway boots."""
+        if self._connected:
+            self.line.broken()
+            self._hang_up()
+            self._to_driver.append(self._closed("reset"))
 
     def _step_driver(self, *events: Event | CommandRequest) -> list[Any]:
         out = self.driver.step(self.now, events)
@@ -78,6 +99,14 @@ class Loopback(ABC, Generic[Event, Said]):
             else:
                 self._do(message)
         return out
+
+    def _hang_up(self) -> None:
+        """Let the device know that the connection has ended."""
+        self._connected = False
+
+    @abstractmethod
+    def _closed(self, why: str) -> Event:
+        """What tells the driver that the connection has ended."""
 
     @abstractmethod
     def _do(self, message: Any) -> None:

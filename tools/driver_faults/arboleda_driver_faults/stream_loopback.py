@@ -24,16 +24,22 @@ class Loopback(loopback.Loopback[Event, bytes]):
         self._to_driver.append(Received(data=data))
         self._settle()
 
+    def _closed(self, why: str) -> Closed:
+        return Closed(why=why)
+
     def _do(self, message: Message) -> None:
         if isinstance(message, Open):
             self._connected = not self.far.is_unplugged
             self._to_driver.append(Opened() if self._connected else Closed(why="no such file"))
+            self.line.opened(self.now)
         elif isinstance(message, Close):
             self._connected = False
+            self.line.closed()
             self._to_driver.clear()
         elif isinstance(message, Write) and self._connected:
             self.written.append(message.data)
-            self._to_device.append(message.data)
+            self.line.asks(self.now, message.data)
+            self.line.echoes(self.now, Received(data=message.data))
 
     def _step_device(self, *said: bytes) -> None:
         answer = self.far.step(self.now, b"".join(said))
@@ -41,4 +47,4 @@ class Loopback(loopback.Loopback[Event, bytes]):
             self._connected = False
             self._to_driver.append(Closed(why="the line is gone"))
         elif self._connected and answer:
-            self._to_driver.append(Received(data=answer))
+            self.line.answers(self.now, Received(data=answer))

@@ -113,10 +113,14 @@ class Loopback(loopback.Loopback[Closed | Opened | Received, Event]):
         self._step_device(joined, ClientData(client=BY_HAND, port=DASHBOARD, data=line.encode() + b"\n"))
         self._settle()
 
+    def _closed(self, why: str) -> Closed:
+        return Closed(why=why)
+
     def _do(self, message: Message) -> None:
         if isinstance(message, Open):
             self._connect()
         elif isinstance(message, Close):
+            self.line.closed()
             self._hang_up()
             self._to_driver.clear()
         elif isinstance(message, Send) and self._connected:
@@ -124,7 +128,7 @@ class Loopback(loopback.Loopback[Closed | Opened | Received, Event]):
                 said = self.lines if message.port == DASHBOARD else self.programs
                 said.append(message.data.decode().strip())
             client = self._first + PORTS.index(message.port)
-            self._to_device.append(ClientData(client=client, port=message.port, data=message.data))
+            self.line.asks(self.now, ClientData(client=client, port=message.port, data=message.data))
 
     def _connect(self) -> None:
         self._connected = not self.ur.is_off
@@ -132,13 +136,15 @@ class Loopback(loopback.Loopback[Closed | Opened | Received, Event]):
             self._to_driver.append(Closed(why="refused"))
             return
         self._first += len(PORTS)
-        self._to_device.extend(Joined(client=self._first + n, port=port) for n, port in enumerate(PORTS))
+        for number, port in enumerate(PORTS):
+            self.line.asks(self.now, Joined(client=self._first + number, port=port))
+        self.line.opened(self.now)
         self._to_driver.append(Opened())
 
     def _hang_up(self) -> None:
         if self._connected:
-            ends = (ClientData(client=self._first + n, port=port, data=b"") for n, port in enumerate(PORTS))
-            self._to_device.extend(ends)
+            for number, port in enumerate(PORTS):
+                self.line.asks(self.now, ClientData(client=self._first + number, port=port, data=b""))
         self._connected = False
 
     def _step_device(self, *events: Event) -> None:
@@ -148,7 +154,7 @@ class Loopback(loopback.Loopback[Closed | Opened | Received, Event]):
             if isinstance(message, ToClient):
                 if 0 <= message.client - self._first < len(PORTS):
                     port = PORTS[message.client - self._first]
-                    self._to_driver.append(Received(port=port, data=message.data))
+                    self.line.answers(self.now, Received(port=port, data=message.data))
             elif isinstance(message, Disconnect) or message.client >= self._first:
                 self._connected = False
                 self._to_driver.append(Closed(why="hung up"))

@@ -1,0 +1,1 @@
+"""Bad lines between drivers and their devices: in virtual time, and as relays of real lines."""

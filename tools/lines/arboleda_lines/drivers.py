@@ -1,0 +1,72 @@
+"""Drivers whose machines are tried at bad lines in virtual time, and what is known of their lines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from arboleda_drivers.connections.replies_due import REPLY_S
+from arboleda_drivers.connections.tcp_arm import SILENT_S as FRAMES_S
+from arboleda_drivers.gcode import grbl_stop, marlin, moonraker
+from arboleda_drivers.gcode.controller import ANSWER_S
+from arboleda_drivers.serial_arm.bus import SILENT_S as SERVOS_S
+from arboleda_drivers.serial_arm.packets import Instruction
+
+GRBL_STOPS = (b"!", b"\x18")
+MARLIN_STOPS = (b"M410", b"M112")
+SHORTEST_S = 3.0  # so long a line is bad at least
+
+
+def never(message: Any) -> bool:
+    """True for none: a stop without a telegram of its own."""
+    return False
+
+
+def _grbl(message: Any) -> bool:
+    return message in GRBL_STOPS
+
+
+def _marlin(message: Any) -> bool:
+    return any(word in message for word in MARLIN_STOPS)
+
+
+def _servos(message: Any) -> bool:
+    return Instruction.SYNC_WRITE in message[:8]
+
+
+def _ur(message: Any) -> bool:
+    data = getattr(message, "data", b"")
+    return b"stopj" in data or data == b"stop\n"
+
+
+def _dobot(message: Any) -> bool:
+    return "Stop()" in getattr(message, "text", "")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tried:
+    """What is tried: the times that its driver waits for an answer, s, and how it says a stop."""
+
+    waits_s: tuple[float, ...]
+    is_serial: bool = False
+    has_bytes: bool = True
+    is_stop: Callable[[Any], bool] = never
+    telegram_s: float = 0.0  # so long another telegram may be on the line before a stop
+
+    @property
+    def lasts_s(self) -> float:
+        """How long the line is bad."""
+        return max(SHORTEST_S, 3.5 * max(self.waits_s))
+
+
+TRIED = {
+    "gcode-grbl": Tried(waits_s=(grbl_stop.SILENT_S, ANSWER_S), is_serial=True, is_stop=_grbl),
+    "gcode-limp": Tried(waits_s=(grbl_stop.SILENT_S, ANSWER_S), is_serial=True, is_stop=_grbl),
+    "gcode-marlin": Tried(waits_s=(marlin.SILENT_S,), is_serial=True, is_stop=_marlin),
+    "gcode-moonraker": Tried(waits_s=(moonraker.SILENT_S,)),
+    "serial_arm-feetech": Tried(waits_s=(0.05, SERVOS_S), is_serial=True, is_stop=_servos, telegram_s=0.05),
+    "serial_arm-dynamixel": Tried(waits_s=(0.05, SERVOS_S), is_serial=True, is_stop=_servos, telegram_s=0.05),
+    "dobot": Tried(waits_s=(FRAMES_S, REPLY_S), is_stop=_dobot),
+    "ur": Tried(waits_s=(FRAMES_S, REPLY_S), is_stop=_ur),
+}
