@@ -34,9 +34,19 @@ def test_no_library_is_under_the_gpl() -> None:
 
 def test_the_core_is_built_with_the_ramps_flags(project: ConfigParser) -> None:
     env = project["env"]
-    assert {"-std=gnu++17", "-ffp-contract=off", "-I../core"} <= set(env["build_flags"].split())
-    assert "+<../../core/*.cpp>" in env["build_src_filter"].split()
-    assert list((PORT / "src" / "../../core").glob("*.cpp"))
+    assert {"-std=gnu++17", "-ffp-contract=off", "-I../core", "-Isrc"} <= set(env["build_flags"].split())
+    assert "+<core/*.cpp>" in env["build_src_filter"].split()
+    assert list((PORT / project["platformio"]["src_dir"] / "core").glob("*.cpp"))
+
+
+def test_no_environment_builds_a_source_beyond_the_folder_of_sources(project: ConfigParser) -> None:
+    # PlatformIO puts an object at .pio/build/ENVIRONMENT/src/ and the path of its source from src_dir.
+    filters = [env["build_src_filter"] for env in project.values() if "build_src_filter" in env]
+    assert len(filters) == 2
+    for patterns in filters:
+        assert ".." not in patterns
+        for pattern in patterns.split():
+            assert list((PORT / project["platformio"]["src_dir"]).glob(pattern[2:-1])), pattern
 
 
 def test_the_default_environment_is_one_of_the_file(project: ConfigParser) -> None:
@@ -48,6 +58,6 @@ def test_a_declared_device_is_built_from_its_own_sources_and_no_arm(name: str, p
     env = project[f"env:{name}"]
     assert "-DARBOLEDA_DEVICE" in (project["env:device"]["build_flags"] + env["build_flags"]).split()
     sources = project["env:device"]["build_src_filter"].split()
-    assert {"-<motion.cpp>", "-<machine.cpp>", "+<../../core/*.cpp>"} <= set(sources)
-    assert "-<device_*.cpp>" in project["env"]["build_src_filter"].split()
+    assert {"-<esp32/src/motion.cpp>", "-<esp32/src/machine.cpp>", "+<core/*.cpp>"} <= set(sources)
+    assert "-<esp32/src/device_*.cpp>" in project["env"]["build_src_filter"].split()
     assert {"device_motion.cpp", "device_machine.cpp"} <= {path.name for path in (PORT / "src").iterdir()}
