@@ -13,12 +13,14 @@ Board::Board(const Config& config, Hardware& hardware, Voice& voice)
       hardware_(hardware),
       voice_(voice),
       axes_(config, hardware),
-      homing_(config, hardware, axes_) {}
+      switches_(config, hardware),
+      homing_(config, switches_, axes_) {}
 
 void Board::boot(uint64_t now_us, uint32_t boot_id, bool homed) {
     now_us_ = now_us;
     homing_.cancel();
     axes_.reset();
+    switches_.boot(now_us);
     receipts_ = Receipts();
     uplink_.boot();
     watch_.boot(now_us);
@@ -59,6 +61,8 @@ void Board::poll(uint64_t now_us) {
     now_us_ = now_us > now_us_ ? now_us : now_us_;
     if (axes_.moving()) {
         move_on();
+    } else {
+        switches_.look(now_us_);
     }
     if (uplink_.over(now_us_)) {
         tell();
@@ -80,6 +84,7 @@ void Board::receive(uint64_t now_us, const Message& message) {
 uint64_t Board::next_us() const {
     uint64_t next = axes_.next_us(now_us_);
     next = earlier(next, silent_from_us());
+    next = earlier(next, switches_.next_us());
     return earlier(next, uplink_.due_us());
 }
 
@@ -103,6 +108,7 @@ void Board::move_on() {
         return;
     }
     axes_.poll(now_us_);
+    switches_.look(now_us_);
     check_way();
     if (!homing_.active() && axes_.arrived(now_us_)) {
         axes_.rest();
@@ -124,8 +130,8 @@ void Board::check_way() {
         axes_.begin(now_us_);
         return;
     }
-    for (uint8_t axis = 0; config_.home_by == HomeBy::kSwitches && homed_ && axis < axes_.count(); ++axis) {
-        if (hardware_.at_switch(axis)) {
+    for (uint8_t axis = 0; homed_ && axis < axes_.count(); ++axis) {
+        if (switches_.closed(axis)) {
             lose_steps();
             return;
         }

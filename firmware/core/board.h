@@ -8,6 +8,7 @@
 #include "hardware.h"
 #include "homing.h"
 #include "message.h"
+#include "switches.h"
 #include "telemetry.h"
 #include "uplink.h"
 #include "watch.h"
@@ -73,6 +74,7 @@ private:
     Hardware& hardware_;
     Voice& voice_;
     Axes axes_;
+    Switches switches_;
     Homing homing_;
     Uplink uplink_;
     Watch watch_;  // over its moves: ramp to a stop

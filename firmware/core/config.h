@@ -23,6 +23,11 @@ enum class HomeBy : uint8_t {
     kKnown,  // the hardware knows where the axes are; they just drive to 0
 };
 
+// How long a switch has to be seen closed, or open, to count. Half of what a step takes at creep speed (9.9 ms and more):
+// the other half is left to the contact, and no step is taken beyond the one that has closed it. The pulses that the
+// ESP32 itself makes at its pins 36 and 39 last 80 ns (its errata, GPIO-3.11).
+constexpr uint32_t kDebounceUs = 5000;
+
 enum class OnStop : uint8_t { kHold, kRelease };
 
 struct Config {
@@ -30,6 +35,7 @@ struct Config {
     Level level = Level::kIds;
     HomeBy home_by = HomeBy::kSwitches;
     HomeWay home[kMostAxes] = {};
+    uint32_t debounce_us = kDebounceUs;  // of the switches
     OnStop effector_on_stop = OnStop::kHold;
     bool has_piece_sensor = false;
     uint32_t retarget_us = 100000;  // between targets of a moving arm: no motor follows faster ones

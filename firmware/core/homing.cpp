@@ -8,8 +8,8 @@ constexpr int32_t kMarginSteps = 200;  // beyond the whole way of an axis, where
 
 }  // namespace
 
-Homing::Homing(const Config& config, Hardware& hardware, Axes& axes)
-    : config_(config), hardware_(hardware), axes_(axes) {}
+Homing::Homing(const Config& config, const Switches& switches, Axes& axes)
+    : config_(config), switches_(switches), axes_(axes) {}
 
 void Homing::start() {
     active_ = true;
@@ -52,7 +52,7 @@ uint8_t Homing::turn() const {
 }
 
 Homing::Phase Homing::advance(uint8_t axis) {
-    const bool closed = hardware_.at_switch(axis);
+    const bool closed = switches_.closed(axis);
     const HomeWay& way = config_.home[axis];
     switch (phases_[axis]) {
         case Phase::kWaiting:

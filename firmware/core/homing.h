@@ -4,6 +4,7 @@
 #include <stdint.h>
 
 #include "axes.h"
+#include "switches.h"
 
 namespace arboleda {
 
@@ -11,11 +12,11 @@ class Homing {
 public:
     enum class Result : uint8_t { kUnderWay, kDone, kFailed };
 
-    Homing(const Config& config, Hardware& hardware, Axes& axes);
+    Homing(const Config& config, const Switches& switches, Axes& axes);
 
     void start();
     void cancel();  // full speed again; the axes are the caller's to stop
-    Result poll();  // after each poll of the axes
+    Result poll();  // after each poll of the axes and look at the switches
     bool active() const { return active_; }
 
 private:
@@ -30,7 +31,7 @@ private:
     int32_t reach(uint8_t axis) const;
 
     const Config& config_;
-    Hardware& hardware_;
+    const Switches& switches_;
     Axes& axes_;
     Phase phases_[kMostAxes] = {};
     bool active_ = false;

@@ -21,9 +21,8 @@ void Sensing::begin(uint64_t now_us) {
         counts_[at] = hardware_.counts(at);
     }
     for (uint8_t at = 0; at < device_.inputs.count; ++at) {
-        inputs_[at] = Input();
-        const bool on = sample(at);
-        inputs_[at] = {on, on, now_us};
+        inputs_[at] = Debounced();
+        inputs_[at].begin(now_us, sample(at));
     }
     sampled_us_ = sane_us_ = now_us;
     sane_ = true;
@@ -38,7 +37,7 @@ bool Sensing::poll(uint64_t now_us) {
         counts_[at] += (hardware_.counts(at) - counts_[at]) * kSmoothing;
     }
     for (uint8_t at = 0; at < device_.inputs.count; ++at) {
-        debounce(now_us, at);
+        inputs_[at].see(now_us, sample(at), device_.inputs[at].debounce_us);
     }
     if (plausible()) {
         sane_us_ = now_us;
@@ -59,19 +58,7 @@ bool Sensing::sample(uint8_t input) const {
     }
     const AnalogWiring& analog = device_.analogs[static_cast<uint8_t>(wiring.analog)];
     const double value = analog.offset + counts_[wiring.analog] * analog.per_count;
-    return inputs_[input].seen ? value >= wiring.off_below : value > wiring.on_above;
-}
-
-void Sensing::debounce(uint64_t now_us, uint8_t at) {
-    Input& input = inputs_[at];
-    const bool on = sample(at);
-    if (on != input.seen) {
-        input.seen = on;
-        input.since_us = now_us;
-    }
-    if (now_us - input.since_us >= device_.inputs[at].debounce_us) {
-        input.on = input.seen;
-    }
+    return inputs_[input].seen() ? value >= wiring.off_below : value > wiring.on_above;
 }
 
 // No analog input out of its range, no two words of one fact at once.
@@ -108,7 +95,7 @@ bool Sensing::read(const Reading& reading, double* value) const {
 
 bool Sensing::fits(const Row& row) const {
     for (const Condition& condition : row.when) {
-        if (inputs_[condition.input].on != condition.on) {
+        if (inputs_[condition.input].on() != condition.on) {
             return false;
         }
     }

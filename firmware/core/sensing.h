@@ -3,6 +3,7 @@
 
 #include <stdint.h>
 
+#include "debounced.h"
 #include "device.h"
 #include "device_hardware.h"
 #include "due.h"
@@ -20,7 +21,7 @@ public:
     bool poll(uint64_t now_us);   // false: it was not time to look
     uint64_t next_us() const { return looks() ? sampled_us_ + kSampleUs : kNever; }
 
-    bool on(uint8_t input) const { return inputs_[input].on; }
+    bool on(uint8_t input) const { return inputs_[input].on(); }
     double value(uint8_t analog) const;  // rounded to its step
     bool sane() const { return sane_; }
 
@@ -28,21 +29,14 @@ public:
     bool read(const Reading& reading, double* value) const;
 
 private:
-    struct Input {
-        bool on = false;
-        bool seen = false;  // as it was sampled last
-        uint64_t since_us = 0;
-    };
-
     bool looks() const { return device_.inputs.count > 0 || device_.analogs.count > 0; }
     bool sample(uint8_t input) const;
-    void debounce(uint64_t now_us, uint8_t input);
     bool plausible() const;
     bool fits(const Row& row) const;
 
     const Device& device_;
     DeviceHardware& hardware_;
-    Input inputs_[kMostInputs];
+    Debounced inputs_[kMostInputs];
     double counts_[kMostAnalogs] = {};
     uint64_t sampled_us_ = 0;
     uint64_t sane_us_ = 0;  // when everything fitted together last

@@ -14,6 +14,7 @@ constexpr char kHelp[] =
     "stall MS         its loop hangs so long; at speed this loses steps\n"
     "mute S           it goes on, and publishes nothing\n"
     "lose JOINT STEPS an axis slips, joints from 1; the counter does not notice\n"
+    "press JOINT 0|1  a homing switch is closed, wherever the arm is\n"
     "fail, repair     a driver's alarm, and its end\n"
     "supply 0|1       parts lie at their places\n"
     "grip 0|1         the effector closes on parts\n"
@@ -47,6 +48,8 @@ bool done_here(const char* word, int first, int second, uint64_t now_us, Board* 
         board->repair(now_us);
     } else if (is(word, "lose") && first >= 1 && first <= board->axes().count()) {
         world->slip(static_cast<uint8_t>(first - 1), second);
+    } else if (is(word, "press") && first >= 1 && first <= board->axes().count()) {
+        world->pressed[first - 1] = second != 0;
     } else if (is(word, "supply")) {
         world->supplied = yes;
     } else if (is(word, "grip")) {

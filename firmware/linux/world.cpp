@@ -16,7 +16,8 @@ void World::power_up() { effector_ = holding_ = false; }
 
 bool World::at_switch(uint8_t axis) {
     const HomeWay& way = config_.home[axis];
-    return way.direction > 0 ? true_steps_[axis] >= way.switch_steps : true_steps_[axis] <= way.switch_steps;
+    const int32_t beyond = (true_steps_[axis] - way.switch_steps) * way.direction;
+    return pressed[axis] || beyond >= 0;
 }
 
 void World::moving(bool moving) {

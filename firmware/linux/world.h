@@ -21,6 +21,7 @@ public:
     bool supplied = true;  // parts lie at the places
     bool grips = true;     // the effector closes on them
     bool stuck = false;    // the effector does not follow its switch
+    bool pressed[kMostAxes] = {};  // a finger is on its homing switch
 
     void step(uint8_t axis, bool forward) override { true_steps_[axis] += forward ? 1 : -1; }
     bool at_switch(uint8_t axis) override;

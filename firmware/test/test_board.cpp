@@ -16,6 +16,16 @@ bool at_reference(World& world) {
     return world.true_steps(0) == 0 && world.true_steps(1) == 0 && world.true_steps(2) == 0;
 }
 
+// All homing switches look closed for so long.
+void press_all(Bench& bench, uint64_t pulse_us) {
+    memset(bench.world.pressed, 1, sizeof bench.world.pressed);
+    bench.board.poll(bench.now_us);
+    bench.run(pulse_us - 1);
+    memset(bench.world.pressed, 0, sizeof bench.world.pressed);
+    ++bench.now_us;
+    bench.board.poll(bench.now_us);
+}
+
 // The move of number 2, by who had heard so much of the board.
 void move_after(Bench& bench, uint32_t heard) {
     char text[96];
@@ -150,6 +160,65 @@ TEST(a_switch_met_on_a_way_means_that_steps_were_lost) {
     bench.run(3 * kSecondUs);
     CHECK(bench.board.state() == State::kNotHomed);
     CHECK(bench.board.lost_steps() == 1);
+}
+
+TEST(a_switch_stops_a_move_once_it_was_closed_for_5_ms) {
+    Bench bench;
+    bench.send(Channel::kJoints, kMove);
+    bench.run(300000);
+    bench.world.pressed[2] = true;
+    bench.board.poll(bench.now_us);
+    bench.run(4999);
+    CHECK(bench.board.state() == State::kMoving && bench.board.lost_steps() == 0);
+    bench.run(1);
+    CHECK(bench.board.state() == State::kNotHomed && bench.board.lost_steps() == 1);
+}
+
+// 1 us stands for the 80 ns that the ESP32 pulls its pins 36 and 39 down: however short, one look at them meets it.
+TEST(a_short_pulse_at_a_switch_stops_nothing) {
+    const uint64_t pulses_us[] = {1, 4999};
+    for (const uint64_t pulse_us : pulses_us) {
+        Bench bench;
+        press_all(bench, pulse_us);
+        bench.send(Channel::kJoints, kMove);
+        for (int pulses = 0; pulses < 200; ++pulses) {
+            press_all(bench, pulse_us);
+            bench.run(1);
+        }
+        bench.run(5 * kSecondUs);
+        CHECK(bench.board.lost_steps() == 0 && bench.board.homed());
+        CHECK(bench.last.receipts.finished().value == 1);
+    }
+}
+
+TEST(homing_finds_the_reference_while_short_pulses_come) {
+    Bench bench;
+    const int32_t there[] = {700, 140, 28};
+    bench.world.put(there);
+    bench.board.boot(bench.now_us, 101, false);
+    bench.send(Channel::kHome, kHome);
+    for (int pulses = 0; pulses < 8000; ++pulses) {
+        press_all(bench, 1);
+        bench.run(7000);
+    }
+    CHECK(bench.board.homed() && at_reference(bench.world));
+}
+
+TEST(a_switch_counts_before_an_axis_that_creeps_takes_its_next_step) {
+    const Config config = scara_config();
+    for (uint8_t axis = 0; axis < config.robot->axes; ++axis) {
+        Stepper creeping;
+        creeping.set_acceleration(config.robot->joints[axis].acceleration_steps_s2);
+        creeping.set_max_speed(config.home[axis].creep_steps_s);
+        creeping.move_to(100);
+        uint32_t now_us = 0;
+        while (!creeping.still()) {
+            const uint32_t wait_us = creeping.wait_us(now_us);
+            CHECK(wait_us > config.debounce_us + 4000);  // what is left for the motor to get there, and for bouncing
+            now_us += wait_us;
+            creeping.run(now_us);
+        }
+    }
 }
 
 TEST(alternating_targets_do_not_speed_a_motor_up) {

@@ -6,6 +6,7 @@
 #include <esp_system.h>
 
 #include "board_config.h"
+#include "config.h"
 #include "keepsakes.h"
 
 namespace arboleda {
@@ -62,7 +63,10 @@ void Machine::begin() {
     output(kEnablePin, false);
 }
 
-bool Machine::alarm() const { return is_low(kAlarmPin); }
+void Machine::look(uint64_t now_us) {
+    piece_.see(now_us, is_low(kPiecePin), kDebounceUs);
+    alarm_.see(now_us, is_low(kAlarmPin), kDebounceUs);
+}
 
 void Machine::step(uint8_t axis, bool forward) {
     const AxisPins& pins = kAxisPins[axis];
@@ -83,7 +87,5 @@ void Machine::switch_effector(bool on) {
     kept = keep(on);
     gpio_set_level(pin(kEffectorPin), on ? 1 : 0);
 }
-
-bool Machine::piece() { return is_low(kPiecePin); }
 
 }  // namespace arboleda

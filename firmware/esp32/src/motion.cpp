@@ -58,6 +58,7 @@ public:
 
     void turn() {
         Heard heard;
+        machine_.look(now_us());
         board_.poll(now_us());
         if (exchange_.heard.take(&heard)) {
             hear(heard);
