@@ -1,5 +1,4 @@
 // The task of a declared device on core 1: the only one that touches its board, and never the network.
-#include <esp_task_wdt.h>
 #include <esp_timer.h>
 #include <freertos/FreeRTOS.h>
 #include <freertos/task.h>
@@ -7,6 +6,7 @@
 #include "device_board.h"
 #include "device_config.h"
 #include "device_machine.h"
+#include "hang.h"
 #include "motion.h"
 
 namespace arboleda {
@@ -16,7 +16,6 @@ namespace {
 constexpr int kCore = 1;
 constexpr unsigned kPriority = 20;
 constexpr uint32_t kStackBytes = 8192;
-constexpr uint32_t kWatchdogS = 1;  // a task that hangs so long resets the processor, and outputs become safe
 
 uint64_t now_us() { return static_cast<uint64_t>(esp_timer_get_time()); }
 
@@ -59,12 +58,11 @@ private:
 };
 
 void run(void* motion) {
-    esp_task_wdt_init(kWatchdogS, true);
-    esp_task_wdt_add(nullptr);
+    watch_for_hangs();  // a reset makes outputs safe
     for (;;) {
         static_cast<DeviceMotion*>(motion)->turn();
         vTaskDelay(1);
-        esp_task_wdt_reset();
+        turned();
     }
 }
 

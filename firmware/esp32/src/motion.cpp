@@ -1,12 +1,12 @@
 #include "motion.h"
 
-#include <esp_task_wdt.h>
 #include <esp_timer.h>
 #include <freertos/FreeRTOS.h>
 #include <freertos/task.h>
 
 #include "board.h"
 #include "board_config.h"
+#include "hang.h"
 #include "machine.h"
 
 namespace arboleda {
@@ -17,7 +17,6 @@ constexpr int kCore = 1;
 constexpr unsigned kPriority = 20;
 constexpr uint32_t kStackBytes = 8192;
 constexpr uint64_t kSpinUs = 2500;  // nearer than this, sleeping for a tick of 1 ms would come too late
-constexpr uint32_t kWatchdogS = 1;  // a task that hangs so long resets the processor
 
 uint64_t now_us() { return static_cast<uint64_t>(esp_timer_get_time()); }
 
@@ -106,12 +105,11 @@ private:
 };
 
 void run(void* motion) {
-    esp_task_wdt_init(kWatchdogS, true);
-    esp_task_wdt_add(nullptr);
+    watch_for_hangs();
     for (;;) {
         static_cast<Motion*>(motion)->turn();
         static_cast<Motion*>(motion)->sleep();
-        esp_task_wdt_reset();
+        turned();
     }
 }
 
