@@ -1,4 +1,5 @@
 // A vehicle of vda-5050-lib at a broker: node virtual_agv.js FOLDER URL SERIAL; FOLDER is where the library is.
+// It prints `ready 0`, then `begin EDGE AT`, `end EDGE AT`, and `drop EDGE AT` where a stop ends its way.
 "use strict";
 
 const [folder, brokerUrl, serialNumber] = process.argv.slice(2);
@@ -51,6 +52,27 @@ const FACTSHEET = {
     loadSpecification: {},
 };
 
+class Adapter extends VirtualAgvAdapter {
+    traverseEdge(context) {
+        this.edge = context.edge.edgeId;
+        this.say("begin");
+        const edgeTraversed = () => {
+            this.say("end");
+            context.edgeTraversed();
+        };
+        super.traverseEdge({ ...context, edgeTraversed });
+    }
+
+    stopTraverse(context) {
+        this.say("drop");
+        super.stopTraverse(context);
+    }
+
+    say(word) {
+        console.log(word, this.edge, Number(process.hrtime.bigint()) / 1e9);
+    }
+}
+
 class Vehicle extends AgvController {
     updateFactsheet() {
         super.updateFactsheet(FACTSHEET);
@@ -60,7 +82,7 @@ class Vehicle extends AgvController {
 const vehicle = new Vehicle(
     { manufacturer: "peer", serialNumber },
     { interfaceName: "uagv", transport: { brokerUrl }, vdaVersion: "2.0.0" },
-    { agvAdapterType: VirtualAgvAdapter, publishVisualizationInterval: 0, publishStateInterval: 2000 },
+    { agvAdapterType: Adapter, publishVisualizationInterval: 0, publishStateInterval: 2000 },
     {
         initialPosition: { mapId: "map", x: 0, y: 0, theta: 0, lastNodeId: "0" },
         initialBatteryCharge: 50,
@@ -68,4 +90,4 @@ const vehicle = new Vehicle(
         tickRate: 50,
     },
 );
-vehicle.start();
+vehicle.start().then(() => console.log("ready", 0));

@@ -1,0 +1,203 @@
+"""Every peer that can be had, by its name: what has to be installed for it, and how it is played."""
+
+from __future__ import annotations
+
+import os
+import sys
+import tty
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+from tests.contract.conftest import Mosquitto
+from tests.packages import ROOT
+from tests.ports import unused_port
+from tests.shared import need_tool
+
+from arboleda.drivers import Driver
+from arboleda.model.plant_model import PlantModel
+
+from ..modbus.bench import DRIVER as MODBUS
+from ..opcua.bench import DRIVER as OPCUA
+from ..s7.bench import DRIVER as S7
+from . import plants
+from .cable import Cable, at_line, at_port
+from .peer import Peer
+
+HERE = Path(__file__).parent
+PREFIX = Path(sys.prefix)
+SNAP7 = PREFIX / "snap7"
+O6 = PREFIX / "o6"  # open62541 for Python
+LIBMODBUS = PREFIX / "libmodbus/libmodbus.so.5"
+VEHICLE = HERE.with_name("vda5050") / "virtual_agv.js"
+NODE = PREFIX / "npm/node_modules"
+FIRMWARE = Path(os.environ.get("ARBOLEDA_GRBL", PREFIX / "grbl"))  # a program that was built by hand
+NO_WORD = {"refusal": 0}  # of a device that refuses nothing
+Played = tuple[Peer, Cable, PlantModel]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bench:
+    """How a peer is had: `play` starts it, with a cable to it and the plant that reaches it by that."""
+
+    driver: str  # the place of its class
+    play: Callable[[ExitStack, Path], Played]
+    needs: tuple[str, ...] = ()
+    installed: Path = HERE  # where there is something if it is installed
+    goes: Mapping[str, int] = field(default_factory=dict)  # what of a day is other at it
+
+    def driver_class(self) -> type[Driver]:
+        module, _, name = self.driver.partition(":")
+        found: type[Driver] = getattr(import_module(f"arboleda_drivers.{module}"), name)
+        return found
+
+    @contextmanager
+    def played(self, folder: Path) -> Iterator[Played]:
+        for each in self.needs:
+            need_tool(each)
+        if not self.installed.exists():
+            pytest.skip(f"{self.installed} is not there; virtual-controllers.md says how to get it")
+        with ExitStack() as stack:
+            yield self.play(stack, folder)
+
+
+def _started(stack: ExitStack, *command: str, **environment: str) -> Peer:
+    peer = Peer(*command, **environment)
+    stack.callback(peer.close)
+    return peer
+
+
+def _cable(stack: ExitStack, far: Callable[[], int]) -> Cable:
+    cable = Cable(far)
+    stack.callback(cable.close)
+    return cable
+
+
+def _line(stack: ExitStack) -> tuple[int, str]:
+    """A pseudo terminal: the end of the cable, and the name of the other one."""
+    device, client = os.openpty()
+    stack.callback(os.close, device)
+    stack.callback(os.close, client)
+    tty.setraw(client)
+    return device, os.ttyname(client)
+
+
+def _script(name: str) -> tuple[str, str]:
+    return sys.executable, str(HERE / name)
+
+
+def _snap7(stack: ExitStack, folder: Path) -> Played:
+    peer = _started(stack, *_script("press.py"), "snap7", PYTHONPATH=str(SNAP7))
+    cable = _cable(stack, at_port(peer.port))
+    return peer, cable, plants.press(folder, quick(S7) % cable.port)
+
+
+def _libmodbus(stack: ExitStack, folder: Path) -> Played:
+    peer = _started(stack, *_script("press.py"), "libmodbus", str(LIBMODBUS))
+    cable = _cable(stack, at_port(peer.port))
+    return peer, cable, plants.press(folder, quick(MODBUS) % cable.port)
+
+
+def _libmodbus_rtu(stack: ExitStack, folder: Path) -> Played:
+    """RTU at a pseudo terminal, behind a gateway that passes its bytes on."""
+    device, line = _line(stack)
+    peer = _started(stack, *_script("press.py"), "libmodbus", str(LIBMODBUS), line)
+    cable = _cable(stack, at_line(device))
+    keys = quick(MODBUS).replace("port: %d", "port: %d\n            framing: rtu")
+    return peer, cable, plants.press(folder, keys % cable.port)
+
+
+def _open62541(stack: ExitStack, folder: Path) -> Played:
+    peer = _started(stack, *_script("press.py"), "open62541", PYTHONPATH=str(O6))
+    cable = _cable(stack, at_port(peer.port))
+    return peer, cable, plants.press(folder, OPCUA.replace("ns=2;", "ns=1;") % cable.port)
+
+
+def _node_opcua(stack: ExitStack, folder: Path) -> Played:
+    node = need_tool("node")
+    pki = folder.with_name("pki")
+    peer = _started(stack, node, str(HERE / "press_node.js"), str(NODE), str(pki))
+    cable = _cable(stack, at_port(peer.port))
+    return peer, cable, plants.press(folder, OPCUA.replace("ns=2;", "nsu=urn:press;") % cable.port)
+
+
+def _servos(stack: ExitStack, folder: Path, maker: str) -> Played:
+    device, line = _line(stack)
+    peer = _started(stack, *_script("servos.py"), maker, line)
+    cable = _cable(stack, at_line(device))
+    joints = "[{id: 1}, {id: 2}, {id: 3}, {id: 4}, {id: 5}, {id: 6}]"
+    driver = f"{{serial_arm: {{host: 127.0.0.1, port: {cable.port}, protocol: {maker}, joints: {joints}}}}}"
+    keys = "kind: arm, model: cr10a, tolerance: {deg: [0.3, 0.3, 0.3, 0.3, 0.3, 0.3]}"
+    places = ([0] * 6, [60, 20, -30, 0, 5, 0], [0, 0, 0, 0, 0, 40])
+    return peer, cable, plants.mover(folder, driver, keys, "deg", *places)
+
+
+def _vehicle(stack: ExitStack, folder: Path) -> Played:
+    """A vehicle at a broker; the cable is between that and the driver."""
+    home = folder.with_name("broker")
+    home.mkdir()
+    broker = Mosquitto(need_tool("mosquitto"), unused_port(), home)
+    broker.start()
+    stack.callback(broker.stop)
+    port = broker.address.port
+    vehicle = (str(VEHICLE), str(NODE / "vda-5050-lib"), f"mqtt://127.0.0.1:{port}", "agv1")
+    peer = _started(stack, need_tool("node"), *vehicle)
+    cable = _cable(stack, at_port(port))
+    where = f"broker: 127.0.0.1:{cable.port}, manufacturer: peer, serial: agv1, version: '2.0'"
+    driver = f"{{vda5050: {{{where}}}}}"
+    keys = "kind: mobile, grid: {pitch_mm: 400}"
+    return peer, cable, plants.mover(folder, driver, keys, "node", 0, 1, 0)
+
+
+def _firmware(stack: ExitStack, folder: Path) -> Played:
+    device, line = _line(stack)
+    peer = _started(stack, *_script("firmware.py"), str(FIRMWARE), line)
+    cable = _cable(stack, at_line(device))
+    driver = f"{{gcode: {{host: 127.0.0.1, port: {cable.port}, homing: false}}}}"
+    places = ([0, 0, 0], [-10, -5, 0], [-22, 0, -3])
+    kinds, _, _ = (ROOT / "examples/gantry/recipes.py").read_text("utf-8").partition("@recipe")
+    return peer, cable, plants.mover(folder, driver, "kind: gantry", "mm", *places, kinds=kinds)
+
+
+def quick(mapping: str) -> str:
+    """The mapping with the time for an answer that plants have if they say nothing."""
+    return "\n".join(line for line in mapping.splitlines() if "timeout_s" not in line)
+
+
+BENCHES: dict[str, Bench] = {
+    "snap7": Bench(driver="s7.adapter:S7", play=_snap7, needs=("snap7",), installed=SNAP7),
+    "libmodbus": Bench(
+        driver="modbus.adapter:Modbus", play=_libmodbus, needs=("pymodbus",), installed=LIBMODBUS
+    ),
+    "libmodbus_rtu": Bench(
+        driver="modbus.adapter:Modbus", play=_libmodbus_rtu, needs=("pymodbus",), installed=LIBMODBUS
+    ),
+    "node_opcua": Bench(
+        driver="opcua.adapter:OpcUa",
+        play=_node_opcua,
+        needs=("node", "asyncua"),
+        installed=NODE / "node-opcua-server",
+    ),
+    "open62541": Bench(driver="opcua.adapter:OpcUa", play=_open62541, needs=("asyncua",), installed=O6),
+    "vda_5050_lib": Bench(
+        driver="vda5050.adapter:Vda5050",
+        play=_vehicle,
+        needs=("node", "mosquitto"),
+        installed=NODE / "vda-5050-lib",
+        goes=NO_WORD,
+    ),
+    "grbl": Bench(driver="gcode.adapter:Gcode", play=_firmware, installed=FIRMWARE, goes=NO_WORD),
+    **{
+        f"servos_{maker}": Bench(
+            driver="serial_arm.adapter:SerialArm",
+            play=partial(_servos, maker=maker),
+            needs=(library,),
+            goes=NO_WORD,
+        )
+        for maker, library in (("dynamixel", "dynamixel_sdk"), ("feetech", "scservo_sdk"))
+    },
+}
