@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from arboleda.drivers import Command, DriverError, Report, Robot, Stop, driver
+from arboleda_drivers.connections.abrupt import end_abruptly
 from arboleda_drivers.modbus.machine import Block, ModbusDevice, Raw, WriteRequest
 from arboleda_drivers.modbus.settings import Settings
 from arboleda_drivers.plc import polled
@@ -74,10 +75,12 @@ class Line(polled.Line):
         return self._client
 
     def _connect(self) -> None:
-        if self._client is None:
-            self._client = _client(self._settings)
-        if not self._client.connect():
+        client: Any = self._client or _client(self._settings)
+        self._client = client
+        if not client.connect():
             raise ConnectionError(f"{self._settings.peer} is not there")
+        if not self._settings.serial:
+            end_abruptly(client.socket)
 
     def _fall_in_step(self, unit: int, block: Block) -> None:
         """Take what comes late, and make sure that each answer is that of its request."""

@@ -7,6 +7,7 @@ from collections.abc import Hashable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from arboleda.drivers import Command, DriverError, Report, Robot, driver
+from arboleda_drivers.connections.abrupt import end_abruptly
 from arboleda_drivers.plc import polled
 from arboleda_drivers.plc.handshake import Read
 from arboleda_drivers.plc.plc_snapshot import Writing
@@ -61,6 +62,8 @@ class Line(polled.Line):
                 made.connect(settings.timeout_s)
             except S7Error as error:
                 raise ConnectionError(f"{settings.peer} is not there: {error}") from error
+            assert made.socket is not None
+            end_abruptly(made.socket)
             self._connection, self._protocol = made, S7Protocol()
             self.pdu = self._agreed()
         return self._connection

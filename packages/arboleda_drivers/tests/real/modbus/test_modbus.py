@@ -33,6 +33,7 @@ from arboleda_drivers.modbus.server import ModbusServer
 from arboleda_drivers.modbus.settings import Settings
 
 from ..plc.driven import belt_of, driven, is_heard, is_lost, mapping, order
+from ..plc.pulled import pulled, sent_over_a_pulled_cable
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("pymodbus", "serial")]
 
@@ -98,6 +99,15 @@ def test_a_command_whose_answer_does_not_come_loses_the_link_and_is_not_repeated
         silent.clear()
         heard.until(is_heard)
         assert memory.written.qsize() <= 1
+
+
+def test_what_was_sent_over_a_pulled_cable_does_not_arrive_once_that_is_back(belt: Device) -> None:
+    memory = Memory()
+    with served(memory) as port, pulled(port) as cable:
+        settings = mapping(belt, port=cable.port, timeout_s=0.3)
+        with driven(Modbus(settings), belt) as (driver, heard):
+            sent_over_a_pulled_cable(cable, driver, heard, order(belt))
+            assert memory.written.empty()
 
 
 def test_two_devices_of_one_plc_share_a_connection(belt: Device) -> None:

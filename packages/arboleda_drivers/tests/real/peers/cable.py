@@ -33,8 +33,9 @@ def at_line(device: int) -> Callable[[], int]:
 class Cable:
     """It passes bytes on from its `port` until `close`; whatever else has these words can stand in its place.
 
-    While it is cut nobody listens at the port and connections are reset; a silent cut leaves them open, takes
-    new ones, and loses every byte. Once it is mended, what was open then is reset.
+    While it is cut nobody listens at the port and connections are reset. A silent cut is that of a network:
+    what is sent meanwhile arrives once it is mended, also from who has closed its connection and not
+    reset it. What was opened meanwhile is reset then.
     """
 
     def __init__(self, far: Callable[[], int]) -> None:
@@ -64,7 +65,7 @@ class Cable:
         with self._lock:
             if self._is_silent:
                 self._is_silent = False
-                self._reset_all()
+                self._reset_dead()
             if self._listener is None:
                 self._listen()
         self._wake()
@@ -94,7 +95,7 @@ class Cable:
         while not self._ending.is_set():
             with self._lock:
                 listening = [] if self._listener is None else [self._listener.fileno()]
-                ends = [*self._ends]
+                ends = [] if self._is_silent else [*self._ends]
             with suppress(OSError):  # one of them was closed in this moment
                 ready, _, _ = select.select([self._woken, *listening, *ends], [], [])
                 if self._woken not in ready:
@@ -126,7 +127,7 @@ class Cable:
         other = self._ends[end]
         try:
             data = os.read(end, ONES)
-            if data and other != end and not self._is_silent:
+            if data:
                 os.write(other, data)
         except OSError:
             self._end(end, reset)
@@ -139,9 +140,22 @@ class Cable:
             del self._ends[each]
             close(each)
 
+    def _reset_dead(self) -> None:
+        """Reset what was reset or opened during a silent cut: nothing of that arrives."""
+        for end in [*self._ends]:
+            if end in self._ends and (self._ends[end] == end or was_reset(end)):
+                self._end(end, reset)
+
     def _reset_all(self) -> None:
         while self._ends:
             self._end(next(iter(self._ends)), reset)
+
+
+def was_reset(end: int) -> bool:
+    """True for a connection that the other side has reset."""
+    looks = select.poll()
+    looks.register(end, 0)
+    return any(seen & select.POLLERR for _, seen in looks.poll(0))
 
 
 def reset(end: int) -> None:

@@ -170,10 +170,10 @@ class Day:
         self._await(task)
 
     def _wait_for_order(self, task: Task) -> None:
-        """Wait until the driver is given an order of the task."""
+        """Wait until the driver is given an order of the task, it ends, or the cell waits for somebody."""
         until = time.monotonic() + PATIENCE_S
-        while task.end is None and not self._is_ordered(task):
-            assert time.monotonic() < until, task
+        while task.end is None and not self._is_ordered(task) and not self._is_held():
+            assert time.monotonic() < until, f"{task}; {self._snapshot['cells'][0]}"
             time.sleep(0.002)
 
     def _is_ordered(self, task: Task) -> bool:
@@ -182,7 +182,8 @@ class Day:
     def _await(self, task: Task) -> None:
         """Wait for the end of the task, or until the cell waits for somebody."""
         with self._news:
-            assert self._news.wait_for(lambda: task.end is not None or self._is_held(), PATIENCE_S), task
+            over = self._news.wait_for(lambda: task.end is not None or self._is_held(), PATIENCE_S)
+            assert over, f"{task}; {self._snapshot['cells'][0]}"
 
     def _lead_out(self, after: str) -> None:
         """Follow the first advice until the cell works and no task is open."""

@@ -21,6 +21,7 @@ from arboleda_drivers.s7.keys import Verb, Write
 from arboleda_drivers.s7.server import S7Server
 
 from ..plc.driven import LONGEST_S, belt_of, driven, is_heard, is_lost, mapping, order
+from ..plc.pulled import pulled, sent_over_a_pulled_cable
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("snap7")]
 
@@ -103,6 +104,15 @@ def test_a_refused_write_behind_one_that_was_taken_loses_the_link(belt: Device) 
         memory.refuses = 2
         with pytest.raises(ConnectionError, match="what was written before may have begun"):
             driver.send(order(belt))
+
+
+def test_what_was_sent_over_a_pulled_cable_does_not_arrive_once_that_is_back(belt: Device) -> None:
+    memory = Memory()
+    with served(memory) as port, pulled(port) as cable:
+        settings = mapping(belt, port=cable.port, timeout_s=0.3)
+        with driven(S7(settings), belt) as (driver, heard):
+            sent_over_a_pulled_cable(cable, driver, heard, order(belt))
+            assert memory.written.empty()
 
 
 def test_what_has_no_meaning_or_is_refused_loses_the_link_and_says_why(belt: Device) -> None:
