@@ -56,6 +56,7 @@ OF_PACKAGES = {  # extras of `arboleda`, by command
     "oee": FLEET,
     "prove": PROOFS,
     "record replay": PROOFS,
+    "record unlike": PROOFS,
     "report": PROOFS,
     "simulate": PROOFS,
     "site": FLEET,

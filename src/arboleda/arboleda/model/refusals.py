@@ -21,3 +21,6 @@ NO_HOME = "no_home"
 OLD_EPOCH = "old_epoch"
 FOREIGN = "foreign"  # it is of another node
 OTHER_BRIDGE = "other_bridge"  # its board is another bridge's
+
+WORDS = frozenset(word for name, word in [*globals().items()] if name.isupper())
+"""All of them."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 from arboleda.model import refusals
 from arboleda.model.commands import StopMode
@@ -30,6 +30,7 @@ from arboleda.wire.transport import Delivery, Publication
 
 from .body import Body, BodyReport, SeenState
 from .freshness import Freshness
+from .machine import SUPERSEDED, UNSHOWN
 from .receipts import Receipts
 from .uplink import Uplink
 
@@ -42,8 +43,11 @@ class Board:
     """Virtual board as a pure machine: calls in, publications collected until `take`.
 
     It reports what its robot's declared evidence level allows, and knows command numbers at `ids` only.
-    `watch`, if set, is called with every command that the board carries out.
+    `watch`, if set, is called with every command that the board carries out. `words` are all with which a
+    command is refused on its way or given up, as long as nothing goes wrong with the board.
     """
+
+    words: ClassVar = frozenset({*refusals.WORDS, SILENCE, SUPERSEDED, UNSHOWN})
 
     def __init__(self, robot: Robot, body: Body, *, boot_id: int, now_us: int) -> None:
         self.body = body

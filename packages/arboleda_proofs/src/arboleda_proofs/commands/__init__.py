@@ -26,6 +26,11 @@ COMMANDS = {
         "Execute a record again, and compare every step with what it was.",
         section=PAST,
     ),
+    "record unlike": Command(
+        "arboleda_proofs.commands.unlike",
+        "Say what devices of a record told that their virtual ones cannot tell.",
+        section=PAST,
+    ),
     "report": Command(
         "arboleda_proofs.commands.report",
         "Write why a task failed: one HTML file, without network, in English and Spanish.",

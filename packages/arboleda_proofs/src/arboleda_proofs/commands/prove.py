@@ -24,6 +24,7 @@ HELP = f"""Try every single fault at every kind of moment of every recipe, and j
 arboleda prove                          the plant of this folder, for {BUDGET}
 arboleda prove --plant my_plant.yaml    your plant; what is kept is not run again
 arboleda prove --recipe weigh --budget all
+arboleda prove --faults unlike.yaml     and what real devices did: arboleda record unlike --to unlike.yaml
 arboleda prove --html out.html --tests test_found.py
 
 Each recipe runs once without faults, for each class of parameters and each answer that can lead elsewhere.
@@ -44,6 +45,12 @@ Recipes = Annotated[
 Faults = Annotated[
     list[str] | None,
     typer.Option("--fault", metavar="KIND", help="Only this kind of fault; may be given several times."),
+]
+Seen = Annotated[
+    Path | None,
+    typer.Option(
+        "--faults", metavar="FILE", help="Try also what devices did: arboleda record unlike --to FILE."
+    ),
 ]
 Budget = Annotated[
     str,
@@ -112,6 +119,7 @@ def prove(
     plant: PlantFile = None,
     recipe: Recipes = None,
     fault: Faults = None,
+    faults: Seen = None,
     budget: Budget = BUDGET,
     json: Json = None,
     html: Html = None,
@@ -148,6 +156,7 @@ def prove(
         folder=folder(plant, state) / "prove",
         anew=anew,
         every=all_instants,
+        faults=faults,
         pairs=pairs,
         mend=mend,
         json=json,

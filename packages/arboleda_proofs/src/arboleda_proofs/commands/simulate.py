@@ -29,6 +29,7 @@ arboleda simulate --seeds 500 --json out.json
 arboleda simulate --seeds 9999 --store postgresql://... --worker  on as many hosts as there are
 arboleda simulate --faults out.json --trace  what broke in there, with the faults it takes
 arboleda simulate --faults night.yaml        what a plant did: arboleda record export night.yaml
+arboleda simulate --faults unlike.yaml       what its devices did: arboleda record unlike --to unlike.yaml
 
 Exit status: 0 every invariant held, 1 one was broken, or a task failed where nothing had
 gone wrong, 2 bad input, 130 Ctrl-C; 1 where Ctrl-C ends the search for

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from arboleda.drivers import Device, Value
 from arboleda.engine import Plant
-from arboleda.kinds.declared import Device, QueryCall
+from arboleda.kinds.declared import QueryCall
 from arboleda.kinds.ranges import Range, apart
-from arboleda.model.facts import Value
 from arboleda.model.orders import orders
 from arboleda.model.plant_model import PlantModel
 from arboleda.recipes.handles import Ask

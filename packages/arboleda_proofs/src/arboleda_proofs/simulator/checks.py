@@ -9,6 +9,8 @@ from typing import Any
 
 from arboleda.drivers import ArboledaError
 
+NUMBERS = ("at", "seconds", "amount", "seed")  # the fields of a fault that are numbers
+
 
 class BadFaults(ArboledaError):
     """An impossible entry in a file of faults; `place` are the keys and positions that lead to it."""
@@ -41,3 +43,11 @@ def only(data: Any, allowed: Sequence[str], where: str) -> dict[str, Any]:
         if key not in allowed:
             raise BadFaults(f"{where} has no {key!r}; allowed: {', '.join(allowed)}", key)
     return data
+
+
+def check_field(name: str, value: Any) -> None:
+    """Raises BadFaults for a field of a fault that is of another type than it has to be."""
+    if name not in NUMBERS and not isinstance(value, str):
+        raise BadFaults(f"{name} of a fault is {value!r}; a text is needed")
+    if name in NUMBERS and not is_number(value):
+        raise BadFaults(f"{name} of a fault is {value!r}; a number is needed")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, fields
 from itertools import accumulate
 from typing import Any
@@ -10,9 +10,10 @@ from typing import Any
 from arboleda.model.plant_model import PlantModel
 
 from .chance import Dice
-from .checks import BadFaults, is_number, only, within
+from .checks import BadFaults, check_field, is_number, only, within
 from .faults import KINDS, NOT_WITH_STANDBY, OF_CRASHES, OF_HOSTS, ON_ONE_HOST, Fault, Kind
 from .levels import CRASHES, LEVELS
+from .recurring import UNLIKE, Recurring, recurring_from
 
 MINUTE_S = 60.0
 HOST_WEIGHT = 3.0  # with a standby: beside one of each other kind
@@ -20,13 +21,13 @@ CRASH_WEIGHT = 8.0  # beside one of each other kind
 
 ABSENT = 0.25  # the share of kinds that a seed does without
 FIELDS = tuple(each.name for each in fields(Fault))
-NUMBERS = ("at", "seconds", "amount", "seed")
-KEYS = ("plant", "seconds", "people", "rates", "faults")  # the first three are read elsewhere
+KEYS = ("plant", "seconds", "people", "rates", "faults", UNLIKE)  # the first three are read elsewhere
 
 
 @dataclass(frozen=True, kw_only=True)
 class Climate:
-    """The faults of one run: `rates` of each kind per minute are drawn from; `fixed_faults` have their time.
+    """The faults of one run: `rates` of each kind per minute are drawn from; `fixed_faults` have their time,
+    and `recurring` their figures.
 
     The same climate gives the same faults for a minute, whichever minutes were asked for before.
     """
@@ -35,6 +36,7 @@ class Climate:
     seed: int
     rates: Mapping[str, float]
     fixed_faults: tuple[Fault, ...] = ()
+    recurring: tuple[Recurring, ...] = ()
 
     @classmethod
     def draw(cls, model: PlantModel, seed: int, level: str, *, standby: bool = False) -> Climate:
@@ -53,8 +55,8 @@ class Climate:
 
     @classmethod
     def from_file(cls, model: PlantModel, seed: int, data: Any, *, standby: bool = False) -> Climate:
-        """The climate in a file: `{"rates": {kind: per minute}}`, `{"faults": [{"kind": ..., "at": s}]}`, or
-        both.
+        """The climate in a file: `{"rates": {kind: per minute}}`, `{"faults": [{"kind": ..., "at": s}]}`,
+        what devices did under `unlike`, or all of that.
 
         Whatever such a fault leaves out is drawn; raises BadFaults for the first entry that is wrong.
         """
@@ -68,16 +70,24 @@ class Climate:
         for number, each in enumerate(listed):
             with within("faults", number):
                 from_list.append(_fault_from(model, Dice(seed, "told", number), each))
-        for name in (*rates, *(fault.kind for fault in from_list)):
+        recurring = recurring_from(model, known.get(UNLIKE, []))
+        for name in (*rates, *(fault.kind for fault in from_list), *(each.name for each in recurring)):
             _refuse_hosts(name, standby=standby)
-        return cls(model=model, seed=seed, rates=rates, fixed_faults=tuple(from_list))
+        return cls(model=model, seed=seed, rates=rates, fixed_faults=tuple(from_list), recurring=recurring)
 
     def faults(self, minute: int) -> list[Fault]:
         """The faults that begin in a minute of the run, in the order of their times."""
         begin, dice = minute * MINUTE_S, Dice(self.seed, "faults", minute)
         drawn = [self._fault(dice, begin) for _ in range(_count(dice, sum(self.rates.values())))]
         listed = [fault for fault in self.fixed_faults if begin <= fault.at < begin + MINUTE_S]
-        return sorted([*listed, *drawn], key=lambda fault: fault.at)
+        return sorted([*listed, *drawn, *self._recurring(minute)], key=lambda fault: fault.at)
+
+    def _recurring(self, minute: int) -> Iterator[Fault]:
+        for number, each in enumerate(self.recurring):
+            dice = Dice(self.seed, UNLIKE, minute, number)
+            for _ in range(_count(dice, each.per_minute)):
+                at = round(minute * MINUTE_S + dice.below(60_000) / 1000, 3)
+                yield each.drawn(dice, self.model, at)
 
     def _fault(self, dice: Dice, begin: float) -> Fault:
         name = _one_of(dice, self.rates)
@@ -135,7 +145,7 @@ def _rates(data: Any) -> dict[str, float]:
 def _fault_from(model: PlantModel, dice: Dice, data: Any) -> Fault:
     entry = only(data, FIELDS, "a fault")
     for name in entry:
-        _check(name, entry[name])
+        check_field(name, entry[name])
     kind = KINDS.get(entry.get("kind", ""))
     if kind is None:
         raise BadFaults(f"{entry.get('kind')!r} is not a kind of fault; there are {', '.join(KINDS)}")
@@ -149,10 +159,3 @@ def _fault_from(model: PlantModel, dice: Dice, data: Any) -> Fault:
     if (objection := kind.objection(fault, model)) is not None:
         raise BadFaults(objection)
     return fault
-
-
-def _check(name: str, value: Any) -> None:
-    if name not in NUMBERS and not isinstance(value, str):
-        raise BadFaults(f"{name} of a fault is {value!r}; a text is needed")
-    if name in NUMBERS and not is_number(value):
-        raise BadFaults(f"{name} of a fault is {value!r}; a number is needed")

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 from arboleda.model.plant_model import PlantModel
 from arboleda_proofs.simulator.faults import Fault
+from arboleda_proofs.simulator.recurring import Recurring
 
 from .calm import Calm
 from .course import Course, course_of
@@ -60,13 +61,15 @@ class Proved:
 class Proof:
     """Proof of a plant: calm runs that are sound, and `portions` in the order in which they are worth it.
 
-    `kinds`: only faults of these; none: of all. `every`: at every instant, not at one of each class.
+    `kinds`: only faults of these; none: of all. `every`: at every instant, not at one of each class. `seen`:
+    also faults that devices had.
     """
 
     model: PlantModel
     calm: Sequence[Calm] = field(default_factory=tuple)
     kinds: tuple[str, ...] = ()
     every: bool = False
+    seen: Sequence[Recurring] = ()
 
     @cached_property
     def portions(self) -> list[Portion]:
@@ -144,7 +147,9 @@ class Proof:
 
     @cached_property
     def _tried(self) -> Representatives:
-        return Representatives(model=self.model, calm=self.calm, kinds=self.kinds, every=self.every)
+        return Representatives(
+            model=self.model, calm=self.calm, kinds=self.kinds, every=self.every, seen=self.seen
+        )
 
     @cached_property
     def total(self) -> int:

@@ -54,7 +54,7 @@ class ProofCampaign:
         self._request = request
         self._console = console
         self._lines = lines or ProofLines(None)
-        self._plant = request.simulated
+        self._plant, self._seen = request.simulated, request.seen
         self._calm: list[Calm] = []
         self._tally = ProofTally(proof=Proof(model=self._plant.model))
         self._pairs: PairTally | None = None
@@ -118,7 +118,13 @@ class ProofCampaign:
     def _proof(self) -> Proof:
         sound = tuple(each for each in self._calm if each.is_sound)
         request = self._request
-        return Proof(model=self._plant.model, calm=sound, kinds=request.kinds, every=request.every)
+        return Proof(
+            model=self._plant.model,
+            calm=sound,
+            kinds=request.kinds,
+            every=request.every,
+            seen=self._seen,
+        )
 
     def _forecast(self, proof: Proof, kept: int = 0) -> Forecast:
         pace = (time.process_time() - self._began_work) / max(self._simulated_s, 1.0)

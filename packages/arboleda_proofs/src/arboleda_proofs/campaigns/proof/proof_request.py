@@ -9,7 +9,10 @@ from pathlib import Path
 from arboleda.extension import ConfigError
 from arboleda.model.plant_files import PlantFiles
 from arboleda.plant_file import loader
+from arboleda_proofs.simulator.checks import BadFaults
+from arboleda_proofs.simulator.recurring import UNLIKE, Recurring, recurring_from
 
+from ..faults_file import line_of, read
 from ..plants import Plant
 from .single_faults import possible_kinds
 
@@ -19,6 +22,7 @@ class ProofRequest:
     """Request: the options. `budget_s`: how long runs begin, infinite for all; `anew`: nothing kept in
     `folder` counts; `pairs`: what is left of the time is for two faults in one run; `mend`: a change of the
     files is looked for that mends what is found; `every`: at every instant, not at one of each class.
+    `faults` is a file of faults that devices had.
     """
 
     plant: Path | None
@@ -30,6 +34,7 @@ class ProofRequest:
     pairs: bool = False
     mend: bool = False
     every: bool = False
+    faults: Path | None = None
     json: Path | None = None
     html: Path | None = None
     junit: Path | None = None
@@ -40,6 +45,21 @@ class ProofRequest:
     def _loaded(self) -> tuple[Plant, PlantFiles]:
         model, read = loader.load_with_files(self.plant)
         return Plant(declared=model, files=read), read
+
+    @cached_property
+    def seen(self) -> tuple[Recurring, ...]:
+        """The faults that devices had; ConfigError if the file has others, or the plant cannot have them."""
+        if self.faults is None:
+            return ()
+        content, model = read(self.faults, None).climate, self._loaded[0].model
+        if not isinstance(content, dict) or content.keys() != {UNLIKE}:
+            what = f"is no file that `arboleda record unlike --to` wrote: it has {UNLIKE}, and nothing else"
+            raise ConfigError((f"{self.faults}: {what}",))
+        try:
+            return recurring_from(model, content[UNLIKE])
+        except BadFaults as error:
+            where = line_of(self.faults, error.place)
+            raise ConfigError((f"{self.faults}: {where}{error} (plant {model.name})",)) from None
 
     @property
     def simulated(self) -> Plant:

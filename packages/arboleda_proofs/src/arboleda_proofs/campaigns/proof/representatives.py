@@ -15,6 +15,7 @@ from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.rig.plant_process import Side
 from arboleda_proofs.simulator.faults import COUNTED, KINDS, OF_QUEUES, STICKING, UNHEARD, Fault
 from arboleda_proofs.simulator.faults.operators import NOWHERE
+from arboleda_proofs.simulator.recurring import Recurring
 
 from .calm import Calm
 from .instants import Instant
@@ -30,13 +31,15 @@ FIRSTS = 0  # the number of the part with one fault of each kind at each kind of
 class Representatives:
     """Faults that are tried at each instant of each scenario. `kinds`: only faults of these; none: of all.
 
-    `every`: each fault at each instant is tried, those that others represent last.
+    `every`: each fault at each instant is tried, those that others represent last. `seen`: also these, which
+    devices had.
     """
 
     model: PlantModel
     calm: Sequence[Calm]
     kinds: tuple[str, ...] = ()
     every: bool = False
+    seen: Sequence[Recurring] = ()
 
     @cached_property
     def parts(self) -> dict[Place, list[list[Fault]]]:
@@ -99,7 +102,8 @@ class Representatives:
     @cached_property
     def _spans(self) -> list[float]:
         """The spans of all faults, s."""
-        return sorted({seconds for kind in possible_kinds() for seconds in kind.seconds})
+        seen = {each.known.get("seconds", 0.0) for each in self.seen}
+        return sorted(seen | {seconds for kind in possible_kinds() for seconds in kind.seconds})
 
     @cached_property
     def _targets(self) -> dict[str, str | None]:
@@ -148,7 +152,12 @@ class Representatives:
 
     def _faults(self, place: Place) -> list[list[Fault]]:
         return single_faults(
-            self.model, self._cell(place), self._instant(place), number=place[1], only=self.kinds
+            self.model,
+            self._cell(place),
+            self._instant(place),
+            number=place[1],
+            only=self.kinds,
+            seen=self.seen,
         )
 
     def _instant(self, place: Place) -> Instant:

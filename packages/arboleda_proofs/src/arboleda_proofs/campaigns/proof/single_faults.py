@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator, Sequence
 
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda_proofs.simulator.faults import COUNTED, OF_CRASHES, OF_WORK, ON_ONE_HOST, Fault
 from arboleda_proofs.simulator.faults.kind import NONE, Kind
+from arboleda_proofs.simulator.recurring import Recurring
 
 from .instants import Instant
 
@@ -14,7 +15,13 @@ OF_ITS_WORK, OF_ITS_BOARD, OF_OTHERS, OTHER_FORMS = range(4)  # numbers of parts
 
 
 def single_faults(
-    model: PlantModel, cell: Cell, instant: Instant, *, number: int = 0, only: Collection[str] = ()
+    model: PlantModel,
+    cell: Cell,
+    instant: Instant,
+    *,
+    number: int = 0,
+    only: Collection[str] = (),
+    seen: Sequence[Recurring] = (),
 ) -> list[list[Fault]]:
     """The faults that begin at an instant, always in the same order, in parts.
 
@@ -22,7 +29,7 @@ def single_faults(
     at the instant of the next `number`; the second the same of its board, its line and the people at it; the
     third of all other targets; the fourth has all other forms. Of each span both ends are taken, of each
     amount the largest. A kind that comes at a commit comes at each of those that follow the instant at once.
-    `only`: of these kinds.
+    `only`: of these kinds. Those that were `seen` of devices come before all.
     """
     kinds = [kind for kind in possible_kinds() if not only or kind.name in only]
     parts: list[list[Fault]] = [[] for _ in range(OTHER_FORMS + 1)]
@@ -33,7 +40,14 @@ def single_faults(
             for index, form in enumerate(_from(number, forms)):
                 part = _part(kind.name) if target in at_work else OF_OTHERS
                 parts[OTHER_FORMS if index else part].append(form)
+    parts[OF_ITS_WORK][:0] = _seen(model, cell, instant, [each for each in seen if each.kind in kinds])
     return parts
+
+
+def _seen(model: PlantModel, cell: Cell, instant: Instant, seen: Sequence[Recurring]) -> Iterator[Fault]:
+    """The faults that were seen, as hard as they were, of the devices of this cell."""
+    faults = (fault for each in seen for fault in each.hardest(model, instant.at))
+    return (fault for fault in faults if fault.target not in _elsewhere(model, cell))
 
 
 def _part(kind: str) -> int:

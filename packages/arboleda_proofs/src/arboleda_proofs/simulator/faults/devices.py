@@ -19,7 +19,13 @@ from .shared_effects import hold
 FOR_EVER_S = 86_400.0
 
 
-@board_kind(targets=targets.machines, words=words("atasco", "sin_aire"), seconds=(1.0, 60.0), alike=all_alike)
+@board_kind(
+    targets=targets.machines,
+    words=words("atasco", "sin_aire"),
+    seconds=(1.0, 60.0),
+    alike=all_alike,
+    takes_any_word=True,
+)
 def gives_up(world: BoardSite, fault: Fault) -> End:
     """A device ends every order that it has carried out as failed, with this word."""
     return _behave(world, fault, "fails", lambda goal: fault.word)

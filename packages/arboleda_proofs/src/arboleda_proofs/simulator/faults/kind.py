@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -41,6 +42,7 @@ Refusal = Callable[[World, Fault], "Sentence | None"]
 Range = tuple[float, float]
 NONE: Range = (0.0, 0.0)
 UNHEARD = "unheard"
+WORD = re.compile(r"[A-Za-z0-9_.-]{1,16}")  # that a board has for a reason
 
 
 def no_words(model: PlantModel, target: str) -> Sequence[str]:
@@ -60,6 +62,7 @@ class Kind:
     from which these are drawn; `weight` is how often the kind is drawn beside others, 0: never.
     `alike` has one name for all words that the plant treats alike, `UNHEARD` for those that all who hear them
     refuse. `refusal` is the reason why the plant would do nothing of the fault now, where it would not.
+    `takes_any_word`: a device says it, so a file may have another one than those that are drawn.
     """
 
     name: str
@@ -72,6 +75,7 @@ class Kind:
     weight: float = 1.0
     alike: Callable[[str], str] = str
     refusal: Refusal = never_refused
+    takes_any_word: bool = False
 
     def draw(self, dice: Dice, model: PlantModel, target: str | None = None) -> Mapping[str, Any]:
         """The fields of one fault besides kind, at and seed; `target` is drawn too unless it is given."""
@@ -89,7 +93,7 @@ class Kind:
         if fault.target not in targets:
             return f"{self.name} cannot befall {fault.target!r}; allowed: {_listed(targets)}"
         words = self.words(model, fault.target)
-        if fault.word not in words:
+        if fault.word not in words and not (self.takes_any_word and WORD.fullmatch(fault.word)):
             return f"{self.name} of {fault.target!r} knows no {fault.word!r}; allowed: {_listed(words)}"
         if min(fault.at, fault.seconds) < 0:
             return f"{self.name}: at and seconds are 0 or more"
@@ -138,13 +142,14 @@ def board_kind(
     amount: Range = NONE,
     weight: float = 1.0,
     alike: Callable[[str], str] = str,
+    takes_any_word: bool = False,
 ) -> Callable[[BeginAtBoards], BoardKind]:
     """Make a function `(boards, fault)` a kind of fault of boards, as `kind` does."""
 
     general = kind(targets=targets, words=words, seconds=seconds, amount=amount, weight=weight, alike=alike)
 
     def make(begin: BeginAtBoards) -> BoardKind:
-        fields = vars(general(begin)) | {"begin": begin}
+        fields = vars(general(begin)) | {"begin": begin, "takes_any_word": takes_any_word}
         return BoardKind(**fields)
 
     return make
