@@ -5,8 +5,8 @@ Messages are bytes on the way, and are held against the standard's schemas on bo
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Iterable, Sequence
+from random import Random
 from typing import Any
 
 from arboleda.drivers import NotSent
@@ -25,6 +25,7 @@ from arboleda_drivers.vda5050.virtual.machine import (
 )
 from arboleda_drivers.vda5050.virtual.machine import Message as Said
 from arboleda_drivers.vda5050.virtual.words import BROKEN
+from arboleda_lines.line import Line
 
 
 class Loopback:
@@ -49,14 +50,15 @@ class Loopback:
         self._names = (settings.version, settings.manufacturer, settings.serial)
         self._to_agv, self._headers = Headers(*self._names), Headers(*self._names)
         self._connected = False
-        self._waiting: deque[VehicleMessage] = deque()
+        self.line = Line(Random(0))
         self._do(self.vehicle.connected(now, up=True))
         if agv.is_online:  # which the broker retains
             self._take(Connect(anew=False))
 
     @property
     def next_deadline(self) -> float:
-        return max(self.now, min(self.agv.next_deadline, self.vehicle.next_deadline))
+        due = (self.agv.next_deadline, self.vehicle.next_deadline, self.line.next_deadline)
+        return max(self.now, min(due))
 
     def ask(self, command: Command) -> str | None:
         """Command a device; returns the reason why the command could not leave, or None."""
@@ -78,9 +80,24 @@ class Loopback:
         self._do(self.vehicle.step(now))
         self._settle()
 
+    def cut(self) -> None:
+        """Have the driver's connection to the broker end, and begin anew."""
+        self.line.broken()
+        for up in (False, True):
+            self._do(self.vehicle.connected(self.now, up=up))
+        if self._connected:  # which the broker retains
+            self._do(self.vehicle.connection(self.now, {"connectionState": "ONLINE"}))
+
     def _settle(self) -> None:
-        while self._waiting:
-            self._step_agv(self._waiting.popleft())
+        while True:
+            sent = [*self.line.sent(self.now)]
+            for said in sent:
+                self._step_agv(said)
+            arrived = [*self.line.arrived(self.now)]
+            for each in arrived:
+                self._read(each)
+            if not (sent or arrived):
+                return
 
     def _step_agv(self, *heard: VehicleMessage) -> None:
         for message in self.agv.step(self.now, heard):
@@ -89,11 +106,11 @@ class Loopback:
     def _take(self, message: Said) -> None:
         if isinstance(message, OutgoingMessage):
             if message.fits:
-                self._read(message)
+                self.line.answers(self.now, message)
             return
         self._connected = isinstance(message, Connect)
         if isinstance(message, ConnectionCut):
-            self._waiting.clear()
+            self.line.broken()
         elif message.anew:
             self._headers = Headers(*self._names)
         word = "ONLINE" if self._connected else BROKEN[self._settings.version]
@@ -121,4 +138,4 @@ class Loopback:
         parsed = from_bytes(version, message.topic, to_bytes(version, message.topic, body))
         self.received.append((message.topic, parsed))
         if self._connected:
-            self._waiting.append(VehicleMessage(topic=message.topic, body=parsed))
+            self.line.asks(self.now, VehicleMessage(topic=message.topic, body=parsed))

@@ -6,12 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from arboleda_driver_faults.vda5050 import SILENT_S
 from arboleda_drivers.connections.replies_due import REPLY_S
 from arboleda_drivers.connections.tcp_arm import SILENT_S as FRAMES_S
 from arboleda_drivers.gcode import grbl_stop, marlin, moonraker
 from arboleda_drivers.gcode.controller import ANSWER_S
 from arboleda_drivers.serial_arm.bus import SILENT_S as SERVOS_S
 from arboleda_drivers.serial_arm.packets import Instruction
+from arboleda_drivers.vda5050 import stops
 
 GRBL_STOPS = (b"!", b"\x18")
 MARLIN_STOPS = (b"M410", b"M112")
@@ -40,6 +42,11 @@ def _ur(message: Any) -> bool:
     return b"stopj" in data or data == b"stop\n"
 
 
+def _vehicle(message: Any) -> bool:
+    actions = message.body.get("actions", ()) if message.topic == "instantActions" else ()
+    return any(each["actionType"] in ("cancelOrder", "startPause") for each in actions)
+
+
 def _dobot(message: Any) -> bool:
     return "Stop()" in getattr(message, "text", "")
 
@@ -64,9 +71,14 @@ TRIED = {
     "gcode-grbl": Tried(waits_s=(grbl_stop.SILENT_S, ANSWER_S), is_serial=True, is_stop=_grbl),
     "gcode-limp": Tried(waits_s=(grbl_stop.SILENT_S, ANSWER_S), is_serial=True, is_stop=_grbl),
     "gcode-marlin": Tried(waits_s=(marlin.SILENT_S,), is_serial=True, is_stop=_marlin),
+    "gcode-marlin-limp": Tried(waits_s=(marlin.SILENT_S,), is_serial=True, is_stop=_marlin),
     "gcode-moonraker": Tried(waits_s=(moonraker.SILENT_S,)),
     "serial_arm-feetech": Tried(waits_s=(0.05, SERVOS_S), is_serial=True, is_stop=_servos, telegram_s=0.05),
     "serial_arm-dynamixel": Tried(waits_s=(0.05, SERVOS_S), is_serial=True, is_stop=_servos, telegram_s=0.05),
+    **{
+        f"vda5050-{version}": Tried(waits_s=(stops.AGAIN_S, SILENT_S), has_bytes=False, is_stop=_vehicle)
+        for version in ("2.0", "2.1", "3.0")
+    },
     "dobot": Tried(waits_s=(FRAMES_S, REPLY_S), is_stop=_dobot),
     "ur": Tried(waits_s=(FRAMES_S, REPLY_S), is_stop=_ur),
 }

@@ -10,13 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import product
-from typing import Any
+from typing import Protocol, runtime_checkable
 
 from arboleda.drivers.supervisor import Give
 from arboleda.model.cell_states import CellState
 from arboleda.model.commands import Stop, StopMode, Work
 from arboleda.model.messages import MotionState, Reason, TaskState, Verb
-from arboleda_driver_faults.loopback import Loopback
 from arboleda_driver_faults.rig import Result, Rig, World
 from arboleda_driver_faults.rigs import rig_of
 
@@ -33,6 +32,16 @@ SLACK_S = 0.001
 STANDS = (MotionState.STOPPED, MotionState.STOP_LATCHED)
 MAY_FAIL_BY = {*Reason} - {Reason.PART_LOST, Reason.INTERNAL}
 """What a bad line may make a task fail by: all but what is not so."""
+
+
+@runtime_checkable
+class Lined(Protocol):
+    """Driver and virtual device with a line between them."""
+
+    line: Line
+
+    def cut(self) -> None:
+        """End the connection."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -147,8 +156,8 @@ class BadLine(World):
     # What happens.
 
     @property
-    def _loopback(self) -> Loopback[Any, Any]:
-        assert isinstance(self._driver, Loopback)
+    def _loopback(self) -> Lined:
+        assert isinstance(self._driver, Lined)
         return self._driver
 
     @property
