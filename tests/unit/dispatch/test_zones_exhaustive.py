@@ -19,8 +19,8 @@ ROBOTS = (*ARMS, MILL)
 WISHES = [frozenset(some) for size in (1, 2, 3, 4) for some in combinations(NAMES, size)]
 DOOR = frozenset({"w"})  # the zone that the mill shuts off, when it is told to or by somebody's hand
 ACTS: list[tuple[str, tuple[Any, ...]]] = [
-    *(("request", (arm, wish)) for arm, wish in product(ARMS, WISHES)),
-    ("request", (MILL, DOOR)),
+    *(("acquire", (arm, wish)) for arm, wish in product(ARMS, WISHES)),
+    ("acquire", (MILL, DOOR)),
     ("claim", (MILL, DOOR)),
     *((verb, (robot,)) for verb in ("withdraw", "release", "quarantine", "restore") for robot in ROBOTS),
     *(("override", (zone,)) for zone in NAMES),
@@ -85,7 +85,7 @@ def act(zones: Zones, verb: str, arguments: tuple[Any, ...]) -> tuple[str, ...] 
         answer = getattr(zones, verb)(*arguments)
     except IllegalTransition:
         return None
-    if verb in ("request", "claim"):
+    if verb in ("acquire", "claim"):
         return (arguments[0],) if (answer or verb == "claim") and not inside else ()
     return answer or ()
 

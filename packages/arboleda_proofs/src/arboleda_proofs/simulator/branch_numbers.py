@@ -6,6 +6,7 @@ Recipes in Python have ranges at their questions; trees of files compare variabl
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from arboleda.drivers import Device, Value
 from arboleda.engine import Plant
@@ -24,7 +25,7 @@ def numbers(model: PlantModel) -> Mapping[DeviceAndVerb, tuple[Value, ...]]:
 
     The first is what a virtual device answers.
     """
-    devices = [robot for robot in model.robots.values() if isinstance(robot, Device)]
+    devices: list[Any] = [robot for robot in model.robots.values() if robot.verb_names]
     verbs = [(device.name, verb) for device in devices for verb in device.kind.verbs.values()]
     types = {(device, verb.name): verb.number for device, verb in verbs if verb.number is not None}
     ranges = _ranges(model) if types else {}

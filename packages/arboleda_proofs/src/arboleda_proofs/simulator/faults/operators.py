@@ -8,7 +8,7 @@ from arboleda.drivers import shown
 from arboleda.engine import HISTORY
 from arboleda.engine.inspection import Task, tasks_of
 from arboleda.model.messages import OperatorRequest, TaskState, Verb
-from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.model.plant_model import Cell, PlantModel, is_homed_by_word
 from arboleda.model.verbs import PARTS, STATION, WORK, Arguments, Devices, Scope
 from arboleda.recipes import Recipe, Sentence
 from arboleda.rig import hands
@@ -47,7 +47,7 @@ def _zones(model: PlantModel) -> tuple[str, ...]:
 def _homings(model: PlantModel, target: str) -> tuple[str, ...]:
     """Verbs for homing; by hand only for robots that cannot report a homing, as people are asked then."""
     robot = model.robots.get(target)
-    by_itself = robot is None or (robot.says_homed and not robot.home_is_claim)
+    by_itself = robot is None or (robot.says_homed and not is_homed_by_word(robot))
     return ("",) if by_itself else ("", BY_HAND)
 
 

@@ -11,7 +11,7 @@ from arboleda.engine.inspection import RELEASING, grips_of, places_of
 from arboleda.model.cell_states import CellState
 from arboleda.model.common_places import with_common_places
 from arboleda.model.messages import Fact, Journal, OperatorAnswer, OperatorRequest, Outcome, TaskState, Verb
-from arboleda.model.plant_model import Link
+from arboleda.model.plant_model import Link, is_homed_by_word
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
@@ -146,8 +146,8 @@ def _not_so(look: Look, request: OperatorRequest) -> bool:
     robots = [look.world.model.robots[name] for name in look.record.scopes.robots(request.scope)]
     robots = [robot for robot in robots if robot.homes and robot.link is not Link.NONE] or robots
     if request.by_hand:
-        return any(robot.says_homed and not robot.home_is_claim for robot in robots)
-    return any(robot.evidence is not Evidence.IDS or robot.home_is_claim for robot in robots)
+        return any(robot.says_homed and not is_homed_by_word(robot) for robot in robots)
+    return any(robot.evidence is not Evidence.IDS or is_homed_by_word(robot) for robot in robots)
 
 
 @invariant(Trigger.ASKED)

@@ -64,11 +64,10 @@ class Motions:
 
     def _follow(self, at: float, boot: int | None, fields: Mapping[str, Any]) -> None:
         epoch, seq = self._number
-        if boot != self._boot or seq in (fields.get("hecho"), fields.get("rechazo_seq")):
+        has_booted = self._boot is not None and boot != self._boot  # the first report tells of none
+        if has_booted or seq in (fields.get("hecho"), fields.get("rechazo_seq")):
             self.lasts = False
-        if boot != self._boot or (
-            self._by_ids and (fields.get("epoca_ack"), fields.get("hecho")) == (epoch, seq)
-        ):
+        if has_booted or (self._by_ids and (fields.get("epoca_ack"), fields.get("hecho")) == (epoch, seq)):
             self.may_last = False
         self._boot, self._least = boot, max(fields.get("epoca_ack", -1), fields.get("epoca_min", -1))
         if fields["estado"] == MOVING:
