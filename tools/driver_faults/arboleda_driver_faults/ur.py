@@ -59,7 +59,7 @@ CAUSES: dict[str, set[Reason]] = {
     "short": {Reason.NOT_REACHED},
     "stall": {Reason.DEADLINE},
     "deaf": {Reason.STOP_UNCONFIRMED},
-    "stuck_output": {Reason.REJECTED},
+    "stuck_output": {Reason.DEVICE_FAULT},
     "slow": {Reason.DEADLINE},
 }
 

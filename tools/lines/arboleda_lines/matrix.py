@@ -108,6 +108,8 @@ class BadLine(World):
             self.operate(self._case.act)
         self.advance(self._tried.lasts_s)
         self._line.end()
+        # Until then answers of before are on their way, or are found to be missing.
+        self.advance(self._case.form.delay_s + max(self._tried.waits_s))
         self._is_on = False
         self._lead_out()
         told, given = self.rig.moves()

@@ -10,12 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from arboleda.dispatch.belief import stands_while_cleared
 from arboleda.dispatch.obstacles import MAY_LET_GO, Make
 from arboleda.model.advice import Advice, Hand
 from arboleda.model.cell_states import CellState
 from arboleda.model.facts import Facts, Value, shown
 from arboleda.model.messages import OperatorRequest, Reason, Verb
-from arboleda.model.plant_model import Robot
+from arboleda.model.plant_model import Robot, is_homed_by_word
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.model.verbs import WORK, Arguments
 from arboleda.trees import part_places
@@ -86,7 +87,7 @@ class Advisor:
             for each in readying
             if each.do is Verb.HOME
             and each.scope in run.cell.workspaces
-            and not run.context.robots.belief(each.scope).stands_while_cleared
+            and not stands_while_cleared(run.context.robots.belief(each.scope))
             and run.context.devices.has(each.scope)
         ]
         if run.task is None:
@@ -188,7 +189,7 @@ class Advisor:
 
     def _clearing(self, run: CellRun, robot: str, why: Sentence, visited: frozenset[str]) -> Iterator[Advice]:
         """Advice to home a robot out of its fault."""
-        if run.context.robots.belief(robot).stands_while_cleared:
+        if stands_while_cleared(run.context.robots.belief(robot)):
             yield Advice(do=Verb.HOME, scope=robot, why=why)
         else:
             yield from self._homing(run, robot, why, visited)
@@ -207,7 +208,7 @@ class Advisor:
             yield from _running_home(run, robot, why)
             return
         belief = run.context.robots.belief(robot)
-        is_claim = belief.robot.home_is_claim
+        is_claim = is_homed_by_word(belief.robot)
         if (Verb.HOME, robot) in run.in_vain if is_claim else belief.says_unhomed:
             yield Advice(do=Hand.REFERENCE, scope=robot, why=why)
             if not (is_claim or belief.displaced):

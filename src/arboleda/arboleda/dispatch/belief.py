@@ -338,13 +338,6 @@ class Belief:
         return in_fault and driver is not None and driver.recovers
 
     @property
-    def stands_while_cleared(self) -> bool:
-        """True where homing leads it out of its fault, and it keeps its place."""
-        driver = self.robot.driver
-        keeps = driver is not None and not (driver.home_moves or driver.home_is_claim)
-        return keeps and self.is_cleared_by_homing
-
-    @property
     def is_led_out_by_homing(self) -> bool:
         """True where homing ends all that keeps it from other commands."""
         trouble = self.trouble
@@ -480,3 +473,10 @@ TROUBLES: dict[MotionState | None, RobotTrouble] = {
     MotionState.FAULT: FAULTY,
     MotionState.STOP_LATCHED: STOPPED,
 }
+
+
+def stands_while_cleared(belief: Belief) -> bool:
+    """True where homing leads a robot out of its fault, and it keeps its place."""
+    driver = belief.robot.driver
+    keeps = driver is not None and not (driver.home_moves or driver.home_is_claim)
+    return keeps and belief.is_cleared_by_homing

@@ -250,10 +250,10 @@ class Robot:
         """
         return (self.evidence is Evidence.IDS and not self.assume_homed) or not self.homes
 
-    @property
-    def home_is_claim(self) -> bool:
-        """True where only a person can say that it is homed, and its driver takes that word."""
-        return self.driver is not None and self.driver.home_is_claim
+
+def is_homed_by_word(robot: Robot) -> bool:
+    """True where only a person can say that a robot is homed, and its driver takes that word."""
+    return robot.driver is not None and robot.driver.home_is_claim
 
 
 @dataclass(frozen=True, kw_only=True)

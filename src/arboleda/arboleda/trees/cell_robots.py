@@ -11,7 +11,7 @@ from arboleda.dispatch.stillness import ReportMoment
 from arboleda.model.commands import Position
 from arboleda.model.facts import Value
 from arboleda.model.messages import Failure, MotionState
-from arboleda.model.plant_model import Cell, Evidence, Pose
+from arboleda.model.plant_model import Cell, Evidence, Pose, is_homed_by_word
 
 from .cell_devices import CellDevices
 from .cell_time import CellTime
@@ -134,7 +134,7 @@ class CellRobots:
         """True for a robot that finds its reference by itself; a person puts any other robot there."""
         belief = self._dispatcher.beliefs[robot]
         knows = belief.robot.says_homed or belief.says_unhomed
-        return belief.robot.evidence is Evidence.IDS and knows and not belief.robot.home_is_claim
+        return belief.robot.evidence is Evidence.IDS and knows and not is_homed_by_word(belief.robot)
 
     def receiving(self, names: Iterable[str]) -> list[tuple[Belief, int]]:
         """The beliefs about these robots, and about those of the cell whose boards number their commands.

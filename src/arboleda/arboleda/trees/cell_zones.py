@@ -9,7 +9,7 @@ from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.zones import Zones
 from arboleda.model.commands import Command
 from arboleda.model.messages import Failure, Reason
-from arboleda.model.plant_model import Cell
+from arboleda.model.plant_model import Cell, is_homed_by_word
 from arboleda.model.sentence import Phrase
 
 from .cell_devices import CellDevices
@@ -155,7 +155,7 @@ class CellZones:
         for robot in self._cell.shared_movers:
             if not (self._devices.is_lent(robot) or self._devices.hand_over.is_home(robot)):
                 known = self._dispatcher.beliefs[robot].robot
-                says_homed = known.says_homed and not known.home_is_claim
+                says_homed = known.says_homed and not is_homed_by_word(known)
                 astray = ASTRAY_SHARED if says_homed else ASTRAY_SHARED_BY_HAND
                 return robot, Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=astray(arm=robot))
         for robot in self._cell.zone_users:
@@ -165,7 +165,7 @@ class CellZones:
             unknown = not belief.supervised and robot not in self._dispatcher.whereabouts.reached
             if unknown or self._dispatcher.whereabouts.place(space) is not None:
                 continue
-            says_homed = belief.robot.says_homed and not belief.robot.home_is_claim
+            says_homed = belief.robot.says_homed and not is_homed_by_word(belief.robot)
             astray = ASTRAY if says_homed else ASTRAY_BY_HAND
             return robot, Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=astray(arm=robot))
         return None

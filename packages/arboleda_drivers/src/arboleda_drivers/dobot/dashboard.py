@@ -101,6 +101,8 @@ class ToolOutput:
                 self._receipts.tell(accepted=switched.id)
             elif switched is not None:
                 unread = f"output_not_read_back {reply.word}"
-                self._receipts.reject(switched.id, "output_does_not_follow" if reply.error == 0 else unread)
+                # It has left: what takes effect later is still this command's.
+                word = "output_does_not_follow" if reply.error == 0 else unread
+                self._receipts.tell(failed=switched.id, failure=word)
 
         self._dashboard.say(now, f"GetToolDO({self._number})", take)

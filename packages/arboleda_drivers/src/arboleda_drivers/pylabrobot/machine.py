@@ -44,7 +44,7 @@ from .messages import (
 )
 from .reading import UnreadableValue
 from .settings import Call, MachineMapping
-from .tasks import Task, Tasks
+from .tasks import Task, Tasks, UnknownFacts
 
 AGAIN_S = 2.0  # between two tries to set a machine up, or to read one that could not be read
 BEAT_S = 0.5  # period of reports while a look takes its time
@@ -68,15 +68,14 @@ class Machine:
         self._latched = False
         self._receipts: dict[str, object] = {}
         self._reported_at = -math.inf
-        self._counted = {name for name, one in settings.facts.items() if one.is_counted}
-        self._unknown: set[str] = set()  # facts that are counted, and that a call may have changed or not
+        self._unknown = UnknownFacts(name for name, one in settings.facts.items() if one.is_counted)
         self._tasks = Tasks(side_by_side=settings.side_by_side)
         self._forget(0.0)
 
     def _forget(self, now: float) -> None:
         """Forget the machine: its calls end with it."""
         for task in self._tasks.values():
-            self._doubt(task)
+            self._unknown.end(task)
         self._tasks = Tasks(side_by_side=self._settings.side_by_side)
         self._stops: deque[Stop] = deque()  # that wait for the end of another
         self._up = False
@@ -207,7 +206,7 @@ class Machine:
         if not self._is_full_look:
             return
         kinds = self._device.kind.facts
-        facts = ((name, one) for name, one in self._settings.facts.items() if name not in self._unknown)
+        facts = ((name, one) for name, one in self._settings.facts.items() if name not in self._unknown.names)
         self._facts = tuple((name, one.value(values.get(one.read), kinds[name])) for name, one in facts)
         boot = None if self._settings.boot is None else str(values.get(self._settings.boot))
         if self._boot_shown is not None and boot != self._boot_shown:
@@ -298,10 +297,7 @@ class Machine:
                 self._tell(now, accepted=task.command.id)
             return
         task.over = event
-        if isinstance(event, Returned):
-            self._unknown -= task.sets
-        elif not self._refuses(event):
-            self._doubt(task)
+        self._unknown.end(task, began=not (isinstance(event, Raised) and self._refuses(event)))
         if isinstance(task.command, Stop):
             self._stop_ended(now, task, task.command, event)
             return
@@ -311,11 +307,6 @@ class Machine:
     def _refuses(self, raised: Raised) -> bool:
         """True for an exception that says that nothing has begun."""
         return raised.first and raised.name in self._settings.refusals
-
-    def _doubt(self, task: Task) -> None:
-        """Take for unknown what a call was to change that has not returned."""
-        if not isinstance(task.over, Returned):
-            self._unknown |= task.sets & self._counted
 
     def _stop_ended(self, now: float, task: Task, stop: Stop, event: Returned | Raised) -> None:
         del self._tasks[task.number]
@@ -366,5 +357,5 @@ class Machine:
     def _report(self, now: float) -> None:
         self._reported_at = now
         report = Report(at=now, robot=self._device.name, boot_id=self._boot, state=self._state())
-        unknown = tuple(sorted(self._unknown))
+        unknown = tuple(sorted(self._unknown.names))
         self._out.append(report.again(now, facts=self._facts, unknown=unknown, **self._receipts))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from arboleda.drivers import Command, OnStop, Stop, VerbCommand, Work
@@ -65,3 +66,18 @@ class Tasks(dict[int, Task]):
         """Nobody waits for any end any more."""
         for task in self.values():
             task.command = None
+
+
+class UnknownFacts:
+    """Facts of which only PyLabRobot's count is read, `counted`, and that a call may have changed or not."""
+
+    def __init__(self, counted: Iterable[str]) -> None:
+        self._counted = frozenset(counted)
+        self.names: frozenset[str] = frozenset()
+
+    def end(self, task: Task, *, began: bool = True) -> None:
+        """Note the end of a call: one that returned has set its facts; `began`: it may have changed some."""
+        if isinstance(task.over, Returned):
+            self.names -= task.sets
+        elif began:
+            self.names |= task.sets & self._counted

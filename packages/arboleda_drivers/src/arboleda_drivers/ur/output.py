@@ -43,7 +43,9 @@ class Output:
             self._command = None
             self._receipts.tell(accepted=command.id)
         elif now - self._sent_at > SWITCH_S:
-            self._reject("output_does_not_follow")
+            # It has left: what takes effect later is still this command's.
+            self._receipts.tell(failed=command.id, failure="output_does_not_follow")
+            self._command = None
 
     def refuse(self, error: ScriptError) -> None:
         """Take the controller's error about the program of a switch, if one is under way."""

@@ -196,12 +196,12 @@ def test_a_grip_is_accepted_once_its_output_is_read_back(maker: str) -> None:
 
 
 @EACH
-def test_an_output_that_does_not_follow_is_refused(maker: str) -> None:
+def test_an_output_that_does_not_follow_is_a_failure(maker: str) -> None:
     joined = up(maker, "stuck_output")
     joined.ask(GRIP)
     joined.wait(2.0)
     assert (joined.last.accepted, joined.last.effector) == (None, False)
-    assert (joined.last.rejected, joined.last.refusal) == (GRIP.id, "output_does_not_follow")
+    assert (joined.last.failed, joined.last.failure) == (GRIP.id, "output_does_not_follow")
 
 
 @pytest.mark.parametrize(("maker", "fault", "off_s"), [("dobot", "power_cycle", 5.0), ("ur", "reboot", 20.0)])

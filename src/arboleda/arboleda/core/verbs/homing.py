@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from arboleda.dispatch.belief import ONLY_DRAWN
+from arboleda.dispatch.belief import ONLY_DRAWN, stands_while_cleared
 from arboleda.dispatch.ledger import Entry
 from arboleda.model.commands import Home
 from arboleda.model.messages import OperatorRequest
-from arboleda.model.plant_model import Evidence
+from arboleda.model.plant_model import Evidence, is_homed_by_word
 from arboleda.model.sentence import Phrase, Sentence
 
 from ..cell import CellRun
@@ -76,7 +76,7 @@ class Homing:
         One that has none is told that it stands at its zero, and does not move.
         """
         cell = self._scopes.in_charge(name)
-        if not self._state.dispatcher.beliefs[name].stands_while_cleared:
+        if not stands_while_cleared(self._state.dispatcher.beliefs[name]):
             _uproot(cell, name)
         users = [run for run in self._scopes.of_robots(frozenset([name])) if name in run.cell.zone_users]
         for run in (each for each in users if each.state in AT_REST):
@@ -110,7 +110,7 @@ class Homing:
 
     def _home(self, robots: frozenset[str], *, by_hand: bool) -> None:
         for name in sorted(robots):
-            if by_hand and not self._state.dispatcher.beliefs[name].robot.home_is_claim:
+            if by_hand and not is_homed_by_word(self._state.dispatcher.beliefs[name].robot):
                 run = self._scopes.in_charge(name)
                 space = run.cell.workspaces.get(name)
                 self._state.dispatcher.declare_homed(name, space.home.q if space is not None else None)
@@ -134,7 +134,7 @@ class Homing:
         if work := self._state.dispatcher.ledger.work_of(name):
             return STILL_DOING(robot=name, doing=work.doing)
         robot, has_routine = belief.robot, belief.robot.evidence is Evidence.IDS
-        if robot.home_is_claim:
+        if is_homed_by_word(robot):
             return self._objection(name) if by_hand else ONLY_BY_HAND(robot=name)
         if by_hand and robot.says_homed:
             return SAYS_ITSELF(robot=name)
