@@ -8,7 +8,7 @@ from arboleda.model.cell_states import CellState
 from arboleda.rig.hands import do
 from arboleda.testing import Rig
 
-ENOUGH = 7  # acts that lead out of any state: two cells cleared and reset, a home, a question, resume
+ENOUGH = 9  # acts that lead out of any state: two cells cleared and reset, a home, three questions, resume
 SOON_S, PATIENCE_S = 2.0, 60.0
 
 
