@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -12,12 +13,17 @@ from tests.packages import ROOT
 
 from arboleda.engine import Plant
 from arboleda.model.commands import Command, Stop, StopMode
+from arboleda.model.errors import ConfigError
 from arboleda.model.messages import MotionState, OperatorRequest, Report, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
+from arboleda.rig.plant_process import Side
 from arboleda_proofs.campaigns.faults_file import read
 from arboleda_proofs.campaigns.plants import Plant as Simulated
 from arboleda_proofs.campaigns.plants import PlantRotation
+from arboleda_proofs.campaigns.proof.instants import Instant
+from arboleda_proofs.campaigns.proof.proof_request import ProofRequest
+from arboleda_proofs.campaigns.proof.single_faults import single_faults
 from arboleda_proofs.campaigns.setting import Setting
 from arboleda_proofs.playback.unlike.difference import PHRASES
 from arboleda_proofs.playback.unlike.reading import PlantWatch
@@ -276,3 +282,23 @@ def test_a_wrong_row_is_a_sentence_with_its_place(small: PlantModel) -> None:
         with pytest.raises(BadFaults, match=re.escape(sentence)) as wrong:
             recurring_from(small, [{}, row])
         assert wrong.value.place[:2] == ("unlike", 1)
+
+
+def test_a_proof_tries_what_was_seen_before_all_others(small: PlantModel, tmp_path: Path) -> None:
+    watch = watched(small, PLANTED["stopped_late"])
+    file = tmp_path / "unlike.yaml"
+    file.write_text(as_yaml(watch.unlike(), small, watch.minutes))
+    request = ProofRequest(
+        plant=tmp_path / "small.yaml", recipes=(), kinds=(), budget_s=1.0, folder=tmp_path, faults=file
+    )
+    (tmp_path / "small.yaml").write_text(SMALL)
+    (tmp_path / "small.py").write_text(SHINE)
+    instant = Instant(at=3.0, side=Side.AFTER, what="")
+    (cell,) = small.cells
+    first = single_faults(small, cell, instant, seen=request.seen)[0][0]
+    (seen,) = (each.fault for each in watch.unlike())
+    assert seen is not None
+    assert first == replace(seen, at=3.0, seconds=round(seen.seconds, 3), amount=round(seen.amount, 3))
+    file.write_text("rates: {loss: 2}\n")
+    with pytest.raises(ConfigError, match="is no file that `arboleda record unlike --to` wrote"):
+        assert replace(request).seen
