@@ -11,11 +11,11 @@ from typing import Any
 from arboleda.drivers import Device, Value
 from arboleda.engine import Plant
 from arboleda.kinds.declared import QueryCall
-from arboleda.kinds.ranges import Range, apart
+from arboleda.kinds.ranges import apart
 from arboleda.model.orders import orders
 from arboleda.model.plant_model import PlantModel
 from arboleda.recipes.handles import Ask
-from arboleda.recipes.of_files import FileRecipe
+from arboleda.recipes.of_files import FileRecipe, Range
 
 DeviceAndVerb = tuple[str, str]
 
