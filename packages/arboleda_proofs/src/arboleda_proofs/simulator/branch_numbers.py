@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from arboleda.drivers import Device, Value
+from arboleda.drivers import Value
 from arboleda.engine import Plant
 from arboleda.kinds.declared import QueryCall
-from arboleda.kinds.ranges import apart
+from arboleda.kinds.ranges import Range, apart
 from arboleda.model.orders import orders
 from arboleda.model.plant_model import PlantModel
 from arboleda.recipes.handles import Ask
-from arboleda.recipes.of_files import FileRecipe, Range
+from arboleda.recipes.of_files import FileRecipe
 
 DeviceAndVerb = tuple[str, str]
 

@@ -18,7 +18,7 @@ from arboleda.drivers import (
     StopMode,
     UseError,
 )
-from arboleda.model.messages import Event, Interference, LateDeparture, OperatorRequest, Undelivered
+from arboleda.model.messages import Event, Interference, OperatorRequest, Undelivered
 from arboleda.model.plant_model import Link, PlantModel
 from arboleda.recorder.plain_data import TYPE
 from arboleda.recorder.steps import RecordedStep
@@ -91,12 +91,11 @@ class PlantWatch:
             watch.excuse(now)
         elif isinstance(event, Undelivered) and watch is not None:
             watch.drop(event.id)
-        elif isinstance(event, LateDeparture):
-            for each in self._watches.values():
-                each.delay(event.id, event.late_s)
-        elif isinstance(event, OperatorRequest) and event.by_hand:
-            for each in self._watches.values():
+        for each in self._watches.values():
+            if isinstance(event, OperatorRequest) and event.by_hand:
                 each.excuse(now)
+            elif (late_s := getattr(event, "late_s", None)) is not None:  # a command left later
+                each.delay(getattr(event, "id", ""), late_s)
 
     def differences(self) -> list[Difference]:
         """All differences so far, in order, with those that go on."""
