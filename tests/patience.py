@@ -4,11 +4,11 @@ It is for the busiest machine: who is answered waits no longer than that takes, 
 ARBOLEDA_PATIENCE_S is another, for a machine that is slower still.
 """
 
-import os
 import time
 from collections.abc import Callable
 
-PATIENCE_S = float(os.environ.get("ARBOLEDA_PATIENCE_S", "90"))
+from arboleda.testing.patience import PATIENCE_S as PATIENCE_S
+
 PATIENCE_MS = 1000 * PATIENCE_S
 LONG_S = 4 * PATIENCE_S  # a page with Python in it computes for a minute where all processors are busy
 LONG_MS = 1000 * LONG_S

@@ -27,7 +27,7 @@ FOLDERS = ("src", "tools/bench", "tools/kills", *ROOT.glob("packages/*/src"))
 PRODUCT = tuple(f"{ROOT / name}/" for name in FOLDERS)
 LIBRARIES = "/site-packages/"
 INSTALLED = "/site-packages/arboleda"  # as colcon installs the product
-OWN_TESTS = "/test/"  # of a package of ROS 2, whose tests lie beside its product
+OWN_TESTS = ("/test/", "/arboleda/testing/")  # beside the product of a package; what tests are made of
 MOST = 3
 TRACEBACK = re.compile(r"Traceback \(most recent call last\):\n(?P<calls>(?:[ |]+.*\n)+)(?P<name>[\w.]+)")
 CALL = re.compile(r'File "(?P<path>[^"]+)", line')
@@ -76,7 +76,7 @@ def _shows_product(found: re.Match[str]) -> bool:
 def _ends_in_product(paths: list[str]) -> bool:
     """Whether the innermost of our own files is one of the product; what libraries do is their caller's."""
     own = [path for path in paths if INSTALLED in path or (path.startswith(OURS) and LIBRARIES not in path)]
-    if not own or OWN_TESTS in own[-1]:
+    if not own or any(each in own[-1] for each in OWN_TESTS):
         return False
     return own[-1].startswith(PRODUCT) or INSTALLED in own[-1]
 

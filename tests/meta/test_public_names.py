@@ -25,6 +25,7 @@ MODULES = [
         "arboleda.drivers",
         "arboleda.engine",
         "arboleda.testing",
+        "arboleda.testing.drivers",
         "arboleda_fleet.client",
         "arboleda_make.client",
         "arboleda_proofs.client",

@@ -1,4 +1,4 @@
-"""The pytest plugin of the runner, with the fixture `plant_with`.
+"""The pytest plugin of the runner, with the fixture `plant_with`; the contract of drivers is beside it.
 
 Every run of pytest loads it, so it imports late.
 """
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from arboleda.runtime.extensions.part import Part
 
     from .with_parts import PlantWith
+
+pytest.register_assert_rewrite("arboleda.testing.drivers")  # what its cases assert is shown as of any test
 
 
 class MakePlantWith(Protocol):

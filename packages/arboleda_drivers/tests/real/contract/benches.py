@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 
+from arboleda.testing.drivers import Bench
+
 from ..dobot import bench as dobot
 from ..gcode import bench as gcode
 from ..gripper_command import bench as gripper_command
@@ -17,7 +19,6 @@ from ..serial_arm import bench as serial_arm
 from ..ur import bench as ur
 from ..vda5050 import bench as vda5050
 from . import line_tcp, mqtt, ros
-from .bench import Bench
 
 BENCHES: dict[str, Bench] = {
     "mqtt": mqtt.BENCH,

@@ -8,20 +8,16 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from arboleda.runtime.build import App, Options, build
+from arboleda.runtime.build import App
+from arboleda.testing.drivers import Bench, Device
 
-from .bench import Bench, Device
-from .press import EXAMPLE, Order, Press, Words, plant
+from .press import EXAMPLE, Order, Press, Words, app_of
 
 
 def _open(folder: Path, state: Path) -> tuple[App, Callable[[App], Device]]:
     made: list[Callable[[Order], None]] = []
     server = controller().Line(lambda order: made[0](line_of(order)))
-    app = build(
-        plant(folder, f"{{line_tcp: {{host: 127.0.0.1, port: {server.port}}}}}"),
-        ("orchestrator",),
-        Options(state_dir=state),
-    )
+    app = app_of(folder, state, f"{{line_tcp: {{host: 127.0.0.1, port: {server.port}}}}}")
 
     def connect(told: Callable[[Order], None]) -> LineWire:
         made.append(told)

@@ -8,12 +8,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from tests.patience import PATIENCE_S
+from arboleda.runtime.build import App
+from arboleda.testing.drivers import Device, open_shop
+from arboleda.testing.drivers.bench import HALT, LATCH, OTHER, WORK, Ref
 
-from arboleda.plant_file.loader import load
-from arboleda.runtime.build import App, Options, build
-
-from .bench import HALT, LATCH, OTHER, WORK, Device, Ref
 from .tcp_ports import Ports
 
 Opened = tuple[App, Callable[[App], Device]]
@@ -32,17 +30,6 @@ cells:
       home: {{{device}: {{{unit}: {places[0]}}}}}
       a: {{{device}: {{{unit}: {places[1]}}}}}
       b: {{{device}: {{{unit}: {places[2]}}}}}
-"""
-RECIPES = """
-from arboleda.recipes import recipe
-
-@recipe("work")
-def work_(cell):
-    return cell.device("{device}").go({work})
-
-@recipe("other")
-def other(cell):
-    return cell.device("{device}").go({other})
 """
 
 
@@ -66,22 +53,16 @@ def app_of(
     kinds: str = "",
 ) -> App:
     """The plant, built; `works`: where the device goes, `kinds`: what its recipes' file begins with."""
-    folder.mkdir(exist_ok=True)
-    (folder / "plant.yaml").write_text(text, "utf-8")
-    recipes = RECIPES.format(device=device, work=works[0], other=works[1])
-    (folder / "recipes.py").write_text(kinds + recipes, "utf-8")
-    return build(load(folder / "plant.yaml"), ("orchestrator",), Options(state_dir=state))
+    work, other = (f"go({each})" for each in works)
+    return open_shop(folder, state, text, device=device, work=work, other=other, python=kinds)
 
 
 class PlayedMover:
     """Its moves wait for the test, but those home, which it does at once until it was away."""
 
     def __init__(self) -> None:
-        self._orders: queue.Queue[tuple[str, Ref]] = queue.Queue()
+        self.orders: queue.Queue[tuple[str, Ref]] = queue.Queue()
         self._homes, self._stop_word = True, HALT  # its protocol has one word for both stops
-
-    def told(self) -> tuple[str, Ref]:
-        return self._orders.get(timeout=PATIENCE_S)
 
     def answers(self, ref: Ref, word: str) -> None:
         raise AssertionError("what moves is asked nothing")
@@ -96,11 +77,11 @@ class PlayedMover:
         """True for a move that is made at once; any other one becomes an order."""
         if word == HOME and self._homes:
             return True
-        self._orders.put((word, ref))
+        self.orders.put((word, ref))
         return False
 
     def _order_stop(self) -> None:
-        self._orders.put((self._stop_word, None))
+        self.orders.put((self._stop_word, None))
         self._stop_word = HALT if self._homes else LATCH
 
 

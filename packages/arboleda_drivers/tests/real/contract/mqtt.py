@@ -14,16 +14,15 @@ from tests.patience import PATIENCE_S
 
 from arboleda.adapters.broker_login import address
 from arboleda.adapters.mqtt import MqttClient, NotConnected
-from arboleda.runtime.build import App, Options, build
+from arboleda.runtime.build import App
+from arboleda.testing.drivers import Bench, Device
 from arboleda.wire.transport import Connection, Delivery, Publication
 
-from .bench import Bench, Device
-from .press import CODES, NAME, STOPS, Order, Press, Words, plant
+from .press import CODES, NAME, STOPS, Order, Press, Words, app_of
 
 
 def _open(folder: Path, state: Path) -> tuple[App, Callable[[App], Device]]:
-    parts = ("broker", "bridge", "orchestrator")
-    app = build(plant(folder, "mqtt"), parts, Options(state_dir=state))
+    app = app_of(folder, state, "mqtt", parts=("broker", "bridge", "orchestrator"))
     return app, lambda app: Press(partial(MqttWire, app.links()["broker"]["address"]))
 
 

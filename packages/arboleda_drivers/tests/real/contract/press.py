@@ -11,13 +11,13 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from tests.packages import ROOT
-from tests.patience import PATIENCE_S
 
 from arboleda.model.messages import MotionState
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file.loader import load
-
-from .bench import ASK, HALT, LATCH, OTHER, WORK, Ref
+from arboleda.runtime.build import App
+from arboleda.testing.drivers import open_shop
+from arboleda.testing.drivers.bench import ASK, HALT, LATCH, OTHER, WORK, Ref
 
 BEAT_S = 0.1
 NAME = "press"
@@ -27,33 +27,27 @@ CODES = {"stopped": MotionState.STOPPED, "moving": MotionState.MOVING, "latched"
 STOPS = {2: HALT, 1: LATCH, 0: "clear"}
 MEANS = {"close": WORK, "open": OTHER, "measure": ASK}
 GUARD = {WORK: "closed", OTHER: "open"}
-RECIPES = """
-from arboleda.recipes import recipe, work
 
-@recipe("work")
-def close(cell):
-    return cell.device("press").close()
 
-@recipe("other")
-def open_(cell):
-    return cell.device("press").open()
-
-@recipe("ask")
-def measure(cell):
-    seen = cell.device("press").measure()
-    return work(seen, cell.choose(seen, {"good": [], "bad": cell.fail("the part is out of measure")}))
-"""
+def text(folder: Path, driver: str) -> str:
+    """The plant file of the example, with the press behind this driver; the folder gets what it uses."""
+    shutil.copytree(EXAMPLE, folder)
+    found = (folder / "plant.yaml").read_text("utf-8")
+    assert DRIVER in found
+    return found.replace(DRIVER, driver)
 
 
 def plant(folder: Path, driver: str) -> PlantModel:
     """The plant of the example, with the press behind this driver."""
-    shutil.copytree(EXAMPLE, folder)
-    (folder / "recipes.py").write_text(RECIPES, "utf-8")
-    file = folder / "plant.yaml"
-    text = file.read_text("utf-8")
-    assert DRIVER in text
-    file.write_text(text.replace(DRIVER, driver), "utf-8")
-    return load(file)
+    written = text(folder, driver)
+    (folder / "plant.yaml").write_text(written, "utf-8")
+    return load(folder / "plant.yaml")
+
+
+def app_of(folder: Path, state: Path, driver: str, **more: Any) -> App:
+    """The same with the recipes of the contract, built."""
+    works = {"work": "close()", "other": "open()", "ask": "measure()"}
+    return open_shop(folder, state, text(folder, driver), device=NAME, **works, **more)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,18 +86,12 @@ class Press:
 
     def __init__(self, connect: Callable[[Callable[[Order], None]], Wire]) -> None:
         self._words = Words()
-        self._orders: queue.Queue[Order] = queue.Queue()
+        self.orders: queue.Queue[tuple[str, Ref]] = queue.Queue()
         self._works: dict[Ref, str] = {}
         self._quiet, self._ending = threading.Event(), threading.Event()
-        self._wire = connect(self._orders.put)
+        self._wire = connect(self._hear)
         self._thread = threading.Thread(target=self._speak, name="press", daemon=True)
         self._thread.start()
-
-    def told(self) -> tuple[str, Ref]:
-        order = self._orders.get(timeout=PATIENCE_S)
-        word = MEANS.get(order.word, order.word)
-        self._works[order.ref] = word
-        return word, order.ref
 
     def accepts(self, ref: Ref) -> None:
         self._say(accepted=ref, state="moving" if self._works[ref] in GUARD else self._words.state)
@@ -149,6 +137,10 @@ class Press:
         self._ending.set()
         self._thread.join()
         self._wire.close()
+
+    def _hear(self, order: Order) -> None:
+        word = self._works[order.ref] = MEANS.get(order.word, order.word)
+        self.orders.put((word, order.ref))
 
     def _say(self, **words: Any) -> None:
         self._words = replace(self._words, **words)

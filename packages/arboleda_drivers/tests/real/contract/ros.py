@@ -9,18 +9,17 @@ from typing import Any
 
 from tests.shared import need_tool
 
-from arboleda.runtime.build import App, Options, build
+from arboleda.runtime.build import App
+from arboleda.testing.drivers import Bench, Device
 
-from .bench import Bench, Device
-from .press import CODES, NAME, STOPS, Order, Press, Words, plant
+from .press import CODES, NAME, STOPS, Order, Press, Words, app_of
 
 
 def _open(folder: Path, state: Path) -> tuple[App, Callable[[App], Device]]:
     need_tool("rclpy")
     from arboleda_ros.link import connect
 
-    app = build(plant(folder, "ros"), ("orchestrator",), Options(state_dir=state, link=connect()))
-    return app, lambda app: Press(RosWire)
+    return app_of(folder, state, "ros", link=connect()), lambda app: Press(RosWire)
 
 
 class RosWire:

@@ -7,9 +7,10 @@ import time
 from pathlib import Path
 from typing import Any
 
+from arboleda.testing.drivers import Bench
+from arboleda.testing.drivers.bench import Ref
 from arboleda_drivers.dobot.frames import Feedback, Mode
 
-from ..contract.bench import Bench, Ref
 from ..contract.mover import ARM_DEG, WORDS, Opened, PlayedTcpArm, app_of, arm
 
 GOALS = {tuple(map(float, deg)): word for deg, word in zip(ARM_DEG, WORDS, strict=True)}
@@ -108,4 +109,4 @@ def _open(folder: Path, state: Path) -> Opened:
     return app_of(folder, state, arm(driver), "arm"), lambda app: dobot
 
 
-BENCH = Bench(open=_open)
+BENCH = Bench(open=_open, takes="arboleda_drivers.dobot.machine.FrameReader.feed")

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+from arboleda.testing.drivers import Bench
+from arboleda.testing.drivers.bench import Ref
 from arboleda_drivers.gcode.virtual.faults import GRBL_FAULTS, MARLIN_FAULTS, MOONRAKER_FAULTS
 from arboleda_drivers.gcode.virtual.grbl import BANNER, BEYOND, HARD_LIMIT, HOLD_BYTE, VirtualGrbl
 from arboleda_drivers.gcode.virtual.machine import Place, words_of
@@ -16,7 +18,6 @@ from arboleda_drivers.virtual.faults import Faults
 from arboleda_drivers.virtual.pty_line import PtyLine
 from arboleda_drivers.virtual.web_socket_line import WebSocketLine
 
-from ..contract.bench import Bench, Ref
 from ..contract.mover import WORDS, Opened, PlayedMover, app_of, plant
 
 PLACES: tuple[Place, ...] = ((0.0, 0.0, 0.0), (30.0, 20.0, 5.0), (5.0, 0.0, 0.0))
@@ -335,9 +336,13 @@ def _open(folder: Path, state: Path, *, gantry: Gantry, keys: str, speed: int = 
     return app, lambda app: played
 
 
-BENCH = Bench(open=partial(_open, gantry=GrblGantry, keys="dialect: grbl"))
-MARLIN_BENCH = Bench(open=partial(_open, gantry=MarlinGantry, keys="dialect: marlin, stop_keeps_place: true"))
+TAKES = "arboleda_drivers.gcode.lines.LineReader.feed"
+BENCH = Bench(open=partial(_open, gantry=GrblGantry, keys="dialect: grbl"), takes=TAKES)
+MARLIN_BENCH = Bench(
+    open=partial(_open, gantry=MarlinGantry, keys="dialect: marlin, stop_keeps_place: true"), takes=TAKES
+)
 MOONRAKER_BENCH = Bench(
     # So fast that a move is one piece.
-    open=partial(_open, gantry=MoonrakerGantry, keys="dialect: moonraker", speed=600)
+    open=partial(_open, gantry=MoonrakerGantry, keys="dialect: moonraker", speed=600),
+    takes=TAKES,
 )

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.plant_file.loader import load
+from arboleda.testing.drivers import Bench
 
-from ..contract.bench import Bench
 from ..contract.mover import ARM_DEG, WORDS, Opened, app_of, arm
 from ..ros_action.bench import PlayedServer
 

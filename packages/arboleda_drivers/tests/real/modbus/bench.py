@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from arboleda.testing.drivers.bench import HALT, LATCH
 from arboleda_drivers.modbus.server import ModbusServer
 
-from ..contract.bench import HALT, LATCH
 from ..contract.press import Order, Words
 from ..plc.bench import VERBS, PlayedPlc, bench, numbers
 
@@ -69,4 +69,4 @@ class PlayedModbus(PlayedPlc):
         return b"" if sent and self._silent.is_set() else packet
 
 
-BENCH = bench(PlayedModbus, DRIVER)
+BENCH = bench(PlayedModbus, DRIVER, takes="arboleda_drivers.modbus.machine.ModbusDevice.report")

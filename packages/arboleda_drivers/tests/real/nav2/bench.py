@@ -6,7 +6,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ..contract.bench import OTHER, WORK, Bench
+from arboleda.testing.drivers import Bench
+from arboleda.testing.drivers.bench import OTHER, WORK
+
 from ..contract.mover import HOME, Opened, app_of, plant
 from ..ros_action.bench import PlayedServer
 

@@ -7,9 +7,9 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from arboleda.testing.drivers.bench import HALT, LATCH
 from arboleda_drivers.opcua.server import OpcUaServer
 
-from ..contract.bench import HALT, LATCH
 from ..contract.press import Order, Words
 from ..plc.bench import PlayedPlc, bench, numbers
 
@@ -78,4 +78,4 @@ class PlayedOpcUa(PlayedPlc):
         self._shown: Mapping[str, object] = {**numbers(words), **texts}
 
 
-BENCH = bench(PlayedOpcUa, DRIVER)
+BENCH = bench(PlayedOpcUa, DRIVER, takes="arboleda_drivers.opcua.machine.OpcUaDevice.report")

@@ -8,10 +8,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
-from arboleda.runtime.build import App, Options, build
+from arboleda.runtime.build import App
+from arboleda.testing.drivers import Bench, Device
 
-from ..contract.bench import Bench, Device
-from ..contract.press import Order, Press, Words, plant
+from ..contract.press import Order, Press, Words, app_of
 
 VERBS = {1: "open", 2: "close", 3: "press", 4: "measure"}
 STATES = {"stopped": 0, "moving": 1, "latched": 2}
@@ -95,12 +95,11 @@ class PolledPress(Press):
         self._plc.hush()
 
 
-def bench(made: Callable[[], PlayedPlc], driver: str) -> Bench:
+def bench(made: Callable[[], PlayedPlc], driver: str, takes: str, device_threads: str | None = None) -> Bench:
     """The press behind a PLC of that protocol; `driver` is its mapping, with a place for the port."""
 
     def opened(folder: Path, state: Path) -> tuple[App, Callable[[App], Device]]:
         plc = made()
-        app = build(plant(folder, driver % plc.port), ("orchestrator",), Options(state_dir=state))
-        return app, lambda app: PolledPress(plc)
+        return app_of(folder, state, driver % plc.port), lambda app: PolledPress(plc)
 
-    return Bench(open=opened, asks=True)
+    return Bench(open=opened, asks=True, takes=takes, device_threads=device_threads)

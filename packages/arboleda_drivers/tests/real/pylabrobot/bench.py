@@ -10,10 +10,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from arboleda.runtime.build import App, Options, build
+from arboleda.runtime.build import App
+from arboleda.testing.drivers import Bench, Device
+from arboleda.testing.drivers.bench import HALT, LATCH
 
-from ..contract.bench import HALT, LATCH, Bench, Device
-from ..contract.press import Order, Press, Words, plant
+from ..contract.press import Order, Press, Words, app_of
 
 DRIVER = """
           pylabrobot:
@@ -210,8 +211,7 @@ def _open(folder: Path, state: Path, *, side_by_side: bool) -> tuple[App, Callab
     key, backend = next(KEYS), PlayedBackend()
     PLAYED[key] = backend
     driver = DRIVER % (f"{__name__}:press", key, str(side_by_side).lower())
-    app = build(plant(folder, driver), ("orchestrator",), Options(state_dir=state))
-    return app, lambda app: PlayedPress(backend)
+    return app_of(folder, state, driver), lambda app: PlayedPress(backend)
 
 
 BENCH = Bench(open=partial(_open, side_by_side=False))

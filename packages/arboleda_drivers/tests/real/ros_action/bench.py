@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, Protocol
 
-from ..contract.bench import LATCH, Ref
+from arboleda.testing.drivers.bench import LATCH, Ref
+
 from ..contract.mover import HOME, PlayedMover
 
 STATE_S = 0.02
@@ -179,7 +180,7 @@ class PlayedServer(PlayedMover):
 
     def _order(self, word: str, ref: Ref) -> None:
         self._last = word
-        self._orders.put((word, ref))
+        self.orders.put((word, ref))
 
     def _answer(self, ref: Ref, *, accepted: bool) -> None:
         self._goals[ref].accepted.set_result(accepted)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import struct
 
+from arboleda.testing.drivers.bench import HALT, LATCH
 from arboleda_drivers.s7.server import S7Server
 
-from ..contract.bench import HALT, LATCH
 from ..contract.press import Order, Words
 from ..plc.bench import VERBS, PlayedPlc, bench, numbers
 
@@ -75,4 +75,9 @@ class PlayedS7(PlayedPlc):
             self._closed.wait()
 
 
-BENCH = bench(PlayedS7, DRIVER)
+BENCH = bench(
+    PlayedS7,
+    DRIVER,
+    takes="arboleda_drivers.s7.machine.S7Device.report",
+    device_threads="_handle_client",  # python-snap7's server has one for each connection
+)

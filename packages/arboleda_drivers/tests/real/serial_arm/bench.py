@@ -9,13 +9,14 @@ from pathlib import Path
 
 from tests.patience import PATIENCE_S
 
+from arboleda.testing.drivers import Bench
+from arboleda.testing.drivers.bench import Ref
 from arboleda_drivers.serial_arm.servos import TICKS
 from arboleda_drivers.serial_arm.virtual.faults import FAULTS
 from arboleda_drivers.serial_arm.virtual.machine import OVERLOAD, VirtualServos
 from arboleda_drivers.virtual.faults import Faults
 from arboleda_drivers.virtual.pty_line import PtyLine
 
-from ..contract.bench import Bench, Ref
 from ..contract.mover import ARM_DEG, WORDS, Opened, PlayedMover, app_of, arm
 
 KEYS = """tolerance: {deg: [0.3, 0.3, 0.3, 0.3, 0.3, 0.3]}, """
@@ -163,4 +164,4 @@ def _open(folder: Path, state: Path) -> Opened:
     return app_of(folder, state, arm(driver, KEYS), "arm"), lambda app: played
 
 
-BENCH = Bench(open=_open)
+BENCH = Bench(open=_open, takes="arboleda_drivers.serial_arm.servos.Feetech.reading")

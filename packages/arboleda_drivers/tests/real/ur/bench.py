@@ -9,12 +9,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from arboleda.testing.drivers import Bench
+from arboleda.testing.drivers.bench import Ref
 from arboleda_drivers.ur import primary, rtde
 from arboleda_drivers.ur.arm_state import Mode, Runtime
 from arboleda_drivers.ur.dashboard import GREETING
 from arboleda_drivers.ur.rtde import Frame, Packet, PacketReader, packed, packed_frame
 
-from ..contract.bench import Bench, Ref
 from ..contract.mover import ARM_DEG, WORDS, Opened, PlayedTcpArm, app_of, arm
 
 DASHBOARD, RTDE, PROGRAMS = range(3)
@@ -134,4 +135,4 @@ def _open(folder: Path, state: Path) -> Opened:
     return app_of(folder, state, arm(f"{{ur: {{host: 127.0.0.1, {ports}}}}}"), "arm"), lambda app: ur
 
 
-BENCH = Bench(open=_open)
+BENCH = Bench(open=_open, takes="arboleda_drivers.ur.rtde.frame_of")

@@ -12,10 +12,11 @@ from tests.patience import PATIENCE_S
 from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.adapters.broker_login import address
 from arboleda.adapters.mqtt import MqttClient, NotConnected
+from arboleda.testing.drivers import Bench
+from arboleda.testing.drivers.bench import HALT, LATCH, Ref
 from arboleda.wire.transport import Connection, Delivery, Publication
 from arboleda_drivers.vda5050.messages import Headers, from_bytes, to_bytes
 
-from ..contract.bench import HALT, LATCH, Bench, Ref
 from ..contract.mover import WORDS, Opened, PlayedMover, app_of, plant
 
 BEAT_S = 0.1
@@ -121,7 +122,7 @@ class PlayedVehicle(PlayedMover):
         self._say(actionStates=[*self._state["actionStates"], *over][-20:])
         found = [STOPS[each["actionType"]] for each in actions if each["actionType"] in STOPS]
         if found:
-            self._orders.put((found[0], None))
+            self.orders.put((found[0], None))
 
     def _say(self, **news: Any) -> None:
         with self._lock:
@@ -166,4 +167,4 @@ def _open(folder: Path, state: Path) -> Opened:
     return app_of(folder, state, text, "cart"), lambda app: vehicle
 
 
-BENCH = Bench(open=_open)
+BENCH = Bench(open=_open, takes="arboleda_drivers.vda5050.machine.read")

@@ -1,0 +1,7 @@
+"""How long tests of real parts wait for what comes by itself: as long as the busiest machine takes."""
+
+from __future__ import annotations
+
+import os
+
+PATIENCE_S = float(os.environ.get("ARBOLEDA_PATIENCE_S", "90"))
