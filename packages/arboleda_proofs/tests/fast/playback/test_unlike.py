@@ -14,8 +14,9 @@ from tests.packages import ROOT
 from arboleda.engine import Plant
 from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.errors import ConfigError
-from arboleda.model.messages import MotionState, OperatorRequest, Report, Verb
+from arboleda.model.messages import LateDeparture, MotionState, OperatorRequest, Report, Undelivered, Verb
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import OWN
 from arboleda.plant_file import loader
 from arboleda.rig.plant_process import Side
 from arboleda_proofs.campaigns.faults_file import read
@@ -213,7 +214,9 @@ def watched(model: PlantModel, rows: Iterable[Row]) -> PlantWatch:
     watch = PlantWatch(model)
     watch.take(0.0, [], [])
     for at, what, words in rows:
-        if what == "tells":
+        if what == "tells of it":
+            watch.take(at, [words["event"]], [])
+        elif what == "tells":
             watch.take(at, [Report(at=at, **words)], [])
         else:
             watch.take(at, [], [] if what == "steps" else [command(model, what, words)])
@@ -248,6 +251,22 @@ def test_what_hands_and_stops_change_is_no_word_about_the_device(small: PlantMod
 def test_a_plant_that_was_away_says_nothing_of_its_devices(small: PlantModel) -> None:
     watch = watched(small, [*WORK[:10], tells(9.0, **DONE)])
     assert rules(watch) == set()
+
+
+@pytest.mark.parametrize(
+    ("rule", "event"),
+    [
+        ("confirmed_late", LateDeparture(at=1.0, id="c1", late_s=1.0)),
+        ("unanswered", Undelivered(at=1.0, id="c1", robot="margarets_press", sentence=OWN(text="no line"))),
+    ],
+)
+def test_a_command_that_left_late_or_never_is_not_the_device_s(
+    small: PlantModel, rule: str, event: LateDeparture | Undelivered
+) -> None:
+    rows = PLANTED[rule]
+    number = next(number for number, (_, what, _) in enumerate(rows) if what == "is told")
+    excused = [*rows[: number + 1], (1.0, "tells of it", {"event": event}), *rows[number + 1 :]]
+    assert rule in rules(watched(small, rows)) and rule not in rules(watched(small, excused))
 
 
 def test_the_file_has_no_names_and_is_read_again(small: PlantModel, tmp_path: Path) -> None:
