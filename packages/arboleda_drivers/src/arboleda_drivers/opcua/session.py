@@ -8,6 +8,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from arboleda.drivers import Value
+from arboleda_drivers.connections.abrupt import end_abruptly
 from arboleda_drivers.opcua.machine import Call, NodeValue, Read
 from arboleda_drivers.opcua.nodes import namespace
 from arboleda_drivers.opcua.settings import Settings
@@ -171,6 +172,9 @@ async def opened(settings: Settings, found: Login) -> Session:
     session = Session(client, settings.timeout_s)
     try:
         await asyncio.wait_for(client.connect(), CONNECT_S)
+        protocol = client.uaclient.protocol
+        if protocol is not None and protocol.transport is not None:  # asyncua closes it by itself, too
+            end_abruptly(protocol.transport.get_extra_info("socket"))
         await session.learn()
     except AssertionError as error:  # asyncua's, where an answer is a fault in place of a secure channel
         await _goodbye(client)
@@ -186,6 +190,7 @@ async def _goodbye(client: Client) -> None:
     with suppress(Exception):
         await asyncio.wait_for(client.disconnect(), GOODBYE_S)
     client.disconnect_socket()
+    await asyncio.sleep(0)  # the loop closes it before anybody is told
 
 
 def _variant(value: Value, type: str) -> Variant:

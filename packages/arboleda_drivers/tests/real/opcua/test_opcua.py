@@ -28,6 +28,7 @@ from arboleda_drivers.opcua.nodes import Order, Write
 from arboleda_drivers.opcua.settings import Settings
 
 from ..plc.driven import Heard, belt_of, driven, is_heard, is_lost, mapping, order
+from ..plc.pulled import pulled, sent_over_a_pulled_cable
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("asyncua")]
 
@@ -96,6 +97,18 @@ def test_a_plain_server_is_called_and_believed(belt: Device, free_port: int, she
         heard.until(is_lost)  # it has gone with its sessions; another one is found again
         with peer(shelf, free_port):
             assert heard.until(is_heard).done is None
+
+
+def test_what_was_called_over_a_pulled_cable_does_not_arrive_once_that_is_back(
+    belt: Device, shelf: Path
+) -> None:
+    with (
+        peer(shelf) as server,
+        pulled(server.port) as cable,
+        driven(OpcUa(settings(belt, cable.port)), belt) as (driver, heard),
+    ):
+        sent_over_a_pulled_cable(cable, driver, heard, order(belt, "load"))
+        assert heard.all[-1].fact("part_at") == "none"
 
 
 def test_a_call_that_is_refused_is_rejected(belt: Device, plain: Peer) -> None:
@@ -168,6 +181,7 @@ class Played:
 
     def __init__(self, url: str, timeout: float) -> None:
         self.uaclient = self
+        self.protocol = None  # it has no connection
         self._changes: Any = None  # until somebody subscribes
 
     def get_node(self, node: ua.NodeId) -> Any:

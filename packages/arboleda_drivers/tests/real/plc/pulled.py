@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
-
-import pytest
+from contextlib import contextmanager, suppress
 
 from arboleda.drivers import Command, Driver
 
@@ -30,7 +28,7 @@ def sent_over_a_pulled_cable(cable: Cable, driver: Driver, heard: Heard, order: 
     """Send an order that has no answer; once the device is heard again, all that can arrive has."""
     heard.until(is_heard)
     cable.cut(silent=True)
-    with pytest.raises(Exception, match=r"."):
+    with suppress(Exception):  # where a driver waits for the answer
         driver.send(order)
     heard.until(is_lost)
     cable.mend()
