@@ -132,7 +132,7 @@ def _servos(stack: ExitStack, folder: Path, maker: str) -> Played:
     joints = "[{id: 1}, {id: 2}, {id: 3}, {id: 4}, {id: 5}, {id: 6}]"
     driver = f"{{serial_arm: {{host: 127.0.0.1, port: {cable.port}, protocol: {maker}, joints: {joints}}}}}"
     keys = "kind: arm, model: cr10a, tolerance: {deg: [0.3, 0.3, 0.3, 0.3, 0.3, 0.3]}"
-    places = ([0] * 6, [60, 20, -30, 0, 5, 0], [0, 0, 0, 0, 0, 40])
+    places = ([0] * 6, [30, 10, -20, 0, 5, 0], [0, 0, 0, 0, 0, 30])
     return peer, cable, plants.mover(folder, driver, keys, "deg", *places)
 
 

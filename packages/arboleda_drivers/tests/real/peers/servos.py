@@ -20,7 +20,7 @@ BROADCAST = 0xFE
 READ, WRITE, REBOOT, SYNC_WRITE, STATUS = 2, 3, 8, 0x83, 0x55
 STEP_S = 0.005
 NEAR = 200  # ticks: a goal so near is where it stood a moment before
-TICKS_PER_S = 1500.0
+FASTEST = 3000.0  # ticks/s
 
 
 class Dynamixel:
@@ -28,7 +28,8 @@ class Dynamixel:
 
     header, head = b"\xff\xff\xfd\x00", 7
     word = 2
-    torque, goal, place = (64, 1), (116, 4), (132, 4)
+    torque, goal, speed, place = (64, 1), (116, 4), (112, 4), (132, 4)
+    speed_unit = 0.229 / 60 * 4096
     first: ClassVar = {(11, 1): 3, (144, 2): 120, (146, 1): 30}  # its mode, and what it measures
 
     def __init__(self, line: str) -> None:
@@ -58,7 +59,8 @@ class Feetech:
 
     header, head = b"\xff\xff", 4
     word = 1
-    torque, goal, place = (40, 1), (42, 2), (56, 2)
+    torque, goal, speed, place = (40, 1), (42, 2), (46, 2), (56, 2)
+    speed_unit = 1.0
     first: ClassVar = {(33, 1): 0, (62, 1): 74, (63, 1): 30}
 
     def __init__(self, line: str) -> None:
@@ -80,7 +82,7 @@ class Feetech:
 
 
 class Servos:
-    """They go to their goals at one speed, while their torque is on."""
+    """They go to their goals at the speed that each was given, while their torque is on."""
 
     def __init__(self, maker: Dynamixel | Feetech) -> None:
         self._maker = maker
@@ -115,7 +117,8 @@ class Servos:
         for id in IDS:
             if self._get(id, self._maker.torque):
                 way = self._get(id, self._maker.goal) - self._at[id]
-                self._at[id] += max(-TICKS_PER_S * seconds, min(TICKS_PER_S * seconds, way))
+                speed = self._get(id, self._maker.speed) * self._maker.speed_unit or FASTEST
+                self._at[id] += max(-speed * seconds, min(speed * seconds, way))
             self._put(id, self._maker.place, round(self._at[id]))
         if self._is_at_work and self._farthest() == 0:
             self._is_at_work = False
