@@ -88,7 +88,7 @@ class Bench:
 
     - `open(folder, state)`: makes the plant, as `open_shop` does, and the function that makes its device once
       the plant has started.
-    - `asks`: the device can be asked.
+    - `asks`: the device can be asked, and refuses no question because of the one before.
     - `drops_questions`: it takes a question while nobody waits for the one before; else it ends that first.
     - `halts_work`: its works are motions or processes. Else they are questions, which the plant does not
       halt: it drops them.
