@@ -14,7 +14,6 @@ from pathlib import Path
 
 import pytest
 from tests.contract.conftest import Mosquitto
-from tests.packages import ROOT
 from tests.ports import unused_port
 from tests.shared import need_tool
 
@@ -35,7 +34,6 @@ O6 = PREFIX / "o6"  # open62541 for Python
 LIBMODBUS = PREFIX / "libmodbus/libmodbus.so.5"
 VEHICLE = HERE.with_name("vda5050") / "virtual_agv.js"
 NODE = PREFIX / "npm/node_modules"
-FIRMWARE = Path(os.environ.get("ARBOLEDA_GRBL", PREFIX / "grbl"))  # a program that was built by hand
 NO_WORD = {"refusal": 0}  # of a device that refuses nothing
 Played = tuple[Peer, Cable, PlantModel]
 
@@ -153,16 +151,6 @@ def _vehicle(stack: ExitStack, folder: Path) -> Played:
     return peer, cable, plants.mover(folder, driver, keys, "node", 0, 1, 0)
 
 
-def _firmware(stack: ExitStack, folder: Path) -> Played:
-    device, line = _line(stack)
-    peer = _started(stack, *_script("firmware.py"), str(FIRMWARE), line)
-    cable = _cable(stack, at_line(device))
-    driver = f"{{gcode: {{host: 127.0.0.1, port: {cable.port}, homing: false}}}}"
-    places = ([0, 0, 0], [-10, -5, 0], [-22, 0, -3])
-    kinds, _, _ = (ROOT / "examples/gantry/recipes.py").read_text("utf-8").partition("@recipe")
-    return peer, cable, plants.mover(folder, driver, "kind: gantry", "mm", *places, kinds=kinds)
-
-
 def quick(mapping: str) -> str:
     """The mapping with the time for an answer that plants have if they say nothing."""
     return "\n".join(line for line in mapping.splitlines() if "timeout_s" not in line)
@@ -190,7 +178,6 @@ BENCHES: dict[str, Bench] = {
         installed=NODE / "vda-5050-lib",
         goes=NO_WORD,
     ),
-    "grbl": Bench(driver="gcode.adapter:Gcode", play=_firmware, installed=FIRMWARE, goes=NO_WORD),
     **{
         f"servos_{maker}": Bench(
             driver="serial_arm.adapter:SerialArm",

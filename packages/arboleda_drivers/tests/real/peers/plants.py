@@ -66,12 +66,10 @@ def press(folder: Path, driver: str) -> PlantModel:
     return _plant(folder, PRESS + driver, PRESS_RECIPES)
 
 
-def mover(
-    folder: Path, driver: str, keys: str, unit: str, home: object, a: object, b: object, kinds: str = ""
-) -> PlantModel:
-    """What goes to places; `kinds` declares its kind, in Python."""
+def mover(folder: Path, driver: str, keys: str, unit: str, home: object, a: object, b: object) -> PlantModel:
+    """What goes to places."""
     text = MOVER.format(keys=keys, driver=driver, unit=unit, home=home, a=a, b=b)
-    return _plant(folder, text, kinds + MOVER_RECIPES)
+    return _plant(folder, text, MOVER_RECIPES)
 
 
 def _plant(folder: Path, text: str, recipes: str) -> PlantModel:
