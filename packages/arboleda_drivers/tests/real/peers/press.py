@@ -255,7 +255,7 @@ def open62541(press: Press) -> tuple[int, Callable[[], None]]:
         return act(lambda *given: press.take(Order(given[-1], verb, given[0])))
 
     number, strokes = (
-        ns0.datatypes.Argument(name=name, dataType=o6.UInt16) for name in ("number", "strokes")
+        ns0.datatypes.Argument(name=name, dataType=o6.UInt16, valueRank=-1) for name in ("number", "strokes")
     )
     methods = {
         "Open": (order(OPEN), [number]),
