@@ -10,8 +10,6 @@ import pytest
 from arboleda.model.messages import Verb
 from arboleda_drivers.connections.stream import Received
 from arboleda_drivers.gcode import marlin_queue
-from arboleda_drivers.gcode.grbl_book import Book
-from arboleda_drivers.gcode.grbl_lines import Answer
 from arboleda_drivers.gcode.grbl_stop import GrblStop, Step
 from arboleda_lines.drivers import TRIED
 from arboleda_lines.line import CUT, Form, Line
@@ -87,18 +85,6 @@ def test_a_line_that_is_good_again_keeps_the_order() -> None:
 Patch = pytest.MonkeyPatch
 
 
-def takes_any_answer_for_its_lock(patch: Patch) -> None:
-    """The first two answers are taken for those about its lock, whatever they answer."""
-
-    def counts(self: Book, answer: Answer) -> bool:
-        if not self.is_asking:
-            return False
-        self._count_answer()
-        return True
-
-    patch.setattr(Book, "take_answer", counts)
-
-
 def waits_for_a_lost_answer(patch: Patch) -> None:
     patch.setattr(marlin_queue, "UNENDED_S", 1e9)
 
@@ -120,11 +106,6 @@ def holds_late(patch: Patch) -> None:
 @pytest.mark.parametrize(
     ("plants", "case", "found"),
     [
-        (
-            takes_any_answer_for_its_lock,
-            Case(driver="gcode-grbl", form=Form(word="jitter", delay_s=2.7), moment="written", act=None),
-            "the task after it was not done",
-        ),
         (
             waits_for_a_lost_answer,
             Case(driver="gcode-marlin", form=Form(word="garbage"), moment="sent", act=None),

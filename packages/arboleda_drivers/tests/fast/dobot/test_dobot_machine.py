@@ -142,7 +142,7 @@ def test_an_output_that_a_script_keeps_from_being_read_back_is_said_to_be_unread
     joined = up("script")
     joined.ask(GRIP)
     joined.wait(0.2)
-    assert (joined.last.rejected, joined.last.refusal) == (GRIP.id, "output_not_read_back script_running")
+    assert (joined.last.failed, joined.last.failure) == (GRIP.id, "output_not_read_back script_running")
 
 
 def bare() -> Machine:

@@ -86,6 +86,16 @@ def test_a_machine_without_switches_that_somebody_else_unlocks_is_not_homed() ->
     assert (rig.report.state, rig.report.homed) == (MotionState.NOT_HOMED, False)
 
 
+def test_a_late_answer_about_its_lock_is_none_to_a_move() -> None:
+    rig = GrblRig("no_ok")
+    id = rig.move(-60, 0, 0)
+    rig.says("[OPT:V,15,128]")
+    rig.says("ok")
+    assert rig.report.accepted != id
+    rig.says("ok")
+    assert rig.report.accepted == id
+
+
 def test_homing_of_a_ready_machine_shows_that_it_was_not() -> None:
     """The plant believes a homing that it has seen."""
     rig = GrblRig(homing=False)

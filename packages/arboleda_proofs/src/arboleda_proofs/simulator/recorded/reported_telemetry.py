@@ -85,7 +85,8 @@ class ReportedTelemetry:
                     break
             if is_sure and is_newer is (told is None):
                 word = "reported, and is overtaken" if told else "not reported as it is"
-                yield f"{delivery.payload!r} of {self._robot.name} is {word}: {step.reports}"
+                name = self._robot.name
+                yield f"the telemetry {delivery.payload!r} of {name} is {word}: {step.reports}"
             if told is not None and told.plant not in step.plants:
                 yield f"{self._robot.name} is reported to another plant than {step.plants}: {told}"
         for report in step.states:
