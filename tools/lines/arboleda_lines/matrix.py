@@ -92,7 +92,8 @@ class BadLine(World):
         self._case, self._tried = case, tried
         self.outcome = Outcome(case=case)
         self._is_on, self._waits_for_order = False, False
-        self._stop_given_at: float | None = None  # while the line was bad
+        self._where: object = None  # of the robot, at the end of the step before
+        self._stop_given_at: float | None = None  # to one that moves, while the line is bad
         self._at_stop: object = None  # where the robot was as its stop was confirmed
         self._ends = self._told_at_end = self._given_at_end = 0
         super().__init__(rig, Result(seed=0, faults=()), tasks=2)
@@ -176,8 +177,9 @@ class BadLine(World):
         is_first = self._waits_for_order and isinstance(command, Work)
         if is_first and self._case.moment == "written":
             self._begin()
-        if isinstance(command, Stop) and command.mode is not StopMode.CLEAR and self._stop_given_at is None:
-            self._stop_given_at = self.now if self._is_on else None
+        is_stop = isinstance(command, Stop) and command.mode is not StopMode.CLEAR
+        if is_stop and self._is_on and self._stop_given_at is None and self.rig.where != self._where:
+            self._stop_given_at = self.now
         super()._give(give)
         if is_first:
             self._waits_for_order = False
@@ -189,6 +191,7 @@ class BadLine(World):
             super()._attend()
 
     def _pass_time(self) -> None:
+        self._where = self.rig.where
         super()._pass_time()
         self._look_at_stop()
         self._look_at_end()

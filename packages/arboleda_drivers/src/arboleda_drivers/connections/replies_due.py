@@ -36,6 +36,13 @@ class RepliesDue(Generic[R]):
         return self._dues[0].at + REPLY_S if self._dues else math.inf
 
     @property
+    def is_empty(self) -> bool:
+        """True where no answer is owed. What is asked again and again waits for that: else the answer to the
+        next question would count for one whose own was lost, and so on without an end.
+        """
+        return not self._dues
+
+    @property
     def names(self) -> Iterator[str]:
         return (each.name for each in self._dues)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -69,7 +70,7 @@ class ToolOutput:
 
     @property
     def next_deadline(self) -> float:
-        return self._asked_at + ASK_S
+        return self._asked_at + ASK_S if self._dashboard.due.is_empty else math.inf
 
     def pass_time(self, now: float) -> None:
         if now >= self.next_deadline:

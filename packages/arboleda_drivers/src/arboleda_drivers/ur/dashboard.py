@@ -34,7 +34,7 @@ class Dashboard:
 
     @property
     def next_deadline(self) -> float:
-        return min(self.due.deadline, self._asked_at + ASK_S)
+        return self._asked_at + ASK_S if self.due.is_empty else self.due.deadline
 
     def greet(self, now: float) -> None:
         self.due.add(now, "the connection to its dashboard", _check_greeting)
@@ -56,7 +56,7 @@ class Dashboard:
 
     def ask_control(self, now: float) -> None:
         """Ask whether it is in remote control, if that is due."""
-        if now >= self._asked_at + ASK_S:
+        if now >= self._asked_at + ASK_S and self.due.is_empty:
             self._asked_at = now
             self.say(now, "is in remote control", self._take_control)
 

@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.drivers import MotionState, Report
+from arboleda.drivers import MotionState, Report, Stop, StopMode
 from arboleda_drivers.connections.link import CommandRequest, Opened
+from arboleda_drivers.dobot.dashboard import SendLine
 from arboleda_drivers.dobot.frames import Feedback, Mode
 from arboleda_drivers.dobot.machine import DashboardReply, FeedbackData, Machine
 from arboleda_drivers.dobot.settings import Settings
@@ -159,9 +160,21 @@ def test_a_move_without_an_answer_is_told_as_such() -> None:
     machine = bare()
     machine.step(0.5, [CommandRequest(command=GO)])
     machine.step(1.0, [FeedbackData(data=replace(FRAME, run_ms=2000).packed())])
-    out = machine.step(1.1, [DashboardReply(data=b"0,{0},GetToolDO(1);")])
+    machine.step(1.0, [CommandRequest(command=Stop(id="c9", robot=ARM.name, mode=StopMode.HALT))])
+    out = machine.step(1.1, [DashboardReply(data=b"0,{},Stop();")])
     (lost,) = [str(each.lost) for each in out if isinstance(each, Report)]
-    assert "it has not answered MovJ, and has answered GetToolDO, which it was told later" in lost
+    assert "it has not answered MovJ, and has answered Stop, which it was told later" in lost
+
+
+def test_its_output_is_not_asked_for_again_before_an_answer() -> None:
+    machine = bare()
+    asked = [each for at in range(2, 30) for each in machine.step(at / 10, [fresh(at)])]
+    assert [each.text for each in asked if isinstance(each, SendLine)] == ["GetToolDO(1)"]
+
+
+def fresh(at: int) -> FeedbackData:
+    """A frame of an arm that stands, so many tenths of a second later."""
+    return FeedbackData(data=replace(FRAME, run_ms=FRAME.run_ms + 100 * at).packed())
 
 
 @pytest.mark.parametrize(("changes", "lives"), [({}, False), ({"time_ms": 1}, True), ({"run_ms": 1}, True)])
