@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 from real_start import running
 
 from arboleda.client import Conflict, Plant
-from arboleda.client.answers import Advice
+from arboleda.client.answers.plant import Advice
 from arboleda_class.lessons import spoken
 
 LOOK_S = 0.1

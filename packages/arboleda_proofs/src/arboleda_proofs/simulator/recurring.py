@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.drivers import Device, Robot, among, quoted
+from arboleda.drivers import Robot, among, quoted
 from arboleda.model.plant_model import PlantModel
 
 from .chance import Dice
@@ -112,7 +112,7 @@ def _robot(model: PlantModel, row: Mapping[str, Any]) -> Robot | None:
 
 
 def _fact(robot: Robot | None, number: Any) -> str:
-    facts = [*robot.kind.facts] if isinstance(robot, Device) else []
+    facts = robot.fact_names if robot is not None and robot.verb_names else ()
     if type(number) is not int or not 1 <= number <= len(facts):
         raise BadFaults(f"fact is {quoted(number)}; the device has facts 1 to {len(facts)}", "fact")
     return facts[number - 1]

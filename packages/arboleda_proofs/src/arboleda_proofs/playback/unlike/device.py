@@ -12,8 +12,6 @@ from arboleda.drivers import (
     Command,
     FollowPath,
     Home,
-    Jointed,
-    Mobile,
     Motion,
     MotionState,
     MoveJoints,
@@ -199,7 +197,7 @@ class DeviceWatch:
         slack_s = PROMPT_S + SHARE * expected_s
         if (longer_s := now - told.heard_at - expected_s) > slack_s:
             yield self._spans.found("takes_longer", now, amount=longer_s)
-        elif (less_s := expected_s - (now - told.at)) > slack_s and not isinstance(self._robot, Mobile):
+        elif (less_s := expected_s - (now - told.at)) > slack_s and self._robot.floor_grid is None:
             yield self._spans.found("takes_less", now, amount=less_s)
 
     def _expected_s(self, told: _Told) -> float | None:
@@ -207,9 +205,9 @@ class DeviceWatch:
         if isinstance(command, VerbCommand):
             with suppress(UseError):
                 return command.takes_s
-        if isinstance(command, MoveJoints) and isinstance(robot, Jointed) and isinstance(told.start, tuple):
+        if isinstance(command, MoveJoints) and robot.joints and isinstance(told.start, tuple):
             return robot.motion.travel_s(told.start, command.way) / robot.pace
-        if isinstance(command, FollowPath) and isinstance(robot, Mobile):
+        if isinstance(command, FollowPath) and robot.floor_grid is not None:
             return robot.motion.travel_s(None, command.way) / robot.pace
         return None
 
@@ -218,7 +216,7 @@ class DeviceWatch:
         if isinstance(command, Motion) and report.state is MotionState.MOVING and not self._works:
             yield self._spans.found("done_moving", now)
         self._facts.compare(command, report)
-        if isinstance(command, MoveJoints) and isinstance(self._robot, Jointed) and report.q is not None:
+        if isinstance(command, MoveJoints) and self._robot.joints and report.q is not None:
             if not self._robot.motion.stands_at(report.q, command.q):
                 yield self._spans.found("done_elsewhere", now, **self._farthest(report.q, command.q))
         elif isinstance(command, FollowPath) and report.node not in (None, command.nodes[-1]):
@@ -226,8 +224,8 @@ class DeviceWatch:
 
     def _farthest(self, q: tuple[float, ...], goal: tuple[float, ...]) -> dict[str, Any]:
         """The joint that is farthest off, as telemetry names it, and by how many tolerances."""
-        assert isinstance(self._robot, Jointed)
-        rows = enumerate(zip(q, goal, self._robot.motion.tolerances, strict=True), start=1)
+        motion: Any = self._robot.motion  # that of joints
+        rows = enumerate(zip(q, goal, motion.tolerances, strict=True), start=1)
         off, number = max((abs(here - there) / within, number) for number, (here, there, within) in rows)
         return {"word": f"q{number}_mov", "amount": off}
 
@@ -261,16 +259,17 @@ class DeviceWatch:
         yield from self._spans.look("unhomed", "", now, goes_on=goes_on)
 
     def _look_at_place(self, report: Report, now: float) -> Iterator[Difference]:
-        robot, last = self._robot, self._last
-        if not isinstance(robot, Jointed) or report.q is None:
+        motion: Any = self._robot.motion  # that of joints
+        last = self._last
+        if not self._robot.joints or report.q is None:
             return
-        beyond = robot.motion.beyond(report.q) is not None
+        beyond = motion.beyond(report.q) is not None
         yield from self._spans.look("beyond", "", now, goes_on=beyond)
         homes = any(isinstance(each, Home) for each in self._under_way)
         if last is None or last.q is None or homes or now < self._excused_until:
             return
         within_s = now - self._last_at + PROMPT_S
-        if now - self._ended_at > PROMPT_S and not robot.motion.can_have_moved(last.q, report.q, within_s):
+        if now - self._ended_at > PROMPT_S and not motion.can_have_moved(last.q, report.q, within_s):
             yield self._spans.found("jumped", now, **self._farthest(report.q, last.q))
 
 
@@ -278,8 +277,8 @@ def _place(report: Report) -> object:
     return report.q if report.q is not None else report.node
 
 
-def _ramp_s(robot: Robot) -> float:
+def _ramp_s(robot: Any) -> float:
     """The time in which a virtual device comes to rest, s."""
-    if isinstance(robot, Jointed):
-        return max((joint.speed / joint.acceleration for joint in robot.joints), default=0.0)
-    return robot.grid.pitch / robot.speed if isinstance(robot, Mobile) else 0.0
+    if robot.floor_grid is not None:
+        return float(robot.floor_grid.pitch / robot.speed)
+    return max((joint.speed / joint.acceleration for joint in robot.joints), default=0.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator
 
-from arboleda.drivers import Command, Device, Facts, Report, Robot, Value, VerbCommand
+from arboleda.drivers import Command, Facts, Report, Robot, Value, VerbCommand
 
 from .difference import Difference, Spans
 
@@ -18,7 +18,7 @@ class FactWatch:
     def __init__(self, robot: Robot, spans: Spans) -> None:
         self._spans = spans
         self._held = robot.held_fact
-        self._virtual = tuple(robot.kind.facts) if isinstance(robot, Device) else ()
+        self._virtual = robot.fact_names if robot.verb_names else ()
         self._odd: dict[str, Value] = {}  # facts that changed by no command, with their values before
         self._due: dict[str, Value] = {}  # facts that a done command has set, and that are not told so
         self._ended_at = -math.inf  # of the last command

@@ -8,7 +8,6 @@ from typing import Any
 
 from arboleda.drivers import (
     Command,
-    Device,
     FollowPath,
     Home,
     MoveJoints,
@@ -154,11 +153,10 @@ def _command(model: PlantModel, row: Mapping[str, Any]) -> Command | None:
         values = {name: _value(name, value) for name, value in row.items() if name != TYPE}
         made: Command = make(**values)
         return made
-    if not isinstance(robot, Device) or "verb" not in row:
+    if not robot.verb_names or "verb" not in row:
         return None
     try:
-        given = dict(row["values"])
-        return robot.kind.command(id=row["id"], robot=robot.name, verb=row["verb"], values=given)
+        return robot.verb_command(row["verb"], tuple(dict(row["values"]).items()), id=row["id"])
     except UseError:  # of another version of the plant
         return None
 

@@ -14,7 +14,7 @@ from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
-from arboleda.drivers import Device, Robot
+from arboleda.drivers import Robot
 from arboleda.model.plant_model import PlantModel
 from arboleda_proofs.simulator.recurring import MOST_A_MINUTE
 
@@ -57,7 +57,7 @@ class _Names:
     def _fault(self, each: Unlike, robot: Robot) -> dict[str, object]:
         fault = each.fault
         assert fault is not None
-        facts = [*robot.kind.facts] if isinstance(robot, Device) else []
+        facts = [*robot.fact_names] if robot.verb_names else []
         row: dict[str, object] = {"kind": fault.kind}
         row |= {"seconds": round(fault.seconds, 3)} if fault.seconds else {}
         row |= {"amount": round(fault.amount, 3)} if fault.amount else {}
