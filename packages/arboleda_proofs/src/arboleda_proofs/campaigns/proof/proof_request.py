@@ -53,8 +53,12 @@ class ProofRequest:
             return ()
         content, model = read(self.faults, None).climate, self._loaded[0].model
         if not isinstance(content, dict) or content.keys() != {UNLIKE}:
-            what = f"is no file that `arboleda record unlike --to` wrote: it has {UNLIKE}, and nothing else"
-            raise ConfigError((f"{self.faults}: {what}",))
+            raise ConfigError(
+                (
+                    f"{self.faults} is no file that `arboleda record unlike --to` wrote: it has {UNLIKE},"
+                    " and nothing else",
+                )
+            )
         try:
             return recurring_from(model, content[UNLIKE])
         except BadFaults as error:
