@@ -16,6 +16,7 @@ from arboleda.rig import faults
 from arboleda.testing import Rig, shipped, slowed
 
 from ..cells import with_robot
+from ..readying import due, make_ready
 
 TASK = "sis_a 0B 7"
 levels = pytest.mark.parametrize("evidence", list(Evidence))
@@ -118,6 +119,22 @@ def test_a_reset_of_the_plant_waits_for_a_cell_that_is_clearing() -> None:
     rig.lost = lambda publication: False
     act(rig, Verb.CLEAR, Verb.RESET, scope="")
     assert set(states()) == {CellState.IDLE}
+
+
+def test_a_clear_that_a_robot_has_not_heard_is_due_again_once_it_had_the_time() -> None:
+    rig = Rig(shipped("sis_a"))
+    aborted(rig)
+    rig.lost = faults.to_board("ra_1")
+    act(rig, Verb.CLEAR)
+    waits = due(rig, "sis_a")
+    assert waits is not None and waits.advice is None
+    rig.lost = lambda publication: False
+    rig.wait(rig.model.timing.stop_timeout_s)
+    again = due(rig, "sis_a")
+    assert again is not None and again.advice is not None
+    assert str(again.advice["why"]) == "ra1 did not confirm the clear"
+    assert make_ready(rig, "sis_a")[0] == "clear sis_a"
+    assert cell(rig).state is CellState.IDLE
 
 
 def test_every_robot_is_told_to_stop_before_any_task_is_said_to_have_failed() -> None:

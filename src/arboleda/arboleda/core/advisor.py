@@ -23,7 +23,7 @@ from arboleda.trees import part_places
 
 from . import reasons
 from .cell import CellRun
-from .cell_steps import waits_for_grip
+from .cell_steps import CLEAR_UNCONFIRMED, waits_for_grip
 from .plant_state import PlantState
 from .verbs.device_verbs import works
 
@@ -131,6 +131,14 @@ class Advisor:
         yield from (each for each in readying if each.do is Hand.REPAIR)  # what is in fault is not still
         yield Advice(do=Verb.CLEAR, scope=name, why=reasons.cause_of_stop(run))
         yield from self._stopped(run, visited)
+
+    def _clearing_stop(self, run: CellRun, visited: frozenset[str]) -> Iterator[Advice]:
+        """Advice to clear a cell again; none before its robots had the time to leave their stop."""
+        latched = run.context.robots.latched()
+        if not latched or run.context.time.now < run.stop_by:
+            return
+        yield from (each for each in self._readying(run, visited) if each.do is Hand.REPAIR)
+        yield Advice(do=Verb.CLEAR, scope=run.cell.name, why=CLEAR_UNCONFIRMED(robots=tuple(latched)))
 
     def _stopped(self, run: CellRun, visited: frozenset[str]) -> Iterator[Advice]:
         yield Advice(do=Verb.RESET, scope=run.cell.name, why=reasons.cause_of_stop(run))
@@ -455,6 +463,6 @@ LEADS: dict[CellState, Lead] = {
     CellState.IDLE: Advisor._idle,
     CellState.HELD: Advisor._held,
     CellState.ABORTED: Advisor._aborted,
-    CellState.CLEARING: Advisor._aborted,
+    CellState.CLEARING: Advisor._clearing_stop,
     CellState.STOPPED: Advisor._stopped,
 }

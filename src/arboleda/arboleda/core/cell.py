@@ -85,7 +85,7 @@ class CellRun:
         self.version: RevisionName | None = None  # taken while the plant ran
         self.cancelling = False  # True while its task is to end as cancelled
         self.stopped_after: dict[str, ReportMoment] = {}  # of its robots, at its last stop
-        self.stop_by = 0.0  # when they have to stand, s of the cell's time
+        self.stop_by = 0.0  # when they have to stand, or to have left their stop, s of the cell's time
         self._changed = changed
         self._recovers_anew = False
 

@@ -18,6 +18,7 @@ from arboleda.resume.walk_back import NO_PART
 from .cell import CellRun
 
 STOP_UNCONFIRMED = Phrase("cell.stop_unconfirmed", "{robots} did not confirm the stop")
+CLEAR_UNCONFIRMED = Phrase("cell.clear_unconfirmed", "{robots} did not confirm the clear")
 
 
 def _halted(run: CellRun) -> bool:
@@ -32,7 +33,7 @@ def _halted(run: CellRun) -> bool:
 
 def _cleared(run: CellRun) -> bool:
     """Leave `clearing` once no robot says any more that it is stopped."""
-    if run.context.robots.reports_a_latch():
+    if run.context.robots.latched():
         return False
     run.become(Cause.CLEARED)
     return True
@@ -85,6 +86,12 @@ def _absence_is_over(run: CellRun) -> bool:
     run.go_on(Cause.RETRY)
     run.queue.paused = hold.paused
     return True
+
+
+def clear(run: CellRun) -> None:
+    """Begin to clear a cell whose robots were told that their stop is over."""
+    run.become(Cause.CLEAR)
+    run.stop_by = run.context.time.now + run.context.timing.stop_timeout_s
 
 
 def outlast(run: CellRun, failure: Failure) -> None:

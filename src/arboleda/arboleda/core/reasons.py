@@ -105,6 +105,6 @@ def _at_work(run: CellRun) -> Sentence | None:
 
 
 def _next(run: CellRun) -> Sentence:
-    if run.state in NEXT:
-        return NEXT[run.state]()
-    return advice.sentence(run.ways_out(run.cell.name)) or run.readiness.busy() or WAIT()
+    if ways_out := advice.sentence(run.ways_out(run.cell.name)):
+        return ways_out
+    return NEXT[run.state]() if run.state in NEXT else run.readiness.busy() or WAIT()

@@ -162,9 +162,9 @@ class CellRobots:
         online = {name: belief for name in ending if (belief := self._dispatcher.beliefs[name]).online}
         return [name for name, each in online.items() if not each.stillness.still_since(moments[name])]
 
-    def reports_a_latch(self) -> bool:
-        """True while an online robot of the cell still reports that it is stopped and latched."""
+    def latched(self) -> list[str]:
+        """The online robots of the cell that report that they are stopped, and are not by the plant."""
         stopped = self._dispatcher.latches.stopped  # by another cell that shares them
         names = [robot.name for robot in self._cell.robots if robot.name not in stopped]
         beliefs = [self._dispatcher.beliefs[name] for name in names]
-        return any(belief.online and belief.state is MotionState.STOP_LATCHED for belief in beliefs)
+        return [each.robot.name for each in beliefs if each.online and each.state is MotionState.STOP_LATCHED]

@@ -58,7 +58,7 @@ def due_in_cell(snapshot: Row, cell: Row) -> Due | None:
         return Due(why=cell["step"], at_work=True) if cell["paused"] else None
     if (act := _under_way(snapshot, cell)) is not None:
         return Due(why=act["sentence"])
-    if not cell["advice"] or cell["state"] == CellState.CLEARING:
+    if not cell["advice"]:
         is_ready = cell["state"] == CellState.IDLE and cell["not_ready"] is None
         return None if is_ready else Due(why=cell["held_by"] or cell["not_ready"])
     return _first(cell["advice"])

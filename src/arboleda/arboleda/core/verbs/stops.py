@@ -5,6 +5,7 @@ from __future__ import annotations
 from arboleda.model.cell_states import Cause, CellState
 from arboleda.model.sentence import Phrase, Sentence
 
+from .. import cell_steps
 from ..cell import CellRun
 from ..plant_state import PlantState
 
@@ -58,7 +59,7 @@ class Stops:
                 self._state.dispatcher.latches.unlatch(robot.name)
         stopped = self._state.dispatcher.latches.stopped - stay_stopped.keys()
         if not any(robot.name in stopped for robot in cell.cell.robots):
-            cell.become(Cause.CLEAR)
+            cell_steps.clear(cell)
 
     def _kept_stopped(self, cell: CellRun, robots: frozenset[str]) -> dict[str, tuple[str, ...]]:
         """The robots that stay stopped when they are cleared in a cell, each with the cells that keep it so.
