@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from datetime import datetime
 
 from arboleda.drivers import plain
 
@@ -27,6 +28,7 @@ class Link:
         self._refused = ""  # reason why its last state did not count; "" once one did
         self._last: VehicleState | None = None
         self._first = True  # the next state begins a row of headers
+        self._fastest_s = math.inf  # of its clock to ours, by the state that came the fastest
         self.boots = 1
         self.has_booted = False
         self._neighbours: set[str] = set()
@@ -77,6 +79,7 @@ class Link:
         if word != "ONLINE" or self._word != "ONLINE":
             self._begin_anew()
         self._word, self._last_message_at, self._first = word, now, True
+        self._fastest_s = math.inf
 
     def takes(self, now: float, state: VehicleState) -> bool:
         """True if a state is newer than the last, and so counts; notes a reboot if its headers begin anew."""
@@ -96,6 +99,15 @@ class Link:
         self._last, self._last_message_at, self._silent, self._first = state, now, False, False
         self._refused = ""
         return True
+
+    def delay_s(self, now: float, state: VehicleState) -> float:
+        """How much longer a state was on its way than the fastest one; 0 where its timestamp is no time."""
+        try:
+            took_s = now - datetime.fromisoformat(state.timestamp).timestamp()
+        except ValueError:
+            return 0.0
+        self._fastest_s = min(self._fastest_s, took_s)
+        return took_s - self._fastest_s
 
     def refuse(self, why: str) -> None:
         """Note a state that does not count; the reason is reported while no state does."""

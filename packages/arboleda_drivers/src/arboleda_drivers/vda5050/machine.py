@@ -39,6 +39,7 @@ from .state import FACTS, Body, VehicleState, read
 from .stops import AGAIN_S, Stops
 
 BEAT_S = 0.3
+LATE_S = 2.0
 FACTSHEET_TRIES = 3  # factsheet requests; not all vehicles have one
 LONGEST_COMMAND = "1800000000-99999"  # an id as the plant makes them, by its start and a number
 OURS = "arboleda-"  # prefix of the ids of all orders of plants
@@ -130,7 +131,13 @@ class Vehicle:
         self._stops.see(state)
         messages = [*self._judge_order(now, state), *self._left_over(now, state)]
         self._judge_instants(state)
-        return [*messages, *self._reports(now)]
+        return [*messages, *self._reports(now), *self._late(now, state)]
+
+    def _late(self, now: float, state: VehicleState) -> Iterator[LogLine]:
+        late_s = self.link.delay_s(now, state)
+        if late_s > LATE_S:
+            name = self._settings.vehicle
+            yield LogLine(text=f"the states of {name} come {late_s:.0f} s late, or its clock was set back")
 
     def lose(self, now: float, why: str) -> list[Message]:
         """Lose the link, and open work, after a message that caused an error; the next state restores it."""

@@ -44,7 +44,7 @@ class Stops:
             self.open.setdefault(action.type, []).append(action.id)
 
     def see(self, state: VehicleState) -> None:
-        self.open = {type: ids for type, ids in self.open.items() if not any(map(state.is_over, ids))}
+        self.open = {type: ids for type, ids in self.open.items() if not _is_over(state, ids)}
 
     def are_due(self, now: float) -> bool:
         """True where the last one was sent long enough ago."""
@@ -59,3 +59,14 @@ class Stops:
             return ()
         self._pauses_left -= 1
         return ("startPause",)
+
+
+def _is_over(state: VehicleState, ids: Sequence[str]) -> bool:
+    """True if a stop that was sent as these actions has ended, or was refused and none of them is under way.
+
+    Some vehicles refuse an action by an error alone, also a second cancel beside one under way.
+    """
+    if any(map(state.is_over, ids)):
+        return True
+    is_under_way = any(id in state.actions for id in ids)
+    return not is_under_way and any(state.trouble_with(id) is not None for id in ids)

@@ -8,6 +8,7 @@ import pytest
 
 from arboleda.drivers import MotionState, NotSent, Report, Stop, StopMode
 from arboleda.kinds.mobile import FollowPath
+from arboleda_drivers.vda5050.machine import LogLine
 from arboleda_drivers.vda5050.messages import Headers
 from arboleda_drivers.vda5050.settings import EdgeAction, Settings
 from arboleda_drivers.vda5050.stops import AGAIN_S
@@ -418,6 +419,42 @@ def state(**news: Any) -> dict[str, Any]:
     """A state as it is read, with changes."""
     headers = Headers("2.1", "arboleda", "agv1")
     return {**headers("state"), **state_of(VirtualAgv(version="2.1"), (), "2.1"), **news}
+
+
+def motion_told(rig: Rig, number: int, refused: str, **news: Any) -> MotionState | None:
+    """The motion of the cart by a numbered state that refuses an action by an error alone."""
+    about = [{"referenceKey": "actionId", "referenceValue": refused}]
+    error = {"errorType": "noOrderToCancel", "errorLevel": "WARNING", "errorReferences": about}
+    said = rig.vehicle.state(rig.now, state(headerId=2**20 + number, errors=[error], **news))
+    return next(each.state for each in said if isinstance(each, Report) and each.robot == "cart")
+
+
+def test_a_cancel_that_is_refused_by_an_error_alone_is_over(rig: Rig) -> None:
+    rig.faults.switch("deaf", on=True)
+    rig.stop(StopMode.HALT)
+    (cancel,) = rig.received[-1][1]["actions"]
+    assert motion_told(rig, 1, "another") is not MotionState.STOPPED
+    assert motion_told(rig, 2, cancel["actionId"]) is MotionState.STOPPED
+
+
+def test_a_second_cancel_that_is_refused_ends_no_cancel_under_way(rig: Rig) -> None:
+    rig.faults.switch("deaf", on=True)
+    rig.stop(StopMode.HALT)
+    rig.stop(StopMode.HALT)
+    first, second = (message["actions"][0]["actionId"] for _, message in rig.received[-2:])
+    under_way = {"actionId": first, "actionType": "cancelOrder", "actionStatus": "RUNNING"}
+    assert motion_told(rig, 1, second, actionStates=[under_way]) is not MotionState.STOPPED
+
+
+def test_states_that_come_late_are_named_in_the_log(rig: Rig) -> None:
+    def told(number: int, second: int, at: float) -> list[str]:
+        said = state(headerId=2**20 + number, timestamp=f"2100-01-01T00:00:{second:02}.000Z")
+        return [each.text for each in rig.vehicle.state(at, said) if isinstance(each, LogLine)]
+
+    rig.vehicle.connection(0.0, {"connectionState": "ONLINE"})
+    assert not told(1, 0, 100.0) and not told(2, 1, 102.5)
+    assert told(3, 2, 111.0) == ["the states of arboleda/agv1 come 9 s late, or its clock was set back"]
+    assert not told(4, 12, 112.0)
 
 
 def test_what_was_not_sent_is_not_open(rig: Rig) -> None:
