@@ -19,6 +19,8 @@ from tests.shared import need_tool
 
 from arboleda.drivers import Driver
 from arboleda.model.plant_model import PlantModel
+from arboleda_lines.line import FORMS
+from arboleda_lines.relay import TcpRelay
 
 from ..modbus.bench import DRIVER as MODBUS
 from ..opcua.bench import DRIVER as OPCUA
@@ -35,6 +37,44 @@ LIBMODBUS = PREFIX / "libmodbus/libmodbus.so.5"
 VEHICLE = HERE.with_name("vda5050") / "virtual_agv.js"
 NODE = PREFIX / "npm/node_modules"
 NO_WORD = {"refusal": 0}  # of a device that refuses nothing
+TCP_FORMS = tuple(word for word in FORMS if word != "echo")  # which is of two wires, and these are TCP
+STREAM_FORMS = ("slow", "jitter", "late_once", "cut", "joined", "half_open", "reset")
+"""Those of a stream of which nothing is lost; at 9,600 baud a stop waits for what was told before."""
+
+
+@dataclass
+class Stage:
+    """Where a peer is played: what it needs is ended with `stack`. `relay` is there where its line is bad."""
+
+    stack: ExitStack
+    folder: Path
+    is_bad: bool
+    relay: TcpRelay | None = None
+
+    def started(self, *command: str, **environment: str) -> Peer:
+        peer = Peer(*command, **environment)
+        self.stack.callback(peer.close)
+        return peer
+
+    def cable(self, far: Callable[[], int]) -> tuple[Cable, int]:
+        """A cable, and the port at which the driver reaches it."""
+        cable = Cable(far)
+        self.stack.callback(cable.close)
+        if not self.is_bad:
+            return cable, cable.port
+        self.relay = TcpRelay(cable.port)
+        self.stack.enter_context(self.relay)
+        return cable, self.relay.port
+
+    def line(self) -> tuple[int, str]:
+        """A pseudo terminal: the end of the cable, and the name of the other one."""
+        device, client = os.openpty()
+        self.stack.callback(os.close, device)
+        self.stack.callback(os.close, client)
+        tty.setraw(client)
+        return device, os.ttyname(client)
+
+
 Played = tuple[Peer, Cable, PlantModel]
 
 
@@ -43,10 +83,11 @@ class Bench:
     """How a peer is had: `play` starts it, with a cable to it and the plant that reaches it by that."""
 
     driver: str  # the place of its class
-    play: Callable[[ExitStack, Path], Played]
+    play: Callable[[Stage], Played]
     needs: tuple[str, ...] = ()
     installed: Path = HERE  # where there is something if it is installed
     goes: Mapping[str, int] = field(default_factory=dict)  # what of a day is other at it
+    forms: tuple[str, ...] = TCP_FORMS  # in which its line may be bad
 
     def driver_class(self) -> type[Driver]:
         module, _, name = self.driver.partition(":")
@@ -54,101 +95,81 @@ class Bench:
         return found
 
     @contextmanager
-    def played(self, folder: Path) -> Iterator[Played]:
+    def played(self, folder: Path, *, is_bad: bool) -> Iterator[tuple[Stage, Played]]:
         for each in self.needs:
             need_tool(each)
         if not self.installed.exists():
             pytest.skip(f"{self.installed} is not there; virtual-controllers.md says how to get it")
         with ExitStack() as stack:
-            yield self.play(stack, folder)
-
-
-def _started(stack: ExitStack, *command: str, **environment: str) -> Peer:
-    peer = Peer(*command, **environment)
-    stack.callback(peer.close)
-    return peer
-
-
-def _cable(stack: ExitStack, far: Callable[[], int]) -> Cable:
-    cable = Cable(far)
-    stack.callback(cable.close)
-    return cable
-
-
-def _line(stack: ExitStack) -> tuple[int, str]:
-    """A pseudo terminal: the end of the cable, and the name of the other one."""
-    device, client = os.openpty()
-    stack.callback(os.close, device)
-    stack.callback(os.close, client)
-    tty.setraw(client)
-    return device, os.ttyname(client)
+            stage = Stage(stack, folder, is_bad)
+            yield stage, self.play(stage)
 
 
 def _script(name: str) -> tuple[str, str]:
     return sys.executable, str(HERE / name)
 
 
-def _snap7(stack: ExitStack, folder: Path) -> Played:
-    peer = _started(stack, *_script("press.py"), "snap7", PYTHONPATH=str(SNAP7))
-    cable = _cable(stack, at_port(peer.port))
-    return peer, cable, plants.press(folder, quick(S7) % cable.port)
+def _snap7(stage: Stage) -> Played:
+    peer = stage.started(*_script("press.py"), "snap7", PYTHONPATH=str(SNAP7))
+    cable, port = stage.cable(at_port(peer.port))
+    return peer, cable, plants.press(stage.folder, quick(S7) % port)
 
 
-def _libmodbus(stack: ExitStack, folder: Path) -> Played:
-    peer = _started(stack, *_script("press.py"), "libmodbus", str(LIBMODBUS))
-    cable = _cable(stack, at_port(peer.port))
-    return peer, cable, plants.press(folder, quick(MODBUS) % cable.port)
+def _libmodbus(stage: Stage) -> Played:
+    peer = stage.started(*_script("press.py"), "libmodbus", str(LIBMODBUS))
+    cable, port = stage.cable(at_port(peer.port))
+    return peer, cable, plants.press(stage.folder, quick(MODBUS) % port)
 
 
-def _libmodbus_rtu(stack: ExitStack, folder: Path) -> Played:
+def _libmodbus_rtu(stage: Stage) -> Played:
     """RTU at a pseudo terminal, behind a gateway that passes its bytes on."""
-    device, line = _line(stack)
-    peer = _started(stack, *_script("press.py"), "libmodbus", str(LIBMODBUS), line)
-    cable = _cable(stack, at_line(device))
+    device, line = stage.line()
+    peer = stage.started(*_script("press.py"), "libmodbus", str(LIBMODBUS), line)
+    cable, port = stage.cable(at_line(device))
     keys = quick(MODBUS).replace("port: %d", "port: %d\n            framing: rtu")
-    return peer, cable, plants.press(folder, keys % cable.port)
+    return peer, cable, plants.press(stage.folder, keys % port)
 
 
-def _open62541(stack: ExitStack, folder: Path) -> Played:
-    peer = _started(stack, *_script("press.py"), "open62541", PYTHONPATH=str(O6))
-    cable = _cable(stack, at_port(peer.port))
-    return peer, cable, plants.press(folder, OPCUA.replace("ns=2;", "ns=1;") % cable.port)
+def _open62541(stage: Stage) -> Played:
+    peer = stage.started(*_script("press.py"), "open62541", PYTHONPATH=str(O6))
+    cable, port = stage.cable(at_port(peer.port))
+    return peer, cable, plants.press(stage.folder, OPCUA.replace("ns=2;", "ns=1;") % port)
 
 
-def _node_opcua(stack: ExitStack, folder: Path) -> Played:
+def _node_opcua(stage: Stage) -> Played:
     node = need_tool("node")
-    pki = folder.with_name("pki")
-    peer = _started(stack, node, str(HERE / "press_node.js"), str(NODE), str(pki))
-    cable = _cable(stack, at_port(peer.port))
-    return peer, cable, plants.press(folder, OPCUA.replace("ns=2;", "nsu=urn:press;") % cable.port)
+    pki = stage.folder.with_name("pki")
+    peer = stage.started(node, str(HERE / "press_node.js"), str(NODE), str(pki))
+    cable, port = stage.cable(at_port(peer.port))
+    return peer, cable, plants.press(stage.folder, OPCUA.replace("ns=2;", "nsu=urn:press;") % port)
 
 
-def _servos(stack: ExitStack, folder: Path, maker: str) -> Played:
-    device, line = _line(stack)
-    peer = _started(stack, *_script("servos.py"), maker, line)
-    cable = _cable(stack, at_line(device))
+def _servos(stage: Stage, maker: str) -> Played:
+    device, line = stage.line()
+    peer = stage.started(*_script("servos.py"), maker, line)
+    cable, port = stage.cable(at_line(device))
     joints = "[{id: 1}, {id: 2}, {id: 3}, {id: 4}, {id: 5}, {id: 6}]"
-    driver = f"{{serial_arm: {{host: 127.0.0.1, port: {cable.port}, protocol: {maker}, joints: {joints}}}}}"
+    driver = f"{{serial_arm: {{host: 127.0.0.1, port: {port}, protocol: {maker}, joints: {joints}}}}}"
     keys = "kind: arm, model: cr10a, tolerance: {deg: [0.3, 0.3, 0.3, 0.3, 0.3, 0.3]}"
     places = ([0] * 6, [30, 10, -20, 0, 5, 0], [0, 0, 0, 0, 0, 30])
-    return peer, cable, plants.mover(folder, driver, keys, "deg", *places)
+    return peer, cable, plants.mover(stage.folder, driver, keys, "deg", *places)
 
 
-def _vehicle(stack: ExitStack, folder: Path) -> Played:
+def _vehicle(stage: Stage) -> Played:
     """A vehicle at a broker; the cable is between that and the driver."""
-    home = folder.with_name("broker")
-    home.mkdir()
-    broker = Mosquitto(need_tool("mosquitto"), unused_port(), home)
+    folder = stage.folder.with_name("broker")
+    folder.mkdir()
+    broker = Mosquitto(need_tool("mosquitto"), unused_port(), folder)
     broker.start()
-    stack.callback(broker.stop)
-    port = broker.address.port
-    vehicle = (str(VEHICLE), str(NODE / "vda-5050-lib"), f"mqtt://127.0.0.1:{port}", "agv1")
-    peer = _started(stack, need_tool("node"), *vehicle)
-    cable = _cable(stack, at_port(port))
-    where = f"broker: 127.0.0.1:{cable.port}, manufacturer: peer, serial: agv1, version: '2.0'"
+    stage.stack.callback(broker.stop)
+    to = broker.address.port
+    vehicle = (str(VEHICLE), str(NODE / "vda-5050-lib"), f"mqtt://127.0.0.1:{to}", "agv1")
+    peer = stage.started(need_tool("node"), *vehicle)
+    cable, port = stage.cable(at_port(to))
+    where = f"broker: 127.0.0.1:{port}, manufacturer: peer, serial: agv1, version: '2.0'"
     driver = f"{{vda5050: {{{where}}}}}"
     keys = "kind: mobile, grid: {pitch_mm: 400}"
-    return peer, cable, plants.mover(folder, driver, keys, "node", 0, 1, 0)
+    return peer, cable, plants.mover(stage.folder, driver, keys, "node", 0, 1, 0)
 
 
 def quick(mapping: str) -> str:
@@ -177,6 +198,7 @@ BENCHES: dict[str, Bench] = {
         needs=("node", "mosquitto"),
         installed=NODE / "vda-5050-lib",
         goes=NO_WORD,
+        forms=STREAM_FORMS,
     ),
     **{
         f"servos_{maker}": Bench(

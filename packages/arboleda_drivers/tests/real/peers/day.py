@@ -1,4 +1,4 @@
-"""The script of a day: orders, stops and cuts by chance, at a peer that says what it did and when.
+"""The script of a day: orders, stops, cuts and bad lines by chance, at a peer that says what it did and when.
 
 Held to: an order is begun once at most, not after its stop was answered, and not after its task has ended; a
 task is done only if the peer has done its work; what a stop reaches stands; and the first advice, followed
@@ -22,6 +22,8 @@ from arboleda.drivers import Driver, NotSent, Stop, StopMode
 from arboleda.model.messages import ENDED, Reason, TaskChanged, TaskState, Verb
 from arboleda.runtime.build import App
 from arboleda.views.readying import due_in_cell
+from arboleda_lines.line import TIMED, Form
+from arboleda_lines.relay import Relay
 
 from .peer import BEGIN, DROP, END, Did
 
@@ -33,6 +35,8 @@ STANDS_S = 1.0  # until what a stop has reached stands
 ENOUGH = 7  # acts that lead out of any state
 SHORTEST_S, LONGEST_S = 0.05, 0.4  # of works
 GOES = {"order": 46, "cancel": 14, "stop": 14, "cut": 9, "silence": 9, "refusal": 8}
+GOES_BADLY = {"order": 30, "bad": 30, "bad_cancel": 20, "bad_stop": 20}  # with a relay before the line
+LATE_S = (0.05, 1.5)  # by how much an answer comes late, at least and at most
 OVER = ENDED | {TaskState.REFUSED}
 
 
@@ -115,6 +119,8 @@ class Day:
     seed: int
     recipes: tuple[str, ...] = ("work", "other")
     goes: dict[str, int] = field(default_factory=lambda: dict(GOES))
+    relay: Relay | None = None  # before the line
+    forms: tuple[str, ...] = ()  # in which the relay is bad
 
     def __post_init__(self) -> None:
         self.found: list[str] = []
@@ -156,18 +162,37 @@ class Day:
             return
         if chance.random() < UNDER_WAY:
             self._wait_for_order(task)
-        time.sleep(wait)
-        if goes == "cancel":
-            self.app.plant.operate(Verb.CANCEL, CELL).result(PATIENCE_S)
-        elif goes == "stop":
-            self.app.plant.operate(Verb.STOP, CELL).result(PATIENCE_S)
+        if goes.startswith("bad"):
+            self._go_badly(chance, goes, wait, away)
         else:
+            time.sleep(wait)
+            self._meet(goes, away)
+        self._acted_at = time.monotonic()
+        self._await(task)
+
+    def _meet(self, goes: str, away: float) -> None:
+        """Let that befall the order."""
+        if goes.endswith("cancel"):
+            self.app.plant.operate(Verb.CANCEL, CELL).result(PATIENCE_S)
+        elif goes.endswith("stop"):
+            self.app.plant.operate(Verb.STOP, CELL).result(PATIENCE_S)
+        elif goes in ("cut", "silence"):
             self.line.cut(silent=goes == "silence")
             time.sleep(away)
             self.line.mend()
             time.sleep(SEEN_S)
-        self._acted_at = time.monotonic()
-        self._await(task)
+
+    def _go_badly(self, chance: Random, goes: str, wait: float, away: float) -> None:
+        """The same while the line is bad."""
+        assert self.relay is not None
+        word = chance.choice(self.forms)
+        form = Form(word=word, delay_s=round(chance.uniform(*LATE_S), 2) if word in TIMED else 0.0)
+        self.counts[f"bad: {word}"] += 1
+        with self.relay.bad(form):
+            time.sleep(wait)
+            self._meet(goes, away)
+            time.sleep(away)
+        time.sleep(SEEN_S)
 
     def _wait_for_order(self, task: Task) -> None:
         """Wait until the driver is given an order of the task, it ends, or the cell waits for somebody."""
@@ -296,5 +321,5 @@ class Day:
             self.found.append(f"{task.id} is not done: {task.end.sentence}")
         elif task.goes == "refusal" and task.end.reason is not Reason.REJECTED:
             self.found.append(f"{task.id} is not refused: {task.end}")
-        if task.goes in ("cancel", "stop") and last == DROP:
+        if task.goes.endswith(("cancel", "stop")) and last == DROP:
             self.counts["dropped"] += 1
