@@ -13,9 +13,7 @@ from .controller import Halting
 from .lines import written
 from .marlin_lines import Capability, numbered
 
-UNENDED_S = (
-    10.0  # a stop without an end for so long: an answer was lost, and each one counts for a line before
-)
+UNENDED_S = 10.0  # a stop that has not ended by then: an answer was lost, and each one counts for a line
 STOP_AGAIN_S = 3.0  # Marlin drops all moves for a second, and for one more after a second stop
 ASK_NAME = "M115"
 PARSER = "EMERGENCY_PARSER"
