@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from arboleda.drivers import DriverError
-from arboleda_drivers.plc.limits import check_polling
+from arboleda_drivers.plc.limits import Watched, check_polling
 
 from .registers import Register, Write
 
@@ -33,7 +33,7 @@ class Sequence:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ModbusKeys:
+class ModbusKeys(Watched):
     """Keys of the driver `modbus`: the connection, and the mapping of one device."""
 
     host: str = ""
@@ -65,11 +65,6 @@ class ModbusKeys:
         check_polling(port=self.port, poll_s=self.poll_s, timeout_s=self.timeout_s)
         if not 0 <= self.unit <= 255:
             raise DriverError(f"unit is {self.unit}; allowed: 0 to 255")
-
-    @property
-    def watches_plant(self) -> bool:
-        """True where the PLC stops by itself without a heartbeat."""
-        return self.heartbeat is not None
 
     @property
     def has_numbers(self) -> bool:

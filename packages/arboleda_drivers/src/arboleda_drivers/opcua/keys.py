@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from arboleda.drivers import DriverError
-from arboleda_drivers.plc.limits import check_alive, check_sequence
+from arboleda_drivers.plc.limits import Watched, check_alive, check_sequence
 from arboleda_drivers.plc.numbers import LAST
 from arboleda_drivers.plc.variables import FORMS, LIMITS, Form
 
@@ -60,7 +60,7 @@ class Sequence:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OpcUaKeys:
+class OpcUaKeys(Watched):
     """Keys of the driver `opcua`: the connection, and the mapping of one device.
 
     Passwords are in the environment, under the prefix `secrets`.

@@ -22,11 +22,6 @@ class Settings(OpcUaKeys):
     Passwords are in the environment, under the prefix `secrets`.
     """
 
-    @property
-    def watches_plant(self) -> bool:
-        """True where the PLC stops by itself without a heartbeat."""
-        return self.heartbeat is not None
-
     def problems(self, device: Robot) -> Iterator[Problem]:
         """Settings that do not fit a device, each as its keys and a sentence."""
         if not isinstance(device, Device):

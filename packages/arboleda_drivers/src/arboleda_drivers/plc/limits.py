@@ -1,4 +1,4 @@
-"""Limits of the settings that drivers of PLCs have in common."""
+"""Settings that drivers of PLCs have in common, and their limits."""
 
 from __future__ import annotations
 
@@ -7,6 +7,17 @@ from arboleda.drivers import DriverError
 from .handshake import SequencePlaces
 
 SHORTEST_POLL_S = 0.005
+
+
+class Watched:
+    """Settings of a device whose PLC may watch for a heartbeat of the plant."""
+
+    heartbeat: object
+
+    @property
+    def watches_plant(self) -> bool:
+        """True where the PLC stops by itself without a heartbeat."""
+        return self.heartbeat is not None
 
 
 def check_polling(*, port: int, poll_s: float, timeout_s: float) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from arboleda.drivers import DriverError
-from arboleda_drivers.plc.limits import check_alive, check_polling, check_sequence
+from arboleda_drivers.plc.limits import Watched, check_alive, check_polling, check_sequence
 from arboleda_drivers.plc.variables import LIMITS, Form, PlcArgument, PlcVariable
 
 from .addresses import Address, address
@@ -101,7 +101,7 @@ class Sequence:
 
 
 @dataclass(frozen=True, kw_only=True)
-class S7Keys:
+class S7Keys(Watched):
     """Keys of the driver `s7`: the connection, and the mapping of one device."""
 
     host: str
@@ -135,11 +135,6 @@ class S7Keys:
             check_whole(key, getattr(self, key))
         if self.heartbeat is not None:
             check_written(self.heartbeat)
-
-    @property
-    def watches_plant(self) -> bool:
-        """True where the PLC stops by itself without a heartbeat."""
-        return self.heartbeat is not None
 
     @property
     def peer(self) -> str:
