@@ -36,7 +36,7 @@ class Reports(Routes):
 
     @flow("GET /api/tasks/{task_id}/report")
     async def report(self, task_id: str, *, within_s: float = REPORT_S) -> TaskReport:
-        """Why a task failed: its cause, and the evidence. The plant may have to write it first, out of its
+        """The cause of a task's failure, and the evidence. The plant may have to write it first, out of its
         record; after `within_s` it is as it is then. NotFound, with the reason, where there is none."""
         until = self._line.clock() + within_s
         while True:

@@ -346,7 +346,7 @@ def _question(robot: dict[str, Any]) -> list[str]:
 
 
 def _asks(question: dict[str, Any]) -> list[str]:
-    """What a package asks, and how to answer it."""
+    """The question of a package, and its answers as commands."""
     package = question["package"]
     return [
         say(PACKAGE_ASKS(package=package, question=question["text"])),

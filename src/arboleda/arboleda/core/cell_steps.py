@@ -1,4 +1,4 @@
-"""What a cell waits for in a state that it leaves by itself, and how it leaves it.
+"""Waits of a cell in states that it leaves by itself, and the ways out of them.
 
 These functions are asked again and again, whenever something may have happened to the cell. So they note
 what they find only once, and their answer is whether they did anything: a cell that always says so would

@@ -291,7 +291,7 @@ class SupervisedDriver:
         return self._call_back(at, device, device.lose(at, why))
 
     def _call_back(self, at: float, device: DrivenDevice, told: Sequence[Report]) -> list[Message]:
-        """What is told of a lost link, and a stop for an order that `send` still has: its task has failed, so
+        """Reports of a lost link, and a stop for an order that `send` still has: its task has failed, so
         it must not begin any more."""
         has_order = any(
             command.robot == device.robot.name and not isinstance(command, Stop) for _, command in self._sends

@@ -76,7 +76,7 @@ def naming(piece: Piece | None) -> Iterator[None]:
 
 
 def registrant(what: str) -> Piece | None:
-    """What a package registers just now, as a piece of it; None where the runner itself does."""
+    """The piece of a package that registers just now; None where the runner itself does."""
     called = _CALLED.get()
     return None if called is None else replace(called, what=what)
 

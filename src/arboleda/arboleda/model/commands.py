@@ -83,7 +83,7 @@ class Work(Command):
 
     @property
     def on_stop(self) -> OnStop:
-        """How it ends where its step is left, or its cell is held or stopped."""
+        """The end of its work where its step is left, or its cell is held or stopped."""
         return OnStop.HALT
 
 

@@ -75,7 +75,7 @@ class Task:
 
     @property
     def remark(self) -> Sentence:
-        """Why it failed, or the work of a done task that nobody confirmed."""
+        """The reason of its failure, or the work of a done task that nobody confirmed."""
         if self.failure is not None:
             return self.failure.sentence
         return UNCHECKED[self.unchecked]() if self.unchecked else NOTHING

@@ -171,7 +171,7 @@ def _endless(tree: Behaviour) -> Iterator[tuple[str | None, str]]:
 
 
 def _written_retries(node: FileNode) -> int | None:
-    """How often the file has a node try a failed step again, -1: for ever; None where it says no number."""
+    """Tries of a failed step that the file gives a node, -1: for ever; None where it gives no number."""
     if ROUNDS not in node.counts or node.goes_on.name != FAILURE:
         return None
     text = node.ports.texts[node.port]

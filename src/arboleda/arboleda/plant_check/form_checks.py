@@ -1,4 +1,4 @@
-"""What `check` knows of the nodes of recipes that are no Python, by the suffix of their files.
+"""Checks of the nodes of recipes that are no Python, by the suffix of their files.
 
 A package registers an object that keeps to `FormCheck` under the entry point group `arboleda.checks`,
 with the suffix as its name, without the dot. It is loaded for a plant that has a recipe of such a file.

@@ -1,4 +1,4 @@
-"""What of a plant installed packages bring, with the name and version of each."""
+"""Parts of a plant that installed packages bring, with the name and version of each package."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def by_packages(document: Document) -> Brought:
 
 
 def _named(document: Document) -> Iterator[tuple[str, str]]:
-    """What a plant file names of packages, each with its group of entry points."""
+    """Names in a plant file that stand for packages, each with its group of entry points."""
     for name, _ in own_kinds.named(document):
         yield own_kinds.GROUP, name
     for _, place in drivers.named(document):

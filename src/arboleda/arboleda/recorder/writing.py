@@ -36,7 +36,7 @@ class Log(Protocol):
 
 
 def ros_logs(model: PlantModel) -> list[Log]:
-    """What writes the record of this plant for tools of ROS 2, too."""
+    """Writers of this plant's record for tools of ROS 2."""
     return [each.load()(model) for each in entry_points(EXTRAS) if each.name == "ros_log"]
 
 

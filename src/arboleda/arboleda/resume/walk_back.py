@@ -69,7 +69,7 @@ class Judgement:
 
 @dataclass(frozen=True)
 class Doubt:
-    """Why a device keeps a task from going on by itself."""
+    """Reason for which a device keeps a task from going on by itself."""
 
     reason: Reason
     sentence: Sentence

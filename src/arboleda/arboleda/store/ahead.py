@@ -57,7 +57,7 @@ class Ahead:
         return self._text() is None
 
     def _text(self) -> bytes | None:
-        """What was noted, b"" if nothing was; None if that is not there as a whole."""
+        """The note, b"" if there is none; None if it is not there as a whole."""
         try:
             words = self.path.read_bytes()
         except FileNotFoundError:

@@ -10,7 +10,7 @@ Statement = tuple[str, tuple[object, ...]]  # with its values, each in the place
 
 
 class Rows(Protocol):
-    """What a table is kept in; each method raises ArboledaError."""
+    """Table that rows are kept in; each method raises ArboledaError."""
 
     def write(self, *statements: Statement, durable: bool) -> None:
         """Commit all of the statements, or none; what is to be `durable` may wait for a sync."""

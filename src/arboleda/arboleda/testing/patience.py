@@ -1,4 +1,4 @@
-"""How long tests of real parts wait for what comes by itself: as long as the busiest machine takes."""
+"""Patience of tests of real parts: they wait as long as the busiest machine takes."""
 
 from __future__ import annotations
 

@@ -101,7 +101,7 @@ class Link:
         return True
 
     def delay_s(self, now: float, state: VehicleState) -> float:
-        """How much longer a state was on its way than the fastest one; 0 where its timestamp is no time."""
+        """Time that a state was on its way beyond the fastest one; 0 where its timestamp is no time."""
         try:
             took_s = now - datetime.fromisoformat(state.timestamp).timestamp()
         except ValueError:

@@ -46,7 +46,7 @@ class TaskTools:
         return await self._desk.look(call, lambda plant: plant.history(**wanted, before=before, limit=limit))
 
     async def why_failed(self, call: Call, task_id: str) -> Reply:
-        """Why a task failed: the cause, and the evidence, out of the flight record. It may take a minute."""
+        """The cause of a task's failure, and the evidence, out of the flight record. It may take a minute."""
         return await self._desk.look(call, lambda plant: AsyncProofs(plant).report(task_id))
 
     async def worked(self, call: Call, cell: str = "") -> Reply:

@@ -38,7 +38,7 @@ def end_of_it(spot: Spot) -> None:
 
 
 def face(moment: Moment) -> Face:
-    """Whether it goes on."""
+    """The word of the demonstration: on while it goes on."""
     return {"text/demo": ["", "on" if moment.links.get("demo") else "off"]}
 
 

@@ -43,7 +43,7 @@ def routes(side: PlantApi) -> APIRouter:
 
     @api.get("/tasks/{task_id}/report", **answering(TaskReport, NONE | LATER))
     async def report(task_id: str) -> JSONResponse:
-        """Why a task failed: cause and evidence. The first answer may be 202, until it is written."""
+        """The cause of a task's failure, and the evidence. The answer is 202 until it is written."""
         desk = side.ask(ReportsApi)
         if desk is None:
             raise missing(PROOFS)

@@ -1,4 +1,4 @@
-"""What the web server sees of a plant that runs: faults by hand, reports of failures, the demonstration."""
+"""Faults by hand, reports of failures and the demonstration of a plant that runs, for the web server."""
 
 from __future__ import annotations
 

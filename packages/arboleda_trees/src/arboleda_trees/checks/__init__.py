@@ -1,1 +1,1 @@
-"""What `check` knows of the nodes of trees as XML."""
+"""Checks of the nodes of trees as XML."""

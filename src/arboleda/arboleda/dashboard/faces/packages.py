@@ -1,4 +1,4 @@
-"""What packages tell people: the alarms that they have raised."""
+"""Alarms that packages have raised, as the page shows them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a driver brings into the contract: a plant with one device, which is played by hand."""
+"""Bench of a driver in the contract: a plant with one device, which is played by hand."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Device(Protocol):
 
     @property
     def orders(self) -> Queue[tuple[str, Ref]]:
-        """What it was told: `work`, `other`, `ask`, `halt` or `latch`, and how it names that order."""
+        """Orders that it got: `work`, `other`, `ask`, `halt` or `latch`, each with its own name for it."""
 
     def accepts(self, ref: Ref) -> None:
         """It takes the order, and is at work."""

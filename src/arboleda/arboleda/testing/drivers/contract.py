@@ -30,12 +30,12 @@ def only(fits: Callable[[Bench], object], why: str) -> Callable[[Case], Case]:
 
 
 def misfit(case: Callable[..., None], bench: Bench) -> str:
-    """Why a case is not for a bench; nothing where it is."""
+    """The reason why a case is not for a bench; "" where it is."""
     return next((why for fits, why in getattr(case, "only", ()) if not fits(bench)), "")
 
 
 def is_halted(bench: Bench) -> bool:
-    """Whether its device is told to halt its work."""
+    """True where its device is told to halt its work."""
     return bench.halts_work and HALT in bench.stops
 
 
@@ -155,7 +155,7 @@ class DriverContract:
 
     @only(lambda bench: bench.halts_work, "its works are questions, see test_late_answer: halts_work=False")
     def test_late_end(self, shop: Shop) -> None:
-        """What is told of work that was cancelled ends no other, though it comes after the next order: that
+        """A late end of work that was cancelled ends no other, though it comes after the next order: that
         one would pass for done while the device works.
         """
         shop.submit(WORK, "first")
@@ -221,7 +221,7 @@ class DriverContract:
     @only(lambda bench: not bench.watches, "its device watches for the plant itself: watches=True")
     @only(is_halted, "nothing halts its work: see halts_work and stops")
     def test_a_plant_that_freezes(self, shop: Shop) -> None:
-        """What moves is halted while the plant's thread does nothing, as nobody watches it then."""
+        """A moving device is halted while the plant's thread does nothing, as nobody watches it then."""
         shop.submit(WORK)
         shop.device.accepts(shop.told(WORK))
         with shop.frozen():

@@ -44,13 +44,13 @@ class Shop:
         self.app.plant.submit(f"shop {recipe} #{id}").result(PATIENCE_S)
 
     def told(self, *words: str) -> Ref:
-        """How the device names the next order, which is one of these."""
+        """The device's name for the next order, which is one of these."""
         found, ref = self.next_order()
         assert found in words
         return ref
 
     def next_order(self) -> tuple[str, Ref]:
-        """What the device is told next."""
+        """The next order of the device."""
         return come(self.device.orders, "the device is told something")
 
     def outcome(self, id: str = "t1") -> TaskChanged:

@@ -89,7 +89,7 @@ def _why(found: Incident, cause: Cause) -> Iterator[str]:
 
 
 def _chapters(found: Incident) -> Iterator[str]:
-    """What packages wrote. A picture is an image, in which no script runs."""
+    """Chapters that packages wrote. A picture is an image, in which no script runs."""
     for each in found.chapters:
         yield f"<section><h2>{escape(each.title)}</h2><p class=quiet>{escape(each.package)}</p>"
         if each.text:

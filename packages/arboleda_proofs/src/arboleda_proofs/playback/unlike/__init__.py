@@ -1,1 +1,1 @@
-"""What a device of a record told, and its virtual one cannot tell as long as nothing goes wrong with it."""
+"""Reports of a device in a record that its virtual one cannot make as long as nothing goes wrong with it."""

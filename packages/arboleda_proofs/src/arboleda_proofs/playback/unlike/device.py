@@ -212,7 +212,7 @@ class DeviceWatch:
         return None
 
     def _look_at_end(self, command: Command, report: Report, now: float) -> Iterator[Difference]:
-        """What is told together with the end of a command."""
+        """Differences in the report that has the end of a command."""
         if isinstance(command, Motion) and report.state is MotionState.MOVING and not self._works:
             yield self._spans.found("done_moving", now)
         self._facts.compare(command, report)

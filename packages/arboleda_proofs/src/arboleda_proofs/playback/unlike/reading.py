@@ -60,7 +60,7 @@ class PlantWatch:
 
     @property
     def minutes(self) -> float:
-        """How long was looked at."""
+        """The time that was looked at."""
         return (self._now - (self._began[0] if self._began else self._now)) / 60
 
     def take(

@@ -1,4 +1,4 @@
-"""What devices told that virtual ones cannot, as a file that `simulate` and `prove` take, without names.
+"""Differences of devices as a file that `simulate` and `prove` take, without names.
 
 A device is its number in the plant file, a fact its number in the device's kind, a driver is named if it
 comes with Arboleda. A word that a device said is left as it is if the code of such a driver has it, as
@@ -37,7 +37,7 @@ def as_yaml(found: Iterable[Unlike], model: PlantModel, minutes: float) -> str:
 
 
 class _Names:
-    """What stands for the names of a plant."""
+    """Numbers and words that stand for the names of a plant."""
 
     def __init__(self, model: PlantModel) -> None:
         self._model = model

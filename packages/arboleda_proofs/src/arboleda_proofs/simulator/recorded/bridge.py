@@ -1,4 +1,4 @@
-"""What each bridge made of what it took in, board by board and step by step, for the three properties of it.
+"""Input and output of each bridge, board by board and step by step, for the three properties of it.
 
 `Bridges.wrong` has the sentences on each breach, by the rule's name.
 """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 class Checked:
-    """When each check is due next, and the value for which it was made last."""
+    """Time at which each check is due next, and the value for which it was made last."""
 
     def __init__(self) -> None:
         self._next: dict[str, float] = {}

@@ -1,4 +1,4 @@
-"""How old what reaches the plant may be: reports wait where the bridge stalled, and on slow lines."""
+"""Greatest age of what reaches the plant: reports wait where the bridge stalled, and on slow lines."""
 
 from __future__ import annotations
 

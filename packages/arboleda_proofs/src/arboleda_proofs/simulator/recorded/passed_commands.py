@@ -45,7 +45,7 @@ Number = tuple[Any, Any]  # (epoca, seq)
 
 
 class PassedCommands:
-    """What came and left for one board; `_commands`: those that may have a number, None for one of nobody.
+    """Commands for one board; `_commands`: those that may have a number, None for one of nobody.
 
     `_refused` are the commands that were refused, with the word. `_latched`: a stop is latched, None if
     nobody can tell. `_may_halt`: the board obeyed a foreign command that the bridge may halt.
@@ -117,7 +117,7 @@ class PassedCommands:
             yield f"{command.id} was refused as {word}, and people are told {step.notices}"
 
     def _words_against(self, command: Command, step: BoardStep) -> tuple[bool, set[str]]:
-        """Whether a command must be refused, and the words that may be true of it."""
+        """True if a command must be refused, and the words that may be true of it."""
         if not step.was_up and not step.told:
             return True, {"no_link"}
         words = set() if step.is_surely_up and not step.late else {"no_link"}

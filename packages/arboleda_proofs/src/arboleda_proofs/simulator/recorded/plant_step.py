@@ -1,4 +1,4 @@
-"""What kind of step the plant made in this pass over a world.
+"""Kind of the step that the plant made in this pass over a world.
 
 `screens_are_told_of_news` finds by it an operator's act that is shown only with the next news.
 """

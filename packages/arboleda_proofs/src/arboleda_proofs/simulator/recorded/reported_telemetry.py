@@ -26,7 +26,7 @@ SAME = ("state", "q", "node", "homed", "effector", "piece", "boot_id")
 
 
 class ReportedTelemetry:
-    """What the bridge reported last of one board: `_last`, by telemetry with these `_words`.
+    """Last report of the bridge on one board: `_last`, by telemetry with these `_words`.
 
     `silent_at`: when the silence of a board that is there has lasted too long.
     """
