@@ -60,5 +60,5 @@ class Trial:
 
 
 def wrong(judge: Judge) -> dict[str, str]:
-    """What was found wrong, by the name of the check."""
+    """Findings of a judge, by the name of the check."""
     return {finding.check.name: finding.wrong for finding in judge.findings if finding.wrong}

@@ -1,4 +1,4 @@
-"""What `arboleda conformance` prints, in English and in Spanish."""
+"""Lines of `arboleda conformance`, in English and in Spanish."""
 
 from __future__ import annotations
 

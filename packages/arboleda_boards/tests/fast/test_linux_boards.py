@@ -1,4 +1,4 @@
-"""Which robots get the firmware's board, and how its program is called."""
+"""Robots that get the firmware's board, and the name of its program."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from arboleda_boards.linux_boards import LinuxBoards, on_linux
 
 
 class Broker:
-    """Where the boards are sent."""
+    """Broker to which the boards are sent."""
 
     address = Address(host="127.0.0.1", port=1884)
     credentials: Credentials | None = None

@@ -103,7 +103,7 @@ class Both:
         self.now = until
 
     def tell(self) -> tuple[Telemetry, Telemetry]:
-        """What each of them said last, but for the number of the message."""
+        """The last message of each of them, but for its number."""
         sensors = [each for each in self.virtual.take() if each.topic.endswith("sensores")]
         self.last = sensors[-1].payload if sensors else self.last
         return words(self.last), words(self.said[-1])
@@ -233,5 +233,5 @@ def test_what_else_is_against_a_late_order_is_said_first() -> None:
 
 
 def virtual_as(virtual: Telemetry, own: Telemetry) -> Telemetry:
-    """What the virtual board said, with the number of the message of the other."""
+    """The message of the virtual board, with the number of the other's message."""
     return replace(virtual, seq=own.seq)

@@ -212,7 +212,7 @@ def told(made: Session) -> list[str]:
 
 
 def events(made: Session) -> list[str]:
-    """What the time line tells of faults, the newest first."""
+    """Rows of the time line on faults, the newest first."""
     made.forget()
     rows = [row for key, row in made.frame()["face"].items() if key.startswith("row/events/")]
     return [row["texts"][3] for row in rows if row["texts"][2].startswith("fault")]

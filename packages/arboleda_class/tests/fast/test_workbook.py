@@ -1,4 +1,4 @@
-"""What a workbook asks of its worker: plants of edited files, programs, verdicts, zips."""
+"""Requests of a workbook to its worker: plants of edited files, programs, verdicts, zips."""
 
 from __future__ import annotations
 

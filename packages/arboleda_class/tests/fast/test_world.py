@@ -1,4 +1,4 @@
-"""What a notebook shows of a plant: its tree, its twin, what happened, and mistakes as sentences."""
+"""Plant in a notebook: its tree, its twin, its events, and mistakes as sentences."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ CART = ("lie", "early", "short", "stuck", "jump", "unlocalised", "no_odometry")
 
 @dataclass(frozen=True, kw_only=True)
 class Driver:
-    """How a driver is tried: with which seeds, and which of its faults by themselves, in so many tasks."""
+    """Trial of a driver: its seeds, and the faults that come by themselves, in so many tasks."""
 
     known: Collection[str] = ()
     seeds: Collection[int]

@@ -1,4 +1,4 @@
-"""What drivers say while a plant runs, in Spanish; the words of a user stay."""
+"""Sentences of drivers while a plant runs, in Spanish; the words of a user stay."""
 
 from __future__ import annotations
 

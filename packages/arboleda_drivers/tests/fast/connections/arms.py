@@ -63,7 +63,7 @@ class Dobot(_Heard, dobot.Loopback):
 
     @property
     def told(self) -> list[str]:
-        """What it was told to do: the moves and stops."""
+        """The moves and stops that it was told."""
         return [line for line in self.received if line.startswith(("MovJ", "Stop"))]
 
 
@@ -79,7 +79,7 @@ class Ur(_Heard, ur.Loopback):
 
     @property
     def told(self) -> list[str]:
-        """What it was told to do: the programs."""
+        """The programs that it was told."""
         return self.programs
 
 

@@ -1,4 +1,4 @@
-"""What the plant hears of an arm behind TCP, whoever made it; with time moved by hand."""
+"""Reports of an arm behind TCP to the plant, whoever made it; with time moved by hand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a Dobot sends: frames and replies, whole, cut and wrong."""
+"""Bytes of a Dobot: frames and replies, whole, cut and wrong."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ class Client:
             self.out += self.dobot.step(self.now, [])
 
     def ask(self, text: str) -> str:
-        """What is answered at once; empty where nothing is."""
+        """The immediate answer; empty where there is none."""
         found = self.dobot.step(self.now, [ClientText(client=1, text=text)])
         self.out += found
         return "".join(each.text for each in found if isinstance(each, Answer))

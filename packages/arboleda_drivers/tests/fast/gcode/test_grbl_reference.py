@@ -1,4 +1,4 @@
-"""Whether a machine with GRBL is homed, where a boot or a new line has it count from anywhere."""
+"""Homing of a machine with GRBL, where a boot or a new line has it count from anywhere."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ def test_no_plant_can_say_by_itself_where_a_machine_without_switches_stands(file
 
 
 def test_nobody_hears_that_it_is_not_homed_before_it_was_asked() -> None:
-    """What is held while a line is lost goes on without homing, if the machine locks itself."""
+    """A cell that is held while a line is lost goes on without homing, if the machine locks itself."""
     rig = GrblRig()
     rig.move(-200, 0, 0)
     rig.wait(1.0)

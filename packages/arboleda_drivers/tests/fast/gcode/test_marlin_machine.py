@@ -207,7 +207,7 @@ def test_a_machine_that_divides_its_moves_is_shut_down(stopped: bool) -> None:
 
 
 def test_a_stop_after_a_boot_leaves_the_motors_on() -> None:
-    """What has them stay on is still said."""
+    """The line that has them stay on is still said."""
     talk = Talk()
     talk.greet()
     talk.hear("start")

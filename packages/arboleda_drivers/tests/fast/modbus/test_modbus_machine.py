@@ -1,4 +1,4 @@
-"""What is read with one request over Modbus, and what is written with one."""
+"""Registers that one request over Modbus reads, and those that one writes."""
 
 from __future__ import annotations
 

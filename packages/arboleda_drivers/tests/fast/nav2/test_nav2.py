@@ -47,7 +47,7 @@ SETTINGS = ToPose(floor_m=(10.0, 0.0), floor_yaw_deg=90.0)
 
 
 def on_map(node: float) -> Pose:
-    """Where a node is: the floor lies turned by a quarter at (10, 0)."""
+    """The pose of a node: the floor lies turned by a quarter at (10, 0)."""
     row, column = divmod(node, 3)
     return Pose(10.0 - (1.0 + row), 2.0 + column)
 

@@ -1,4 +1,4 @@
-"""What only a server of OPC UA can show, and stops that it has no methods for."""
+"""Values that only a server of OPC UA can show, and stops that it has no methods for."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ class Plc:
         return made
 
     def shown(self, machine: Any, **values: object) -> dict[object, object]:
-        """What the PLC shows: all 0, except these."""
+        """Values that the PLC shows: all 0, except these."""
         given = {self.key(self.at[name]): value for name, value in values.items()}
         return dict.fromkeys(self.held(machine), 0) | given
 
@@ -133,7 +133,7 @@ class Line:
         return word
 
     def after(self, seconds: float) -> Report:
-        """What is reported after a while, in which it was read ten times a second."""
+        """The report after a while, in which the PLC was read ten times a second."""
         until = self.rig.now + seconds
         while self.rig.now < until:
             self.rig.now += 0.1

@@ -23,7 +23,7 @@ def text_of(plc: str) -> str:
 
 
 def problems(plc: str, old: str, new: str) -> tuple[str, ...]:
-    """What is told of the belt's mapping with this change of the plant file."""
+    """Problems of the belt's mapping with this change of the plant file."""
     text, keys = text_of(plc), PLCS[plc].settings
     assert text.count(old) == 1, old
     document = Document("plant.yaml", text.replace(old, new).encode())

@@ -1,4 +1,4 @@
-"""What drivers of PLCs order for a command and report of what they read; on the belt of the example."""
+"""Orders of drivers of PLCs for a command, and reports by values that they read; on the example's belt."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a machine that needs homing is led out: its motion is asked as one, a person's word as a word."""
+"""Way out for a machine that needs homing: its motion is asked as one, a person's word as a word."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ class SlowMove(World):
 
     @property
     def told(self) -> str:
-        """What screens say of the cell."""
+        """The sentence of screens on the cell."""
         (cell,) = view.snapshot(self.plant)["cells"]
         return str(cell["held_by"])
 

@@ -105,7 +105,7 @@ def begun(tried: Rig) -> World:
 
 
 def unlike(world: World) -> dict[str, Unlike]:
-    """What is unlike by now, by its rule."""
+    """Differences so far, by their rules."""
     assert isinstance(world.plant, WatchedPlant)
     return {each.worst.rule: each for each in world.plant.watch.unlike()}
 

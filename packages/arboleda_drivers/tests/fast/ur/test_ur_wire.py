@@ -1,4 +1,4 @@
-"""What a controller of Universal Robots sends and is sent, whole, cut and wrong."""
+"""Bytes to and from a controller of Universal Robots, whole, cut and wrong."""
 
 from __future__ import annotations
 

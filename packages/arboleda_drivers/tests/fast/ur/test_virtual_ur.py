@@ -44,7 +44,7 @@ class Client:
         self.greeting = self._messages([Joined(client=n, port=port) for n, port in enumerate(PORTS)])
 
     def say(self, port: str, data: bytes) -> bytes:
-        """What that client is answered at once."""
+        """The immediate answer to that client."""
         number = PORTS.index(port)
         out = self._messages([ClientData(client=number, port=port, data=data)])
         return b"".join(each.data for each in out if isinstance(each, ToClient) and each.client == number)

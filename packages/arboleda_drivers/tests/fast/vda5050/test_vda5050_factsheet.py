@@ -1,4 +1,4 @@
-"""What a vehicle says that it can do: orders of its length, and a sentence for each thing that it lacks."""
+"""Factsheet of a vehicle: orders of its length, and a sentence for each thing that it lacks."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def action(name: str, *scopes: str, **values: bool) -> dict[str, Any]:
 
 
 def able(**values: bool) -> list[dict[str, Any]]:
-    """What the forks of the example are told, with these values of `pick`."""
+    """Actions of the example's forks, with these values of `pick`."""
     return [
         action("pick", "NODE", **(values or {"height": False})),
         *(action(name, "NODE") for name in FORKS[1:]),

@@ -55,7 +55,7 @@ def connected(port: int) -> WebSocketStream:
 
 
 def heard(there: WebSocketStream, size: int) -> bytes:
-    """What came, without empty lines, once there are so many bytes."""
+    """Data that came, without empty lines, once there are so many bytes."""
     data, end = b"", time.monotonic() + PATIENCE_S
     while len(data) < size and time.monotonic() < end:
         got = there.read()

@@ -68,7 +68,7 @@ class PlayedMover:
         raise AssertionError("what moves is asked nothing")
 
     def rests(self) -> None:
-        """Where it was told to stop it stands."""
+        """It stands at the place where it was told to stop."""
 
     def latches(self) -> None:
         self.rests()

@@ -52,7 +52,7 @@ def app_of(folder: Path, state: Path, driver: str, **more: Any) -> App:
 
 @dataclass(frozen=True, kw_only=True)
 class Order:
-    """What the press was told: a verb or a stop, as its protocol has it."""
+    """Order of the press: a verb or a stop, as its protocol has it."""
 
     ref: Ref
     word: str
@@ -60,7 +60,7 @@ class Order:
 
 @dataclass(frozen=True, kw_only=True)
 class Words:
-    """What the press says; ids are the refs of orders."""
+    """Words of the press; ids are the refs of orders."""
 
     state: str = "stopped"
     guard: str = "open"

@@ -42,7 +42,7 @@ NUMBERS = ("strokes", "boot", "reason", "failure", "accepted", "rejected", "fail
 
 @cache
 def _folder() -> TemporaryDirectory[str]:
-    """Where the nodes that every server has are kept, until the tests are over."""
+    """Folder with the nodes that every server has, until the tests are over."""
     return TemporaryDirectory()
 
 

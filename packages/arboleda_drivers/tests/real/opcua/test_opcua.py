@@ -228,7 +228,7 @@ class Stubborn(Played):
 def test_a_method_that_refuses_late_is_heard_as_of_then(
     belt: Device, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What is older than the last report is old news, and dropped."""
+    """A refusal older than the last report is old news, and dropped."""
     monkeypatch.setattr(asyncua, "Client", Played)
     monkeypatch.setattr(Played, "refusals", [])
     with driven(OpcUa(settings(belt, 4840)), belt) as (driver, heard):

@@ -44,7 +44,7 @@ STREAM_FORMS = ("slow", "jitter", "late_once", "cut", "joined", "half_open", "re
 
 @dataclass
 class Stage:
-    """Where a peer is played: what it needs is ended with `stack`. `relay` is there where its line is bad."""
+    """Stage of a peer: what it needs is ended with `stack`. `relay` is there where its line is bad."""
 
     stack: ExitStack
     folder: Path
@@ -80,7 +80,7 @@ Played = tuple[Peer, Cable, PlantModel]
 
 @dataclass(frozen=True, kw_only=True)
 class Bench:
-    """How a peer is had: `play` starts it, with a cable to it and the plant that reaches it by that."""
+    """Bench of a peer: `play` starts it, with a cable to it and the plant that reaches it by that."""
 
     driver: str  # the place of its class
     play: Callable[[Stage], Played]

@@ -16,12 +16,12 @@ RESET = struct.pack("ii", 1, 0)  # a connection that ends at once, with all that
 
 
 def at_port(port: int) -> Callable[[], int]:
-    """What opens the far end at a port of this machine."""
+    """A function that opens the far end at a port of this machine."""
     return lambda: socket.create_connection(("127.0.0.1", port)).detach()
 
 
 def at_line(device: int) -> Callable[[], int]:
-    """What opens the far end at a pseudo terminal, without what a client before has left in it."""
+    """A function that opens the far end at a pseudo terminal, without what a client before has left in it."""
 
     def opened() -> int:
         termios.tcflush(device, termios.TCIOFLUSH)

@@ -17,7 +17,7 @@ ENDS_S = 1.0
 
 @dataclass(frozen=True)
 class Did:
-    """What it did with an order, and when, by the clock of this machine."""
+    """Deed of a peer with an order, and its time by the clock of this machine."""
 
     word: str
     order: str

@@ -67,7 +67,7 @@ def press(folder: Path, driver: str) -> PlantModel:
 
 
 def mover(folder: Path, driver: str, keys: str, unit: str, home: object, a: object, b: object) -> PlantModel:
-    """What goes to places."""
+    """A plant with a device that goes to places."""
     text = MOVER.format(keys=keys, driver=driver, unit=unit, home=home, a=a, b=b)
     return _plant(folder, text, MOVER_RECIPES)
 

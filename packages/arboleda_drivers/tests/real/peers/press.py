@@ -28,7 +28,7 @@ KEPT: list[object] = []  # a server ends where nobody refers to it
 
 @dataclass(frozen=True)
 class Order:
-    """What a client has ordered."""
+    """Order of a client."""
 
     number: int
     verb: int

@@ -65,7 +65,7 @@ class PlayedPlc(ABC):
 
 
 def numbers(words: Words) -> dict[str, int]:
-    """What the press says as the numbers that a PLC shows."""
+    """Words of the press as the numbers that a PLC shows."""
     pairs = (words.rejected, words.failed, words.answered)
     rejected, failed, answered = (pair or (0, "") for pair in pairs)
     return {

@@ -22,7 +22,7 @@ D = TypeVar("D", bound=Driver)
 
 
 class Heard:
-    """What a driver says."""
+    """Reports of a driver."""
 
     def __init__(self) -> None:
         self._reports: queue.Queue[Report] = queue.Queue()

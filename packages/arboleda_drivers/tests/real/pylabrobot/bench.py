@@ -41,7 +41,7 @@ KEYS = itertools.count(1)
 
 
 class BusyError(Exception):
-    """What the press says where it takes nothing."""
+    """Error of a press that takes no order now."""
 
 
 class PlayedBackend:
@@ -100,7 +100,7 @@ class PlayedBackend:
                     self._resolve(number, end)
 
     def _end(self, number: int, word: str, words: Words) -> str | Exception | None:
-        """What a call returns or raises by what the press says; None while it goes on."""
+        """The result of a call, or the error that it raises, by the press's words; None while it goes on."""
         if words.rejected is not None and words.rejected[0] == number:
             return BusyError(words.rejected[1])
         if words.failed is not None and words.failed[0] == number:
@@ -162,7 +162,7 @@ def press(key: int) -> Any:
     from pylabrobot.machines.machine import Machine, need_setup_finished
 
     class Backend(MachineBackend):  # type: ignore[misc]
-        """What PyLabRobot asks of every backend, on the played one."""
+        """Methods that PyLabRobot asks of every backend, on the played one."""
 
         async def setup(self) -> None: ...
         async def stop(self) -> None: ...

@@ -16,7 +16,7 @@ UNKNOWN, SUCCEEDED, CANCELED, ABORTED = 0, 4, 5, 6
 
 
 class Body(Protocol):
-    """What the action moves, and what shows where that is."""
+    """Body that the action moves, and the topic that shows its place."""
 
     package: str
     action: str
@@ -24,7 +24,7 @@ class Body(Protocol):
     failure: str  # what the plant must say of a goal that the server gives up
 
     def word(self, goal: Any) -> str:
-        """Which order a goal is."""
+        """The order that a goal is."""
 
     def go(self, goal: Any) -> None:
         """It stands where the goal leads."""

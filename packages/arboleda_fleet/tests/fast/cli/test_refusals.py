@@ -1,4 +1,4 @@
-"""What commands of several hosts refuse before anything starts."""
+"""Refusals of commands of several hosts before anything starts."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
 
 
 def watched(machine: Machine, act: Callable[[Site], Awaitable[T]], *those: Any) -> T:
-    """What `act` finds with a site that watches these at the ports from 8080 on: all at once, and once."""
+    """The result of `act` with a site that watches these at the ports from 8080 on: all at once, and once."""
     for port, each in enumerate(those, 8080):
         machine.listen(port, each)
     places = [Place(url=url(number)) for number in range(len(those))]

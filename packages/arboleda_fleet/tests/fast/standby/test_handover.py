@@ -1,4 +1,4 @@
-"""What is at work is held before a planned change of leaders, and goes on after it."""
+"""Tasks at work are held before a planned change of leaders, and go on after it."""
 
 from __future__ import annotations
 

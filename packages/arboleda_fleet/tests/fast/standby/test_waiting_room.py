@@ -1,4 +1,4 @@
-"""What a process answers that stands by: where the plant is led, and itself nothing."""
+"""Answers of a process that stands by: the address of the leader, and nothing of its own."""
 
 from __future__ import annotations
 

@@ -100,7 +100,7 @@ def client(port: int) -> Client:
 
 
 def seen(port: int, act: Callable[[Client], Coroutine[Any, Any, Any]]) -> Any:
-    """What a client gets, once the server listens and shows the cell."""
+    """The result of a client, once the server listens and shows the cell."""
 
     async def run() -> Any:
         give_up = time.monotonic() + PATIENCE_S

@@ -1,4 +1,4 @@
-"""What only a memory in PostgreSQL does: one leader at a time, servers that are away, and their sentences."""
+"""Memory in PostgreSQL: one leader at a time, servers that are away, and their sentences."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ T = TypeVar("T")
 
 @contextmanager
 def standby(plant: str) -> Iterator[str]:
-    """What answers while a process waits to lead that plant."""
+    """The address of a process that waits to lead that plant."""
     app = FastAPI()
 
     @app.get("/api/plant")
@@ -61,7 +61,7 @@ def called(name: str, seconds: float = 60.0) -> Plant:
 
 
 def watched(places: list[Place], act: Callable[[Site], Awaitable[T]]) -> T:
-    """What `act` finds with a site that watches these places."""
+    """The result of `act` with a site that watches these places."""
 
     async def run() -> T:
         site = Site(lambda: places)

@@ -1,4 +1,4 @@
-"""What an editor is shown: the nodes of a file, the words of the check on each, a palette for each cell."""
+"""Views of an editor: the nodes of a file, the words of the check on each, a palette for each cell."""
 
 from __future__ import annotations
 

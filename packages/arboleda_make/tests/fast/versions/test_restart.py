@@ -1,4 +1,4 @@
-"""Which changes of a plant's files need a restart, and why."""
+"""Changes of a plant's files that need a restart, and the reasons."""
 
 from __future__ import annotations
 

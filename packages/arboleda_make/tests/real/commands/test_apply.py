@@ -93,7 +93,7 @@ def moved(plant: Path, before: str, after: str) -> None:
 
 
 def by_signal(up: Any, plant: Path, before: str, after: str) -> str:
-    """What the plant says once it has taken an edited file by SIGHUP."""
+    """The sentence of the plant once it has taken an edited file by SIGHUP."""
     moved(plant, before, after)
     running = find_running(plant.parent / "state")
     assert running is not None

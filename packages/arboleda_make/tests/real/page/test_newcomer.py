@@ -161,7 +161,7 @@ def try_it(me: Person) -> None:
 
 
 def have_a_check_added(me: Person) -> None:
-    """What nobody notices is told, and a button adds the check; then it is proved."""
+    """A failure that nobody notices is told, and a button adds the check; then it is proved."""
     page = me.page
     me.panel("prove")
     page.select_option("#make-prove_kind", "forgets")

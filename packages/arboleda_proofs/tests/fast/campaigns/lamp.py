@@ -82,7 +82,7 @@ def prove(plant: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFi
 
 
 def summary(plant: Path) -> dict[str, Any]:
-    """What the command found."""
+    """The findings of the command."""
     found: dict[str, Any] = json.loads((plant.parent / "out.json").read_text())
     return found
 

@@ -1,4 +1,4 @@
-"""What a proof is made of: instants, single faults, classes of parameters, what is kept."""
+"""Parts of a proof: instants, single faults, classes of parameters, things that are kept."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which devices of a draft are not reached for at all."""
+"""Devices of a draft that nothing reaches for."""
 
 from __future__ import annotations
 

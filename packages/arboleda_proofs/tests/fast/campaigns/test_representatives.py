@@ -190,7 +190,7 @@ def every_instant(
 
 
 def findings(fault: Fault, outcome: Outcome) -> Iterator[tuple[str, ...]]:
-    """What is told of a run."""
+    """Findings of a run."""
     if outcome.broken:
         yield outcome.broken[0], fault.kind, fault.target
     elif outcome.takes_too_much or outcome.goes_unnoticed:

@@ -44,7 +44,7 @@ cells:
 
 @dataclass
 class Ended:
-    """How a command ended."""
+    """End of a command."""
 
     status: int
     said: str
@@ -295,7 +295,7 @@ def test_ctrl_c_while_shrinking_tells_the_fewest_faults_so_far(
 
 
 def campaign(plant: Path, faults: object, second: float) -> str:
-    """What a campaign of one seed says, with a clock that moves on by `second` whenever it is read."""
+    """Output of a campaign of one seed, with a clock that moves on by `second` whenever it is read."""
     console = screen.console()
     console.file = io.StringIO()
     request = Request(plant=plant, seed=3, seeds=1, cycles=1, faults=str(faults))

@@ -1,4 +1,4 @@
-"""What is tried of a draft: a task with a fault, its record, and the check that would have noticed."""
+"""Tries of a draft: a task with a fault, its record, and the check that would have noticed."""
 
 from __future__ import annotations
 

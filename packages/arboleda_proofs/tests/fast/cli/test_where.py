@@ -1,4 +1,4 @@
-"""Which plant is simulated and proved."""
+"""Plant that is simulated and proved."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from arboleda_proofs.simulator.run import Simulation
 
 
 def ends(watched: JudgedWorld) -> list[tuple[str, str]]:
-    """How the tasks stand, each with the sentence of its failure."""
+    """States of the tasks, each with the sentence of its failure."""
     tasks = watched.world.plant.intake.tasks.values()
     return [(each.state.value, "" if each.failure is None else str(each.failure.sentence)) for each in tasks]
 

@@ -56,7 +56,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Recorded]:
 
 
 def shown(face: Face) -> Face:
-    """What of a face has no spans, which are as of another tenth of a second."""
+    """Parts of a face without spans, which are as of another tenth of a second."""
     kinds = ("tree/", "rows/events", "rows/tasks", "rows/zones")
     found = {key: value for key, value in face.items() if key.startswith(kinds)}
     nodes = {key: value["state"] for key, value in face.items() if key.startswith("node/")}
@@ -66,7 +66,7 @@ def shown(face: Face) -> Face:
 
 
 def last_steps(face: Face, cell: str) -> list[Any]:
-    """What a tree did last, without the numbers that the rows have."""
+    """Last steps of a tree, without the numbers that the rows have."""
     return [face[f"row/changes.{cell}/{number}"] for number in face[f"rows/changes.{cell}"]]
 
 

@@ -1,4 +1,4 @@
-"""What `check` says of drawn plants, whose recipes can be done: nothing wrong, the same in both forms."""
+"""Drawn plants, whose recipes can be done: `check` finds nothing wrong, in both forms."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ FAULTS = [
 
 
 def happened(file: str) -> tuple[Asked, list[tuple[str, str]]]:
-    """Which tasks were asked for in a record, and when; which failed, and of what."""
+    """Tasks that were asked for in a record, with their times; those that failed, with the reason."""
     record = reader.opened(Path(file))
     asked, failed = {}, []
     for step in record.steps():

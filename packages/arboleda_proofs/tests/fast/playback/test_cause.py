@@ -1,4 +1,4 @@
-"""What a task failed of, by rules over what the record has of it."""
+"""Cause of a task's failure, by rules over what the record has of it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What became of a cell is found without reading what happened to nobody."""
+"""The events of a cell are found without reading steps in which nothing happened."""
 
 from __future__ import annotations
 

@@ -64,7 +64,7 @@ def end_of(found: ForkResult, task: str) -> str:
 
 
 def ended(found: ForkResult) -> Iterator[tuple[float, float]]:
-    """When each task ended, in the record and in the fork."""
+    """Times at which each task ended, in the record and in the fork."""
     for pair in compared(found, None):
         if pair.either.stream.startswith("task ") and pair.recorded and pair.fork:
             yield pair.recorded.at, pair.fork.at

@@ -146,7 +146,7 @@ SEEN = chapter("lot", "camera", "Seen <b>", "__DATA__ & more\nsecond line", [("g
 
 
 def in_folder(folder: Path, *chapters: Chapter, act: tuple[float, Act] | None = None) -> list[str]:
-    """What `arboleda report` says of a task in the records of a state directory, and the file it writes."""
+    """Output of `arboleda report` on a task in the records of a state directory, and the file it writes."""
     (folder / "record").mkdir()
     written(folder / "record", None, "sis_a 0B 7 #lot", act, chapters)
     target = folder / "lot.html"

@@ -1,4 +1,4 @@
-"""What a device told that its virtual one cannot tell is named; of a virtual one there is nothing to name."""
+"""Each report that a virtual device cannot make is named; of a virtual device nothing is named."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ SPANS = ("age_s", "since_s", "deadline_s", "left_s", "elapsed_s")
 
 
 def same(read: Any, shown: Any, where: str = "") -> None:
-    """Whether what was told is what was shown: spans to a tenth of a second, what is fresh to a second."""
+    """Assert that both are equal: spans to a tenth of a second, ages to a second."""
     key = where.rpartition(".")[2]
     if isinstance(shown, dict):
         assert isinstance(read, dict) and read.keys() == shown.keys(), where

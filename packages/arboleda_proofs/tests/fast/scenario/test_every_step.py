@@ -115,7 +115,7 @@ def scene(stage: Stage) -> Callable[[Evidence], Scene]:
 
 
 def part_after(step: str) -> str:
-    """Where the part is once a task that was given up at a step is recovered."""
+    """The place of the part once a task that was given up at a step is recovered."""
     return STATION if step in STEPS[PLACED:] else "pick-up"
 
 

@@ -59,7 +59,7 @@ Bound = Callable[[Rig, Spot], float]
 
 @dataclass(frozen=True)
 class Outcome:
-    """What one level must show; `part`: where the part is, if it had been gripped when the fault came.
+    """Outcome at one level; `part`: where the part is, if it had been gripped when the fault came.
 
     `task` None: it may end either way. `honest` False: what is called done may not be so.
     """
@@ -125,7 +125,7 @@ def longest_s(rig: Rig) -> float:
 
 
 def rest_s(rig: Rig, outcome: Outcome) -> float:
-    """What the declared deadlines allow from the notice of a fault to the end of the task."""
+    """Time that the declared deadlines allow from the notice of a fault to the end of the task."""
     timing = rig.model.timing
     settle_s = timing.stop_timeout_s + steps.SETTLE_S
     step_s = timing.effector_timeout_s + timing.dwell_s
@@ -238,7 +238,7 @@ def latched_elsewhere(rig: Rig, spot: Spot) -> None:
 
 
 def replayed(rig: Rig, spot: Spot) -> None:
-    """What the board said during its last move comes again in the middle of this one."""
+    """Messages of the board's last move come again in the middle of this one."""
     said: list[Publication] = []
     began: list[float] = []
 
@@ -605,7 +605,7 @@ def plant_with(row: Row, level: Evidence) -> Rig:
 
 @dataclass
 class Course:
-    """What a run showed: when the fault was there, when it was noticed, when the task ended, s."""
+    """Course of a run: the times at which the fault came, was noticed, and the task ended, s."""
 
     began: float = 0.0
     noticed: float | None = None

@@ -1,4 +1,4 @@
-"""What the simulator found: each bug, of the plant or of its judge, with the seed and the few faults that
+"""Findings of the simulator: each bug, of the plant or of its judge, with the seed and the few faults that
 showed it. `found/` has them: a plant as much of it as was needed, or an example, or one of the packaged ones.
 """
 

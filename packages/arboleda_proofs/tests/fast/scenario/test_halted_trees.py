@@ -1,4 +1,4 @@
-"""What runs in a tree of a file is halted as soon as its task fails, whatever the cause."""
+"""A tree of a file is halted as soon as its task fails, whatever the cause."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the simulator says of a task after a hold, and after a device that lied."""
+"""Verdict of the simulator on a task after a hold, and after a device that lied."""
 
 from __future__ import annotations
 

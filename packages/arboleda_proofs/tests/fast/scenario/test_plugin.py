@@ -33,7 +33,7 @@ def project(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> pytes
 
 
 def run(project: pytest.Pytester, test: str) -> pytest.RunResult:
-    """What pytest says of one test file."""
+    """Result of pytest for one test file."""
     project.makepyfile(test)
     return project.runpytest(*BY_NAME)
 

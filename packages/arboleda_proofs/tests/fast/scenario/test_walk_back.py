@@ -59,7 +59,7 @@ def at(rig: Rig, leaf: str) -> None:
 
 
 def commands(rig: Rig) -> list[str]:
-    """What was sent to devices, but for stops."""
+    """Commands that were sent to devices, but for stops."""
     return [
         f"{type(each).__name__} {each.robot}"
         for each in rig.sent

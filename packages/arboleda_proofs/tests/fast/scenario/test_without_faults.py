@@ -1,4 +1,4 @@
-"""Where nothing goes wrong no task fails, at every level of evidence, pose order and speed."""
+"""Without faults no task fails, at every level of evidence, pose order and speed."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ def meet(rig: Rig, station: int = 7) -> float:
 
 
 def waits_for(rig: Rig, cell: str) -> str:
-    """What the step that a cell is at says of its waiting."""
+    """The sentence of a cell's step on its waiting."""
     return next(
         str(node.feedback)
         for node in rig.plant.cells[cell].run.nodes

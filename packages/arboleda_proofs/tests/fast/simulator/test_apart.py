@@ -10,7 +10,7 @@ from arboleda_proofs.simulator.split_reports import TwoTopics
 
 
 def _comes(topics: TwoTopics, at: float) -> float:
-    """When a state that is said at `at` is heard."""
+    """The time at which a state that is said at `at` is heard."""
     (state,) = topics.parted(Report(at=at, robot="arm", state=MotionState.STOPPED))
     return state.at
 

@@ -38,7 +38,7 @@ def cell_of(folder: Path, text: str, *recipes: Any) -> PlantModel:
 def broken(
     model: PlantModel, weather: Weather = "none", *, seed: int = 1, cycles: int = 3
 ) -> BrokenInvariant | None:
-    """What breaks: at a level of faults, or where these kinds come so often per minute."""
+    """The broken invariant: at a level of faults, or where these kinds come so often per minute."""
     if isinstance(weather, str):
         climate = Climate.draw(model, seed, weather)
     else:

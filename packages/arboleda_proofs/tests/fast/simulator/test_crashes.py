@@ -34,7 +34,7 @@ def dies(world: World, count: int, side: Side) -> None:
 
 
 def sent(world: World) -> list[object]:
-    """What leaves the plant from now on, its last words too."""
+    """Messages that leave the plant from now on, its last words too."""
     found: list[object] = []
     world.watchers.append(lambda: found.extend((*world.moment.last_words, *world.moment.sent)))
     return found
@@ -278,7 +278,7 @@ def slows_down(world: World, seconds: float) -> Callable[[], None]:
 
 
 def leaving(world: World) -> list[tuple[float, object]]:
-    """What reaches the bridge from now on, and when."""
+    """Messages that reach the bridge from now on, each with its time."""
     found: list[tuple[float, object]] = []
     world.watchers.append(lambda: found.extend((world.now, each.message) for each in world.moment.taken))
     return found

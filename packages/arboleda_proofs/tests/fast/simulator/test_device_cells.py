@@ -1,4 +1,4 @@
-"""What simulations of cells of devices have found in the plant."""
+"""Findings in the plant by simulations of cells of devices."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ def begin(world: World, fault: Fault) -> Any:
 
 
 def delivered(world: World, client: str, topic: str, seconds: float = LOOK_S) -> list[Delivery]:
-    """What reaches a client on a topic meanwhile."""
+    """Messages that reach a client on a topic meanwhile."""
     heard: list[Delivery] = []
 
     def look() -> None:
@@ -76,7 +76,7 @@ def tells(board: str, key: str) -> Callable[[World], Any]:
 
 
 def counts(board: str) -> Callable[[World], Any]:
-    """Whether every telemetry message has its own number, one above the last."""
+    """True if every telemetry message has its own number, one above the last."""
 
     def look(world: World) -> bool:
         seqs = told(world, board, "seq")
@@ -94,17 +94,17 @@ def readable(world: World) -> bool:
 
 
 def reports(world: World) -> bool:
-    """Whether the plant hears of anybody."""
+    """True if the plant hears of anybody."""
     return bool(happened(world, "reports"))
 
 
 def beats(world: World) -> bool:
-    """Whether the plant says anything."""
+    """True if the plant says anything."""
     return bool(happened(world, "sent"))
 
 
 def happened(world: World, what: str) -> list[Any]:
-    """What is in that list of the moments meanwhile."""
+    """Content of that list of the moments meanwhile."""
     found: list[Any] = []
 
     def look() -> None:
@@ -117,13 +117,13 @@ def happened(world: World, what: str) -> list[Any]:
 
 
 def hears_retained(world: World) -> bool:
-    """Whether the bridge takes anything in that its broker kept."""
+    """True if the bridge takes anything in that its broker kept."""
     events = [event for passed in happened(world, "bridged") for event in passed.events]
     return any(getattr(event, "retain", False) for event in events)
 
 
 def lateness(world: World) -> float:
-    """How late the bridge hears the arm's telemetry, s."""
+    """Greatest delay with which the bridge hears the arm's telemetry, s."""
     said: dict[bytes, float] = {}
     late: list[float] = []
 
@@ -143,7 +143,7 @@ def lateness(world: World) -> float:
 
 
 def in_time(world: World) -> bool:
-    """Whether the plant's heartbeats reach the bridge as regularly as they leave."""
+    """True if the plant's heartbeats reach the bridge as regularly as they leave."""
     times: list[float] = []
 
     def look() -> None:
@@ -207,7 +207,7 @@ def both(kind: str) -> tuple[list[Fault], Callable[[World], Any], Any]:
 
 
 def is_clean(world: World) -> bool:
-    """Whether no fault has left anything behind."""
+    """True if no fault has left anything behind."""
     lines = [line for client in world.broker.clients.values() for line in (client.up, client.down)]
     troubled = any(line.troubles or line.reorders for line in [*lines, world.to_bridge, world.to_plant])
     stalled = any(world.is_stalled(name) for name in (PLANT, *world.broker.clients))
@@ -465,7 +465,7 @@ def test_a_lost_queue_takes_what_was_under_way(world):
 
 
 def orders(world: World, fault: Fault, seconds: float = 0.5) -> list[Any]:
-    """What the boards carry out after a fault."""
+    """Orders that the boards carry out after a fault."""
     done: list[Any] = []
 
     def look() -> None:
@@ -619,7 +619,7 @@ def test_garbage_makes_sense_on_no_channel(channel, axes):
 
 
 def asked(world: World, fault: Fault) -> list[Any]:
-    """What reaches the plant by a fault."""
+    """Requests that reach the plant by a fault."""
     events: list[Any] = []
 
     def look() -> None:

@@ -1,4 +1,4 @@
-"""Where nothing goes wrong, a task that fails or a command that is refused is a finding of its recipe."""
+"""Without faults, a task that fails or a command that is refused is a finding of its recipe."""
 
 from __future__ import annotations
 

@@ -106,7 +106,7 @@ def careless(cell: Kit):  # type: ignore[no-untyped-def]
 
 @recipe("drops")
 def drops(cell: Kit):  # type: ignore[no-untyped-def]
-    """What the gripper holds is let go on its way."""
+    """A recipe whose gripper lets go on its way."""
     left, jaw = cell.devices("left", "jaw")
     return work(
         left.visit("feed_2", jaw.close()), parallel(left.visit("vise"), work(cell.wait(0.3), jaw.open()))
@@ -208,7 +208,7 @@ def run(
     seconds: float | None = None,
     model: PlantModel | None = None,
 ) -> BrokenInvariant | None:
-    """What breaks; `only`: by this invariant alone; `seconds`: so long, however many cycles that are."""
+    """The broken invariant; `only`: this one alone; `seconds`: so long, however many cycles that are."""
     model = model or shop(load, both, careless)
     if isinstance(weather, str):
         climate = Climate.draw(model, seed, weather)
@@ -308,7 +308,7 @@ def believed_at_once(patch: Patch) -> None:
 
 
 def believed_on_its_word(patch: Patch) -> None:
-    """What a device says of its facts is not looked at when it says that it is done."""
+    """Have the plant not look at a device's facts when the device says that it is done."""
     patch.setattr(evidence, "reached", lambda entry, belief: True)
 
 
@@ -336,17 +336,17 @@ def forgets_doors(patch: Patch) -> None:
 
 
 def ignores_needs(patch: Patch) -> None:
-    """What a verb needs is not looked at before it is sent."""
+    """Have the plant not look at the needs of a verb before it is sent."""
     patch.setattr(Obstacles, "_unmet", lambda self, command, *, was: None)
 
 
 def ignores_needs_of_others(patch: Patch) -> None:
-    """What a verb needs of another device is not looked at."""
+    """Have the plant not look at the needs of a verb that are of another device."""
     patch.setattr(CellNeeds, "objection", lambda self, command: None)
 
 
 def books_no_part(patch: Patch) -> None:
-    """What hands do is not booked."""
+    """Have the plant not book the parts that hands move."""
     patch.setattr(Places, "_move", lambda self, target, parts, hand: None)
 
 
@@ -488,7 +488,7 @@ def halts_nothing(patch: Patch) -> None:
 
 
 def forgets_grips(patch: Patch) -> None:
-    """What a device holds is not kept for the next start."""
+    """Have the plant not keep the grips of devices for the next start."""
     patch.setattr(Effectors, "set", lambda self, robot, grip: self.grips.set(robot, grip))
 
 
@@ -525,7 +525,7 @@ def advises_nothing(patch: Patch) -> None:
 
 
 def shared_with_all(patch: Patch) -> None:
-    """What cells share is given to whoever asks, and nothing guards it."""
+    """Have the plant give shared devices to whoever asks, and guard them by nothing."""
     patch.setattr(CellDevices, "take", lambda self, devices: True)
     unguarded(patch)
 

@@ -1,4 +1,4 @@
-"""What `load` says of one place of one of two cells is booked there, and nowhere else."""
+"""A `load` of one place of one of two cells is booked there, and nowhere else."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What left for a board, against the commands that came for it in one step."""
+"""Messages that left for a board, against the commands that came for it in one step."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the record knows of a world, by what was said and done in it."""
+"""Record of a world, by what was said and done in it."""
 
 from __future__ import annotations
 

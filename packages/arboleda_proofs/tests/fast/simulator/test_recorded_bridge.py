@@ -1,4 +1,4 @@
-"""What a bridge says of robots at rest is judged by their bytes alone, and nothing wrong in it passes."""
+"""Words of a bridge on robots at rest are judged by their bytes alone, and nothing wrong in them passes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the record knows of tasks that ended long ago."""
+"""Tasks that ended long ago, in the record."""
 
 from __future__ import annotations
 

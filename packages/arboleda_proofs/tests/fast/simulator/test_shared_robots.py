@@ -80,7 +80,7 @@ def clamping(folder: Path, fault: Fault) -> JudgedWorld:
 
 
 def held(watched: JudgedWorld) -> tuple[str | None, str, object]:
-    """Who has the vise, what it is believed to hold, and what it holds."""
+    """The cell that has the vise, the grip that is believed of it, and its true one."""
     plant, vise = watched.world.plant, watched.world.boards["vise"]
     return (
         plant.zones.holder("vise"),

@@ -1,4 +1,4 @@
-"""What must hold over all starts of a plant holds, of storage and of devices."""
+"""Invariants of storage and of devices hold over all starts of a plant."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What people fill and empty is not what a task leaves behind."""
+"""Supplies that people fill and empty are not left behind by a task."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the truth knows of a world that the plant may be wrong about."""
+"""Truth of a world that the plant may be wrong about."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a person says of parts, at each moment of each step that moves one: the judge counts on no more than
+"""Words of a person on parts, at each moment of each step that moves one: the judge counts on no more than
 what somebody can know.
 """
 

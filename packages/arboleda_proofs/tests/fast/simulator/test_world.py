@@ -21,7 +21,7 @@ def world():
 
 
 class Log:
-    """What happened in a world from now on: (time, ...) of each message."""
+    """Messages in a world from now on: (time, ...) of each."""
 
     def __init__(self, world):
         self.world = world

@@ -1,4 +1,4 @@
-"""What the strategies draw is a task text, or a fault, of the plant."""
+"""The strategies draw task texts, or faults, of the plant."""
 
 from __future__ import annotations
 

@@ -81,7 +81,7 @@ def others() -> list[str]:
 
 
 def runs(python: str, version: str) -> bool:
-    """Whether it is what its name says, which a shim may not be."""
+    """True if it is the version in its name, which a shim may not be."""
     ask = "import sys; print(*sys.version_info[:2], sep='.')"
     said = subprocess.run([python, "-c", ask], capture_output=True, text=True, check=False)
     return said.returncode == 0 and said.stdout.strip() == version
@@ -148,7 +148,7 @@ def stat(pid: int) -> list[str]:
 
 
 def gone(pids: list[int]) -> bool:
-    """Whether they all end within some seconds."""
+    """True if they all end within some seconds."""
     until = time.monotonic() + PATIENCE_S
     while any(alive(pid) for pid in pids) and time.monotonic() < until:
         time.sleep(0.05)

@@ -25,7 +25,7 @@ def site(tmp_path: Path) -> Iterator[Site]:
 
 
 def replayed(file: Path) -> list[str]:
-    """What a replay of it prints; all its steps are equal."""
+    """Output of a replay of it; all its steps are equal."""
     outcome = CliRunner().invoke(cli, ["record", "replay", str(file)], catch_exceptions=False)
     assert outcome.exit_code == 0, outcome.output
     lines = outcome.output.splitlines()

@@ -236,7 +236,7 @@ CLASHES = [
 
 @pytest.mark.parametrize(("body", "words"), CLASHES)
 def test_a_variable_of_two_types_is_refused_where_the_original_does(body: str, words: str | None) -> None:
-    """What is expected here is what version 4.10 says of these trees."""
+    """The expected words are those of version 4.10 on these trees."""
     inner = '<BehaviorTree ID="In"><Sequence><Sleep msec="{k}"/></Sequence></BehaviorTree>'
     model = '<TreeNodesModel><SubTree ID="In"><input_port name="k" default="{n}"/></SubTree></TreeNodesModel>'
     found = mistakes(tree(f"<Sequence>{body}</Sequence>", inner + model))

@@ -1,4 +1,4 @@
-"""What a tree says of its end is checked with its place, and judged in every run."""
+"""The end of a tree is checked with its place, and judged in every run."""
 
 from __future__ import annotations
 

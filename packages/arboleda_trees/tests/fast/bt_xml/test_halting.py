@@ -34,7 +34,7 @@ REFUSED = Failure(reason=Reason.REJECTED, sentence=as_sentence("it cannot"))
 
 
 class Context:
-    """What a tree knows of its task: the time, and why that has failed."""
+    """Context of a tree: the time, and the failure of its task."""
 
     def __init__(self) -> None:
         self.now = 0.0

@@ -1,4 +1,4 @@
-"""What the devices of a plant are to a tree, and trees that are checked against it."""
+"""Devices of a plant as nodes of a tree, and trees that are checked against them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What cannot be run is refused with the plant file, with its place and what to take instead."""
+"""A tree that cannot be run is refused with the plant file, with its place and what to take instead."""
 
 from __future__ import annotations
 

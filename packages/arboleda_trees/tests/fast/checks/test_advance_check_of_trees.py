@@ -1,4 +1,4 @@
-"""What `check` says of a tree as XML without running it, and where."""
+"""Findings of `check` in a tree as XML that it does not run, with their places."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def written(folder: Path, body: str, more: str = "") -> PlantModel:
 
 
 def warned(folder: Path, body: str, more: str = "") -> list[str]:
-    """What is wrong; `advised` has what to write."""
+    """Warnings of `check`; `advised` has what to write."""
     return [
         each.removeprefix(f"{folder / 'attempt.xml'}:").partition("; write ")[0]
         for each in advance_check.warnings(written(folder, body, more))

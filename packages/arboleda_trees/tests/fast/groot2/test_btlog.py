@@ -1,4 +1,4 @@
-"""How a tree went, as the file that FileLogger2 of BehaviorTree.CPP writes."""
+"""Course of a tree, as the file that FileLogger2 of BehaviorTree.CPP writes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What shows trees to Groot2 starts after the page."""
+"""The part that shows trees to Groot2 starts after the page."""
 
 from __future__ import annotations
 

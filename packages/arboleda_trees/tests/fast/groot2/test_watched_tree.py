@@ -1,4 +1,4 @@
-"""What Groot2 is told of a cell: replies of its protocol, and nothing that could change the plant."""
+"""Answers to Groot2 on a cell: replies of its protocol, and nothing that could change the plant."""
 
 from __future__ import annotations
 
