@@ -1,4 +1,4 @@
-"""What mkdocs does with links that make sense in a checkout only."""
+"""Links for mkdocs that make sense in a checkout only."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ def fuzz(run: Callable[[int, int], Counter[str]], usage: str | None, runs: int =
 
 
 def rounds(runs: int, seed: int, attempt: Callable[[Random, int], str]) -> Counter[str]:
-    """How often which end came of so many attempts, each with its number and a chance of its own.
+    """Ends of so many attempts, counted; each has its number and a chance of its own.
 
     AssertionError with the number of the attempt that raised anything.
     """
@@ -120,7 +120,7 @@ class Liar:
 
 
 def picture(report: Report | None, said: Sequence[str]) -> tuple[object, ...]:
-    """What a report says under these names."""
+    """Values of a report under these names."""
     return tuple(getattr(report, name) for name in said)
 
 

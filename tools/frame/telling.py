@@ -24,7 +24,7 @@ def counts(counted: Mapping[str, int]) -> str:
 
 
 def told(sentences: Mapping[str, Sequence[str]]) -> Iterator[str]:
-    """How many sentences there are of each kind, and the first of them."""
+    """Number of sentences of each kind, and the first of them."""
     for name, of_kind in sentences.items():
         yield f"{name}: {len(of_kind)}"
         yield from (f"  {each}" for each in of_kind[:SHOWN])

@@ -1,4 +1,4 @@
-"""Where packages are, tests of tools begin faults of proofs in their own process, as tests of packages do."""
+"""Tests of tools begin faults of proofs in their own process where packages are, as tests of packages do."""
 
 from __future__ import annotations
 

@@ -106,7 +106,7 @@ class Loopback(ABC, Generic[Event, Said]):
 
     @abstractmethod
     def _closed(self, why: str) -> Event:
-        """What tells the driver that the connection has ended."""
+        """The event that tells the driver that the connection has ended."""
 
     @abstractmethod
     def _do(self, message: Any) -> None:

@@ -56,7 +56,7 @@ RIGS: dict[str, tuple[Path | None, Callable[..., Rig]]] = {
 
 
 def maker_of(driver: str) -> Callable[[], Rig]:
-    """What makes a rig of this driver; raises KeyError for no such name."""
+    """The maker of rigs of this driver; raises KeyError for no such name."""
     plant, rig = RIGS[driver]
     return partial(rig, _model(plant))
 

@@ -27,7 +27,7 @@ LATEST_S = 3.0  # of the others: so long after a task is at work
 
 @dataclass(kw_only=True)
 class Outcome:
-    """What is known at the end.
+    """Outcome of a campaign.
 
     `api_s`, `boards_s`: how long each start took until its API answered, and until every robot was heard.
     `damages`: how often a file of the memory was damaged in a copy after a kill. `unnoticed`: after which of

@@ -39,7 +39,7 @@ NOTHING_IS_OLD_S = Limits().days * DAY_S - 3600.0  # a plant that has run so lon
 def unnoticed(
     state: Path, accepted: Mapping[str, str], ends: Mapping[str, str], dice: random.Random
 ) -> tuple[int, list[str]]:
-    """How many damages were tried, in copies, and those after which a start would know less than people do.
+    """Number of damages tried, in copies, and those after which a start would know less than people do.
 
     `accepted` has the ids of all tasks that people know of, `ends` the state in which they know some ended.
     """

@@ -30,7 +30,7 @@ class NoServer(Exception):
 
 
 def programs() -> Path:
-    """Where the programs of the newest server are; NoServer where there is none."""
+    """The folder with the programs of the newest server; NoServer where there is none."""
     found = shutil.which("postgres")
     if found is None and not PROGRAMS:
         raise NoServer("postgresql is not installed")
@@ -75,7 +75,7 @@ class Server:
 
     @property
     def runs(self) -> bool:
-        """Whether its process is there."""
+        """True if its process is there."""
         return self._process is not None and self._process.poll() is None
 
     def last_words(self, lines: int = 20) -> str:
@@ -113,7 +113,7 @@ class Server:
         return self._folder / "data"
 
     def _without_rights(self) -> list[str]:
-        """What a command begins with so that not root runs it, which PostgreSQL refuses."""
+        """The beginning of a command so that not root runs it, which PostgreSQL refuses."""
         if os.geteuid() != 0:
             return []
         user = pwd.getpwnam(_user())
@@ -142,6 +142,6 @@ class Server:
 
 
 def _user() -> str:
-    """Who runs it in root's place."""
+    """The user who runs it in root's place."""
     names = {each.pw_name for each in pwd.getpwall()}
     return "postgres" if "postgres" in names else "nobody"

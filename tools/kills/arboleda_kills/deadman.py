@@ -1,4 +1,4 @@
-"""How long a robot still moves whose teacher is lost: the client gone, the network cut, the plant killed.
+"""Time that a robot still moves whose teacher is lost: the client gone, the network cut, the plant killed.
 
 `python -m arboleda_kills.deadman --rounds 30`. A real plant, its broker and HTTP; a virtual arm over MQTT, in
 this process, which sees when it truly stands. A round holds a button, and then loses something.
@@ -171,7 +171,7 @@ class Bench:
         return found
 
     def _round(self, loss: str) -> float | None:
-        """How long the arm moved on; None where it stood already when something was to be lost."""
+        """Time that the arm moved on; None where it stood already when something was to be lost."""
         teacher = self._taught()
         holds = teacher.press(self._goal)
         time.sleep(PRESSED_S)

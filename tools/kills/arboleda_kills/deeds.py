@@ -1,4 +1,4 @@
-"""What arms truly did, as the boards tell it."""
+"""Deeds of arms, as the boards tell them."""
 
 from __future__ import annotations
 

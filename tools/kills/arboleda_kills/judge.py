@@ -1,4 +1,4 @@
-"""What became of the tasks, by the plant's history and by what the boards truly did. Pure."""
+"""Ends of the tasks, by the plant's history and by the true deeds of the boards. Pure."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def _lost(id: str, text: str, row: TaskRow | None, end: str | None) -> list[str]
 def _follow_parts(
     verdict: Verdict, rows: Sequence[TaskRow], deeds: Sequence[Deed], acts: Sequence[Said]
 ) -> None:
-    """Whose part each arm took up, and where it let it go."""
+    """Follow each part that an arm took up to where it let it go."""
     picks: Counter[str] = Counter()
     places: Counter[str] = Counter()
     carried: dict[str, str] = {}  # by robot, the task whose part it took up last
@@ -156,7 +156,7 @@ def _follow_moves(
 
 
 def _became(row: TaskRow | None, killed_at: float, until: float, acts: Sequence[Said], *, again: bool) -> str:
-    """What became of a task that a kill left at work, as far as it got before the next kill."""
+    """The end of a task that a kill left at work, as far as it got before the next kill."""
     if row is None:
         return "lost"
     end = until if row.ended_s is None else min(row.ended_s, until)

@@ -1,4 +1,4 @@
-"""Who stands around the plant: customers who come back for their ids, an attendant who follows advice."""
+"""People around the plant: customers who come back for their ids, an attendant who follows advice."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Customers:
 
     @property
     def waiting(self) -> bool:
-        """Whether a task of theirs has not ended."""
+        """True if a task of theirs has not ended."""
         return any(self._of_cell.values())
 
     def come_back(self, plant: Plant) -> None:

@@ -80,7 +80,7 @@ class Plant:
         return self._child.wait(PATIENCE_S)
 
     def await_api(self, until: float) -> bool:
-        """Whether its API answers by that time; Ended where it has ended instead."""
+        """True if its API answers by that time; Ended where it has ended instead."""
         while time.time() < until:
             self.check()
             running = find_running(self._state)
@@ -202,5 +202,5 @@ def environment() -> dict[str, str]:
 
 
 def paths() -> str:
-    """Where this interpreter finds its packages, for one that it starts."""
+    """Folders in which this interpreter finds its packages, for one that it starts."""
     return os.pathsep.join(path for path in sys.path if path)

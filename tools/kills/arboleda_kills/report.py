@@ -1,4 +1,4 @@
-"""What came of it: lines for people, JSON for programs."""
+"""Report of a campaign: lines for people, JSON for programs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What campaigns that kill plants say and ask alike: options, ends of tasks, times, and what is kept."""
+"""Common words of campaigns that kill plants: options, ends of tasks, times, and what is kept."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def options_of(usage: str | None, target: str, what: str, *, seed: str) -> Argum
 
 
 def states(rows: Iterable[TaskRow]) -> dict[str, int]:
-    """How many tasks ended in which way."""
+    """Number of tasks by their end."""
     ends = Counter(row.state if row.reason is None else f"{row.state} ({row.reason})" for row in rows)
     return dict(sorted(ends.items()))
 

@@ -42,7 +42,7 @@ COUNTED = (  # a row for each time that a seed was done, in the transaction that
 
 @dataclass(frozen=True, kw_only=True)
 class Shared:
-    """What the workers came to: by seed its digest and how often it was done; how many of them died."""
+    """Results of the workers: by seed its digest and how often it was done; how many of them died."""
 
     digests: dict[int, str]
     times: dict[int, int]
@@ -51,7 +51,7 @@ class Shared:
 
 
 def differences(shared: Shared, alone: dict[int, str]) -> list[str]:
-    """What is not as it must be, a sentence each."""
+    """Differences from the results of one process, a sentence each."""
     found = []
     for seed in sorted(alone.keys() | shared.digests.keys()):
         times = shared.times.get(seed, 0)

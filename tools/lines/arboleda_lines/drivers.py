@@ -53,7 +53,7 @@ def _dobot(message: Any) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Tried:
-    """What is tried: the times that its driver waits for an answer, s, and how it says a stop."""
+    """Driver to try: the times that it waits for an answer, s, and its way to say a stop."""
 
     waits_s: tuple[float, ...]
     is_serial: bool = False
@@ -63,7 +63,7 @@ class Tried:
 
     @property
     def lasts_s(self) -> float:
-        """How long the line is bad."""
+        """The time for which the line is bad."""
         return max(SHORTEST_S, 3.5 * max(self.waits_s))
 
 

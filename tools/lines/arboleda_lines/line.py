@@ -47,7 +47,7 @@ class Form:
 
 
 class Cut:
-    """What the line gives in place of an answer where the connection ends."""
+    """End of the connection, which the line gives in place of an answer."""
 
 
 CUT = Cut()
@@ -143,7 +143,7 @@ class Line:
             self._answers.put(at, each)
 
     def arrived(self, now: float) -> Iterator[Any]:
-        """What the driver hears by now; CUT where the connection ends, after which nothing comes."""
+        """Answers that the driver hears by now; CUT where the connection ends, after which nothing comes."""
         if self._held is not None and self._held[0] <= now:
             self._release(now)
         for message in self._answers.take(now):
@@ -153,7 +153,7 @@ class Line:
                 return
 
     def sent(self, now: float) -> Iterator[Any]:
-        """What the device hears by now."""
+        """Messages that the device hears by now."""
         yield from self._asks.take(now)
 
     def _changed(self, now: float, form: Form, message: Any) -> Iterator[tuple[float, Any]]:
@@ -222,5 +222,5 @@ def _size(message: Any) -> int:
 
 
 def _kind(message: Any) -> tuple[object, ...]:
-    """What two messages share whose bytes are of one stream: the type, and a port."""
+    """The type and the port of a message: messages that share both have bytes of one stream."""
     return (type(message), getattr(message, "port", None))

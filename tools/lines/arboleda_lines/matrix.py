@@ -59,7 +59,7 @@ class Case:
 
 @dataclass(kw_only=True)
 class Outcome:
-    """What came of a case: breaches, none where all held, and how long a stop took to be on the line, s."""
+    """Outcome of a case: breaches, none where all held, and the time until a stop was on the line, s."""
 
     case: Case
     breaches: list[str] = field(default_factory=list)

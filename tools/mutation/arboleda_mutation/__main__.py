@@ -51,7 +51,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _judge(judging: Judging, order: Order, console: Console) -> bool:
-    """Whether it came to its end; Ctrl-C ends it with what was judged so far."""
+    """True if it came to its end; Ctrl-C ends it with what was judged so far."""
     say = stopwatch()
     try:
         for number, verdict in enumerate(judging.run(order, console.print), start=1):

@@ -1,4 +1,4 @@
-"""What was judged so far, line by line in a file: a run that was ended goes on where it was."""
+"""Verdicts so far, line by line in a file: a run that was ended goes on where it was."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 @dataclass(frozen=True, kw_only=True)
 class Verdict:
-    """What a judge says of a mutant.
+    """Verdict of a judge on a mutant.
 
     `of` is the fingerprint of what it was judged by; `asked` and `ran` are how many seeds, or tests, there
     were and how many it took.
@@ -47,12 +47,12 @@ class Book:
         return verdict if verdict.killed or verdict.asked >= asked else None
 
     def survived(self, key: str, judge: str, of: str) -> int:
-        """How many seeds it survived on these very sources."""
+        """Number of seeds that it survived on these very sources."""
         verdict = self._rows.get((key, judge))
         return verdict.asked if verdict and verdict.of == of and not verdict.killed else 0
 
     def hint(self, key: str, judge: str) -> str:
-        """Who killed it when it was judged last."""
+        """The test or seed that killed it when it was judged last."""
         verdict = self._rows.get((key, judge))
         return verdict.by if verdict and verdict.killed else ""
 

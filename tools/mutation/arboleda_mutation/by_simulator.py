@@ -25,7 +25,7 @@ LEAST_CPU_S = 30.0  # a seed takes a fraction of a second
 
 
 def measure(root: Path, seeds: int, say: Say) -> dict[str, Any]:
-    """What each seed reaches, with nothing planted."""
+    """Lines that each seed reaches, with nothing planted."""
     tracer = Tracer(root / PACKAGE, MUTATED)
     with tracer.running():
         run = _runner(root)

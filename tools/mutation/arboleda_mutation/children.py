@@ -28,7 +28,7 @@ PR_SET_PDEATHSIG = 1  # prctl(2)
 
 @dataclass
 class Ended:
-    """What a child said last, or which signal ended it; `at` is what it was at by then."""
+    """Last answer of a child, or the signal that ended it; `at` is what it was at by then."""
 
     answer: dict[str, Any] | None
     signal: int | None
@@ -133,7 +133,7 @@ def _do(work: Work, pipe: int, log: Path) -> None:
 
 
 def _be_quiet(log: Path) -> None:
-    """What is printed goes to a file."""
+    """Print to a file from now on."""
     sys.stdout.flush()
     file = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
     null = os.open(os.devnull, os.O_RDONLY)

@@ -34,7 +34,7 @@ Task = tuple[Mutant, str, int]  # the mutant, the judge, how many seeds it has s
 
 @dataclass(frozen=True, kw_only=True)
 class Order:
-    """What is wanted: `judges` look for `mutants`, the simulator with so many seeds, in `jobs` processes."""
+    """Order of a run: `judges` look for `mutants`, the simulator with so many seeds, in `jobs` processes."""
 
     mutants: list[Mutant]
     judges: tuple[str, ...]
@@ -70,7 +70,7 @@ class Judging:
                 yield verdict
 
     def verdict(self, mutant: Mutant, judge: str, seeds: int) -> Verdict | None:
-        """What the book says on the sources as they are."""
+        """The verdict of the book on the sources as they are."""
         return self.book.found(mutant.key, judge, self._of[judge], seeds if judge == SIMULATOR else 0)
 
     def _tasks(
@@ -102,7 +102,7 @@ class Judging:
         )
 
     def _reaches(self, order: Order, tell: Told) -> dict[str, Reach]:
-        """Who reaches what, for each judge; measured at the same time where that is not known yet."""
+        """Lines that each judge reaches; measured at the same time where that is not known yet."""
         reaches: dict[str, Reach] = {}
         missing: dict[str, Work] = {}
         for judge in order.judges:

@@ -149,7 +149,7 @@ def _loop_end(node: ast.Continue | ast.Break, enums: Enums) -> Iterator[Change]:
 
 
 def _is_type(node: ast.BinOp) -> bool:
-    """Whether `A | B` names a union of types, not a set."""
+    """True if `A | B` names a union of types, not a set."""
     names = [side for side in (node.left, node.right) if isinstance(side, ast.Name | ast.Constant)]
     return isinstance(node.op, ast.BitOr) and any(
         isinstance(name, ast.Constant) or name.id[0].isupper() for name in names

@@ -1,4 +1,4 @@
-"""Which tests, and which seeds, come by a line: only they can find what is wrong with it."""
+"""Tests and seeds that come by a line: only they can find what is wrong with it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Reach:
     lines: dict[str, dict[str, str]] = field(default_factory=dict)
 
     def of(self, mutant: Mutant) -> list[str]:
-        """Who comes by the statement of a mutant; who comes by its file, where that is read at import."""
+        """Those who come by the statement of a mutant, or by its file if that is read at import."""
         rows = {int(line): int(bits, 16) for line, bits in self.lines.get(mutant.file, {}).items()}
         first, last = mutant.lines
         bits = 0
@@ -39,7 +39,7 @@ class Reach:
         return [name for number, name in enumerate(self.names) if bits >> number & 1]
 
     def _at_import(self, mutant: Mutant) -> bool:
-        """Whether its statement was carried out while nobody ran: in a class body, or a default."""
+        """True if its statement was carried out while nobody ran: in a class body, or a default."""
         imported = self.lines.get(f"{mutant.file}@import", {})
         return any(str(line) in imported for line in range(mutant.lines[0], mutant.lines[1] + 1))
 
@@ -47,7 +47,7 @@ class Reach:
         return self.cpu_s[self.names.index(name)]
 
     def breadth(self) -> dict[str, int]:
-        """How many lines each comes by."""
+        """Number of lines that each comes by."""
         found = [0] * len(self.names)
         for rows in self.lines.values():
             for bits in rows.values():

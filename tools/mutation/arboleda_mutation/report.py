@@ -1,4 +1,4 @@
-"""What came of it: one row per file, every survivor with its change, and all of it as JSON."""
+"""Report of a run: one row per file, every survivor with its change, and all of it as JSON."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Row:
 
 
 def totals(rows: Sequence[Row]) -> dict[str, Any]:
-    """How many came to which end, and the shares in per cent."""
+    """Number of mutants by their end, and the shares in per cent."""
     ends = Counter(row.end for row in rows)
     killed = ends["both"] + ends["tests"] + ends["simulator"]
     alone = ends["both"] + ends["simulator"]

@@ -17,7 +17,7 @@ UNSEEN = {"annotation", "returns", "decorator_list", "bases", "keywords", "type_
 
 @dataclass
 class Place:
-    """Where a node stands in its tree: what may stand there instead, and how it is put there."""
+    """Place of a node in its tree: another node may stand there instead."""
 
     node: ast.AST
     parent: ast.AST
@@ -101,7 +101,7 @@ def _is_left_alone(node: ast.AST) -> bool:
 
 
 def _is_alias(node: ast.expr) -> bool:
-    """Whether this is a type under another name."""
+    """True if this is a type under another name."""
     while isinstance(node, ast.BinOp) and isinstance(node.op, ast.BitOr):
         node = node.left
     root = node.value if isinstance(node, ast.Subscript) else node
@@ -147,7 +147,7 @@ Span = tuple[int, int, int, int]  # first line, column in bytes, last line, colu
 
 
 def _texts(source: str, place: Place, operator: str, new: ast.AST) -> tuple[str, str, Span]:
-    """What stands there, what will, and from where to where in the source."""
+    """The text there, the new one, and the span in the source."""
     node: ast.AST = place.node
     if operator.startswith("row"):
         first, last = _row(node, int(operator.split()[1]) - 1)

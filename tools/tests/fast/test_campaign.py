@@ -1,4 +1,4 @@
-"""What tools/campaign makes of a summary."""
+"""Output of tools/campaign on a summary."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ FIRST: tuple[tuple[str, int], ...] = (
 
 
 class Fired:
-    """What the runs of a campaign went through, by family."""
+    """Faults and probes that came in the runs of a campaign, by family."""
 
     def __init__(self) -> None:
         self.kinds: Counter[str] = Counter()

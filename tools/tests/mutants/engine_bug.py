@@ -1,4 +1,4 @@
-"""What a bug of the engine is: a mistake that engineers make, as a small edit of one file of the package."""
+"""Bug of the engine: a mistake that engineers make, as a small edit of one file of the package."""
 
 from __future__ import annotations
 

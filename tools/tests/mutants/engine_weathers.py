@@ -53,7 +53,7 @@ class Weather:
     options: dict[str, bool] = field(default_factory=dict)
 
     def found(self, seed: int) -> str:
-        """What is found at a seed, "" for nothing: the invariant that breaks, or the sort of a finding."""
+        """The finding at a seed, "" for none: the invariant that breaks, or the sort of a finding."""
         setting = Setting(plants=self.plants, cycles=CYCLES, level=self.level, **self.options)
         result = setting.run(seed)
         if result.broken is not None:
@@ -111,5 +111,5 @@ def forget() -> None:
 
 
 def found_at(seed: int) -> str:
-    """What is found at a seed, "" for nothing."""
+    """The finding at a seed, "" for none."""
     return WEATHERS[seed % len(WEATHERS)].found(seed)

@@ -42,7 +42,7 @@ MENDED, SILENT, LEFT, OTHER, WRONG = "mended", "nothing found", "no mend known",
 
 @dataclass(frozen=True, kw_only=True)
 class Followed:
-    """What came of an assistant: the verdict of the judge, and the mends that it followed."""
+    """Result of an assistant: the verdict of the judge, and the mends that it followed."""
 
     verdict: str
     mends: tuple[str, ...]
@@ -72,7 +72,7 @@ def _answered(file: Path) -> Mend | None:
 
 
 def judged(folder: Path, bug: ProofBug) -> Followed:
-    """What comes of a bug whose plant is written to a folder and mended there."""
+    """The result for a bug whose plant is written to a folder and mended there."""
     file = written(folder, bug.plant, bug)
     mends = followed(file)
     ends = ends_of(file)
@@ -92,7 +92,7 @@ def judged(folder: Path, bug: ProofBug) -> Followed:
 
 
 def ends_of(file: Path) -> dict[str, EndState] | None:
-    """What each task leaves where nothing goes wrong; None where anything is found of the plant."""
+    """The end state of each task where nothing goes wrong; None where anything is found of the plant."""
     try:
         declared = loader.load(file, apart=False)
     except ConfigError:

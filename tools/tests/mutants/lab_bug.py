@@ -1,4 +1,4 @@
-"""What a bug of the laboratory is: a mistake that people make in recipes and plant files, as a small edit."""
+"""Bug of the laboratory: a mistake that people make in recipes and plant files, as a small edit."""
 
 from __future__ import annotations
 

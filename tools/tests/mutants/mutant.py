@@ -1,4 +1,4 @@
-"""What a mutant is: a bug as a small edit of the shipped source, and the weather in which it shows."""
+"""Mutant: a bug as a small edit of the shipped source, and the weather in which it shows."""
 
 from __future__ import annotations
 import __future__

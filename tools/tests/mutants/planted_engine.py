@@ -72,7 +72,7 @@ class Place(NamedTuple):
 
 
 def measure(seeds: int, say: Say) -> dict[str, Any]:
-    """What each seed reaches, with nothing planted."""
+    """Lines that each seed reaches, with nothing planted."""
     tracer = Tracer(ROOT / PACKAGE, LAYERS, ROOT / TREES / OF_FILES)
     with tracer.running():
         from . import engine_weathers
@@ -132,7 +132,7 @@ def _tests() -> dict[str, str]:
 
 
 def _worlds() -> list[Path]:
-    """What a run of the simulator goes by, and not only its judgement."""
+    """Folders that a run of the simulator goes by, without those that only judge it."""
     folders = [path for path in sorted((ROOT / PROOFS / "simulator").iterdir()) if path.is_dir()]
     return [path.relative_to(ROOT) for path in folders if path.name != "invariants"]
 
@@ -160,7 +160,7 @@ class Looking:
         }
 
     def verdict(self, bug: EngineBug, judge: str) -> Verdict | None:
-        """What the book says on the sources as they are."""
+        """The verdict of the book on the sources as they are."""
         return self.book.found(bug.key, judge, self._of[judge], self._seeds if judge == SIMULATOR else 0)
 
     def run(self, bugs: Sequence[EngineBug], judge: str) -> Iterator[tuple[EngineBug, Verdict]]:
@@ -188,7 +188,7 @@ class Looking:
 
     @cached_property
     def _reach(self) -> Reach:
-        """Which seeds come by which lines; the others cannot find what is wrong there."""
+        """Lines that each seed comes by; other seeds cannot find what is wrong there."""
         file, of = self._reach_file, self._run_by
         kept = json.loads(file.read_text()) if file.exists() else {}
         if kept.get("of") != of or kept["seeds"] < self._seeds:

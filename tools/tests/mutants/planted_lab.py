@@ -42,7 +42,7 @@ def written(folder: Path, bug: LabBug | None = None) -> Path:
 
 
 def sighted(plant: Path, seeds: Iterable[int] = SEEDS) -> Sighting | None:
-    """What is first said of a plant: by `check`, or of a seed without faults, or with them."""
+    """The first finding in a plant: of `check`, or of a seed without faults, or with them."""
     try:
         model = loader.load(plant)
     except ConfigError as error:

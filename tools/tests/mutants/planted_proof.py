@@ -53,7 +53,7 @@ def written(folder: Path, plant: str, bug: ProofBug | None = None) -> Path:
 
 
 def sighted(folder: Path, bug: ProofBug, most: int = MOST) -> Sighting | None:
-    """What is first found of a bug that is not found of its plant without it; None after `most` runs."""
+    """The first finding in a plant with a bug that it has not without; None after `most` runs."""
     file = written(folder, bug.plant, bug)
     for by, look in LOOKS.items():
         for each in look(file, most):

@@ -1,4 +1,4 @@
-"""What a bug for `prove` is: a mistake that people make in the recipes or the plant file of an example."""
+"""Bug for `prove`: a mistake that people make in the recipes or the plant file of an example."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ def found_at(mutant: Mutant) -> int | None:
 
 
 def breaks_unplanted(mutant: Mutant, seed: int) -> bool:
-    """Whether its invariant breaks at that seed without the bug, too."""
+    """True if its invariant breaks at that seed without the bug, too."""
     weather = str(mutant.weather), mutant.any_of, mutant.standby
     key = (seed, mutant.cycles, mutant.rest_s, *weather)
     if key not in _whole:

@@ -83,7 +83,7 @@ def rests(cell, seconds=Number(1, 5)):
 
 @dataclass(frozen=True, kw_only=True)
 class Bug:
-    """What is wrong, which invariant says so, and in which weather, faults per minute."""
+    """Bug as an edit, the invariant that finds it, and the weather for that, faults per minute."""
 
     edit: Edit
     invariant: str

@@ -1,4 +1,4 @@
-"""When each task was truly accepted, begun and ended: its own times are of clocks that are stepped here."""
+"""True times of each task, from accepted to ended: its own times are of clocks that are stepped here."""
 
 from __future__ import annotations
 

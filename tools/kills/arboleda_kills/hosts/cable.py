@@ -57,7 +57,7 @@ class Cable:
                 self._carry(host, other, frame)
 
     def deliver(self) -> None:
-        """What is due."""
+        """Deliver the frames that are due."""
         now = time.monotonic()
         while self._late and self._late[0][0] <= now:
             _, _, host, frame = heapq.heappop(self._late)

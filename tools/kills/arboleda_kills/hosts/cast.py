@@ -1,4 +1,4 @@
-"""Who is on the hosts: database, broker, boards, bridge, whoever watches, and plants that lead or wait."""
+"""Cast on the hosts: database, broker, boards, bridge, whoever watches, and plants that lead or wait."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class HostPlant(Plant):
 
     @property
     def url(self) -> str:
-        """Where other hosts reach it; OSError where it listens nowhere."""
+        """The address at which other hosts reach it; OSError where it listens nowhere."""
         running = find_running(self._folder)
         if running is None or running.port is None:
             raise ConnectionRefusedError(f"nothing listens on {self.host}")
@@ -59,7 +59,7 @@ class HostPlant(Plant):
 
     @property
     def runs(self) -> bool:
-        """Whether the process is there."""
+        """True if the process is there."""
         return self._child.poll() is None
 
 

@@ -27,7 +27,7 @@ class Clocks:
         self._ahead = {host: _page(self._file(host)) for host in hosts}
 
     def before(self, host: str) -> tuple[str, ...]:
-        """What a command begins with whose processes go by the clock of that host."""
+        """The beginning of a command whose processes go by the clock of that host."""
         return "env", f"LD_PRELOAD={self._library}", f"ARBOLEDA_WALL_CLOCK={self._file(host)}"
 
     def step(self, host: str, ahead_s: float) -> None:

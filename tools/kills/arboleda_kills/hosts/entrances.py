@@ -1,4 +1,4 @@
-"""How a task gets to whoever leads from a host that runs no plant: by a command, by the standby's address."""
+"""Ways of a task to the leader from a host that runs no plant: by a command, by the standby's address."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What befalls hosts and links, as a table: how it begins, which returns how it ends."""
+"""Faults of hosts and links, as a table: the beginning of each, which returns its end."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Link = tuple[str, str]
 
 @dataclass(frozen=True, kw_only=True)
 class Scene:
-    """What a fault finds: who leads, who waits, and the chance that it may draw from."""
+    """Scene of a fault: the plants that lead and wait, and the chance that it may draw from."""
 
     network: Network
     cast: Cast

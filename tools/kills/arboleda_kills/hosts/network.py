@@ -35,11 +35,11 @@ class Network:
             raise
 
     def address(self, host: str) -> str:
-        """Where the others reach it."""
+        """The address at which the others reach it."""
         return f"10.77.0.{list(self._names).index(host) + 1}"
 
     def on(self, host: str) -> tuple[str, ...]:
-        """What a command begins with that runs there."""
+        """The beginning of a command that runs there."""
         return "ip", "netns", "exec", self._names[host], *self.clocks.before(host)
 
     def inside(self, host: str) -> AbstractContextManager[None]:

@@ -111,7 +111,7 @@ class Run:
         self.network.close()
 
     def verdict(self) -> tuple[Verdict, list[str], Sequence[TaskRow]]:
-        """What came of tasks and parts, which leaders moved something beside another one, and the history."""
+        """Verdict on tasks and parts, leaders that moved something beside another one, and the history."""
         with self.network.inside(DATA):
             history = PostgresHistory(STORE, NAME)
             rows = history.select(TaskQuery(limit=None))
@@ -188,7 +188,7 @@ class Run:
         return took_s
 
     def _restart_ended(self, fault: Fault) -> None:
-        """Who ended, or is about to, waits again; a plant ends with a sentence, and only where it may."""
+        """Restart plants that ended, or are about to: each ends with a sentence, and only where it may."""
         stale = [plant for plant in self._plants.values() if self._is_over(plant)]
         for plant in stale:
             status, words = plant.ended()
@@ -200,7 +200,7 @@ class Run:
             self._plants[plant.host] = self.cast.plant(plant.host, standby=True)
 
     def _is_over(self, plant: HostPlant) -> bool:
-        """Whether it has ended, or led and was superseded: then it ends within some seconds."""
+        """True if it has ended, or led and was superseded: then it ends within some seconds."""
         if plant.runs and plant is not self._leader and plant is self._superseded:
             patience = time.time() + LED_S
             while plant.runs:
@@ -248,7 +248,7 @@ class Run:
             time.sleep(PASS_S)
 
     def _snapshot(self) -> dict[str, Any] | None:
-        """What the leader shows; customers come back to one that leads anew."""
+        """The view of the leader; customers come back to one that leads anew."""
         plant = self._leader
         if plant is None or not plant.runs:
             return None

@@ -42,7 +42,7 @@ class Visitors:
 
     @property
     def are_gone(self) -> bool:
-        """Whether none of them is waiting for anything."""
+        """True if none of them is waiting for anything."""
         return not any(thread.is_alive() for thread in self._threads)
 
     def _visit(self, name: str, way: Way, prefix: str) -> None:

@@ -1,4 +1,4 @@
-"""Which commands boards accepted, as the bridge tells ROS 2: `python -m arboleda_kills.hosts.watch ROBOT...`.
+"""Commands that boards accepted, as the bridge tells ROS 2: `python -m arboleda_kills.hosts.watch ROBOT...`.
 
 It prints a line of JSON for each id that a robot's `status` names newly as accepted, until its input ends. An
 id begins with the number of the start of the plant that gave it: the lines show which leader moved what.

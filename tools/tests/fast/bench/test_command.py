@@ -1,4 +1,4 @@
-"""What the command does with benchmarks that measure, and with one that cannot."""
+"""Command with benchmarks that measure, and with one that cannot."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from arboleda_bench.flow import NUMBERS, PUMP_S, WINDOW, Flow
 
 
 class Pipe:
-    """What it is given comes out at the next pump; every `drops`th message does not."""
+    """Pipe that gives at the next pump what it was given; every `drops`th message is lost."""
 
     def __init__(self, drops: int = 0) -> None:
         self.now = 0.0

@@ -1,4 +1,4 @@
-"""What the robots of a cell saw, and the figures of it."""
+"""Moments that the robots of a cell saw, and the figures of it."""
 
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.joints import MoveJoints

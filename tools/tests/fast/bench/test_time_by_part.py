@@ -1,4 +1,4 @@
-"""Where time goes, by part of the house."""
+"""Time by part of the house."""
 
 from __future__ import annotations
 

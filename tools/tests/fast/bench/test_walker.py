@@ -1,4 +1,4 @@
-"""What the floors have in common."""
+"""Walker over floors of all kinds."""
 
 from arboleda_bench.walker import Walker
 

@@ -1,4 +1,4 @@
-"""What a drawn recipe means, and that its tasks do that, is judged by the data from which it was written."""
+"""Meaning of a drawn recipe, and the deeds of its tasks, judged by the data that it is written from."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ FOUR_S = {("open", ()): 4.0}
 
 
 def told(step: Step, **answers: Sequence[Value]) -> tuple[bool, list[str]]:
-    """Whether a recipe of this step succeeds, and the verbs that it tells the oven."""
+    """True if a recipe of this step succeeds, and the verbs that it tells the oven."""
     meaning = Meaning([Recipe(name="it", parameters=(), step=step)], answers, lambda role, told: FOUR_S[told])
     return meaning.run("it", {}), [verb for verb, _ in meaning.orders.get("oven", [])]
 

@@ -1,4 +1,4 @@
-"""What `arboleda_drawn.by_commit` runs and says."""
+"""Commands that `arboleda_drawn.by_commit` runs, and its words."""
 
 from __future__ import annotations
 

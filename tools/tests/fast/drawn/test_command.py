@@ -75,7 +75,7 @@ def test_a_drawn_plant_is_shrunk_with_its_faults_kept_and_replayed_from_the_file
 
 
 def _is_rich(plant: DrawnPlant) -> bool:
-    """Whether there is much to leave out."""
+    """True if there is much to leave out."""
     return not plant.beside and len(plant.declared.cells) == 2 and bool(plant.declared.zones)
 
 

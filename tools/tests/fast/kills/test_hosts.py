@@ -1,4 +1,4 @@
-"""Which commands of two leaders boards accepted, how visitors bring tasks, what a cable makes of a frame."""
+"""Commands that boards accepted of two leaders, tasks that visitors bring, frames on a cable."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the judge of kills makes of a history and of what arms did."""
+"""Verdicts of the judge of kills on a history and on the deeds of arms."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is held against a campaign whose workers were killed."""
+"""Charges against a campaign whose workers were killed."""
 
 from __future__ import annotations
 

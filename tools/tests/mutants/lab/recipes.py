@@ -1,4 +1,4 @@
-"""What the laboratory does with its plates."""
+"""Recipes of the laboratory for its plates."""
 
 from arboleda.recipes import Choice, Target, parallel, recipe, work
 

@@ -1,4 +1,4 @@
-"""What the two cells do with a part."""
+"""Recipes of the two cells for a part."""
 
 from arboleda.recipes import Choice, Target, recipe, work
 
