@@ -18,11 +18,11 @@ from rich.console import Console
 from rich.text import Text
 
 from arboleda.cli.complaint import complain, status_of
-from arboleda.extension import ArboledaError
+from arboleda.extension import ArboledaError, ConfigError
 from arboleda.plant_file.user_file import check_new, check_writable
 from arboleda_proofs.campaigns import screen, single_seed
 from arboleda_proofs.campaigns.flight import SUFFIX
-from arboleda_proofs.campaigns.options import CYCLES, LEVEL, SEED, SEEDS, exclusion
+from arboleda_proofs.campaigns.options import CYCLES, LEVEL, SEED, SEEDS
 from arboleda_proofs.campaigns.plants import Plant, PlantRotation, Plants
 from arboleda_proofs.campaigns.request import Request
 from arboleda_proofs.campaigns.seed_campaign import SeedCampaign
@@ -49,9 +49,11 @@ def main(typed: Sequence[str] | None = None) -> int:
 
 
 def _run(options: Namespace, console: Console) -> int:
+    request = _request(options)
+    if request.exclusion is not None:
+        raise ConfigError((str(request.exclusion()),))
     if options.json is not None:
         check_writable(options.json)
-    request = _request(options)
     console.print(Text(NOTE, style="dim"), soft_wrap=True)
     run = _one_seed if _is_of_one_seed(options) else _many_seeds
     status, plant = run(options, request, console)
@@ -83,7 +85,8 @@ def _request(options: Namespace) -> Request:
         source=_plants(options),
         command=(COMMAND,),
         seed=options.seed,
-        seeds=1 if _is_of_one_seed(options) else options.seeds,
+        seeds=options.seeds,
+        one_seed=_is_of_one_seed(options),
         cycles=options.cycles,
         faults=options.faults,
         until_failure=options.until_failure,
@@ -120,18 +123,7 @@ def _options(typed: Sequence[str] | None) -> Namespace:
     keeping = "write a plant there: of the one seed, or of the broken one that is shrunk"
     options.add_argument("--keep-plant", type=Path, metavar="DIR", help=keeping)
     options.add_argument("--jobs", type=_count, metavar="N", help="processes [one per processor]")
-    chosen = options.parse_args(typed)
-    excluded = exclusion(
-        one_seed=_is_of_one_seed(chosen),
-        seeds=chosen.seeds,
-        until_failure=chosen.until_failure,
-        standby=chosen.standby,
-        revisions=chosen.revisions,
-        faults=chosen.faults,
-    )
-    if excluded is not None:
-        options.error(str(excluded()))
-    return chosen
+    return options.parse_args(typed)
 
 
 def _seed(word: str) -> int:

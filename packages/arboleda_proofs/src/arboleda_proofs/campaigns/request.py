@@ -11,15 +11,15 @@ from importlib.resources import as_file, files
 from itertools import count
 from pathlib import Path
 
-from arboleda.extension import ConfigError
+from arboleda.extension import ConfigError, Phrase
 from arboleda.model.plant_files import PlantFiles
 from arboleda.model.plant_model import PlantModel
 from arboleda.plant_file import loader
 from arboleda_proofs.simulator.checks import BadFaults
-from arboleda_proofs.simulator.levels import LEVELS
+from arboleda_proofs.simulator.levels import CRASHES, LEVELS
 
 from .faults_file import FaultsFile, line_of, read
-from .options import CYCLES, LEVEL, SEED, SEEDS
+from .options import CYCLES, LEVEL, ONE_SEED, OWN_DEATHS, SEED, SEEDS, STANDBY_OR_REVISIONS
 from .plants import Plant, PlantRotation, Plants, notes, unjudged
 from .setting import Setting
 
@@ -31,7 +31,8 @@ class Request:
     """Request: the options; None stands for one that was not given.
 
     `plant_here` is the plant file of the working directory, for where no plant is named. `source` has plants
-    in place of those of files; `command` is what a person types before the options.
+    in place of those of files; `command` is what a person types before the options. `one_seed`: one seed is
+    shown, step by step.
     """
 
     plant: Path | None = None
@@ -40,12 +41,22 @@ class Request:
     command: tuple[str, ...] = COMMAND
     seed: int | None = None
     seeds: int | None = None
+    one_seed: bool = False
     cycles: int = CYCLES
     faults: str = LEVEL
     until_failure: bool = False
     any_of: bool = False
     standby: bool = False
     revises: bool = False
+
+    @property
+    def exclusion(self) -> Phrase | None:
+        """The reason why these options exclude each other; None where they do not."""
+        if self.one_seed and ((self.seeds or 1) > 1 or self.until_failure):
+            return ONE_SEED
+        if self.standby and self.revises:
+            return STANDBY_OR_REVISIONS
+        return OWN_DEATHS if self.standby and self.faults == CRASHES else None
 
     @property
     def changes_files(self) -> bool:
@@ -67,7 +78,7 @@ class Request:
     @property
     def count(self) -> int | None:
         """The number of seeds; None: until something breaks."""
-        if self.faults_file is not None and self.faults_file.seed is not None:
+        if self.one_seed or (self.faults_file is not None and self.faults_file.seed is not None):
             return 1
         return self.seeds or (None if self.until_failure else 1 if self.has_people else SEEDS)
 

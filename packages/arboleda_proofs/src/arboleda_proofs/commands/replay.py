@@ -72,6 +72,49 @@ EXIT = (
     "damaged; 2 no record, or one that cannot be replayed."
 )
 
+Until = Annotated[
+    str | None,
+    typer.Option(metavar="TIME", help="Up to 2026-11-22T03:15:00, or 03:15:00 of its first day."),
+]
+Task = Annotated[
+    str | None,
+    typer.Option(metavar="ID", help="Show this task only, up to its end; a fork begins as it does."),
+]
+Speed = Annotated[
+    float | None,
+    typer.Option(metavar="X", min=0.01, help="X times as fast as it was. [default: at once]"),
+]
+Plant = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Take another plant file: where it first acts otherwise, or what it does in a fork.",
+    ),
+]
+ForkAt = Annotated[
+    str | None,
+    typer.Option(
+        metavar="TIME", help="Go on from there with virtual devices, and say what turns out otherwise."
+    ),
+]
+Setting = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set", metavar="KEY=VALUE", help="A fork with another value, e.g. timing.stale_after_s=3."
+    ),
+]
+Recipe = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="A fork whose new tasks take their recipes from this Python file."),
+]
+Healthy = Annotated[bool, typer.Option("--healthy", help="A fork in which devices have no faults any more.")]
+OnPage = Annotated[
+    bool, typer.Option("--page", help="Look at it on the page, from --until or the end of --task on.")
+]
+Port = Annotated[
+    int | None, typer.Option(metavar="PORT", min=0, max=65535, help="Port of the page. [default: 8080]")
+]
+
 
 @dataclass(frozen=True)
 class Chosen:
@@ -89,75 +132,38 @@ def add_to(cli: typer.Typer) -> None:
 
 def replay(
     file: File = None,
-    until: Annotated[
-        str | None,
-        typer.Option(metavar="TIME", help="Up to 2026-11-22T03:15:00, or 03:15:00 of its first day."),
-    ] = None,
-    task: Annotated[
-        str | None,
-        typer.Option(metavar="ID", help="Show this task only, up to its end; a fork begins as it does."),
-    ] = None,
-    speed: Annotated[
-        float | None,
-        typer.Option(metavar="X", min=0.01, help="X times as fast as it was. [default: at once]"),
-    ] = None,
-    plant: Annotated[
-        Path | None,
-        typer.Option(
-            "--plant",
-            metavar="FILE",
-            help="Take another plant file: where it first acts otherwise, or what it does in a fork.",
-        ),
-    ] = None,
-    fork_at: Annotated[
-        str | None,
-        typer.Option(
-            metavar="TIME", help="Go on from there with virtual devices, and say what turns out otherwise."
-        ),
-    ] = None,
-    setting: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set", metavar="KEY=VALUE", help="A fork with another value, e.g. timing.stale_after_s=3."
-        ),
-    ] = None,
-    recipe: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="A fork whose new tasks take their recipes from this Python file."),
-    ] = None,
-    healthy: Annotated[
-        bool, typer.Option("--healthy", help="A fork in which devices have no faults any more.")
-    ] = False,
-    page: Annotated[
-        bool, typer.Option("--page", help="Look at it on the page, from --until or the end of --task on.")
-    ] = False,
-    port: Annotated[
-        int | None, typer.Option(metavar="PORT", min=0, max=65535, help="Port of the page. [default: 8080]")
-    ] = None,
+    until: Until = None,
+    task: Task = None,
+    speed: Speed = None,
+    plant: Plant = None,
+    fork_at: ForkAt = None,
+    setting: Setting = None,
+    recipe: Recipe = None,
+    healthy: Healthy = False,
+    page: OnPage = False,
+    port: Port = None,
     state: StateFolder = None,
 ) -> None:
     from arboleda.recorder import reader
 
     record = reader.opened(last_of(file, None, state))
-    other = any((fork_at, setting, recipe, healthy))
+    forks = any((fork_at, setting, recipe, healthy))
     if page:
-        if speed or plant or other:
+        if speed or plant or forks:
             raise ConfigError((say(PAGE_ALONE()),))
         _show(record, until, task, port)
         return
     _refuse_part(record)
     for line in _notes(record.first.beginning, plant):
         _say(line)
-    began_ns = record.first.began_ns
-    end_ns = None if until is None else _time("--until", until, began_ns)
-    if not other:
+    end_ns = _time("--until", until, record)
+    if not forks:
         _compare(record, plant, Chosen(end_ns, task, speed))
         return
     from . import fork
 
-    at_ns = None if fork_at is None else _time("--fork-at", fork_at, began_ns)
-    settings = tuple(setting or ())
-    changed = fork.Options(settings=settings, plant=plant, recipe=recipe, healthy=healthy)
+    changed = fork.Options(settings=tuple(setting or ()), plant=plant, recipe=recipe, healthy=healthy)
+    at_ns = _time("--fork-at", fork_at, record)
     _fork(record, replace(changed, at_ns=at_ns, task=task, until_ns=end_ns))
 
 
@@ -211,8 +217,8 @@ def _show(record: Record, until: str | None, task: str | None, port: int | None)
     """Show the page at the end of a task or at a time; else at the last failure."""
     from arboleda_proofs.past import replay_page  # its libraries take a second
 
-    at_s = None if until is None else _time("--until", until, record.first.began_ns) / 1e9
-    query = {"at": "task" if task else "failure" if at_s is None else f"{at_s:.3f}"}
+    at_ns = _time("--until", until, record)
+    query = {"at": "task" if task else "failure" if at_ns is None else f"{at_ns / 1e9:.3f}"}
     of_task = {"tab": "tasks", "task": task} if task else {}
     replay_page.show(record, model_of(record.first.beginning, None), query | of_task, port)
 
@@ -236,9 +242,11 @@ def _notes(beginning: Beginning, plant: Path | None) -> Iterator[str]:
         yield say(OTHER_PLANT(plant=str(plant)))
 
 
-def _time(option: str, text: str, began_ns: int) -> int:
-    """A time in ns of Unix time; ConfigError for text that is no time."""
-    day = datetime.fromtimestamp(began_ns / 1e9).date().isoformat()
+def _time(option: str, text: str | None, record: Record) -> int | None:
+    """A time in ns of Unix time; None without one, ConfigError for text that is no time."""
+    if text is None:
+        return None
+    day = datetime.fromtimestamp(record.first.began_ns / 1e9).date().isoformat()
     for candidate in (text, f"{day}T{text}"):
         try:
             return int(datetime.fromisoformat(candidate).timestamp() * 1e9)

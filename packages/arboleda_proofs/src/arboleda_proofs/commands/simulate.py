@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.text import Text
@@ -12,8 +14,12 @@ from arboleda.cli.language import language
 from arboleda.cli.plant_options import IN_FOLDER, plant_here
 from arboleda.extension import Phrase, StoreAddress, say
 from arboleda.plant_file.user_file import check_new, check_writable
-from arboleda_proofs.campaigns.options import CYCLES, LEVEL, SEED, SEEDS, exclusion
+from arboleda_proofs.campaigns.options import CYCLES, LEVEL, SEED, SEEDS
 from arboleda_proofs.simulator.levels import LEVELS
+
+if TYPE_CHECKING:
+    from arboleda_proofs.campaigns.request import Request
+    from arboleda_proofs.campaigns.screen import SpeakingConsole
 
 HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, and judge every step.
 
@@ -122,6 +128,33 @@ WORKER_ALONE = Phrase(
 )
 
 
+@dataclass(frozen=True, kw_only=True)
+class Output:
+    """Output of a simulation: the console, and the files that are written."""
+
+    console: SpeakingConsole
+    json: Path | None
+    record: Path | None
+    trace: bool
+
+    @property
+    def is_of_one_seed(self) -> bool:
+        """True if all that happens in one seed is shown."""
+        return self.trace or self.record is not None
+
+    def begin(self, request: Request) -> None:
+        """Print the notes on a request; raises an error if it is refused, or a file cannot be written."""
+        from arboleda_proofs.campaigns.flight import SUFFIX
+
+        _refuse(request)
+        if self.json is not None:
+            check_writable(self.json)
+        if self.record is not None:
+            (check_new if self.record.suffix == SUFFIX else check_writable)(self.record)
+        for note in request.notes:
+            self.console.print(Text(note, style="dim"), soft_wrap=True)
+
+
 def add_to(cli: typer.Typer) -> None:
     """Add the command."""
     cli.command("simulate", help=HELP, short_help=HELP.partition("\n")[0])(simulate)
@@ -146,34 +179,17 @@ def simulate(
     drawn_plants: DrawnPlants = False,
     keep_plant: KeepPlant = None,
 ) -> None:
-    from arboleda_proofs.campaigns import screen
-
-    console = screen.console(language=language())
-    with screen.waiting(console, "loading the simulator"):  # a second or two, and only this command needs it
-        from arboleda_proofs.campaigns import single_seed
-        from arboleda_proofs.campaigns.flight import SUFFIX
-        from arboleda_proofs.campaigns.request import Request
-        from arboleda_proofs.campaigns.seed_campaign import SeedCampaign
-        from arboleda_proofs.campaigns.workers import processors
-
     if drawn_plants or keep_plant is not None:
         raise typer.BadParameter(say(FOR_DEVELOPERS()))
-    alone = trace or record is not None
-    excluded = exclusion(
-        one_seed=alone,
-        seeds=seeds,
-        until_failure=until_failure,
-        standby=standby,
-        revisions=revisions,
-        faults=faults,
-    )
-    if excluded is not None:
-        raise typer.BadParameter(say(excluded()))
+    output = Output(console=_loaded(), json=json, record=record, trace=trace)
+    from arboleda_proofs.campaigns.request import Request
+
     request = Request(
         plant=plant,
         plant_here=plant_here(None),
         seed=seed,
-        seeds=1 if alone else seeds,
+        seeds=seeds,
+        one_seed=output.is_of_one_seed,
         cycles=cycles,
         faults=faults,
         until_failure=until_failure,
@@ -181,20 +197,45 @@ def simulate(
         standby=standby,
         revises=revisions,
     )
+    raise typer.Exit(_share(request, output, store, jobs) if worker else _run(request, output, jobs))
+
+
+def _loaded() -> SpeakingConsole:
+    """The console, with the simulator loaded: that takes a second or two, and only this command needs it."""
+    from arboleda_proofs.campaigns import screen
+
+    console = screen.console(language=language())
+    with screen.waiting(console, "loading the simulator"):
+        import_module("arboleda_proofs.campaigns.seed_campaign")
+    return console
+
+
+def _refuse(request: Request) -> None:
+    """Raises BadParameter for options that exclude each other, and for a file of a drawn plant."""
+    if request.exclusion is not None:
+        raise typer.BadParameter(say(request.exclusion()))
     if request.faults_file is not None and "plant_file" in request.faults_file.broken:
         raise typer.BadParameter(say(FOR_DEVELOPERS()))
-    if worker and (not store or alone or until_failure or jobs is not None):
-        raise typer.BadParameter(say(WORKER_ALONE()))
-    if json is not None:
-        check_writable(json)
-    if record is not None:
-        (check_new if record.suffix == SUFFIX else check_writable)(record)
-    for note in request.notes:
-        console.print(Text(note, style="dim"), soft_wrap=True)
-    if worker:
-        from arboleda_proofs.campaigns.shared import work
 
-        raise typer.Exit(work(request, console, store, json))
-    if alone:
-        raise typer.Exit(single_seed.run(request, console, trace=trace, record=record, file=json))
-    raise typer.Exit(SeedCampaign(request, console, json).run(jobs or processors()))
+
+def _share(request: Request, output: Output, store: str, jobs: int | None) -> int:
+    """Do seeds of a campaign that several workers share; the exit status."""
+    if not store or request.one_seed or request.until_failure or jobs is not None:
+        raise typer.BadParameter(say(WORKER_ALONE()))
+    output.begin(request)
+    from arboleda_proofs.campaigns.shared import work
+
+    return work(request, output.console, store, output.json)
+
+
+def _run(request: Request, output: Output, jobs: int | None) -> int:
+    """Run the seeds here; the exit status."""
+    from arboleda_proofs.campaigns import single_seed
+    from arboleda_proofs.campaigns.seed_campaign import SeedCampaign
+    from arboleda_proofs.campaigns.workers import processors
+
+    output.begin(request)
+    console, json = output.console, output.json
+    if request.one_seed:
+        return single_seed.run(request, console, trace=output.trace, record=output.record, file=json)
+    return SeedCampaign(request, console, json).run(jobs or processors())
