@@ -87,7 +87,7 @@ class MqttClient:
         will: Publication | None = None,
         clock: Callable[[], float] = seconds,
         credentials: Credentials | None = None,
-        version: MqttVersion = MqttVersion.V3_1_1,
+        version: MqttVersion | str = MqttVersion.V3_1_1,
         announce: bool = True,
     ) -> None:
         self.client_id = client_id
@@ -97,7 +97,7 @@ class MqttClient:
         self._will = will
         self._clock = clock
         self._credentials = credentials
-        self._version = PAHO_VERSION[version]
+        self._version = PAHO_VERSION[MqttVersion(version)]
         self._announce = announce
         self._logged: str | None = None  # the trouble that the log already names
         self._answered = False  # True once the broker of this connection has answered

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from difflib import get_close_matches
 
 from arboleda.drivers import Device, DeviceVerb, Effect, Evidence, FactType, Robot, among
 
@@ -39,12 +40,11 @@ def verbs(mapped: Collection[str], device: Device, hint: str) -> Iterator[Proble
 def _names(
     what: str, mapped: Collection[str], known: Collection[str], device: Device, hint: str
 ) -> Iterator[Problem]:
-    key = f"{what}s"
-    for name in mapped:
-        if name not in known:
-            yield (key, name), f"a {device.kind.name} has no {what} {name}; {among(name, known)}"
+    key, unknown = f"{what}s", [name for name in mapped if name not in known]
+    for name in unknown:
+        yield (key, name), f"a {device.kind.name} has no {what} {name}; {among(name, known)}"
     for name in known:
-        if name not in mapped:
+        if name not in mapped and not get_close_matches(name, unknown):  # else it is written wrong
             yield (key,), f"{name} of a {device.kind.name} is missing: {hint}"
 
 

@@ -28,6 +28,7 @@ from arboleda.drivers import (
     plain,
 )
 from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
+from arboleda_drivers.meaning import UnreadableValue
 from arboleda_drivers.plc.checks import answers
 
 from .messages import (
@@ -42,7 +43,6 @@ from .messages import (
     Raised,
     Returned,
 )
-from .reading import UnreadableValue
 from .settings import Call, MachineMapping
 from .tasks import Task, Tasks, UnknownFacts
 
@@ -207,7 +207,7 @@ class Machine:
             return
         kinds = self._device.kind.facts
         facts = ((name, one) for name, one in self._settings.facts.items() if name not in self._unknown.names)
-        self._facts = tuple((name, one.value(values.get(one.read), kinds[name])) for name, one in facts)
+        self._facts = tuple((name, one.value_of(values.get(one.read), kinds[name])) for name, one in facts)
         boot = None if self._settings.boot is None else str(values.get(self._settings.boot))
         if self._boot_shown is not None and boot != self._boot_shown:
             self._boot += 1
@@ -337,7 +337,7 @@ class Machine:
         try:
             self._receipts |= {
                 "answered": command.id,
-                "answer": answer.value(event.result, answers(command.definition)),
+                "answer": answer.value_of(event.result, answers(command.definition)),
             }
         except UnreadableValue as error:
             self._receipts |= {"failed": command.id, "failure": plain(str(error), LONGEST)}

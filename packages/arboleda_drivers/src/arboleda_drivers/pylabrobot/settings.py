@@ -19,11 +19,12 @@ from arboleda.drivers import (
     Value,
     among,
 )
+from arboleda_drivers.meaning import SCALARS
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Place, Problem
 
 from .paths import steps
-from .reading import SCALARS, Reading
+from .reading import Reading
 
 METHOD = re.compile(r"[A-Za-z]\w*(\.[A-Za-z]\w*)*\Z")
 LABWARE = re.compile(r"([^\[\]]+)(?:\[([^\[\]]+)\])?\Z")

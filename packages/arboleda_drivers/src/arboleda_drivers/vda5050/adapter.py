@@ -2,96 +2,61 @@
 
 from __future__ import annotations
 
-import logging
-import secrets
-import threading
 from collections.abc import Iterable, Sequence
 
-from arboleda.adapters.broker_login import address, login
-from arboleda.adapters.mqtt import MqttClient, NotConnected
-from arboleda.adapters.rate_limit import RateLimit
-from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, driver, plain, quoted
-from arboleda.wire.transport import Connection, Delivery, Publication
+from arboleda.drivers import Command, NotSent, Report, Robot, driver, plain, quoted
+from arboleda.wire.transport import Delivery, Publication
 from arboleda_drivers.connections.device_feed import taking
+from arboleda_drivers.connections.mqtt_driver import LOG, MqttDriver
 from arboleda_drivers.vda5050.machine import Message, Publish, Vehicle
 from arboleda_drivers.vda5050.settings import Settings
 
 from .messages import Headers, SchemaMismatch, from_bytes, to_bytes
 
-LOG = logging.getLogger("arboleda.drivers.vda5050")
-LONGEST_TOPIC = 300
 HANDLERS = {"state": Vehicle.state, "connection": Vehicle.connection, "factsheet": Vehicle.factsheet}
 
 
 @driver("vda5050", settings=Settings)
-class Vda5050:
-    """Driver of one vehicle and its devices. A client thread hears it, another repeats the known state."""
+class Vda5050(MqttDriver):
+    """Driver of one vehicle and its devices, which repeats the known state."""
 
     def __init__(self, settings: Settings) -> None:
+        super().__init__(settings.broker)
         self._settings = settings
-        self._lock = threading.Lock()  # guards the machine, and the order of its messages
-        self._ending = threading.Event()
-        self._seldom = RateLimit()
-        self._client: MqttClient | None = None
-        self._ticking: threading.Thread | None = None
 
-    def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
+    def begin(self, devices: Sequence[Robot], mark: str) -> Sequence[str]:
         settings = self._settings
         for problem in [sentence for device in devices for _, sentence in settings.problems(device)]:
             raise ValueError(problem)
-        mark = secrets.token_hex(4)
-        self._hear, self._clock = hear, clock
         self._vehicle = Vehicle(devices, settings, mark=mark)
         self._headers = Headers(settings.version, settings.manufacturer, settings.serial)
-        topics = (
+        return (
             *(f"{settings.topics}/{topic}" for topic in ("state", "factsheet")),
             f"{settings.interface}/+/+/+/connection",
         )
-        self._client = MqttClient(
-            f"arboleda-{mark}",
-            address(settings.broker),
-            on_event=self._handle,
-            subscriptions=topics,
-            clock=clock,
-            credentials=login(),
-        )
-        self._client.start()
-        self._ticking = threading.Thread(target=self._tick, name=f"vda5050 {settings.serial}", daemon=True)
-        self._ticking.start()
 
-    def send(self, command: Command) -> None:
-        with self._lock:
-            try:
-                self._do(self._vehicle.command(self._clock(), command))
-            except (NotConnected, SchemaMismatch) as error:
-                self._vehicle.unsent(command)
-                raise NotSent(str(error)) from error
+    def connected(self, *, up: bool) -> None:
+        self._try(self._vehicle.connected(self.clock(), up=up))
 
-    def stop(self) -> None:
-        self._ending.set()
-        if self._client is not None:
-            self._client.close()
-        if self._ticking is not None:
-            self._ticking.join()
+    def give(self, command: Command) -> None:
+        try:
+            self._do(self._vehicle.command(self.clock(), command))
+        except SchemaMismatch as error:
+            self._vehicle.unsent(command)
+            raise NotSent(str(error)) from error
+        except NotSent:
+            self._vehicle.unsent(command)
+            raise
 
-    # --- its threads ---
+    def tick(self) -> float:
+        now = self.clock()
+        with taking("a state", self._lose):
+            self._try(self._vehicle.step(now))
+        return self._vehicle.next_deadline - now
 
-    def _tick(self) -> None:
-        while not self._ending.is_set():
-            with self._lock:
-                now = self._clock()
-                with taking("a state", self._lose):
-                    self._try(self._vehicle.step(now))
-                wait_s = self._vehicle.next_deadline - now
-            self._ending.wait(max(0.01, wait_s))
-
-    def _handle(self, event: Delivery | Connection) -> None:
-        with self._lock:
-            if isinstance(event, Connection):
-                self._try(self._vehicle.connected(self._clock(), up=event.up))
-            elif len(event.topic) <= LONGEST_TOPIC:
-                with taking(event.payload, self._lose):
-                    self._read(event)
+    def take(self, message: Delivery) -> None:
+        with taking(message.payload, self._lose):
+            self._read(message)
 
     def _read(self, delivery: Delivery) -> None:
         settings = self._settings
@@ -109,40 +74,34 @@ class Vda5050:
                     f"it says to be of {quoted(body['manufacturer'])} {quoted(body['serialNumber'])}"
                 )
         except SchemaMismatch as error:
-            self._warn(f"a message on {delivery.topic} is refused: {error}")
+            self.warn(f"a message on {delivery.topic} is refused: {error}")
             if topic == "state":
                 self._vehicle.link.refuse(str(error))
             return
-        self._try(HANDLERS[topic](self._vehicle, self._clock(), body))
+        self._try(HANDLERS[topic](self._vehicle, self.clock(), body))
 
     def _lose(self, why: str) -> None:
-        self._warn(f"{self._settings.vehicle}: {why}")
-        self._try(self._vehicle.lose(self._clock(), why))
-
-    def _warn(self, what: str) -> None:
-        if self._seldom.is_due(what, self._clock()):
-            LOG.warning("%s", plain(what, 300))
+        self.warn(f"{self._settings.vehicle}: {why}")
+        self._try(self._vehicle.lose(self.clock(), why))
 
     def _try(self, messages: Iterable[Message]) -> None:
         """Send messages that belong to no command; a loss is noticed soon by its missing effect."""
         try:
             self._do(messages)
-        except (NotConnected, SchemaMismatch) as error:
+        except (NotSent, SchemaMismatch) as error:
             LOG.debug("%s", error)
 
     def _do(self, messages: Iterable[Message]) -> None:
         for message in messages:
             if isinstance(message, Report):
-                self._hear(message)
+                self.hear(message)
             elif isinstance(message, Publish):
                 self._publish(message)
             else:
-                self._warn(message.text)
+                self.warn(message.text)
 
     def _publish(self, message: Publish) -> None:
-        assert self._client is not None
         body = {**self._headers(message.topic), **message.body}
         payload = to_bytes(self._settings.version, message.topic, body)
-        self._client.publish(
-            Publication(topic=f"{self._settings.topics}/{message.topic}", payload=payload, qos=0)
-        )
+        topic = f"{self._settings.topics}/{message.topic}"
+        self.publish(Publication(topic=topic, payload=payload, qos=0))

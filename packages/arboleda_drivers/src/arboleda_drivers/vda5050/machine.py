@@ -131,13 +131,7 @@ class Vehicle:
         self._stops.see(state)
         messages = [*self._judge_order(now, state), *self._left_over(now, state)]
         self._judge_instants(state)
-        return [*messages, *self._reports(now), *self._late(now, state)]
-
-    def _late(self, now: float, state: VehicleState) -> Iterator[LogLine]:
-        late_s = self.link.delay_s(now, state)
-        if late_s > LATE_S:
-            name = self._settings.vehicle
-            yield LogLine(text=f"the states of {name} come {late_s:.0f} s late, or its clock was set back")
+        return [*messages, *self._reports(now), *_late(self._settings.vehicle, self.link.delay_s(now, state))]
 
     def lose(self, now: float, why: str) -> list[Message]:
         """Lose the link, and open work, after a message that caused an error; the next state restores it."""
@@ -360,6 +354,11 @@ class Vehicle:
         self._stops.forget()
         self._instants.clear()
         self._answers.forget()
+
+
+def _late(vehicle: str, late_s: float) -> Iterator[LogLine]:
+    if late_s > LATE_S:
+        yield LogLine(text=f"the states of {vehicle} come {late_s:.0f} s late, or its clock was set back")
 
 
 def _facts(device: Robot, state: VehicleState) -> Facts:

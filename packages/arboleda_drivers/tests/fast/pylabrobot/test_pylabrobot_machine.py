@@ -12,6 +12,7 @@ from arboleda.drivers.port import DriverError
 from arboleda.kinds.declared import Device, FactType
 from arboleda.plant_file.loader import load
 from arboleda_drivers.connections.link import Close, Closed, CommandNotSent, CommandRequest, Open, Opened
+from arboleda_drivers.meaning import UnreadableValue
 from arboleda_drivers.pylabrobot import adapter as adapter
 from arboleda_drivers.pylabrobot.machine import Machine
 from arboleda_drivers.pylabrobot.messages import (
@@ -27,7 +28,7 @@ from arboleda_drivers.pylabrobot.messages import (
     Returned,
 )
 from arboleda_drivers.pylabrobot.paths import steps
-from arboleda_drivers.pylabrobot.reading import Reading, UnreadableValue
+from arboleda_drivers.pylabrobot.reading import Reading
 from arboleda_drivers.pylabrobot.settings import Call, MachineMapping
 
 MODEL = load(ROOT / "examples/plate_bench/bench.yaml")
@@ -288,13 +289,13 @@ def test_a_stop_that_fails_loses_the_link() -> None:
     ],
 )
 def test_what_a_value_means(reading: Reading, raw: object, value: str) -> None:
-    assert reading.value(raw, WORDS) == value
+    assert reading.value_of(raw, WORDS) == value
 
 
 @pytest.mark.parametrize("raw", [float("nan"), 10**400, "medium", []])
 def test_a_value_without_a_meaning(raw: object) -> None:
     with pytest.raises(UnreadableValue):
-        Reading(words={"low": [0, 5]}).value(raw, WORDS)
+        Reading(words={"low": [0, 5]}).value_of(raw, WORDS)
 
 
 def test_paths_and_calls_that_are_none() -> None:
