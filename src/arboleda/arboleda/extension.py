@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from arboleda.model.errors import PayloadError as PayloadError, Refused as Refused
     from arboleda.model.errors import StartError as StartError
     from arboleda.model.sentence import Phrase as Phrase, Sentence as Sentence
+    from arboleda.plant_file.loader import load as load
     from arboleda.runtime.extensions.alarms import RaisedAlarm as RaisedAlarm
     from arboleda.runtime.extensions.part import Part as Part
     from arboleda.runtime.extensions.plant import Device as Device, Plant as Plant
@@ -64,6 +65,7 @@ HOMES = {
     "dashboard.wording": ("Text", "Words", "words"),
     "model.errors": ("ArboledaError", "ConfigError", "PayloadError", "Refused", "StartError"),
     "model.sentence": ("Phrase", "Sentence"),
+    "plant_file.loader": ("load",),
     "runtime.extensions.alarms": ("RaisedAlarm",),
     "runtime.extensions.part": ("Part",),
     "runtime.extensions.plant": ("Device", "Plant"),

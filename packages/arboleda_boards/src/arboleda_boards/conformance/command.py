@@ -11,9 +11,8 @@ from rich.text import Text
 from arboleda.adapters.broker_login import MQTT_PORT, Credentials, address, login
 from arboleda.cli.language import allowed, finding, say_error
 from arboleda.drivers import Evidence, Robot, quoted
-from arboleda.extension import Phrase, PlantFile, Sentence, StartError, say
+from arboleda.extension import Phrase, PlantFile, Sentence, StartError, load, say
 from arboleda.model.plant_model import Link, PlantModel
-from arboleda.plant_file import loader
 
 if TYPE_CHECKING:
     from arboleda_boards.conformance.judge import Finding, Judge
@@ -74,7 +73,7 @@ def add_to(cli: typer.Typer) -> None:
     def conformance(
         robot: Name, broker: Broker = f"127.0.0.1:{MQTT_PORT}", plant: PlantFile = None, yes: Yes = False
     ) -> None:
-        tried = _named(loader.load(plant), robot)
+        tried = _named(load(plant), robot)
         if not yes:
             typer.confirm(say(MAY_IT_MOVE(name=tried.mqtt, deeds=_deeds(tried))), abort=True)
         raise typer.Exit(_try(tried, broker, login()))

@@ -10,9 +10,8 @@ import typer
 from arboleda.cli.language import allowed
 from arboleda.cli.new import WROTE
 from arboleda.drivers import Device, Robot, quoted
-from arboleda.extension import Phrase, PlantFile, say
+from arboleda.extension import Phrase, PlantFile, load, say
 from arboleda.model.plant_model import Link, PlantModel
-from arboleda.plant_file import loader
 from arboleda_boards.firmware_config.header import header
 from arboleda_boards.firmware_config.resolving import tables
 
@@ -43,7 +42,7 @@ def add_to(cli: typer.Typer) -> None:
     """Add the command."""
 
     def firmware_config(device: Name, wiring: Wiring, plant: PlantFile = None, output: Output = None) -> None:
-        made = tables(_named(loader.load(plant), device), wiring)
+        made = tables(_named(load(plant), device), wiring)
         text = header(made)
         for name in made.unseen:
             typer.echo(say(NO_INPUT(name=name)), err=True)
