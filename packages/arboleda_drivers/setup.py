@@ -9,6 +9,7 @@ DRIVERS = {  # by the name in a plant file: the folder of the maker, and the cla
     "gcode": "gcode.adapter:Gcode",
     "gripper_command": "gripper_command.adapter:GripperCommand",
     "modbus": "modbus.adapter:Modbus",
+    "mqtt": "mqtt_mapping.adapter:Mqtt",
     "navigate_to_pose": "nav2.adapter:NavigateToPose",
     "opcua": "opcua.adapter:OpcUa",
     "pylabrobot": "pylabrobot.adapter:PyLabRobot",

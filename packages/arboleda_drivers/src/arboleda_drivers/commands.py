@@ -9,4 +9,8 @@ COMMANDS = {
         "arboleda_drivers.virtual.command",
         "Play the controller of another maker over its own protocol, with motion and with faults.",
     ),
+    "topics": Command(
+        "arboleda_drivers.mqtt_mapping.listen.command",
+        "Find out by which MQTT topics a device speaks.",
+    ),
 }

@@ -15,7 +15,7 @@ from arboleda.model.sentence import Phrase
 from arboleda.plant_check import advance_check, checks, unstated
 from arboleda.plant_check.check_answer import check_answer
 from arboleda.plant_check.findings import Source
-from arboleda.plant_file import extensions, loader
+from arboleda.plant_file import drivers, extensions, loader
 from arboleda.plant_file.recipe_forms import is_tree_file
 from arboleda.plant_file.user_file import check_writable
 
@@ -80,6 +80,12 @@ def check(
     ends: Annotated[
         bool, typer.Option("--ends", help="Say what holds once a task of each recipe is done.")
     ] = False,
+    show: Annotated[
+        bool,
+        typer.Option(
+            "--show", help="Show the messages of each device whose messages are named, with examples."
+        ),
+    ] = False,
     json: Json = None,
     mend: Mend = False,
 ) -> None:
@@ -108,7 +114,7 @@ def check(
     if json is not None or mend:
         _as_data(file, json, mend=mend)
     if json is None or str(json) != TO_SCREEN:
-        _in_words(file, ends=ends)
+        _in_words(file, ends=ends, show=show)
 
 
 def _as_data(file: Path, json: Path | None, *, mend: bool) -> None:
@@ -132,7 +138,7 @@ def _as_data(file: Path, json: Path | None, *, mend: bool) -> None:
         raise typer.Exit(PROBLEMS)
 
 
-def _in_words(file: Path, *, ends: bool) -> None:
+def _in_words(file: Path, *, ends: bool, show: bool) -> None:
     """Print what the plant is, and what it is warned of; ConfigError with every problem."""
     with working():
         model, missed = loader.load_with_offers(file)
@@ -142,5 +148,6 @@ def _in_words(file: Path, *, ends: bool) -> None:
         print(say(WARNING(file=str(file), warning=finding(warning))))
     cells = tuple(cell.name for cell in model.cells)
     print(say(GOOD(file=str(file), plant=model.name, cells=cells)))
-    for line in (*loader.offers(model, missed), *(advance_check.ends(model) if ends else ())):
+    lines = [*loader.offers(model, missed), *(advance_check.ends(model) if ends else ())]
+    for line in (*lines, *(drivers.messages_of(model) if show else ())):
         print(f"  {finding(line)}")

@@ -60,6 +60,7 @@ OF_PACKAGES = {  # extras of `arboleda`, by command
     "report": PROOFS,
     "simulate": PROOFS,
     "site": FLEET,
+    "topics": DRIVERS,
     "virtual": DRIVERS,
 }
 

@@ -10,7 +10,7 @@ from arboleda.model.commands import Command
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import MotionState, Report
 from arboleda.model.outside import plain
-from arboleda.model.plant_model import Robot
+from arboleda.model.plant_model import Evidence, Robot
 from arboleda.model.sentence import OWN
 
 
@@ -91,6 +91,22 @@ class FitsDevice(Protocol):
 
     def problems(self, device: Robot) -> Iterable[tuple[tuple[str | int, ...], str]]:
         """Settings that do not fit the device, each as its keys and a sentence."""
+
+
+@runtime_checkable
+class GivesEvidence(Protocol):
+    """Settings of a driver from which follows how much may be believed of what a device says."""
+
+    def evidence_of(self, device: Robot) -> Evidence:
+        """The evidence of a device of which the plant file says none."""
+
+
+@runtime_checkable
+class ShowsMessages(Protocol):
+    """Settings of a driver that can show a person what passes between the plant and a device."""
+
+    def shown(self, device: Robot) -> Iterable[str]:
+        """Lines with examples of its messages, and what is believed of them."""
 
 
 @dataclass(frozen=True, kw_only=True)

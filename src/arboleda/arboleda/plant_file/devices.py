@@ -6,13 +6,13 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 from arboleda.kinds import WrittenKind
-from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect
+from arboleda.kinds.declared import Device, DeviceKind
 from arboleda.model.plant_model import Cell, Evidence, Robot
 
 from . import handovers, needs, own_kinds, part_places, shared, targets
 from .any_cell import check_absence, common_keys
 from .arrays import arrays
-from .deadlines import ROUNDING_S, SHOWN_S
+from .deadlines import is_proven
 from .document import Document, Place, choice, misnamed, nearest, shown
 from .drivers import OF_DEVICES, link
 from .not_installed import why_nobody
@@ -182,7 +182,7 @@ def _machine(document: Document, place: Place, kinds: Kinds) -> Device | None:
         return None
     evidence = EVIDENCE.get(shape.evidence) or Evidence(shape.evidence)
     name = shape.name or str(place[-1])
-    proven = [_is_proven(document, place, kind, verb, evidence) for verb in kind.verbs.values()]
+    proven = [is_proven(document, place, kind, verb, evidence) for verb in kind.verbs.values()]
     if not all(proven):
         return None
     return Device(
@@ -210,24 +210,3 @@ def _kind(document: Document, place: Place, kinds: Kinds) -> DeviceKind | None:
         own = "" if hint else '; one of your own is declared under "kinds" at the top of the file'
         document.problem(place, f"must be {choice(kinds.all_names)}, is {shown(name)}{hint or own}")
     return None
-
-
-def _is_proven(
-    document: Document, place: Place, kind: DeviceKind, verb: DeviceVerb, evidence: Evidence
-) -> bool:
-    """True if a device's reports, with this evidence, can show in the verb's time that the verb is done."""
-    here = (*place, "evidence")
-    spare_s, needed_s = verb.at_most_s - verb.takes_s, SHOWN_S[evidence]
-    if verb.effect is Effect.QUERY and evidence is not Evidence.IDS:
-        why = f"{verb.name} of {kind.name} is a query, and its answer has to name the command"
-        document.problem(here, f"must be ids: {why}")
-    elif verb.effect is Effect.MOTION and evidence is Evidence.JOINTS and not verb.sets_facts:
-        document.problem(here, f"facts cannot prove {verb.name} of {kind.name}: it sets none")
-    elif spare_s < needed_s - ROUNDING_S:
-        what = (
-            f"{verb.name} of {kind.name} takes {verb.takes_s:g} s and has an at_most_s of {verb.at_most_s:g}"
-        )
-        document.problem(place, f"{what}; its end may show {needed_s:g} s later, so give it that much more")
-    else:
-        return True
-    return False

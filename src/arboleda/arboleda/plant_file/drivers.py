@@ -7,11 +7,13 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from arboleda.drivers.port import GROUP, DriverSpec, FitsDevice, spec_of
+from arboleda.drivers.port import GROUP, DriverSpec, FitsDevice, GivesEvidence, ShowsMessages, spec_of
 from arboleda.host.packages import entry_points
+from arboleda.kinds.declared import Device
 from arboleda.model.outside import plain
-from arboleda.model.plant_model import DriverUse, Link, PlantModel, Robot
+from arboleda.model.plant_model import DriverUse, Evidence, Link, PlantModel, Robot
 
+from .deadlines import is_proven
 from .document import Document, Place, choice, nearest, shown
 from .given_settings import FAULTY, Taker, given, loaded
 from .not_installed import why_nobody
@@ -55,14 +57,24 @@ def with_drivers(document: Document, plant: PlantModel | None, used: PythonUses)
     uses = driver_uses(document, used)
     if not uses:
         return plant
+    driven: dict[str, Robot] = {}
     for name, place in named(document):
         if name in uses:
-            _check(document, place, uses[name], plant.robots[name])
+            driven[name] = _driven(document, place, plant.robots[name], uses[name])
+            _check(document, place, driven[name])
 
-    def driven(robot: Robot) -> Robot:
-        return replace(robot, driver=uses.get(robot.name))
+    def with_driver(robot: Robot) -> Robot:
+        return driven.get(robot.name, robot)
 
-    return replace(plant, cells=tuple(cell.with_robots(driven) for cell in plant.cells))
+    return replace(plant, cells=tuple(cell.with_robots(with_driver) for cell in plant.cells))
+
+
+def messages_of(plant: PlantModel) -> Iterator[str]:
+    """Lines on the messages of each device whose driver can show them."""
+    for device in plant.robots.values():
+        settings = None if device.driver is None else device.driver.settings
+        if isinstance(settings, ShowsMessages):
+            yield from settings.shown(device)
 
 
 def named(document: Document) -> Iterator[tuple[str, Place]]:
@@ -112,16 +124,31 @@ def _use(document: Document, place: Place, used: PythonUses) -> DriverUse | None
     )
 
 
-def _check(document: Document, place: Place, use: DriverUse, device: Robot) -> None:
+def _driven(document: Document, place: Place, device: Robot, use: DriverUse) -> Robot:
+    """The device with its driver, and the evidence by its settings where the plant file does not say it."""
+    found = device.evidence
+    if isinstance(use.settings, GivesEvidence) and not document.has((*place[:-1], "evidence")):
+        try:
+            found = Evidence(use.settings.evidence_of(device))
+        except Exception as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+            document.problem((*place, use.name), plain(error_text(error), LONGEST))
+    return replace(device, driver=use, evidence=found)
+
+
+def _check(document: Document, place: Place, device: Robot) -> None:
     """Keep the objections that a driver's settings have to their device."""
-    if not isinstance(use.settings, FitsDevice):
-        return
-    try:
-        problems = list(use.settings.problems(device))
-    except Exception as error:  # noqa: BLE001 - it is user code: whatever it raises is told
-        problems = [((), error_text(error))]
+    assert device.driver is not None
+    settings, problems = device.driver.settings, []
+    if isinstance(settings, FitsDevice):
+        try:
+            problems = list(settings.problems(device))
+        except Exception as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+            problems = [((), error_text(error))]
     for inside, sentence in problems:
-        document.problem((*place, use.name, *inside), plain(sentence, LONGEST))
+        document.problem((*place, device.driver.name, *inside), plain(sentence, LONGEST))
+    if not problems and isinstance(device, Device):
+        for verb in device.kind.verbs.values():
+            is_proven(document, place[:-1], device.kind, verb, device.evidence)
 
 
 def _settings(document: Document, place: Place, spec: DriverSpec, used: PythonUses) -> Any:

@@ -127,6 +127,7 @@ class Day:
         self.counts: Counter[str] = Counter()
         self._tasks: list[Task] = []
         self._news = threading.Condition()
+        self.form: Form | None = None  # in which the line was bad, in the last order
         self._snapshot: dict[str, Any] = {}
         self._seen_at = self._acted_at = 0.0  # the snapshot, and what was done to the plant
         self.app.watch(self._watch)
@@ -139,12 +140,13 @@ class Day:
         for number in range(orders):
             goes = chance.choices([*self.goes], [*self.goes.values()])[0]
             self._go(chance, f"d{number}", goes)
-            self._lead_out(f"d{number}, {goes}")
+            self._lead_out(f"d{number}, {goes} {self.form or ''}".strip())
         time.sleep(STANDS_S + GRACE_S)
         self._judge()
 
     def _go(self, chance: Random, id: str, goes: str) -> None:
         takes = chance.uniform(SHORTEST_S, LONGEST_S)
+        self.form = None
         self.peer.say("takes", takes)
         if goes == "refusal":
             self.peer.say("refuses")
@@ -186,9 +188,9 @@ class Day:
         """The same while the line is bad."""
         assert self.relay is not None
         word = chance.choice(self.forms)
-        form = Form(word=word, delay_s=round(chance.uniform(*LATE_S), 2) if word in TIMED else 0.0)
+        self.form = Form(word=word, delay_s=round(chance.uniform(*LATE_S), 2) if word in TIMED else 0.0)
         self.counts[f"bad: {word}"] += 1
-        with self.relay.bad(form):
+        with self.relay.bad(self.form):
             time.sleep(wait)
             self._meet(goes, away)
             time.sleep(away)

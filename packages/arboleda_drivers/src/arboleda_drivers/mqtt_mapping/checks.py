@@ -1,0 +1,156 @@
+"""Checks of a mapping of topics, how much may be believed by it, and examples of its messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import islice
+
+from arboleda.drivers import Device, DeviceVerb, Effect, Evidence, OnStop, Robot, Value, among
+from arboleda_drivers.plc import checks
+from arboleda_drivers.plc.checks import Place, Problem
+
+from .heard import Heard
+from .keys import Keys
+from .sent import DEVICE, ID, NUMBER, OURS, Sent
+
+EXAMPLES = 4  # of a verb, that are shown
+WORKS = (Effect.MOTION, Effect.PROCESS)
+BELIEVED = {
+    Evidence.IDS: "it says which command it has done",
+    Evidence.JOINTS: "it is done once the facts say so; an order that came twice, or late, is not noticed",
+    Evidence.STATE: "only that it works and stops is known; what it did is not checked",
+}
+
+
+def evidence(settings: Keys, device: Device) -> Evidence:
+    """The level that the mapping gives: by ids, by facts that each verb sets, else by its state alone."""
+    verbs = [verb for verb in device.kind.verbs.values() if verb.name in settings.verbs]
+    named = [verb for verb in verbs if verb.effect in WORKS or verb.effect is Effect.QUERY]
+    if named and all(_names_command(settings, verb) for verb in named):
+        return Evidence.IDS
+    if verbs and all(verb.sets_facts or verb.effect is Effect.QUERY for verb in verbs):
+        return Evidence.JOINTS
+    return Evidence.STATE
+
+
+def _names_command(settings: Keys, verb: DeviceVerb) -> bool:
+    """True where a message about its end, or its answer, names the command."""
+    if verb.effect is Effect.QUERY:
+        return bool(settings.verbs[verb.name].id)
+    done = settings.ends(verb.name)
+    return done is not None and bool(done.id)
+
+
+def problems(settings: Keys, device: Robot) -> Iterator[Problem]:
+    """All problems of the mapping of this device."""
+    if not isinstance(device, Device):
+        yield from checks.undeclared(device)
+        return
+    yield from checks.facts(settings.facts, device, "say where it is heard, {hear: TOPIC}")
+    for name, heard in settings.facts.items():
+        if name in device.kind.facts and (sentence := heard.problem(device.kind.facts[name])):
+            yield ("facts", name), sentence
+    yield from checks.verbs(settings.verbs, device, "say what is sent, {send: [{topic: ...}]}")
+    for name in settings.verbs:
+        if name in device.kind.verbs:
+            yield from _verb(settings, device.kind.verbs[name])
+    yield from _ways(settings, device)
+    if device.evidence not in _levels(settings, device):
+        level = evidence(settings, device)
+        yield (
+            (),
+            f"{device.name} has evidence: {device.evidence.value}, and this mapping proves {_word(level)}",
+        )
+
+
+def _levels(settings: Keys, device: Device) -> tuple[Evidence, ...]:
+    """The levels that may be said: the one that the mapping gives, and those below."""
+    order = (Evidence.IDS, Evidence.JOINTS, Evidence.STATE)
+    return order[order.index(evidence(settings, device)) :]
+
+
+def _word(level: Evidence) -> str:
+    return "facts" if level is Evidence.JOINTS else level.value
+
+
+def _verb(settings: Keys, verb: DeviceVerb) -> Iterator[Problem]:
+    mapped, place = settings.verbs[verb.name], ("verbs", verb.name)
+    if not mapped.send:
+        yield place, f"nothing is sent for {verb.name}; write send: [{{topic: ..., payload: ...}}]"
+    for at, sent in enumerate(mapped.send):
+        yield from _sent((*place, "send", at), sent, [name for name, _ in verb.parameters])
+        if sent.retain and verb.effect in WORKS:
+            why = f"a device that connects later would begin to {verb.name} by itself"
+            yield (*place, "send", at, "retain"), f"a retained order stays at the broker: {why}"
+    hint = "say where its answer is heard, answer: {hear: TOPIC}, and where it names the command, id: PATH"
+    yield from checks.answer(place, verb, hint, mapped=mapped.answer is not None)
+    if mapped.answer is not None and (sentence := mapped.answer.problem(checks.answers(verb))):
+        yield (*place, "answer"), sentence
+    if mapped.answer is not None and verb.effect is Effect.QUERY and not mapped.id:
+        why = "its answer has to name the command: say where, id: PATH"
+        yield place, f"{why}; where it names none, let a recipe read a fact instead"
+    yield from _ids(settings, verb)
+
+
+def _sent(place: Place, sent: Sent, parameters: list[str]) -> Iterator[Problem]:
+    for name in sorted(sent.names - {*parameters, *OURS}):
+        known = [*parameters, *OURS]
+        yield place, f"there is no parameter {name}; {among(name, known)}"
+
+
+def _ids(settings: Keys, verb: DeviceVerb) -> Iterator[Problem]:
+    """A problem where an answer has to name a command that was sent without its id."""
+    named = any({ID, NUMBER} & sent.names for sent in settings.verbs[verb.name].send)
+    if _names_command(settings, verb) and not named:
+        yield ("verbs", verb.name, "send"), "its end names the command; send it with {id} or {number}"
+
+
+def _ways(settings: Keys, device: Device) -> Iterator[Problem]:
+    """Problems of a device that moves: its state must be heard, and something must be sent to stop it."""
+    for key in ("ask", "halt", "latch", "clear"):
+        for at, sent in enumerate(getattr(settings, key)):
+            for name in sorted(sent.names - {DEVICE}):
+                yield (key, at), f"{key} has no parameters, and names {name}; write values"
+    if settings.state is not None:
+        yield from checks.states(settings.state.words)
+    for name in settings.still.facts if settings.still is not None else ():
+        if name not in settings.facts:
+            yield ("still", "facts"), f"there is no fact {name}; {among(name, settings.facts)}"
+    works = [verb for verb in device.kind.verbs.values() if verb.effect in WORKS]
+    halted = [verb for verb in works if verb.on_stop is OnStop.HALT]
+    if works and settings.state is None and settings.still is None and not _ends(settings, works):
+        how = "say where its state is heard, state: {hear: TOPIC, words: {stopped: idle, moving: busy}}"
+        yield (), f"nothing says whether it has ended {works[0].name}: {how}, or still: {{facts: [...]}}"
+    if halted and device.has_stop and not settings.halt:
+        how = "say what is sent to stop it, halt: [{topic: ...}], or stop: none of the device"
+        yield ("halt",), f"{halted[0].name} could not be stopped: {how}"
+
+
+def _ends(settings: Keys, works: list[DeviceVerb]) -> bool:
+    """True where a message ends each of these verbs, and no stop has to be seen."""
+    return all(
+        verb.name in settings.verbs and settings.ends(verb.name) is not None and verb.on_stop is OnStop.FINISH
+        for verb in works
+    )
+
+
+def shown(settings: Keys, device: Device) -> Iterator[str]:
+    """Lines for a person: what is sent for each verb, and what is believed."""
+    level = evidence(settings, device)
+    yield f"{device.name}: evidence {_word(level)}: {BELIEVED[level]}"
+    ours: dict[str, Value] = {DEVICE: settings.name_of(device.name), ID: f"{device.name}-1", NUMBER: 1}
+    for name, mapped in settings.verbs.items():
+        for values in islice(device.kind.verbs[name].samples, EXAMPLES):
+            given = " ".join([name, *(str(value) for _, value in values)])
+            for sent in mapped.send:
+                message = sent.filled({**dict(values), **ours})
+                yield f"  {given}: {message.topic} {message.payload.decode()}".rstrip()
+    for name, heard in settings.facts.items():
+        yield f"  {name}: {heard.named(settings.name_of(device.name))} {_what(heard)}".rstrip()
+    if not settings.halt:
+        yield f"  stop reaches nothing of {device.name}"
+
+
+def _what(heard: Heard) -> str:
+    words = ", ".join(f"{meant} is {word}" for word, meant in heard.words.items())
+    return " ".join(each for each in (heard.path or heard.pattern, heard.unit, words) if each)
