@@ -31,7 +31,7 @@ READY_S, DONE_S = 60.0, 120.0
 SLACK_S = 0.001
 STANDS = (MotionState.STOPPED, MotionState.STOP_LATCHED)
 MAY_FAIL_BY = {*Reason} - {Reason.PART_LOST, Reason.INTERNAL}
-"""What a bad line may make a task fail by: all but what is not so."""
+"""Reasons of which a bad line may make a task fail: all but what is not so."""
 
 
 @runtime_checkable

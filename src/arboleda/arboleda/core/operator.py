@@ -51,7 +51,7 @@ RESTART_UNWANTED = Phrase("act.restart_unwanted", "{by} does not have the plant 
 CLOCK_AHEAD = Phrase("act.clock_ahead", "the clock of the plant's machine was set {seconds:.0f} s ahead")
 CLOCK_BACK = Phrase("act.clock_back", "the clock of the plant's machine was set back by {seconds:.0f} s")
 BY_HAND = {Verb.HOME: DECLARED_HOMED, Verb.RELEASE: DECLARED_EMPTY}
-"""What is said of a verb where a person has done it by hand."""
+"""Sentences on verbs that a person has done by hand."""
 ACTS_TOLD = {
     phrase.key: phrase
     for phrase in (

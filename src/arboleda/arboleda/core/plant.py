@@ -111,7 +111,7 @@ from .zone_watch import ZoneWatch
 
 HEARTBEAT_S = 0.25
 AWAY = Phrase("plant.away", "the plant was away for {seconds:.1f} s")
-"""Why cells are held after the plant's thread has stood still."""
+"""Reason of a hold after the plant's thread has stood still."""
 # A plant steps at least at each heartbeat. Boards stop by themselves after 1 s without one. So a
 # plant that was away for longer finds robots that stand, however long its file lets robots be silent.
 SHORTEST_ABSENCE_S, LONGEST_STALL_S = 1.0, 1.5

@@ -22,7 +22,7 @@ STANDS_BECAUSE = Phrase("cell.stands_because", "{cell} is {state} ({why}); {next
 HELD = Phrase("cell.held", "{cell} is held ({why}); {next}")
 HELD_STRANDED = Phrase("cell.held_stranded", "{cell} is held ({why}); {stranded}: {next}")
 BY_OPERATOR = Phrase("cell.by_operator", "by the operator")
-"""Why a cell is held where nothing is wrong."""
+"""Reason of a hold where nothing is wrong."""
 WAS_AT_WORK = Phrase("walk.at_work", "task {task} was at work when the plant stopped")
 AT_STEP = Phrase("walk.stands_at", 'task {task} was at work when the plant stopped, at its step "{step}"')
 FOUND = Phrase(

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 from arboleda.web.plant_api import PlantApi
 
 Layout = dict[str, Any]
-"""What never changes of a plant while it runs, as plain data: its cells, robots and recipes."""
+"""Data of a plant that never changes while it runs: its cells, robots and recipes."""
 Links = dict[str, Any]
 Seen = tuple[float, dict[str, Any]]  # Unix time in seconds, and the snapshot that came then
 WAITING = 200  # snapshots that wait for a page, or between two frames; past that the oldest are dropped

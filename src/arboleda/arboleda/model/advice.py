@@ -63,7 +63,7 @@ BY_HAND: dict[Verb, Phrase] = {
 }
 ADVISE = {each: Phrase(f"advise.{each.value}", act.english) for each, act in DO.items()}
 ADVISE_BY_HAND = {verb: Phrase(f"advise.{verb.value}_by_hand", act.english) for verb, act in BY_HAND.items()}
-"""What a person is asked to do: in Spanish in other words than what was done."""
+"""Requests to a person: in Spanish in other words than what was done."""
 THEN = Phrase("do.then", "{first}, then {second}")
 OR = Phrase("do.or", "{first} or {second}")
 AND = Phrase("do.and", "{first} and {second}")

@@ -13,7 +13,7 @@ LABELS = ("id", "heard", "token")  # fields for its way, which are no values of 
 FRESH_S = 2.0
 """A board refuses a command (s) after it sent the telemetry that the command names."""
 Position = tuple[float, ...] | int
-"""Where a robot is, as its kind reports it: the joints of an arm, the node of a mobile robot."""
+"""Position of a robot, as its kind reports it: the joints of an arm, the node of a mobile robot."""
 
 
 class StopMode(int, Enum):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 Value = bool | int | float | str
-"""What a fact can be: `"open"` of a door, True of a clamp, 1001 of a program."""
+"""Value of a fact: `"open"` of a door, True of a clamp, 1001 of a program."""
 Facts = tuple[tuple[str, Value], ...]
 """Facts by name."""
 HEALTH = "health"

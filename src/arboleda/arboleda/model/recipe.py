@@ -18,7 +18,7 @@ Build = Callable[[Order, Any], Behaviour]
 Builders = Mapping[str, Build]
 """Builders by the names of their recipes."""
 End = tuple[tuple[str, Value], ...]
-"""What is so once a task is done: a place, a fact or a question to a device, each with its value."""
+"""Facts after a done task: a place, a fact or a question to a device, each with its value."""
 CELL = Phrase("text.cell", "cell")
 VALUE_FORM = Phrase("text.value_form", "<{name}>")
 ALONE_FORM = Phrase("text.alone_form", "<{robot} or cell>")

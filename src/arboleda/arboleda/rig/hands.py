@@ -71,7 +71,7 @@ BY_HAND: dict[Verb, Callable[[ManualWork, str], None]] = {
     Verb.HOME: ManualWork.home,
     Verb.RELEASE: ManualWork.release,
 }
-"""What a person does at the machine, who then declares it."""
+"""Deeds of a person at the machine, who then declares them."""
 BEFOREHAND: dict[Verb, Callable[[ManualWork, str], None]] = {
     Verb.HOME: ManualWork.put_at_reference,
     Verb.RELEASE: ManualWork.take_out,

@@ -35,7 +35,7 @@ OBJECTS = {
     "motion_report": ["live_position", "live_velocity"],
     "gcode_move": ["position", "gcode_position"],
 }
-"""What is asked of Klipper's objects."""
+"""Fields to ask of Klipper's objects."""
 WORDS = {
     "shutdown": re.compile(r".*shutdown", re.IGNORECASE | re.DOTALL),
     UNHOMED: re.compile(r"Must\shome\b"),
@@ -43,7 +43,7 @@ WORDS = {
     "homing_no_switch": re.compile(r"No\strigger\son\b"),
     "homing_pull_off": re.compile(r"Endstop\s.*\sstill\striggered\b"),
 }
-"""How the sentences begin by which Klipper refuses a line, by the word for each."""
+"""Beginnings of the sentences by which Klipper refuses a line, by the word for each."""
 NEAR_MM, STILL_MM_S = 0.01, 0.001
 
 

@@ -56,7 +56,7 @@ INVARIANTS: tuple[Invariant, ...] = (
     *PLACES,
     *TEACHING,
 )
-"""What must hold of every plant."""
+"""Invariants of every plant."""
 
 
 def judged_by(*, standby: bool = False, revises: bool = False) -> tuple[Invariant, ...]:

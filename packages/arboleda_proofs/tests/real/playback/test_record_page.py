@@ -30,7 +30,7 @@ pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")
 MAIN = "from arboleda.cli.main import main; main()"
 AT = "[data-live='record.at']"
 WRONG_EVENTS = [[], ["go", "x"], ["go", 1e99], ["step", 7], ["task", {"a": 1}], ["__class__"], [["go"], 1]]
-"""What no button of the page sends."""
+"""Requests that no button of the page sends."""
 FAILED = "article.cell.chosen g.node.is-failure"
 
 

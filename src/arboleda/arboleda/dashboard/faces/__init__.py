@@ -18,4 +18,4 @@ from __future__ import annotations
 from typing import Any
 
 Face = dict[str, Any]
-"""What a part of the page shows, as flat plain data by its keys: `text/<name>`, `rows/<list>`, ..."""
+"""Content of a part of the page, as flat plain data by its keys: `text/<name>`, `rows/<list>`, ..."""

@@ -181,7 +181,7 @@ class Orchestrator:
             InternalError: lambda message: log_defect(message.cell or "plant", message.error),
             Absence: lambda message: LOG.warning(AWAY, message.seconds),
         }
-        """What messages of a step are for that neither leave nor wait to be told."""
+        """Uses of messages of a step that neither leave nor wait to be told."""
 
     def hear(self, event: Event) -> None:
         """Take an event of the port, in the port's thread; a report without news may wait for others."""

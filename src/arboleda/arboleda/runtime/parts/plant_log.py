@@ -23,7 +23,7 @@ IN_CELL = Phrase("act.in_cell", "{did} ({cell})")
 VERB_REFUSED = Phrase("act.verb_refused", "{verb} {scope} was refused: {why}")
 
 Durable = TaskChanged | OperatorAnswer | RevisionAnswer
-"""What is told once all that led to it is durable."""
+"""Messages that are told once all that led to them is durable."""
 
 
 def log_defect(where: str, error: Exception) -> None:

@@ -14,7 +14,7 @@ from arboleda.runtime.build import App, Options, build
 WORK, OTHER, ASK = "work", "other", "ask"
 HALT, LATCH = "halt", "latch"
 Ref = Any
-"""How the device's protocol names an order."""
+"""Name of an order in the device's protocol."""
 RECIPES = """
 from arboleda.recipes import recipe, work as steps
 

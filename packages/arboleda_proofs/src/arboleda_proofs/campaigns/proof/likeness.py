@@ -35,7 +35,7 @@ Likeness = tuple[int, ...]
 NOTHING: frozenset[str] = frozenset()
 PLAIN = (type(None), bool, int, float, str, bytes, Enum)
 STATIC = (PlantModel, Cell, Robot, Recipe, DeviceKind, Phrase, type, types.ModuleType)
-"""What the plant file and the code say: the same in all runs of a process."""
+"""Types of the plant file and of the code: their values are the same in all runs of a process."""
 LEFT_OUT: dict[type, frozenset[str]] = {
     World: frozenset(
         {

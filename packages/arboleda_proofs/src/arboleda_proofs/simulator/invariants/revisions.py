@@ -65,4 +65,4 @@ def _begins(message: object, task: str) -> bool:
 
 
 REVISIONS = (cells_take_versions_between_tasks, tasks_that_wait_are_offered, versions_are_taken)
-"""What must hold where versions are put to work, beside what must hold of every plant."""
+"""Invariants where versions are put to work, beside those of every plant."""
