@@ -15,7 +15,7 @@ from py_trees.common import Status
 from py_trees.composites import Sequence
 
 from arboleda.cli.session import NO_ROS, ros_link
-from arboleda.plant_file.loader import load
+from arboleda.extension import load
 from arboleda.runtime.build import Options, build
 from arboleda_class.lessons import spoken
 
