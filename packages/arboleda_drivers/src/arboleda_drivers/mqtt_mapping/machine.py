@@ -210,7 +210,7 @@ class MappedDevice:
             self._order = None
 
     def _stopped(self, stop: Stop) -> Sequence[Sent]:
-        """What is sent for a stop. Work that finishes goes on to its own end."""
+        """Messages of a stop. Work that finishes goes on to its own end."""
         settings, order = self._settings, self._order
         if stop.mode is not StopMode.HALT:
             self._latched = stop.mode is StopMode.LATCH
@@ -269,7 +269,7 @@ class MappedDevice:
         )
 
     def _asked(self, now: float) -> Iterator[Publication]:
-        """What has it tell its facts and state, where some are not known."""
+        """Messages that ask for its facts and state, where some are not known."""
         if not self._link.broker or self._showing.is_whole or now < self._ask_at + ASK_S:
             return
         self._ask_at = now

@@ -17,7 +17,7 @@ class Settings(Keys):
     __doc__ = Keys.__doc__
 
     def evidence_of(self, device: Robot) -> Evidence:
-        """How much may be believed of what the device says."""
+        """Level of evidence that the device's words have."""
         return checks.evidence(self, device) if isinstance(device, Device) else device.evidence
 
     def problems(self, device: Robot) -> Iterator[Problem]:

@@ -21,7 +21,7 @@ STATES = {
 
 
 class Showing:
-    """What a device has told of its facts and of its state.
+    """Facts and state of a device, as far as it has told them.
 
     A retained message counts only where its last will says that the device is there: else it is of any age.
     """

@@ -68,7 +68,7 @@ class VirtualMapped:
         return self._presence(is_there=False)
 
     def begin(self) -> list[Publication]:
-        """What it says as it connects."""
+        """Messages as it connects."""
         there = self._presence(is_there=True)
         return [*([] if there is None else [there]), *self._all()]
 
