@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from datetime import datetime
+import re
 
 from arboleda.drivers import plain
 
@@ -14,6 +14,8 @@ BROKEN = {"CONNECTIONBROKEN", "CONNECTION_BROKEN"}
 LONGEST_WHY = 200  # characters
 NEIGHBOURS = 20  # that a sentence may name
 WRAP = 2**31  # headers count to 2**32, then from 0
+DAY_S = 86_400
+TIME = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}T([0-9]{2}):([0-9]{2}):([0-9]{2}(?:\.[0-9]+)?)")
 
 
 class Link:
@@ -28,7 +30,7 @@ class Link:
         self._refused = ""  # reason why its last state did not count; "" once one did
         self._last: VehicleState | None = None
         self._first = True  # the next state begins a row of headers
-        self._fastest_s = math.inf  # of its clock to ours, by the state that came the fastest
+        self._fastest_s: float | None = None  # of its time of day to our clock, by the fastest state
         self.boots = 1
         self.has_booted = False
         self._neighbours: set[str] = set()
@@ -79,7 +81,7 @@ class Link:
         if word != "ONLINE" or self._word != "ONLINE":
             self._begin_anew()
         self._word, self._last_message_at, self._first = word, now, True
-        self._fastest_s = math.inf
+        self._fastest_s = None
 
     def takes(self, now: float, state: VehicleState) -> bool:
         """True if a state is newer than the last, and so counts; notes a reboot if its headers begin anew."""
@@ -102,12 +104,15 @@ class Link:
 
     def delay_s(self, now: float, state: VehicleState) -> float:
         """Time that a state was on its way beyond the fastest one; 0 where its timestamp is no time."""
-        try:
-            took_s = now - datetime.fromisoformat(state.timestamp).timestamp()
-        except ValueError:
+        said = TIME.match(state.timestamp)
+        if said is None:
             return 0.0
-        self._fastest_s = min(self._fastest_s, took_s)
-        return took_s - self._fastest_s
+        hours, minutes, seconds = map(float, said.groups())
+        took_s = now - (3600 * hours + 60 * minutes + seconds)
+        fastest_s = took_s if self._fastest_s is None else self._fastest_s
+        delay_s = (took_s - fastest_s + DAY_S / 2) % DAY_S - DAY_S / 2  # a new day begins with 0 again
+        self._fastest_s = fastest_s + min(delay_s, 0.0)
+        return max(delay_s, 0.0)
 
     def refuse(self, why: str) -> None:
         """Note a state that does not count; the reason is reported while no state does."""

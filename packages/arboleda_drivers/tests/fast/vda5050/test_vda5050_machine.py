@@ -447,14 +447,16 @@ def test_a_second_cancel_that_is_refused_ends_no_cancel_under_way(rig: Rig) -> N
 
 
 def test_states_that_come_late_are_named_in_the_log(rig: Rig) -> None:
-    def told(number: int, second: int, at: float) -> list[str]:
-        said = state(headerId=2**20 + number, timestamp=f"2100-01-01T00:00:{second:02}.000Z")
+    def told(number: int, second: int, at: float, day: str = "2100-01-01T00:00") -> list[str]:
+        said = state(headerId=2**20 + number, timestamp=f"{day}:{second:02}.000Z")
         return [each.text for each in rig.vehicle.state(at, said) if isinstance(each, LogLine)]
 
     rig.vehicle.connection(0.0, {"connectionState": "ONLINE"})
     assert not told(1, 0, 100.0) and not told(2, 1, 102.5)
     assert told(3, 2, 111.0) == ["the states of arboleda/agv1 come 9 s late, or its clock was set back"]
     assert not told(4, 12, 112.0)
+    assert not told(5, 59, 86_499.0, day="2100-01-01T23:59")
+    assert not told(6, 1, 86_501.0, day="2100-01-02T00:00")
 
 
 def test_what_was_not_sent_is_not_open(rig: Rig) -> None:
