@@ -139,7 +139,8 @@ def _open62541(stage: Stage) -> Played:
 def _node_opcua(stage: Stage) -> Played:
     node = need_tool("node")
     pki = stage.folder.with_name("pki")
-    peer = stage.started(node, str(HERE / "press_node.js"), str(NODE), str(pki))
+    server = (node, str(HERE / "press_node.js"), str(NODE), str(pki))
+    peer = stage.started(*_script("press.py"), "node_opcua", *server)
     cable, port = stage.cable(at_port(peer.port))
     return peer, cable, plants.press(stage.folder, OPCUA.replace("ns=2;", "nsu=urn:press;") % port)
 

@@ -1,6 +1,6 @@
 """The press of a PLC behind a library of others, in a process of its own; nothing of Arboleda in it.
 
-    press.py snap7 | open62541 | libmodbus LIBRARY | libmodbus LIBRARY LINE
+    press.py snap7 | open62541 | node_opcua COMMAND... | libmodbus LIBRARY | libmodbus LIBRARY LINE
 
 It prints `ready PORT`, then a line for each thing it does, with the time: `begin NUMBER AT`, `end NUMBER AT`,
 `drop NUMBER AT` where a stop ends work, `boot 0 AT`. Its input is told `takes SECONDS`, how long each work
@@ -10,7 +10,9 @@ takes, `refuses`, that the next order is, and `boots`.
 from __future__ import annotations
 
 import ctypes
+import json
 import socket
+import subprocess
 import sys
 import threading
 import time
@@ -219,30 +221,41 @@ def libmodbus(press: Press, library: str, line: str = "") -> tuple[int, Callable
     return port, scan
 
 
+def shown(press: Press) -> dict[str, object]:
+    """Variables of OPC UA, in the order in which they change: `done` is last, as facts are there before it."""
+    facts = {"strokes": press.strokes, "guard": ("open", "closed")[press.guard], "seen": "good"}
+    state = {"state": ("stopped", "moving", "latched")[press.state], "boot": press.boots}
+    ends = {"accepted": press.accepted, "rejected": press.rejected, "done": press.done}
+    return facts | state | {"reason": BUSY, "failed": 0, "failure": 0} | ends
+
+
+def methods(press: Press) -> dict[str, tuple[Callable[..., None], tuple[str, ...]]]:
+    """Methods of OPC UA: orders and stops, each with its arguments."""
+
+    def order(verb: int) -> Callable[..., None]:
+        return lambda *given: press.take(Order(given[-1], verb, given[0]))
+
+    return {
+        "Open": (order(OPEN), ("number",)),
+        "Close": (order(CLOSE), ("number",)),
+        "Press": (order(PRESS), ("strokes", "number")),
+        "Measure": (order(MEASURE), ("number",)),
+        "Halt": (lambda: press.stop(latch=False), ()),
+        "Latch": (lambda: press.stop(latch=True), ()),
+        "Clear": (press.clear, ()),
+    }
+
+
 def open62541(press: Press) -> tuple[int, Callable[[], None]]:
-    """The server of open62541, by its Python library o6: orders and stops are methods."""
+    """The server of open62541, by its Python library o6."""
     o6: Any = import_module("o6")
-    ns0: Any = import_module("o6.ns").ns0
+    argument: Any = import_module("o6.ns").ns0.datatypes.Argument
     port = free_port()
     server = o6.Server(port=port)
     device = server.addObject("Device", server.objectsNode, nodeId="ns=1;s=Device")
-    numbers = ("boot", "accepted", "done", "rejected", "reason", "failed", "failure", "strokes")
 
-    def shown() -> dict[str, object]:
-        facts = {"strokes": press.strokes, "guard": ("open", "closed")[press.guard], "seen": "good"}
-        state = {"state": ("stopped", "moving", "latched")[press.state], "boot": press.boots}
-        ends = {"accepted": press.accepted, "rejected": press.rejected, "done": press.done}
-        return facts | state | {"reason": BUSY, "failed": 0, "failure": 0} | ends
-
-    nodes = {
-        name: server.addVariable(
-            name,
-            server.objectsNode,
-            o6.UInt16(value) if name in numbers else value,
-            nodeId=f"ns=1;s={name}",
-        )
-        for name, value in shown().items()
-    }
+    def typed(value: object) -> object:
+        return o6.UInt16(value) if isinstance(value, int) else value
 
     def act(does: Callable[..., None]) -> Callable[..., tuple[object, ...]]:
         def call(_node: object, *given: int) -> tuple[object, ...]:
@@ -251,31 +264,21 @@ def open62541(press: Press) -> tuple[int, Callable[[], None]]:
 
         return call
 
-    def order(verb: int) -> Callable[..., tuple[object, ...]]:
-        return act(lambda *given: press.take(Order(given[-1], verb, given[0])))
-
-    number, strokes = (
-        ns0.datatypes.Argument(name=name, dataType=o6.UInt16, valueRank=-1) for name in ("number", "strokes")
-    )
-    methods = {
-        "Open": (order(OPEN), [number]),
-        "Close": (order(CLOSE), [number]),
-        "Press": (order(PRESS), [strokes, number]),
-        "Measure": (order(MEASURE), [number]),
-        "Halt": (act(lambda: press.stop(latch=False)), []),
-        "Latch": (act(lambda: press.stop(latch=True)), []),
-        "Clear": (act(press.clear), []),
+    nodes = {
+        name: server.addVariable(name, server.objectsNode, typed(value), nodeId=f"ns=1;s={name}")
+        for name, value in shown(press).items()
     }
-    for name, (callback, given) in methods.items():
-        server.addMethod(name, device, callback, inputArgs=given, nodeId=f"ns=1;s={name}")
+    for name, (does, given) in methods(press).items():
+        arguments = [argument(name=each, dataType=o6.UInt16, valueRank=-1) for each in given]
+        server.addMethod(name, device, act(does), inputArgs=arguments, nodeId=f"ns=1;s={name}")
     before: dict[str, object] = {}
 
     def scan() -> None:
         press.work()
-        now = shown()
+        now = shown(press)
         for name, value in now.items():
             if before.get(name) != value:
-                nodes[name](o6.UInt16(value) if name in numbers else value)
+                nodes[name](typed(value))
         before.update(now)
 
     scan()
@@ -284,9 +287,44 @@ def open62541(press: Press) -> tuple[int, Callable[[], None]]:
     return port, scan
 
 
+def node_opcua(press: Press, *command: str) -> tuple[int, Callable[[], None]]:
+    """The server of node-opcua, in a process that hands its calls over."""
+    server = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    assert server.stdin is not None and server.stdout is not None
+    calls, answers = server.stdout, server.stdin
+    acts, before = methods(press), shown(press)
+
+    @locked
+    def tell(press: Press, **more: object) -> None:
+        before.update(shown(press))
+        print(json.dumps({"shown": before, **more}), file=answers, flush=True)
+
+    def hear() -> None:
+        for line in calls:  # the server prints others, too
+            word, *call = line.split() or [""]
+            if word == "call":
+                acts[call[0]][0](*map(int, call[1:]))
+                tell(press, answers=True)
+
+    def scan() -> None:
+        press.work()
+        if shown(press) != before:
+            tell(press)
+
+    tell(press, methods={name: given for name, (_, given) in acts.items()})
+    port = next(int(line.split()[1]) for line in calls if line.startswith("ready"))
+    threading.Thread(target=hear, daemon=True).start()
+    return port, scan
+
+
+PEERS: dict[str, Callable[..., tuple[int, Callable[[], None]]]] = {
+    each.__name__: each for each in (snap7, libmodbus, open62541, node_opcua)
+}
+
+
 def main(name: str, *where: str) -> None:
     press = Press()
-    port, scan = {"snap7": snap7, "libmodbus": libmodbus, "open62541": open62541}[name](press, *where)
+    port, scan = PEERS[name](press, *where)
 
     def run() -> None:
         while True:
