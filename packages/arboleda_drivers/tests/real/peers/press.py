@@ -222,7 +222,7 @@ def libmodbus(press: Press, library: str, line: str = "") -> tuple[int, Callable
 
 
 def shown(press: Press) -> dict[str, object]:
-    """Variables of OPC UA, in the order in which they change: `done` is last, as facts are there before it."""
+    """Variables of OPC UA in the order in which they change: `done` is last, as facts are there before."""
     facts = {"strokes": press.strokes, "guard": ("open", "closed")[press.guard], "seen": "good"}
     state = {"state": ("stopped", "moving", "latched")[press.state], "boot": press.boots}
     ends = {"accepted": press.accepted, "rejected": press.rejected, "done": press.done}
