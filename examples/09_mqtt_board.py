@@ -17,8 +17,7 @@ from paho.mqtt.enums import CallbackAPIVersion
 
 from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.adapters.broker_login import address as broker_address
-from arboleda.extension import load
-from arboleda.model.errors import StartError
+from arboleda.extension import StartError, load
 from arboleda.runtime.build import Options, build
 from arboleda_class.lessons import spoken
 

@@ -16,9 +16,8 @@ from paho.mqtt.enums import CallbackAPIVersion
 
 from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.cli.session import ros_link
-from arboleda.extension import load
-from arboleda.model.messages import MotionState
-from arboleda.model.sentence import Sentence
+from arboleda.drivers import MotionState
+from arboleda.extension import Sentence, load
 from arboleda.runtime.build import App, Options, build
 from arboleda_class.lessons import spoken
 
