@@ -44,7 +44,9 @@ class GoalAnswer:
 
 @dataclass(frozen=True, kw_only=True)
 class GoalResult:
-    """Event: the result of a goal; `stalled` and `missed` are fields of some actions only."""
+    """Event: the result of a goal; `stalled` and `missed` are fields of some actions only, `message` is the
+    whole result where a mapping names its fields.
+    """
 
     id: str
     status: Status
@@ -52,6 +54,7 @@ class GoalResult:
     text: str = ""
     stalled: bool = False
     missed: tuple[int, ...] = ()
+    message: Any = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from importlib import import_module
 from operator import attrgetter
 from typing import Any
 
-from arboleda.drivers import DriverError
 from arboleda_drivers.ros_action.health import Call, CallAnswer, Health, HealthReading
+from arboleda_drivers.ros_action.interfaces import interface
 
 SUCCEEDED = 4  # action_msgs/msg/GoalStatus
 Take = Callable[[Any, HealthReading | CallAnswer], None]
@@ -23,7 +22,7 @@ class HealthLink:
         from arboleda_ros.qos import SENSOR, VIEW
 
         self._take, self._field = take, attrgetter(health.field)
-        message = _type(health.type)
+        message = interface(health.type)
         # One hears publishers of any quality of service, the other the last value of those that keep it.
         for profile in (SENSOR, VIEW):
             node.create_subscription(message, health.topic, self._read, profile)
@@ -31,7 +30,7 @@ class HealthLink:
 
     def make(self, call: Call) -> None:
         """Make a call; its answer is taken later."""
-        client, type = self._clients[call.name], _type(call.type)
+        client, type = self._clients[call.name], interface(call.type)
         if not (client.service_is_ready() if call.service else client.server_is_ready()):
             self._answer(call, False, "is not there")
         elif call.service:
@@ -68,20 +67,11 @@ def _client(node: Any, call: Call) -> Any:
     from rclpy.action import ActionClient
 
     if call.service:
-        return node.create_client(_type(call.type), call.service)
-    return ActionClient(node, _type(call.type), call.action)
+        return node.create_client(interface(call.type), call.service)
+    return ActionClient(node, interface(call.type), call.action)
 
 
 def _filled(request: Any, call: Call) -> Any:
     for name, value in call.request.items():
         setattr(request, name, value)
     return request
-
-
-def _type(name: str) -> Any:
-    package, kind, type = name.split("/")
-    try:
-        return getattr(import_module(f"{package}.{kind}"), type)
-    except (ImportError, AttributeError) as error:
-        why = f"it needs {name}, which cannot be imported here ({error})"
-        raise DriverError(f"{why}: install {package}, and source that ROS 2") from error

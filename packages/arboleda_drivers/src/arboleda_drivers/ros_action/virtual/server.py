@@ -11,8 +11,8 @@ from typing import Any
 
 from arboleda.drivers import DriverError
 from arboleda.extension import StartError
-from arboleda_drivers.ros_action.action_client import action_type
 from arboleda_drivers.ros_action.events import GoalAnswer, GoalResult, Measurement, Status
+from arboleda_drivers.ros_action.interfaces import interface
 from arboleda_drivers.ros_action.virtual.machine import (
     CancelDecision,
     CancelRequest,
@@ -64,7 +64,7 @@ class ActionController:
             why = f"{self._what} needs ROS 2, which cannot be used here ({error})"
             raise StartError(f"{why}; source a ROS 2, or python3 -m pip install 'arboleda[ros]'") from error
         try:
-            self._type = action_type(self._protocol.package, self._protocol.type_name)
+            self._type = interface(f"{self._protocol.package}/action/{self._protocol.type_name}")
         except DriverError as error:
             raise StartError(f"{self._what} cannot be played: {error}") from error
         limit_discovery(os.environ, lan=self._lan)
