@@ -67,7 +67,11 @@ def forms(own: Mapping[str, DriverSpec], words: Mapping[str, str]) -> list[Row]:
     the descriptions of drivers and of their keys.
     """
     rows: list[Row] = [{"name": name, "about": words[name], "keys": [], "why_not": ""} for name in OF_DEVICES]
-    return [*rows, *(_form(name, own, words) for name in _nameable(own))]
+    made = {row["name"]: row for row in (_form(name, own, words) for name in _nameable(own))}
+    for row in rows:  # with keys it is a mapping of the package of drivers, where that is installed
+        found = made.pop(row["name"], row)
+        row |= {} if found["why_not"] else found
+    return [*rows, *made.values()]
 
 
 def written(name: str, texts: Mapping[str, str], own: Mapping[str, DriverSpec]) -> Any:
@@ -75,7 +79,8 @@ def written(name: str, texts: Mapping[str, str], own: Mapping[str, DriverSpec]) 
 
     `texts` are the contents of the fields of the form; ArboledaError where one does not fit.
     """
-    by_name = {} if name in OF_DEVICES else {each.name: each for each in keys(_spec(name, own))}
+    is_plain = name in OF_DEVICES and not any(text.strip() for text in texts.values())
+    by_name = {} if is_plain else {each.name: each for each in keys(_spec(name, own))}
     if strange := sorted(texts.keys() - by_name.keys()):
         raise ArboledaError(f"the driver {name} has no key {quoted(strange[0])}")
     filled = {key: text.strip() for key, text in texts.items() if text.strip()}
