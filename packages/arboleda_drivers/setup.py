@@ -13,6 +13,7 @@ DRIVERS = {  # by the name in a plant file: the folder of the maker, and the cla
     "navigate_to_pose": "nav2.adapter:NavigateToPose",
     "opcua": "opcua.adapter:OpcUa",
     "pylabrobot": "pylabrobot.adapter:PyLabRobot",
+    "ros": "ros_mapping.adapter:RosMapping",
     "s7": "s7.adapter:S7",
     "serial_arm": "serial_arm.adapter:SerialArm",
     "ur": "ur.adapter:Ur",

@@ -50,7 +50,7 @@ def test_these_layers_need_no_other_package(layer: str, allowed: set[str]) -> No
 
 
 ROS = {"rclpy", "std_msgs"}
-SPEAK_ROS = ("gripper_command", "joint_trajectory", "nav2", "ros_action")  # drivers of ROS 2 actions
+SPEAK_ROS = ("gripper_command", "joint_trajectory", "nav2", "ros_action", "ros_mapping")
 
 
 def imports_ros(path: Path) -> bool:

@@ -10,3 +10,5 @@ __all__ = ["arboleda", "lab", "mosquitto", "patient_messages", "peer", "raw_peer
 collect_ignore = [] if find_spec("control_msgs") else ["test_mixed_ros2.py"]  # no wheels have it
 if not all(map(find_spec, ("control_msgs", "nav2_msgs"))):
     collect_ignore = [*collect_ignore, "ros_action/test_virtual_actions.py"]
+if not find_spec("turtlesim"):
+    collect_ignore = [*collect_ignore, "ros_mapping/test_turtle.py"]

@@ -9,7 +9,7 @@ OF_ROBOTS = frozenset(
     {"dobot", "follow_joint_trajectory", "follow_waypoints", "gcode", "navigate_to_pose", "serial_arm", "ur"}
 )
 """Drivers of arms and mobile robots, which are of no declared kind."""
-OF_DEVICES = frozenset({"gripper_command", "modbus", "mqtt", "opcua", "pylabrobot", "s7", "vda5050"})
+OF_DEVICES = frozenset({"gripper_command", "modbus", "mqtt", "opcua", "pylabrobot", "ros", "s7", "vda5050"})
 ALL = OF_ROBOTS | OF_DEVICES
 
 

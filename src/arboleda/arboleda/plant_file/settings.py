@@ -74,7 +74,7 @@ def _inside(document: Document, place: Place, hint: Any, value: Any) -> Any:
     if inner is None or value is None:
         return value
     if get_origin(hint) in (Union, UnionType):
-        return _inside(document, place, inner, value)
+        return _inside(document, place, inner, value) if isinstance(value, dict) else value
     if hint is inner:
         return read(document, place, shape(inner.__name__, inner), inner)
     within = get_args(hint)[-1 if get_origin(hint) is dict else 0]
@@ -90,7 +90,8 @@ def _outer(hint: Any, written: Any) -> Any:
     if next(_dataclasses(hint), None) is None:
         return written
     if get_origin(hint) in (Union, UnionType):
-        return dict[str, Any] | None
+        others = [each for each in get_args(hint) if not is_dataclass(each) and each is not type(None)]
+        return Any if others else dict[str, Any] | None
     return list[Any] if get_origin(hint) is tuple else dict[str, Any]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from arboleda.drivers import Report
+from arboleda.drivers import Report, Value
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +31,7 @@ class Receipts:
 
     def __init__(self) -> None:
         self.news = False
-        self._fields: dict[str, str] = {}
+        self._fields: dict[str, Value] = {}
         self._reported_at = -math.inf
 
     def tell(self, **fields: str) -> None:
@@ -42,6 +42,11 @@ class Receipts:
     def reject(self, id: str, word: str) -> None:
         if id:
             self.tell(rejected=id, refusal=word)
+
+    def answer(self, id: str, value: Value) -> None:
+        """Note the answer to a query."""
+        self._fields |= {"answered": id, "answer": value}
+        self.news = True
 
     def take(self, id: str, look: Look) -> None:
         """Note what a look at the work of a command shows."""

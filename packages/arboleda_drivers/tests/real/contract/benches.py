@@ -14,6 +14,7 @@ from ..modbus import bench as modbus
 from ..nav2 import bench as nav2
 from ..opcua import bench as opcua
 from ..pylabrobot import bench as pylabrobot
+from ..ros_mapping import bench as ros_mapping
 from ..s7 import bench as s7
 from ..serial_arm import bench as serial_arm
 from ..ur import bench as ur
@@ -41,6 +42,7 @@ if find_spec("control_msgs"):  # no wheels have it: `make ros-test` builds it, a
     BENCHES["follow_joint_trajectory"] = joint_trajectory.BENCH
     BENCHES["gripper_command"] = gripper_command.BENCH
     BENCHES["gripper_command_parallel"] = gripper_command.PARALLEL_BENCH
+    BENCHES["ros_mapping"] = ros_mapping.BENCH
 if find_spec("nav2_msgs"):
     BENCHES["navigate_to_pose"] = nav2.BENCH
     BENCHES["follow_waypoints"] = nav2.WAYPOINTS_BENCH
