@@ -97,6 +97,7 @@ class MachineDriver(ABC):
         self._woken, self._waker = socket.socketpair()
         self._thread: threading.Thread | None = None
         self._streams: Streams = {}
+        self._is_to_open = False
 
     @abstractmethod
     def machine(self, devices: Sequence[Robot]) -> ControllerMachine:
@@ -137,8 +138,9 @@ class MachineDriver(ABC):
         while not self._ending.is_set():
             events = self._events()
             with taking([getattr(event, "data", b"") for event in events], self._lose):
-                while any(isinstance(message, Open) for message in self._step(events)):
-                    events = [self._connect()]
+                self._step(events)
+                while self._opens():
+                    self._step([self._connect()])
 
     def _lose(self, why: str) -> None:
         """Forget all that came over this stream."""
@@ -158,6 +160,8 @@ class MachineDriver(ABC):
             self._hear(message)
         elif isinstance(message, Close):
             self._hang_up()
+        elif isinstance(message, Open):
+            self._is_to_open = True  # by the thread that reads: `send` may be what found that it is due
         else:
             with suppress(OSError):  # the thread that reads finds it closed, or that nobody answers
                 self.write(message)
@@ -176,6 +180,12 @@ class MachineDriver(ABC):
             with self._lock:
                 self._hang_up()
         return events
+
+    def _opens(self) -> bool:
+        """True once for each time that the machine wants its streams opened."""
+        with self._lock:
+            opens, self._is_to_open = self._is_to_open, False
+        return opens
 
     def _connect(self) -> object:
         """Open all streams, or report the reason why that is impossible."""
