@@ -36,6 +36,7 @@ ENOUGH = 7  # acts that lead out of any state
 SHORTEST_S, LONGEST_S = 0.05, 0.4  # of works
 GOES = {"order": 46, "cancel": 14, "stop": 14, "cut": 9, "silence": 9, "refusal": 8}
 GOES_BADLY = {"order": 30, "bad": 30, "bad_cancel": 20, "bad_stop": 20}  # with a relay before the line
+DEAF = ("half_open", "reset", "left_over")  # forms in which a stop may not arrive
 LATE_S = (0.05, 1.5)  # by how much an answer comes late, at least and at most
 OVER = ENDED | {TaskState.REFUSED}
 
@@ -127,6 +128,7 @@ class Day:
         self.counts: Counter[str] = Counter()
         self._tasks: list[Task] = []
         self._news = threading.Condition()
+        self._deaf: list[tuple[float, float]] = []  # the times in which a stop may not arrive
         self.form: Form | None = None  # in which the line was bad, in the last order
         self._snapshot: dict[str, Any] = {}
         self._seen_at = self._acted_at = 0.0  # the snapshot, and what was done to the plant
@@ -190,11 +192,14 @@ class Day:
         word = chance.choice(self.forms)
         self.form = Form(word=word, delay_s=round(chance.uniform(*LATE_S), 2) if word in TIMED else 0.0)
         self.counts[f"bad: {word}"] += 1
+        began = time.monotonic()
         with self.relay.bad(self.form):
             time.sleep(wait)
             self._meet(goes, away)
             time.sleep(away)
         time.sleep(SEEN_S)
+        if word in DEAF:
+            self._deaf.append((began, time.monotonic()))
 
     def _wait_for_order(self, task: Task) -> None:
         """Wait until the driver is given an order of the task, it ends, or the cell waits for somebody."""
@@ -304,13 +309,17 @@ class Day:
     def _judge_stands(self) -> None:
         """Whatever was begun before a stop that was answered is over soon."""
         did = self.peer.did
-        for stop in (each for each in self.sent if each.stopped):
+        for stop in (each for each in self.sent if each.stopped and not self._is_deaf(each.began)):
             before = [each for each in did if each.at <= stop.ended]
             if not before or before[-1].word != BEGIN:
                 continue
             over = [each for each in did if each.at > before[-1].at]
             if not over or over[0].at > stop.ended + STANDS_S or over[0].word == BEGIN:
                 self.found.append(f"{before[-1]} went on after {stop.command} was answered")
+
+    def _is_deaf(self, at: float) -> bool:
+        """True while the device may not have heard what was sent."""
+        return any(began <= at <= ended for began, ended in self._deaf)
 
     def _judge_end(self, task: Task) -> None:
         here = [each for each in self.peer.did if task.began <= each.at <= task.ended]
