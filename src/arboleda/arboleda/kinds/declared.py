@@ -430,6 +430,11 @@ def makes_parts(robot: Robot) -> bool:
     return isinstance(robot, Device) and any(verb.makes_part for verb in robot.kind.verbs.values())
 
 
+def verbs_of(robot: Robot) -> tuple[DeviceVerb, ...]:
+    """The verbs of a device of a declared kind; none of any other robot."""
+    return tuple(robot.kind.verbs.values()) if isinstance(robot, Device) else ()
+
+
 def _computed(what: str, function: Computed, *facts: object, **values: Value) -> object:
     """The result of a kind's own function; an exception in it is raised as UseError with its text."""
     try:

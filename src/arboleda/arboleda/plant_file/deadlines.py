@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect
+from arboleda.kinds.declared import DeviceVerb, Effect
 from arboleda.model.plant_model import APART_S, QUIET_S, Cell, Evidence, Robot, Timing
 
 from .document import Document, Place
@@ -85,21 +85,17 @@ def _sentence(robot: Robot, timing: Timing, spare_s: float, needed_s: float) -> 
     return f"{what}; {why}: a deadline_floor_s of {needed_s:g} or more mends that"
 
 
-def is_proven(
-    document: Document, place: Place, kind: DeviceKind, verb: DeviceVerb, evidence: Evidence
-) -> bool:
+def is_proven(document: Document, place: Place, kind: str, verb: DeviceVerb, evidence: Evidence) -> bool:
     """True if a device's reports, with this evidence, can show in the verb's time that the verb is done."""
     here = (*place, "evidence")
     spare_s, needed_s = verb.at_most_s - verb.takes_s, SHOWN_S[evidence]
     if verb.effect is Effect.QUERY and evidence is not Evidence.IDS:
-        why = f"{verb.name} of {kind.name} is a query, and its answer has to name the command"
+        why = f"{verb.name} of {kind} is a query, and its answer has to name the command"
         document.problem(here, f"must be ids: {why}")
     elif verb.effect is Effect.MOTION and evidence is Evidence.JOINTS and not verb.sets_facts:
-        document.problem(here, f"facts cannot prove {verb.name} of {kind.name}: it sets none")
+        document.problem(here, f"facts cannot prove {verb.name} of {kind}: it sets none")
     elif spare_s < needed_s - ROUNDING_S:
-        what = (
-            f"{verb.name} of {kind.name} takes {verb.takes_s:g} s and has an at_most_s of {verb.at_most_s:g}"
-        )
+        what = f"{verb.name} of {kind} takes {verb.takes_s:g} s and has an at_most_s of {verb.at_most_s:g}"
         document.problem(place, f"{what}; its end may show {needed_s:g} s later, so give it that much more")
     else:
         return True

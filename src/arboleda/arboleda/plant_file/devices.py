@@ -182,7 +182,7 @@ def _machine(document: Document, place: Place, kinds: Kinds) -> Device | None:
         return None
     evidence = EVIDENCE.get(shape.evidence) or Evidence(shape.evidence)
     name = shape.name or str(place[-1])
-    proven = [is_proven(document, place, kind, verb, evidence) for verb in kind.verbs.values()]
+    proven = [is_proven(document, place, kind.name, verb, evidence) for verb in kind.verbs.values()]
     if not all(proven):
         return None
     return Device(

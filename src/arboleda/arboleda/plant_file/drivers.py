@@ -9,7 +9,7 @@ from typing import Any
 
 from arboleda.drivers.port import GROUP, DriverSpec, FitsDevice, GivesEvidence, ShowsMessages, spec_of
 from arboleda.host.packages import entry_points
-from arboleda.kinds.declared import Device
+from arboleda.kinds.declared import verbs_of
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import DriverUse, Evidence, Link, PlantModel, Robot
 
@@ -146,9 +146,8 @@ def _check(document: Document, place: Place, device: Robot) -> None:
             problems = [((), error_text(error))]
     for inside, sentence in problems:
         document.problem((*place, device.driver.name, *inside), plain(sentence, LONGEST))
-    if not problems and isinstance(device, Device):
-        for verb in device.kind.verbs.values():
-            is_proven(document, place[:-1], device.kind, verb, device.evidence)
+    for verb in () if problems else verbs_of(device):
+        is_proven(document, place[:-1], device.kind_name, verb, device.evidence)
 
 
 def _settings(document: Document, place: Place, spec: DriverSpec, used: PythonUses) -> Any:
