@@ -58,6 +58,10 @@ class Machine:
         self._histories = {end: GoalHistory(self._name) for end in ends if end.kind == "action"}
         verbs = {keys.end(verb) for verb in keys.verbs.values()}
         self._numbered = self._histories.get(next(iter(verbs))) if len(verbs) == 1 else None
+        kinds, sent = devices[0].kind.verbs.values(), keys.verbs
+        published = [each for each in kinds if each.name in sent and sent[each.name].publish]
+        motions = [each for each in published if each.effect is Effect.MOTION]
+        self._moving = {name for each in motions for name, _ in each.sets}  # facts that change while it moves
         self._jobs: dict[End, Job] = {}
         self._out: list[Message] = []
         self._receipts = Receipts()
@@ -301,13 +305,13 @@ class Machine:
 
     # What the plant hears.
 
-    def _state(self) -> MotionState:
+    def _state(self, now: float) -> MotionState:
         told = STATES[self._told.state]
         at_work = self._asks.is_stopping or any(each.is_work for each in self._jobs.values())
         goes_on = any(history.has_earlier_goal for history in self._histories.values())
         if told is not MotionState.STOPPED:
             return told
-        if at_work or goes_on:
+        if at_work or goes_on or self._told.changes(now, self._moving):
             return MotionState.MOVING
         return MotionState.STOP_LATCHED if self._latched else told
 
@@ -318,7 +322,7 @@ class Machine:
             at=now,
             robot=self._name,
             boot_id=self._presence.boot,
-            state=self._state(),
+            state=self._state(now),
             facts=self._told.facts,
             unknown=self._told.unknown,
             receipt=None if numbered is None else numbered.receipt,

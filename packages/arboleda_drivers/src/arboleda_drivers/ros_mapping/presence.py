@@ -46,7 +46,7 @@ class Presence:
 
     def find(self, now: float, found: Found) -> list[End]:
         """Note who is there; returns those that were started anew."""
-        return [end for end, ids in found.items() if self._see(now, end, ids)]
+        return [end for end, ids in found.items() if end in self._found and self._see(now, end, ids)]
 
     def _see(self, now: float, end: End, ids: tuple[int, ...]) -> bool:
         self._found[end] = ids

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 
@@ -13,6 +14,7 @@ from .paths import value_at
 
 Told = End | tuple[str, str]
 """Where something is told: a topic, or ("feedback", verb) or ("result", verb)."""
+STILL_S = 1.0  # a fact that has not changed for this time stands still
 TEXT = FactType(type=str, first="")
 STATE = FactType(type=str, words=tuple(STATES), first="stopped")
 
@@ -31,6 +33,7 @@ class ToldFacts:
             self._from.setdefault(_told_in(keys, keys.state), []).append(row)
         self._values: dict[str, Value] = {}
         self._meant: dict[str, Value] = {}  # what verbs have set last
+        self._changed_at: dict[str, float] = {}
         self._bad: dict[Told, str] = {}
         self._heard_at: dict[Told, float] = {}
 
@@ -55,6 +58,10 @@ class ToldFacts:
         """True where all these facts are told so."""
         return all(self._values.get(name) == value for name, value in facts)
 
+    def changes(self, now: float, names: Iterable[str]) -> bool:
+        """True where one of these facts has changed a moment ago."""
+        return any(now < self._changed_at.get(name, -math.inf) + STILL_S for name in names)
+
     def missing(self, now: float) -> str:
         """The reason why the device is not known well enough; "" if it is."""
         for why in self._bad.values():
@@ -74,7 +81,10 @@ class ToldFacts:
         for name, source, of in self._from.get(told, []):
             try:
                 raw, where = value_at(message, source.path), f"{_name(told)} {source.path}"
-                self._values[name] = self._read(name, source, of, raw, where)
+                value = self._read(name, source, of, raw, where)
+                if name in self._values and self._values[name] != value:
+                    self._changed_at[name] = now
+                self._values[name] = value
             except DriverError as error:
                 self._values.pop(name, None)
                 if isinstance(told, End):

@@ -7,14 +7,15 @@ from types import SimpleNamespace
 
 import pytest
 
-from arboleda.drivers import MotionState, Report, Stop, StopMode
+from arboleda.drivers import Evidence, MotionState, Report, Stop, StopMode
 from arboleda_drivers.connections.link import CommandNotSent
 from arboleda_drivers.ros_action.events import Status
 from arboleda_drivers.ros_mapping.events import CancelGoals, MessageHeard, Response, Send
 from arboleda_drivers.ros_mapping.keys import End
 
-from .rover import GO, GRIP, LOOK, POSE, Rig, rover
+from .rover import GO, GRIP, LOOK, PLANT, POSE, Rig, rover
 
+STOP = "{publish: /halt, type: std_msgs/msg/Empty}"
 HALT = Stop(id="9-9", robot="rover", mode=StopMode.HALT)
 MAPPED_STOP = ("            namespace: /rover\n", "            namespace: /rover\n            halt: {}\n")
 
@@ -241,6 +242,25 @@ def test_a_stop_of_its_own_is_called_beside_the_cancels_until_it_says_yes(tmp_pa
 def test_what_is_published_counts_as_done_once_it_has_left_and_only_a_switch_does(rig: Rig) -> None:
     rig.ask(rig.told("9-1", "horn", loud=True))
     assert rig.last.done == "9-1" and rig.last.fact("loud") is True and rig.count(Send) == 1
+
+
+def test_a_published_motion_is_seen_by_the_facts_that_change(tmp_path: Path) -> None:
+    action = "action: go\n                type: rover_msgs/action/Go"
+    rest = "\n                done: {code: 0}\n                failure: {field: code, words: {blocked: 3}}"
+    text = PLANT.replace(action, "publish: go\n                type: rover_msgs/msg/Go").replace(rest, "")
+    for each in ("      look: {effect", "              look: {service", "              left: {feedback"):
+        text = "\n".join(line for line in text.split("\n") if not line.startswith(each))
+    text = text.replace(", left: number", "").replace(MAPPED_STOP[0], MAPPED_STOP[1].format(STOP))
+    rig = Rig(rover(tmp_path, PLANT, text))
+    rig.found = {end: ids for end, ids in rig.found.items() if end != GO}
+    rig.found |= {End("publish", name): (0,) for name in ("/rover/go", "/halt")}
+    rig.wait(1.1)
+    rig.ask(rig.told("9-1", "go", x=2.0))
+    rig.x = 1.0
+    rig.wait(0.2)
+    assert rig.device.evidence is Evidence.JOINTS and rig.last.state is MotionState.MOVING
+    rig.wait(1.0)
+    assert rig.last.state is MotionState.STOPPED and rig.last.done is None
 
 
 def test_goals_of_an_earlier_start_count_as_motion(rig: Rig) -> None:
