@@ -14,6 +14,7 @@ from arboleda_drivers.ros_action.events import (
     GoalList,
     GoalResult,
     ListedGoal,
+    Said,
     ServersFound,
     Status,
 )
@@ -21,7 +22,6 @@ from arboleda_drivers.ros_action.events import (
 REJECTED = 1  # CancelGoal: the server goes on with what it does
 STATUSES = {4: Status.SUCCEEDED, 5: Status.CANCELED, 6: Status.ABORTED}
 """The ends of a goal in action_msgs/msg/GoalStatus."""
-Said = ServersFound | GoalAnswer | GoalResult | GoalList | CancelAnswer
 
 
 class ActionLink:

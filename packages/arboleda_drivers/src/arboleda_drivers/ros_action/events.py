@@ -122,16 +122,7 @@ class UnusableMessage:
     why: str
 
 
-Event = (
-    ServersFound
-    | Measurement
-    | GoalAnswer
-    | GoalResult
-    | GoalList
-    | CancelAnswer
-    | CommandRequest
-    | HealthReading
-    | CallAnswer
-    | UnusableMessage
-)
+Said = GoalAnswer | GoalResult | GoalList | CancelAnswer
+"""What the server of an action says."""
+Event = ServersFound | Measurement | Said | CommandRequest | HealthReading | CallAnswer | UnusableMessage
 Message = SendGoal | CancelAll | MakeCall | CommandNotSent | Report

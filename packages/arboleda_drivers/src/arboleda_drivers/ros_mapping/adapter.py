@@ -13,7 +13,7 @@ from arboleda_drivers.connections.device_feed import taking
 from arboleda_drivers.connections.link import CommandNotSent
 from arboleda_drivers.ros_action.action_client import LOOK_S
 from arboleda_drivers.ros_action.action_link import ActionLink
-from arboleda_drivers.ros_action.events import UnusableMessage
+from arboleda_drivers.ros_action.events import Said, UnusableMessage
 from arboleda_drivers.ros_action.interfaces import interface
 from arboleda_drivers.ros_mapping.events import (
     ActionSaid,
@@ -141,11 +141,10 @@ class RosMapping:
 
     def _send(self, send: Send) -> None:
         end = self._settings.end(send.call)
-        payload = self._filled(send.call, send.call.filled({})) if send.payload is None else send.payload
+        payload = send.payload or self._filled(send.call, send.call.filled({}))
         if end.kind == "action":
-            verb = send.id and next(name for name, verb in self._settings.verbs.items() if verb is send.call)
-            feedback = partial(self._feedback, ("feedback", verb))
-            self._actions[end].send(send.id, send.uuid, payload, feedback)
+            verb = next(name for name, verb in self._settings.verbs.items() if verb is send.call)
+            self._actions[end].send(send.id, send.uuid, payload, partial(self._feedback, verb))
         elif end.kind == "service":
             self._clients[end].call_async(payload).add_done_callback(partial(self._responded, send.id))
         else:
@@ -153,11 +152,11 @@ class RosMapping:
 
     # What comes back, in the thread of ROS 2.
 
-    def _say(self, end: End, said: Any) -> None:
+    def _say(self, end: End, said: Said) -> None:
         self._step(ActionSaid(end=end, said=said))
 
-    def _feedback(self, told: Told, message: Any) -> None:
-        self._told(told, message.feedback)
+    def _feedback(self, verb: str, message: Any) -> None:
+        self._told(("feedback", verb), message.feedback)
 
     def _told(self, told: Told, message: Any) -> None:
         with taking(message, self._lose):

@@ -7,7 +7,7 @@ from typing import Any
 
 from arboleda.drivers import Report
 from arboleda_drivers.connections.link import CommandNotSent, CommandRequest
-from arboleda_drivers.ros_action.events import CancelAnswer, GoalAnswer, GoalList, GoalResult, UnusableMessage
+from arboleda_drivers.ros_action.events import Said, UnusableMessage
 
 from .keys import Call, End
 from .presence import Found
@@ -33,7 +33,7 @@ class ActionSaid:
     """Event: what the server of an action has said."""
 
     end: End
-    said: GoalAnswer | GoalResult | GoalList | CancelAnswer
+    said: Said
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -27,7 +27,7 @@ from arboleda.drivers import (
 from arboleda_drivers.connections.link import CommandNotSent
 from arboleda_drivers.connections.receipts import Receipts
 from arboleda_drivers.plc.plc_snapshot import STATES
-from arboleda_drivers.ros_action.events import CancelAnswer, GoalAnswer, GoalList, GoalResult, Status
+from arboleda_drivers.ros_action.events import CancelAnswer, GoalAnswer, GoalList, GoalResult, Said, Status
 from arboleda_drivers.ros_action.goal import SETTLE_S
 from arboleda_drivers.ros_action.goal_history import GoalHistory
 from arboleda_drivers.ros_action.homing import LONGEST_WORD
@@ -229,9 +229,7 @@ class Machine:
 
     # What is heard.
 
-    def _hear_action(
-        self, now: float, end: End, said: GoalAnswer | GoalResult | GoalList | CancelAnswer
-    ) -> None:
+    def _hear_action(self, now: float, end: End, said: Said) -> None:
         each, history = self._jobs.get(end), self._histories[end]
         if isinstance(said, GoalAnswer):
             history.answer(said.id, accepted=said.accepted)

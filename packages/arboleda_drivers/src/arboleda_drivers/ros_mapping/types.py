@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
@@ -49,32 +50,36 @@ def message_of(call: Call, fields: Fields, now: object = None) -> Any:
 def heard_in(name: str, part: str, path: str) -> None:
     """Raises DriverError unless a path leads to a value in that part of a type, "" for the type itself."""
     type = interface(name)
-    slot: Any = None
-    owner = getattr(type, part) if part else type
-    for step in steps(path):
-        if isinstance(step, int):
-            slot = _item(slot, path)
-        else:
-            owner = owner if slot is None else _class(slot, path)
-            slot = _slot(owner, step)
-    _refuse_whole(slot, path)
+    _refuse_whole(_slot_at(getattr(type, part) if part else type, steps(path), path), path)
 
 
 def _set(message: Any, path: str, value: Any, now: object) -> None:
     *way, last = steps(path)
-    inner, slot = message, None
+    slot = _slot_at(type(message), (*way, last), path)
+    if isinstance(last, int):
+        raise DriverError(f"{path} is one item of a list of values; give the list as a whole, [1, 2]")
+    inner = message
+    for at, step in enumerate(way, start=1):
+        if isinstance(step, str):
+            inner = getattr(inner, step)
+            continue
+        while len(inner) <= step:
+            inner.append(_class(_slot_at(type(message), way[:at], path), path)())
+        inner = inner[step]
+    setattr(inner, last, _value(slot, path, value, now))
+
+
+def _slot_at(owner: Any, way: Sequence[str | int], path: str) -> Any:
+    """The type of the field to which the way leads, as ROS 2 declares it."""
+    slot: Any = None
     for step in way:
         if isinstance(step, str):
-            slot, inner = _slot(type(inner), step), getattr(inner, step)
+            slot = _slot(owner if slot is None else _class(slot, path), step)
+        elif not hasattr(slot, "value_type"):
+            raise DriverError(f"{path}: a number in brackets is for lists, and this is none")
         else:
-            slot = _item(slot, path)
-            while len(inner) <= step:
-                inner.append(_class(slot, path)())
-            inner = inner[step]
-    if isinstance(last, int):
-        _item(slot, path)
-        raise DriverError(f"{path} is one item of a list of values; give the list as a whole, [1, 2]")
-    setattr(inner, last, _value(_slot(type(inner), last), path, value, now))
+            slot = slot.value_type
+    return slot
 
 
 def _slot(type: Any, name: str) -> Any:
@@ -82,12 +87,6 @@ def _slot(type: Any, name: str) -> Any:
     if name not in known:
         raise DriverError(f"{type.__name__} has no field {name}; {among(name, known)}")
     return known[name]
-
-
-def _item(slot: Any, path: str) -> Any:
-    if not hasattr(slot, "value_type"):
-        raise DriverError(f"{path}: a number in brackets is for lists, and this is none")
-    return slot.value_type
 
 
 def _class(slot: Any, path: str) -> Any:

@@ -7,9 +7,11 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from tests.packages import ROOT
 
 from arboleda.drivers import DriverError, Evidence, OnStop
 from arboleda.model.errors import ConfigError
+from arboleda.plant_file.loader import load
 from arboleda_drivers.ros_mapping.keys import Call, Qos, Verb
 from arboleda_drivers.ros_mapping.paths import steps, value_at
 from arboleda_drivers.ros_mapping.settings import Settings
@@ -147,3 +149,8 @@ def test_a_path_leads_into_lists_and_ends_where_they_do() -> None:
     for wrong in ("a b", ".a", "[0]", "a.", ""):
         with pytest.raises(DriverError):
             steps(wrong)
+
+
+def test_the_example_is_good() -> None:
+    turtle = load(ROOT / "examples/turtle/pond.yaml").robots["turtle"]
+    assert turtle.driver is not None and turtle.driver.name == "ros" and turtle.evidence is Evidence.IDS
