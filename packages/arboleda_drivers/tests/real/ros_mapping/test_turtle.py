@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import threading
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -19,41 +18,26 @@ class Turtle:
 
     def __init__(self) -> None:
         from rclpy.action import ActionServer, CancelResponse
-        from rclpy.context import Context
-        from rclpy.executors import SingleThreadedExecutor
-        from rclpy.node import Node
         from turtlesim.action import RotateAbsolute
         from turtlesim.msg import Pose
         from turtlesim.srv import SetPen
 
+        from arboleda_ros.link import connect
+
         self.theta, self.pens = 0.0, list[int]()
         self._goal: Any = None
-        self._context = Context()
-        self._context.init()
-        node = self._node = Node("turtlesim", context=self._context)
+        self._link = connect()
+        node = self._link.node("turtlesim")
         self._pose, self._result = Pose, RotateAbsolute.Result
         self._poses = node.create_publisher(Pose, "/turtle1/pose", 10)
         node.create_service(SetPen, "/turtle1/set_pen", self._set_pen)
         node.create_timer(STEP_S, self._turn)
         name, accept = "/turtle1/rotate_absolute", lambda handle: CancelResponse.ACCEPT
         self._server = ActionServer(node, RotateAbsolute, name, self._rotate, cancel_callback=accept)
-        self._executor = SingleThreadedExecutor(context=self._context)
-        self._executor.add_node(node)
-        self._ending = threading.Event()
-        self._thread = threading.Thread(target=self._spin, name="turtlesim", daemon=True)
-        self._thread.start()
+        self._link.start()
 
     def close(self) -> None:
-        self._ending.set()
-        self._thread.join()
-        self._executor.shutdown()
-        self._server.destroy()
-        self._node.destroy_node()
-        self._context.try_shutdown()
-
-    def _spin(self) -> None:
-        while not self._ending.is_set():
-            self._executor.spin_once(timeout_sec=STEP_S)
+        self._link.close()
 
     def _set_pen(self, request: Any, response: Any) -> Any:
         self.pens.append(request.off)
