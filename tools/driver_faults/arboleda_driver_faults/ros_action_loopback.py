@@ -9,12 +9,11 @@ from typing import Any
 
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
+from arboleda_drivers.connections.link import CommandNotSent, CommandRequest
 from arboleda_drivers.nav2.localisation import MapPose
 from arboleda_drivers.ros_action.events import (
     CancelAll,
     CancelAnswer,
-    CommandNotSent,
-    CommandRequest,
     Event,
     GoalAnswer,
     GoalList,

@@ -13,11 +13,10 @@ from typing import Any, ClassVar
 
 from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot
 from arboleda_drivers.connections.device_feed import taking
+from arboleda_drivers.connections.link import CommandNotSent, CommandRequest
 from arboleda_drivers.ros_action.action_link import ActionLink
 from arboleda_drivers.ros_action.events import (
     CancelAll,
-    CommandNotSent,
-    CommandRequest,
     Event,
     MakeCall,
     Measurement,

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Any
 
-from arboleda.drivers import Command, Report
+from arboleda.drivers import Report
+from arboleda_drivers.connections.link import CommandNotSent, CommandRequest
 
 from .health import Call, CallAnswer, HealthReading
 
@@ -81,13 +82,6 @@ class CancelAnswer:
 
 
 @dataclass(frozen=True, kw_only=True)
-class CommandRequest:
-    """Event: the plant commands the device."""
-
-    command: Command
-
-
-@dataclass(frozen=True, kw_only=True)
 class SendGoal:
     """Message: send the server a goal by the id `uuid`, of 16 bytes; `goal` is of the action's own kind."""
 
@@ -106,13 +100,6 @@ class MakeCall:
     """Message: make a call that leads the device out of a stop."""
 
     call: Call
-
-
-@dataclass(frozen=True, kw_only=True)
-class CommandNotSent:
-    """Message: the command that the plant gave cannot leave."""
-
-    why: str
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,13 +6,12 @@ import math
 from collections.abc import Sequence
 
 from arboleda.drivers import Command, Home, MotionState, Report, Stop, StopMode, lost, plain
+from arboleda_drivers.connections.link import CommandNotSent, CommandRequest
 from arboleda_drivers.connections.receipts import Receipts
 
 from .events import (
     CancelAll,
     CancelAnswer,
-    CommandNotSent,
-    CommandRequest,
     Event,
     GoalAnswer,
     GoalList,

@@ -11,12 +11,12 @@ from arboleda.drivers import Home, MotionState, MoveJoints, Report, SetEffector,
 from arboleda.model.plant_model import Evidence, Link
 from arboleda.testing.plants import shipped
 from arboleda.testing.storage_layout import StorageLayout
+from arboleda_drivers.connections.link import CommandNotSent
 from arboleda_drivers.joint_trajectory.machine import machine
 from arboleda_drivers.joint_trajectory.settings import Settings
 from arboleda_drivers.ros_action.events import (
     CancelAll,
     CancelAnswer,
-    CommandNotSent,
     GoalAnswer,
     GoalList,
     GoalResult,

@@ -11,6 +11,7 @@ from arboleda.drivers import FollowPath, Home, MotionState, MoveJoints, Report, 
 from arboleda.kinds.floor import Placement
 from arboleda.kinds.mobile import Grid, Mobile
 from arboleda.model.plant_model import Evidence, Link
+from arboleda_drivers.connections.link import CommandNotSent
 from arboleda_drivers.nav2.localisation import MapPose, OdometryPose
 from arboleda_drivers.nav2.machine import Route, to_pose, waypoints
 from arboleda_drivers.nav2.pose import Pose
@@ -18,7 +19,6 @@ from arboleda_drivers.nav2.settings import ToPose, Waypoints
 from arboleda_drivers.ros_action.events import (
     CancelAll,
     CancelAnswer,
-    CommandNotSent,
     GoalAnswer,
     GoalResult,
     SendGoal,

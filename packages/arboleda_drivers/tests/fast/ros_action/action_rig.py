@@ -6,7 +6,13 @@ from abc import ABC, abstractmethod
 
 from arboleda.drivers import Report
 from arboleda.model.commands import Command
-from arboleda_drivers.ros_action.events import CommandRequest, Event, GoalAnswer, Message, ServersFound
+from arboleda_drivers.connections.link import CommandRequest
+from arboleda_drivers.ros_action.events import (
+    Event,
+    GoalAnswer,
+    Message,
+    ServersFound,
+)
 from arboleda_drivers.ros_action.machine import Machine
 
 SERVER = 7
