@@ -55,6 +55,9 @@ def _kind(document: Document, name: str) -> DeviceKind | None:
     types, whole = _right(facts), _right(verbs)
     if shape is None or types is None or whole is None:
         return None
+    if not facts and not verbs:
+        document.problem(place, "a kind needs verbs, or facts, or both", at=place)
+        return None
     if not _is_free_of(document, place, rules.release_objection(whole)):
         return None
     kind = DeviceKind(name=name, facts=types, verbs=whole)

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from arboleda.kinds import WrittenKind
 from arboleda.kinds.declared import Device, DeviceKind
-from arboleda.model.plant_model import Cell, Evidence, Robot
+from arboleda.kinds.rules import LEAST_S
+from arboleda.model.plant_model import Cell, Evidence, Link, Robot
 
 from . import handovers, needs, own_kinds, part_places, shared, targets
 from .any_cell import check_absence, common_keys
@@ -182,15 +183,20 @@ def _machine(document: Document, place: Place, kinds: Kinds) -> Device | None:
         return None
     evidence = EVIDENCE.get(shape.evidence) or Evidence(shape.evidence)
     name = shape.name or str(place[-1])
+    way = link(document, place, shape.link, OF_DEVICES)
+    if not kind.verbs and way is not Link.DRIVER:
+        here = (*place, "kind")
+        document.problem(here, f"{kind.name} has no verbs; only a device with a driver may have none")
+        return None
     proven = [is_proven(document, place, kind.name, verb, evidence) for verb in kind.verbs.values()]
     if not all(proven):
         return None
     return Device(
         name=name,
         mqtt=shape.mqtt or name,
-        link=link(document, place, shape.link, OF_DEVICES),
+        link=way,
         evidence=evidence,
-        timeout_s=max(verb.at_most_s for verb in kind.verbs.values()),
+        timeout_s=max((verb.at_most_s for verb in kind.verbs.values()), default=LEAST_S),
         has_stop=shape.stop == "supported",
         kind=kind,
     )

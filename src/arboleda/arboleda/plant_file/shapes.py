@@ -210,7 +210,7 @@ class KindShape(Shape):
     """One kind of devices; its name is its key under `kinds:`."""
 
     facts: Any = None
-    verbs: Annotated[dict[str, Any], Field(min_length=1)]
+    verbs: dict[str, Any] = Field(default_factory=dict)
 
 
 class VerbShape(Shape):

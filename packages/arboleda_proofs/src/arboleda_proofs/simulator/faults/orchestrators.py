@@ -82,7 +82,9 @@ def _own(model: PlantModel, target: str) -> tuple[str, ...]:
     robot = model.robots[target]
     if robot.joints:
         return ("move", *(("effector on", "effector off") if robot.has_effector else ())) * 4
-    return ("path",) * 8 if robot.floor_grid else ("order",) * 8
+    if robot.floor_grid:
+        return ("path",) * 8
+    return ("order",) * 8 if robot.verb_names else ()  # some only report
 
 
 def _knows(model: PlantModel, target: str, word: str) -> bool:
