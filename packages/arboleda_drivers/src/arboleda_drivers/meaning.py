@@ -12,6 +12,7 @@ from arboleda.drivers import DriverError, FactType, Value, quoted
 
 SCALARS = (bool, int, float, str)
 LARGEST = 2**63
+TRUTH = {"true": True, "false": False}
 ROUNDING = 1e-9  # share by which a number that was scaled may be off
 
 
@@ -54,7 +55,7 @@ class Meaning:
             raw = raw.value
         if isinstance(raw, str) or not isinstance(raw, SCALARS) or is_number(raw) or isinstance(raw, bool):
             for meant in self._meanings(raw, of):
-                found = of.read(meant)
+                found = _said(meant, of)
                 if found is not None:
                     return found
         raise UnreadableValue(f"{where} is {_shown(raw)}; allowed: {of.allowed()}")
@@ -66,14 +67,14 @@ class Meaning:
     def shown(self, value: Value) -> object:
         """A value that means this one: the opposite of `value`."""
         for word, meant in self.words.items():
-            if word == value:
+            if as_text(word) == as_text(value):
                 return meant[0] if isinstance(meant, list | tuple) else meant
         return value if self.scale == 1 or not is_number(value) else float(value) / self.scale
 
     def problem(self, of: FactType) -> str:
         """The sentence on what does not fit a fact of that type; "" if all does."""
         for word in [*self.words, *([] if self.otherwise is None else [self.otherwise])]:
-            if of.read(word) is None:
+            if _said(word, of) is None:
                 return f"{quoted(word)} is none of its values; allowed: {of.allowed()}"
         for key, is_said in (("near", self.near), ("scale", self.scale != 1)):
             if is_said and of.type not in (int, float):
@@ -99,6 +100,11 @@ class Meaning:
             return min(words, key=lambda word: abs(float(word) - number), default=None)
         stepped = round(number / self.near) * self.near if self.near and of.type is float else number
         return round(stepped) if of.type is int else stepped
+
+
+def _said(word: object, of: FactType) -> Value | None:
+    """The value of that type; a bool may be named by a word of the file, `{true: ON}`."""
+    return of.read(TRUTH.get(word, word) if of.type is bool and isinstance(word, str) else word)
 
 
 def is_number(value: object) -> bool:

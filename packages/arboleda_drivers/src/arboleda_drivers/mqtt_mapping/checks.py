@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import islice
+from typing import Any
 
 from arboleda.drivers import Device, DeviceVerb, Effect, Evidence, OnStop, Robot, Value, among
+from arboleda_drivers.meaning import as_text, is_range
 from arboleda_drivers.plc import checks
 from arboleda_drivers.plc.checks import Place, Problem
 
@@ -20,15 +22,18 @@ BELIEVED = {
     Evidence.JOINTS: "it is done once the facts say so; an order that came twice, or late, is not noticed",
     Evidence.STATE: "only that it works and stops is known; what it did is not checked",
 }
+NOT_CHECKED = "what becomes of it is not checked; let a sensor or a person say it"
 
 
 def evidence(settings: Keys, device: Device) -> Evidence:
     """The level that the mapping gives: by ids, by facts that each verb sets, else by its state alone."""
     verbs = [verb for verb in device.kind.verbs.values() if verb.name in settings.verbs]
+    if settings.unheard:
+        return Evidence.STATE
     named = [verb for verb in verbs if verb.effect in WORKS or verb.effect is Effect.QUERY]
     if named and all(_names_command(settings, verb) for verb in named):
         return Evidence.IDS
-    if verbs and all(verb.sets_facts or verb.effect is Effect.QUERY for verb in verbs):
+    if not settings.verbs or all(verb.sets_facts or verb.effect is Effect.QUERY for verb in verbs):
         return Evidence.JOINTS
     return Evidence.STATE
 
@@ -46,7 +51,9 @@ def problems(settings: Keys, device: Robot) -> Iterator[Problem]:
     if not isinstance(device, Device):
         yield from checks.undeclared(device)
         return
-    yield from checks.facts(settings.facts, device, "say where it is heard, {hear: TOPIC}")
+    hint = "say where it is heard, {hear: TOPIC}, or that it never is, unheard: [...]"
+    yield from checks.facts([*settings.facts, *settings.unheard], device, hint)
+    yield from _unheard(settings, device)
     for name, heard in settings.facts.items():
         if name in device.kind.facts and (sentence := heard.problem(device.kind.facts[name])):
             yield ("facts", name), sentence
@@ -61,6 +68,18 @@ def problems(settings: Keys, device: Robot) -> Iterator[Problem]:
             (),
             f"{device.name} has evidence: {device.evidence.value}, and this mapping proves {_word(level)}",
         )
+
+
+def _unheard(settings: Keys, device: Device) -> Iterator[Problem]:
+    """Problems of facts that are never told: nothing else may hear them, and no work may set them."""
+    for at, name in enumerate(settings.unheard):
+        if name in settings.facts:
+            yield ("unheard", at), f"{name} is heard by facts; keep one of them"
+    for verb in device.kind.verbs.values():
+        silent = [name for name, _ in verb.sets if name in settings.unheard]
+        if silent and verb.effect in WORKS:
+            why = f"{verb.name} is a {verb.effect.value}, and nothing would say that it has ended"
+            yield ("unheard",), f"{why}; only a switch may set {silent[0]}"
 
 
 def _levels(settings: Keys, device: Device) -> tuple[Evidence, ...]:
@@ -137,7 +156,10 @@ def _ends(settings: Keys, works: list[DeviceVerb]) -> bool:
 def shown(settings: Keys, device: Device) -> Iterator[str]:
     """Lines for a person: what is sent for each verb, and what is believed."""
     level = evidence(settings, device)
-    yield f"{device.name}: evidence {_word(level)}: {BELIEVED[level]}"
+    believed = NOT_CHECKED if settings.unheard else BELIEVED[level]
+    if not settings.verbs:
+        believed = "nothing is sent to it; what it tells is known"
+    yield f"{device.name}: evidence {_word(level)}: {believed}"
     ours: dict[str, Value] = {DEVICE: settings.name_of(device.name), ID: f"{device.name}-1", NUMBER: 1}
     for name, mapped in settings.verbs.items():
         for values in islice(device.kind.verbs[name].samples, EXAMPLES):
@@ -147,10 +169,17 @@ def shown(settings: Keys, device: Device) -> Iterator[str]:
                 yield f"  {given}: {message.topic} {message.payload.decode()}".rstrip()
     for name, heard in settings.facts.items():
         yield f"  {name}: {heard.named(settings.name_of(device.name))} {_what(heard)}".rstrip()
-    if not settings.halt:
+    if settings.verbs and not settings.halt:
         yield f"  stop reaches nothing of {device.name}"
 
 
 def _what(heard: Heard) -> str:
-    words = ", ".join(f"{meant} is {word}" for word, meant in heard.words.items())
+    words = ", ".join(f"{_meant(meant)} is {word}" for word, meant in heard.words.items())
     return " ".join(each for each in (heard.path or heard.pattern, heard.unit, words) if each)
+
+
+def _meant(meant: Any) -> str:
+    """A value, the least and the greatest, or several texts."""
+    if not isinstance(meant, list | tuple):
+        return as_text(meant)
+    return (" to " if is_range(meant) else " or ").join(map(as_text, meant))

@@ -56,7 +56,7 @@ class Keys:
 
     `accepted`, `done` and `failed` are for all verbs. It is there while `online` is said last, and nothing
     for `silent_after_s` is silence; at least one of them is needed. `ask` has it tell its facts and its state
-    where some are not known. `names` are names of devices in their
+    where some are not known; it never tells those that are `unheard`. `names` are names of devices in their
     topics, where these differ from the plant's.
     """
 
@@ -69,6 +69,7 @@ class Keys:
     state: Heard | None = None
     still: Still | None = None
     facts: dict[str, Heard] = field(default_factory=dict)
+    unheard: tuple[str, ...] = ()
     verbs: dict[str, Verb] = field(default_factory=dict)
     accepted: Says | None = None
     done: Says | None = None

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from arboleda.drivers import Evidence, FactType
 from arboleda.model.errors import ConfigError
 from arboleda.plant_file import drivers
 from arboleda.plant_file.loader import load
@@ -17,6 +18,7 @@ from arboleda_drivers.mqtt_mapping.sent import Sent
 from .mqtt_rig import plant_of
 from .test_mqtt_mapping_machine import ARM, ARM_MAPPING, COVER, COVER_MAPPING, PLUG, PLUG_MAPPING
 
+BOOL = FactType(type=bool, words=(), first=False)
 ONLINE = 'online: {hear: "tele/{device}/LWT", equals: Online}\n'
 STATE = "state: {hear: door/state, words: {stopped: [open, closed], moving: [opening, closing]}}\n"
 
@@ -50,6 +52,8 @@ STATE = "state: {hear: door/state, words: {stopped: [open, closed], moving: [ope
             "its end names the command; send it with",
         ),
         (ARM, ARM_MAPPING, "    id: seq\n", "", "its answer has to name the command: say where, id: PATH"),
+        (PLUG, PLUG_MAPPING, "facts:", "unheard: [power]\nfacts:", "power is heard by facts; keep one"),
+        (COVER, COVER_MAPPING, "facts: {open", "unheard: [open]\nother: {open", "only a switch may set open"),
         (ARM, ARM_MAPPING, "silent_after_s: 3", "silent_after_s: 0", "silent_after_s is 0; allowed: 0.5 to"),
     ],
 )
@@ -78,6 +82,31 @@ def test_what_passes_is_shown_with_examples(tmp_path: Path) -> None:
     assert "  angle: arm/state joints[0].deg" in lines
     plug = [*drivers.messages_of(plant_of(tmp_path, PLUG, PLUG_MAPPING))]
     assert "  turn on: cmnd/thing/POWER ON" in plug and "  stop reaches nothing of thing" in plug
+
+
+def test_a_switch_of_which_nothing_is_heard_is_not_checked(tmp_path: Path) -> None:
+    heard = 'facts: {power: {hear: "stat/{device}/POWER", words: {on: "ON", off: "OFF"}}}'
+    plant = plant_of(tmp_path, PLUG, PLUG_MAPPING.replace(heard, "unheard: [power]"))
+    assert plant.robots["thing"].evidence is Evidence.STATE
+    assert "what becomes of it is not checked" in next(iter(drivers.messages_of(plant)))
+
+
+def test_a_sensor_needs_no_verb(tmp_path: Path) -> None:
+    kind = "facts: {door: [open, closed]}"
+    mapping = "silent_after_s: 60\nfacts: {door: {hear: door, words: {open: [up, ajar], closed: true}}}"
+    plant = plant_of(tmp_path, kind, mapping)
+    assert plant.robots["thing"].evidence is Evidence.JOINTS
+    assert [*drivers.messages_of(plant)] == [
+        "thing: evidence facts: nothing is sent to it; what it tells is known",
+        "  door: door up or ajar is open, true is closed",
+    ]
+
+
+def test_a_bool_has_words() -> None:
+    homed = Heard(hear="t", words={"true": "xyz"}, otherwise=False)
+    assert homed.problem(BOOL) == ""
+    assert [homed.read(raw, BOOL) for raw in ("xyz", "")] == [True, False]
+    assert homed.shown(True) == "xyz"
 
 
 @pytest.mark.parametrize(

@@ -176,16 +176,39 @@ class VirtualMapped:
     def _all(self) -> list[Publication]:
         """Its facts and its state."""
         settings = self._settings
+        beside = self._beside_state
         said: list[Said] = [
-            (heard, heard.path, heard.shown(self.facts[name])) for name, heard in settings.facts.items()
+            (heard, heard.path, heard.shown(self.facts[name]))
+            for name, heard in settings.facts.items()
+            if name not in beside
         ]
         if settings.state is not None:
             word = "moving" if self.doing is not None and isinstance(self.doing.command, Work) else "stopped"
             meant = settings.state.words[word]
-            said.append((settings.state, settings.state.path, meant[0] if isinstance(meant, list) else meant))
+            texts = meant if isinstance(meant, list | tuple) else [meant]
+            shown = next((each for each in texts if self._agrees(each)), texts[0])
+            said.append((settings.state, settings.state.path, shown))
         if settings.boot is not None:
             said.append((settings.boot, settings.boot.path, self._boots))
         return self._published(said)
+
+    @property
+    def _beside_state(self) -> dict[str, Heard]:
+        """The facts that are heard by the same value as the state."""
+        state = self._settings.state
+        where = None if state is None else (state.hear, state.path, state.pattern)
+        facts = self._settings.facts.items()
+        return {name: heard for name, heard in facts if (heard.hear, heard.path, heard.pattern) == where}
+
+    def _agrees(self, shown: object) -> bool:
+        """True for a value of the state by which the facts are heard as they are."""
+        try:
+            return all(
+                heard.read(shown, self._device.kind.facts[name]) == self.facts[name]
+                for name, heard in self._beside_state.items()
+            )
+        except UnreadableValue:
+            return False
 
     def _published(self, said: Sequence[Said]) -> list[Publication]:
         return [Publication(topic, payload, 0) for topic, payload in messages(said, self._name)]
