@@ -128,7 +128,7 @@ class Day:
         self.counts: Counter[str] = Counter()
         self._tasks: list[Task] = []
         self._news = threading.Condition()
-        self._deaf: list[tuple[float, float]] = []  # the times in which a stop may not arrive
+        self._bad: list[tuple[float, float, Form]] = []  # when the line was bad, and how
         self.form: Form | None = None  # in which the line was bad, in the last order
         self._snapshot: dict[str, Any] = {}
         self._seen_at = self._acted_at = 0.0  # the snapshot, and what was done to the plant
@@ -198,8 +198,7 @@ class Day:
             self._meet(goes, away)
             time.sleep(away)
         time.sleep(SEEN_S)
-        if word in DEAF:
-            self._deaf.append((began, time.monotonic()))
+        self._bad.append((began, time.monotonic(), self.form))
 
     def _wait_for_order(self, task: Task) -> None:
         """Wait until the driver is given an order of the task, it ends, or the cell waits for somebody."""
@@ -294,7 +293,9 @@ class Day:
             if each.at > task.ended + GRACE_S and order.began < task.ended:  # later ones are of acts
                 late = each.at - task.ended
                 self.found.append(f"{each} began {late:.3f} s after {task.id} had ended ({task.goes})")
-        self.found += [f"{id} was begun {times} times" for id, times in begun.items() if times > 1]
+        for order in orders:
+            if begun[order.command.id] > 1:
+                self.found.append(f"{order.command} was begun twice ({self._form_at(order.began)})")
         self._judge_stands()
         for task in self._tasks:
             self._judge_end(task)
@@ -315,11 +316,16 @@ class Day:
                 continue
             over = [each for each in did if each.at > before[-1].at]
             if not over or over[0].at > stop.ended + STANDS_S or over[0].word == BEGIN:
-                self.found.append(f"{before[-1]} went on after {stop.command} was answered")
+                form = self._form_at(stop.began)
+                self.found.append(f"{before[-1]} went on after {stop.command} was answered ({form})")
 
     def _is_deaf(self, at: float) -> bool:
         """True while the device may not have heard what was sent."""
-        return any(began <= at <= ended for began, ended in self._deaf)
+        return self._form_at(at).partition(" ")[0] in DEAF
+
+    def _form_at(self, at: float) -> str:
+        """The form in which the line was bad then; "" for none."""
+        return next((str(form) for began, ended, form in self._bad if began <= at <= ended), "")
 
     def _judge_end(self, task: Task) -> None:
         here = [each for each in self.peer.did if task.began <= each.at <= task.ended]

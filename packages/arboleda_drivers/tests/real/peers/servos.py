@@ -20,6 +20,7 @@ BROADCAST = 0xFE
 READ, WRITE, REBOOT, SYNC_WRITE, STATUS = 2, 3, 8, 0x83, 0x55
 STEP_S = 0.005
 NEAR = 200  # ticks: a goal so near is where it stood a moment before
+LEAST = 1  # of the speeds that a servo may be given
 FASTEST = 3000.0  # ticks/s
 
 
@@ -145,8 +146,12 @@ class Servos:
     _goals: tuple[int, ...] = ()
 
     def _farthest(self) -> float:
-        goal, torque = self._maker.goal, self._maker.torque
-        return max(abs(self._get(id, goal) - self._at[id]) if self._get(id, torque) else 0 for id in IDS)
+        """The longest way of a servo; one that is held at the least speed, as it was not heard, has none."""
+        goal, goes = self._maker.goal, [id for id in IDS if self._goes(id)]
+        return max((abs(self._get(id, goal) - self._at[id]) for id in goes), default=0.0)
+
+    def _goes(self, id: int) -> bool:
+        return bool(self._get(id, self._maker.torque)) and self._get(id, self._maker.speed) != LEAST
 
     def _get(self, id: int, place: tuple[int, int]) -> int:
         at, length = place
