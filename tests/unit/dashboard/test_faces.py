@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import pytest
@@ -469,18 +469,26 @@ def test_whatever_may_start_robots_asks(told: Callable[..., Any]) -> None:
     assert (len(cancel), drop) == (1, [])
 
 
-def test_below_the_stop_button_stands_no_list_of_a_hundred_robots() -> None:
-    robots = [robot(f"a{number}", still=False) for number in range(100)]
-    moment = Moment(
+def stop_moment(robots: list[dict[str, Any]], no_stop: Sequence[str] = ()) -> Moment:
+    return Moment(
         snapshot={"robots": robots},
-        layout={"no_stop": []},
+        layout={"no_stop": [*no_stop]},
         links={},
         trees={},
         events=[],
         words=words("en"),
         unix_s=0.0,
     )
-    assert stop_face(moment)["text/stop"][0].endswith("a6, a7 and 92 more")
+
+
+def test_below_the_stop_button_stands_no_list_of_a_hundred_robots() -> None:
+    robots = [robot(f"a{number}", still=False) for number in range(100)]
+    assert stop_face(stop_moment(robots))["text/stop"][0].endswith("a6, a7 and 92 more")
+
+
+def test_what_no_stop_reaches_is_said_below_the_stop_button() -> None:
+    said = stop_face(stop_moment([robot("a1", latched=False)], no_stop=["lamp"]))["text/stop"][0]
+    assert said == "Stops every robot of the plant. Nothing is sent to lamp: no stop reaches it"
 
 
 def test_a_slow_memory_is_said_in_the_header_and_among_the_links(told: Callable[..., Any]) -> None:

@@ -136,13 +136,12 @@ def _ways(settings: Keys, device: Device) -> Iterator[Problem]:
         if name not in settings.facts:
             yield ("still", "facts"), f"there is no fact {name}; {among(name, settings.facts)}"
     works = [verb for verb in device.kind.verbs.values() if verb.effect in WORKS]
-    halted = [verb for verb in works if verb.on_stop is OnStop.HALT]
     if works and settings.state is None and settings.still is None and not _ends(settings, works):
         how = "say where its state is heard, state: {hear: TOPIC, words: {stopped: idle, moving: busy}}"
         yield (), f"nothing says whether it has ended {works[0].name}: {how}, or still: {{facts: [...]}}"
-    if halted and device.has_stop and not settings.halt:
+    if device.kind.verbs and device.has_stop and not settings.halt:
         how = "say what is sent to stop it, halt: [{topic: ...}], or stop: none of the device"
-        yield ("halt",), f"{halted[0].name} could not be stopped: {how}"
+        yield ("halt",), f"no stop would reach {device.name}: {how}"
 
 
 def _ends(settings: Keys, works: list[DeviceVerb]) -> bool:

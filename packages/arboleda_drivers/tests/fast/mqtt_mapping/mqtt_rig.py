@@ -36,6 +36,7 @@ cells:
     devices:
       {device}:
         kind: thing
+{_indented("" if "halt:" in mapping else "stop: none", 8)}
         driver:
           mqtt:
 {_indented(mapping, 12)}

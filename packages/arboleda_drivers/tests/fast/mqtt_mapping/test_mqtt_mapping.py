@@ -20,6 +20,7 @@ from .test_mqtt_mapping_machine import ARM, ARM_MAPPING, COVER, COVER_MAPPING, P
 
 BOOL = FactType(type=bool, words=(), first=False)
 ONLINE = 'online: {hear: "tele/{device}/LWT", equals: Online}\n'
+AT = 'facts: {open: {hear: door/at, words: {open: "1", shut: "0"}}}'
 STATE = "state: {hear: door/state, words: {stopped: [open, closed], moving: [opening, closing]}}\n"
 
 
@@ -37,8 +38,8 @@ STATE = "state: {hear: door/state, words: {stopped: [open, closed], moving: [ope
             COVER,
             COVER_MAPPING,
             "halt: [{topic: door/command, payload: STOP}]",
-            "",
-            "move could not be stopped",
+            "# halt:",
+            "no stop would reach thing: say what is sent to stop it",
         ),
         (COVER, COVER_MAPPING, STATE, "", "nothing says whether it has ended move: say where its state"),
         (COVER, COVER_MAPPING, "payload: STOP", 'payload: "{to}"', "halt has no parameters, and names to"),
@@ -53,7 +54,7 @@ STATE = "state: {hear: door/state, words: {stopped: [open, closed], moving: [ope
         ),
         (ARM, ARM_MAPPING, "    id: seq\n", "", "its answer has to name the command: say where, id: PATH"),
         (PLUG, PLUG_MAPPING, "facts:", "unheard: [power]\nfacts:", "power is heard by facts; keep one"),
-        (COVER, COVER_MAPPING, "facts: {open", "unheard: [open]\nother: {open", "only a switch may set open"),
+        (COVER, COVER_MAPPING, AT, "unheard: [open]", "only a switch may set open"),
         (ARM, ARM_MAPPING, "silent_after_s: 3", "silent_after_s: 0", "silent_after_s is 0; allowed: 0.5 to"),
     ],
 )

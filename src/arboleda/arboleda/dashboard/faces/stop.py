@@ -52,13 +52,17 @@ def _group(robot: dict[str, Any], no_stop: frozenset[str]) -> str:
 
 def face(moment: Moment) -> Face:
     """The line under the stop button."""
-    found = stopped(moment.snapshot, frozenset(moment.layout["no_stop"]))
+    no_stop = moment.layout["no_stop"]
+    found = stopped(moment.snapshot, frozenset(no_stop))
     robots = {
         "stopping": found.waiting,
         "unconfirmed": found.silent,
         "partly": found.confirmed,
     }.get(found.state, ())
     sentence = moment.words(f"stop.{found.state}", robots=_named(moment, robots), count=len(found.confirmed))
+    if no_stop:
+        beyond = moment.words("stop.beyond", robots=_named(moment, tuple(no_stop)))
+        sentence = f"{sentence}. {beyond}"
     return {"text/stop": [sentence, found.state]}
 
 

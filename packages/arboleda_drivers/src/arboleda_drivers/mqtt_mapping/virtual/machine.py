@@ -49,6 +49,7 @@ class VirtualMapped:
         self._boots = 1
         self._tell_at = -math.inf
         self._said: dict[str, object] = {}  # of verbs that are sent as several messages
+        self.begun = 0  # orders
         self.done: list[str] = []  # verbs that it has done
 
     @property
@@ -151,6 +152,7 @@ class VirtualMapped:
         settings, verb = self._settings, command.verb
         if self.doing is not None or "refuse" in self._faults:
             return self._says(settings.fails(verb), id, "busy" if self.doing else "refused")
+        self.begun += 1
         takes_s = command.takes_s * (10 if "slow" in self._faults else 1)
         ends_at = math.inf if "stick" in self._faults else now + takes_s
         self.doing = Doing(command=command, id=id, ends_at=now if "lie" in self._faults else ends_at)
